@@ -1,0 +1,47 @@
+# What every target of the project is built with, and how a room (one folder, one library) is made.
+
+add_library(pliant_settings INTERFACE)
+add_library(pliant::settings ALIAS pliant_settings)
+target_compile_features(pliant_settings INTERFACE cxx_std_20)
+# -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
+target_compile_options(pliant_settings INTERFACE
+  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  -Wcast-qual -Woverloaded-virtual -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${PLIANT_WERROR}>:-Werror>)
+# GCC 12 warns of overlaps in std::string's operator+ that cannot be (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(pliant_settings INTERFACE -Wno-restrict)
+endif()
+target_compile_definitions(pliant_settings INTERFACE $<$<BOOL:${PLIANT_CHECKS}>:PLIANT_CHECKS>)
+if(PLIANT_SANITIZE)
+  target_compile_options(pliant_settings INTERFACE
+    -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(pliant_settings INTERFACE -fsanitize=${PLIANT_SANITIZE})
+endif()
+
+find_program(PLIANT_CCACHE ccache)
+if(PLIANT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PLIANT_CCACHE})
+endif()
+
+# pliant_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
+# makes the library pliant_NAME, alias pliant::NAME. Paths are relative to the room's own folder,
+# which lies at <include root>/pliant/NAME.
+function(pliant_room name)
+  cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE")
+  set(target pliant_${name})
+  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH include_root)
+  cmake_path(GET include_root PARENT_PATH include_root)
+  add_library(${target})
+  add_library(pliant::${name} ALIAS ${target})
+  target_sources(${target}
+    PRIVATE ${room_SOURCES}
+    PUBLIC FILE_SET HEADERS BASE_DIRS ${include_root} FILES ${room_HEADERS})
+  # $<BUILD_INTERFACE>: the settings are ours, and install(EXPORT) must not look for them.
+  target_link_libraries(${target} PUBLIC ${room_PUBLIC}
+                        PRIVATE ${room_PRIVATE} $<BUILD_INTERFACE:pliant::settings>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  install(TARGETS ${target} EXPORT pliant FILE_SET HEADERS)
+endfunction()

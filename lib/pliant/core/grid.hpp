@@ -1,0 +1,60 @@
+#pragma once
+
+namespace pliant {
+
+/// The rectangle of nodes i0..i1 x j0..j1 of a grid, both ends included.
+struct Box {
+  int i0 = 0;
+  int i1 = -1;
+  int j0 = 0;
+  int j1 = -1;
+
+  int columns() const { return i1 - i0 + 1; }
+  int rows() const { return j1 - j0 + 1; }
+  bool is_empty() const { return i1 < i0 || j1 < j0; }
+  bool contains(int i, int j) const { return i0 <= i && i <= i1 && j0 <= j && j <= j1; }
+
+  /// Grows to hold node (i,j) too.
+  void include(int i, int j) {
+    if (is_empty()) {
+      *this = {i, i, j, j};
+      return;
+    }
+    i0 = i < i0 ? i : i0;
+    i1 = i > i1 ? i : i1;
+    j0 = j < j0 ? j : j0;
+    j1 = j > j1 ? j : j1;
+  }
+
+  /// Grows to hold `other` too.
+  void include(const Box& other) {
+    if (other.is_empty()) return;
+    include(other.i0, other.j0);
+    include(other.i1, other.j1);
+  }
+
+  friend bool operator==(const Box&, const Box&) = default;
+};
+
+/// The nodes both boxes hold; empty when there are none.
+inline Box intersection(const Box& a, const Box& b) {
+  return {a.i0 > b.i0 ? a.i0 : b.i0, a.i1 < b.i1 ? a.i1 : b.i1, a.j0 > b.j0 ? a.j0 : b.j0,
+          a.j1 < b.j1 ? a.j1 : b.j1};
+}
+
+/// An even lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
+/// 4.3, fig. 1, whose one spacing h is two here.
+struct Grid {
+  int columns = 0;  ///< M, nodes along u
+  int rows = 0;     ///< N, nodes along v
+  double hu = 0;    ///< spacing along u [uv]
+  double hv = 0;    ///< spacing along v [uv]
+
+  int node_count() const { return columns * rows; }
+  int node(int i, int j) const { return j * columns + i; }
+  Box box() const { return {0, columns - 1, 0, rows - 1}; }
+
+  friend bool operator==(const Grid&, const Grid&) = default;
+};
+
+}  // namespace pliant

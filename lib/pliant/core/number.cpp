@@ -1,0 +1,39 @@
+#include "pliant/core/number.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// from_chars knows no leading plus; what follows one must not be a second sign.
+std::optional<std::string_view> without_plus(std::string_view text) {
+  if (!text.starts_with('+')) return text;
+  text.remove_prefix(1);
+  if (text.starts_with('-') || text.starts_with('+')) return std::nullopt;
+  return text;
+}
+
+}  // namespace
+
+std::optional<double> to_number(std::string_view text) {
+  const auto digits = without_plus(text);
+  if (!digits) return std::nullopt;
+  double number = 0;
+  const char* end = digits->data() + digits->size();
+  const auto [last, error] = std::from_chars(digits->data(), end, number);
+  if (error != std::errc{} || last != end || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<int> to_integer(std::string_view text) {
+  const auto digits = without_plus(text);
+  if (!digits) return std::nullopt;
+  int number = 0;
+  const char* end = digits->data() + digits->size();
+  const auto [last, error] = std::from_chars(digits->data(), end, number);
+  if (error != std::errc{} || last != end) return std::nullopt;
+  return number;
+}
+
+}  // namespace pliant

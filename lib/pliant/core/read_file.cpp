@@ -1,0 +1,34 @@
+#include "pliant/core/read_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace pliant {
+
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
+  const auto unreadable = [&](const std::string& reason) {
+    return fail(ErrorCode::Unreadable, "cannot read the file: " + reason, file.string());
+  };
+  std::error_code status_error;
+  if (std::filesystem::is_directory(file, status_error)) return unreadable("it is a folder");
+
+  errno = 0;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
+                                                               &std::fclose);
+  if (!stream) return unreadable(std::strerror(errno));
+  // Read until the end rather than asking for the size first: pipes have none.
+  std::string bytes;
+  std::string chunk(std::size_t{1} << 20, '\0');
+  while (const std::size_t count = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {
+    bytes.append(chunk, 0, count);
+    if (bytes.size() > max_bytes) {
+      return unreadable("it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
+    }
+  }
+  if (std::ferror(stream.get())) return unreadable(std::strerror(errno));
+  return bytes;
+}
+
+}  // namespace pliant

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pliant/core/result.hpp"
+
+namespace pliant {
+
+/// All bytes of a file. Errors: Unreadable, naming the file and the reason: not there, a folder,
+/// not allowed, larger than `max_bytes`.
+Result<std::string> read_file(const std::filesystem::path& file,
+                              std::size_t max_bytes = std::size_t{4} << 30);
+
+}  // namespace pliant

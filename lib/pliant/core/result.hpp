@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+namespace pliant {
+
+/// What kind of trouble an `Error` reports; the command turns it into an exit code.
+enum class ErrorCode {
+  InvalidInput,  ///< a scene, mesh or argument breaks a documented rule
+  Unreadable,    ///< a file could not be opened or read
+  Unwritable,    ///< a file could not be created, written or renamed
+  OutOfMemory,   ///< the work does not fit in memory
+  SolverFailed,  ///< a linear system could not be factored or solved
+  NotFinite,     ///< a state stopped being finite
+  Interrupted,   ///< the caller asked to stop
+};
+
+/// One problem: what is wrong, and where. `others` holds further problems found in the same run,
+/// in the order in which they were found; theirs is empty.
+struct Error {
+  ErrorCode code = ErrorCode::InvalidInput;
+  std::string message;    ///< one line: the thing, the value, the rule
+  std::string file = {};  ///< empty: no file is at fault
+  int line = 0;           ///< counted from 1; 0: no line is known
+  std::vector<Error> others = {};
+};
+
+/// A value, or the reason why there is none.
+template <class T>
+using Result = tl::expected<T, Error>;
+
+/// An `Error` ready to be returned from a function that gives a `Result`.
+inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::string file = {},
+                                  int line = 0) {
+  return tl::unexpected<Error>(
+      Error{.code = code, .message = std::move(message), .file = std::move(file), .line = line});
+}
+
+/// Hands an error on as it is.
+inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+/// The first problem and all others, one line each: `FILE:LINE: error: MESSAGE`, without the parts
+/// that are not known.
+std::vector<std::string> to_lines(const Error& error);
+
+}  // namespace pliant

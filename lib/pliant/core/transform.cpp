@@ -1,0 +1,115 @@
+#include "pliant/core/transform.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "pliant/core/elementary.hpp"
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+// Products of 3x3 matrices are written out: the order of each sum is then ours, not the library's.
+Matrix3d product(const Matrix3d& a, const Matrix3d& b) {
+  Matrix3d c;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      c(row, column) =
+          a(row, 0) * b(0, column) + a(row, 1) * b(1, column) + a(row, 2) * b(2, column);
+    }
+  }
+  return c;
+}
+
+Field product(const Field& rows, const Matrix3d& a) {
+  Field image(rows.rows(), 3);
+  for (int k = 0; k < 3; ++k) {
+    image.col(k) = rows.col(0) * a(k, 0) + rows.col(1) * a(k, 1) + rows.col(2) * a(k, 2);
+  }
+  return image;
+}
+
+Matrix3d rotation_about(int axis, double degrees) {
+  const auto [sine, cosine] = sine_cosine_of_degrees(degrees);
+  const int second = (axis + 1) % 3;
+  const int third = (axis + 2) % 3;
+  Matrix3d rotation = Matrix3d::Identity();
+  rotation(second, second) = cosine;
+  rotation(second, third) = -sine;
+  rotation(third, second) = sine;
+  rotation(third, third) = cosine;
+  return rotation;
+}
+
+// First, second and third axis to turn about.
+std::array<int, 3> axes(RotateOrder order) {
+  switch (order) {
+    case RotateOrder::Xyz:
+      return {0, 1, 2};
+    case RotateOrder::Xzy:
+      return {0, 2, 1};
+    case RotateOrder::Yxz:
+      return {1, 0, 2};
+    case RotateOrder::Yzx:
+      return {1, 2, 0};
+    case RotateOrder::Zxy:
+      return {2, 0, 1};
+    case RotateOrder::Zyx:
+      return {2, 1, 0};
+  }
+  return {0, 1, 2};
+}
+
+double determinant(const Matrix3d& a) {
+  return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) -
+         a(0, 1) * (a(1, 0) * a(2, 2) - a(1, 2) * a(2, 0)) +
+         a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
+}
+
+Matrix3d inverse(const Matrix3d& a) {
+  const double scale = 1 / determinant(a);
+  Matrix3d b;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      // Cofactor of (column, row), by cyclic indices so that the sign is included.
+      const int r1 = (column + 1) % 3, r2 = (column + 2) % 3;
+      const int c1 = (row + 1) % 3, c2 = (row + 2) % 3;
+      b(row, column) = (a(r1, c1) * a(r2, c2) - a(r1, c2) * a(r2, c1)) * scale;
+    }
+  }
+  return b;
+}
+
+}  // namespace
+
+bool Transform::is_invertible() const {
+  const double volume = determinant(linear);
+  return volume != 0 && std::isfinite(1 / volume);
+}
+
+Transform make_transform(const Vector3d& translate, const Vector3d& rotate_degrees,
+                         const Vector3d& scale, RotateOrder order) {
+  const auto [first, second, third] = axes(order);
+  Matrix3d linear = product(rotation_about(third, rotate_degrees[third]),
+                            product(rotation_about(second, rotate_degrees[second]),
+                                    rotation_about(first, rotate_degrees[first])));
+  for (int column = 0; column < 3; ++column) linear.col(column) *= scale[column];
+  return {linear, translate};
+}
+
+Field to_world(const Transform& transform, const Field& points) {
+  Field world = product(points, transform.linear);
+  for (int k = 0; k < 3; ++k) world.col(k).array() += transform.translation[k];
+  return world;
+}
+
+Field vectors_to_world(const Transform& transform, const Field& vectors) {
+  return product(vectors, transform.linear);
+}
+
+Field vectors_to_object(const Transform& transform, const Field& vectors) {
+  PLIANT_EXPECTS(transform.is_invertible());
+  return product(vectors, inverse(transform.linear));
+}
+
+}  // namespace pliant

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "pliant/core/field.hpp"
+
+namespace pliant {
+
+/// Order in which the three rotations apply: `Xyz` turns about x first, so R = Rz Ry Rx.
+enum class RotateOrder { Xyz, Xzy, Yxz, Yzx, Zxy, Zyx };
+
+/// An affine map from object to world space: p_world = linear p + translation.
+struct Transform {
+  Matrix3d linear = Matrix3d::Identity();   ///< R S
+  Vector3d translation = Vector3d::Zero();  ///< [length]
+
+  /// Whether every direction survives: the inverse exists.
+  bool is_invertible() const;
+};
+
+/// T + R S p, right-handed. SPEC 7. `rotate_degrees` [degrees], `scale` [1].
+Transform make_transform(const Vector3d& translate, const Vector3d& rotate_degrees,
+                         const Vector3d& scale, RotateOrder order);
+
+/// Points (#points x 3) to world space. The sums have a stated order: (x + y + z) + translation.
+Field to_world(const Transform& transform, const Field& points);
+
+/// Vectors (#vectors x 3) to world space: the linear part only.
+Field vectors_to_world(const Transform& transform, const Field& vectors);
+
+/// World-space vectors (#vectors x 3) to object space, through the inverse linear part.
+/// Requires: is_invertible().
+Field vectors_to_object(const Transform& transform, const Field& vectors);
+
+}  // namespace pliant

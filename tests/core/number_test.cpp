@@ -1,0 +1,47 @@
+#include "pliant/core/number.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+#include "support/catch.hpp"
+
+using namespace pliant;
+
+TEST_CASE("a decimal reads back the double it was written from", "[core][number]") {
+  std::mt19937_64 random(11);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double number =
+        std::ldexp(static_cast<double>(random()) - 9e18, static_cast<int>(random() % 200) - 160);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", number);
+    CAPTURE(text);
+    REQUIRE(to_number(text) == number);
+  }
+}
+
+TEST_CASE("what is no finite decimal number is none", "[core][number]") {
+  const std::string text = GENERATE(as<std::string>{}, "", " ", "nan", "NaN", "inf", "-inf", "1,5",
+                                    "0x10", "1e999", "1e-999", "1.5abc", "1 2", "+-1", "++1", "+",
+                                    "-", ".", "e5", "1e", " 1", "1 ", "--1", "1.2.3");
+  CAPTURE(text);
+  CHECK_FALSE(to_number(text));
+}
+
+TEST_CASE("usual spellings of numbers are read", "[core][number]") {
+  CHECK(to_number("+1.5") == 1.5);
+  CHECK(to_number(".5") == 0.5);
+  CHECK(to_number("5.") == 5.0);
+  CHECK(to_number("-1E+3") == -1000.0);
+  CHECK(to_number("0.375") == 0.375);
+}
+
+TEST_CASE("whole numbers are whole and in range", "[core][number]") {
+  CHECK(to_integer("+12") == 12);
+  CHECK(to_integer("-2147483648") == -2147483647 - 1);
+  for (const char* text : {"", "1.0", "1e3", "2147483648", "12a", "+-1", " 1"}) {
+    CAPTURE(text);
+    CHECK_FALSE(to_integer(text));
+  }
+}
