@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pliant/timeline/exact_sum.hpp"
+#include "pliant/timeline/key.hpp"
+#include "pliant/timeline/overshoot.hpp"
+
+namespace pliant::timeline {
+
+/// A tangent as it shapes one segment: how far it reaches into it, and how much it rises there.
+template <int D>
+struct Arm {
+  double length = 0;       ///< [frames], >= 0
+  bool is_third = false;   ///< exactly a third of the segment, whatever `length` rounds to
+  bool is_vector = false;  ///< given as a vector: `rise` counts, not `slope`
+  Value<D> slope = {};     ///< [unit/frame]
+  Value<D> rise = {};      ///< over `length` [unit]
+
+  /// Three times the arm: the derivative of the Bézier cubic at its end, in time and in value.
+  Pair frame_rate(Pair span) const { return is_third ? span : exact_product(3, length); }
+  Value<D> value_rate(double span) const {
+    Value<D> rate;
+    for (int c = 0; c < D; ++c) {
+      if (is_vector) {
+        rate[c] = 3 * rise[c];
+      } else {
+        rate[c] = is_third ? slope[c] * span : 3 * (slope[c] * length);
+      }
+    }
+    return rate;
+  }
+
+  /// The same arm with another length: a numeric slope stays, a vector is scaled as a whole (one
+  /// without length keeps its rise).
+  Arm with_length(double new_length) const {
+    Arm arm = *this;
+    arm.length = new_length;
+    arm.is_third = false;
+    if (length > 0) {
+      for (double& each : arm.rise) each *= new_length / length;
+    }
+    return arm;
+  }
+};
+
+/// The arm of a tangent in a segment of `span` frames. What the rules changed about it is added to
+/// `changes`, one line each.
+template <int D>
+Arm<D> arm_of(const Tangent<D>& tangent, const Value<D>& slope, double span, bool is_out,
+              std::vector<std::string>& changes);
+
+extern template Arm<1> arm_of<1>(const Tangent<1>&, const Value<1>&, double, bool,
+                                 std::vector<std::string>&);
+extern template Arm<3> arm_of<3>(const Tangent<3>&, const Value<3>&, double, bool,
+                                 std::vector<std::string>&);
+
+}  // namespace pliant::timeline

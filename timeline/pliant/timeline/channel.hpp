@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant {
+
+/// A parameter over time with D components: one constant, or a curve.
+template <int D>
+class Channel {
+ public:
+  Channel(Value<D> constant = {}) : constant_(constant) {}  // NOLINT: a constant is a channel
+  Channel(Curve<D> curve) : curve_(std::move(curve)) {}     // NOLINT: a curve is a channel
+  Channel(double constant)                                  // NOLINT: a number is a channel
+      requires(D == 1)
+      : constant_{constant} {}
+
+  /// The value at a frame [unit]. Requires: finite.
+  Value<D> at(double frame) const { return curve_ ? curve_->value(frame) : constant_; }
+
+  bool is_animated() const { return curve_.has_value(); }
+
+  /// The curve. Requires: is_animated().
+  const Curve<D>& curve() const { return *curve_; }
+
+ private:
+  Value<D> constant_ = {};
+  std::optional<Curve<D>> curve_;
+};
+
+/// A switch over time: a channel whose curve steps between 0 (false) and 1 (true).
+class Switch {
+ public:
+  Switch(bool constant) : channel_(constant ? 1.0 : 0.0) {}  // NOLINT: a boolean is a switch
+
+  /// Keys with values 0 and 1 only, and steps only (Step, StepNext).
+  Switch(Curve<1> curve) : channel_(std::move(curve)) {}  // NOLINT: a curve is a switch
+
+  bool at(double frame) const { return channel_.at(frame)[0] != 0; }
+  const Channel<1>& channel() const { return channel_; }
+
+ private:
+  Channel<1> channel_;
+};
+
+}  // namespace pliant

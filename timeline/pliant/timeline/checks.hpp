@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "pliant/timeline/curve_report.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::timeline {
+
+/// The greatest size of any number a curve is given. Products of two such numbers stay finite, so
+/// nothing between the keys can overflow.
+inline constexpr double largest_number = 1e150;
+
+/// The first rule that an author's keys break, if any: see `Curve::make`.
+template <int D>
+std::optional<CurveError> broken_rule(const CurveKeys<D>& keys);
+
+extern template std::optional<CurveError> broken_rule(const CurveKeys<1>&);
+extern template std::optional<CurveError> broken_rule(const CurveKeys<3>&);
+
+}  // namespace pliant::timeline

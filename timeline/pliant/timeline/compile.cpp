@@ -1,0 +1,310 @@
+#include "pliant/timeline/compile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "pliant/timeline/arms.hpp"
+#include "pliant/timeline/checks.hpp"
+#include "pliant/timeline/course.hpp"
+#include "pliant/timeline/loop.hpp"
+#include "pliant/timeline/number_text.hpp"
+#include "pliant/timeline/tangents.hpp"
+
+namespace pliant::timeline {
+
+namespace {
+
+// Rates of change beyond this could overflow when a segment is evaluated.
+constexpr double largest_rate = 1e305;
+
+/// What a note is about. Copies of a key by the loop repeat its notes; one of each is enough.
+enum class Subject { Left, InTangent, OutTangent, InOvershoot, OutOvershoot, Count };
+
+template <int D>
+class Compiler {
+ public:
+  Compiler(const CurveKeys<D>& author, WrittenKeys<D> written)
+      : author_(author),
+        written_(std::move(written)),
+        noted_(author.keys.size()),
+        notes_(std::move(written_.notes)) {}
+
+  tl::expected<Compiled<D>, CurveError> compile() {
+    find_slopes();
+    add_keys();
+    for (std::size_t k = 0; k + 1 < keys().size(); ++k) add_segment(k);
+    note_ends();
+    if (error_) return tl::unexpected(*error_);
+    compiled_.curve.before = outside(author_.before, true);
+    compiled_.curve.after = outside(author_.after, false);
+    std::stable_sort(notes_.begin(), notes_.end(),
+                     [](const CurveNote& a, const CurveNote& b) { return a.key < b.key; });
+    compiled_.notes = std::move(notes_);
+    return std::move(compiled_);
+  }
+
+ private:
+  using Kind = typename Segment<D>::Kind;
+
+  const std::vector<Key<D>>& keys() const { return written_.keys; }
+  Track<D>& track() { return compiled_.curve.track; }
+
+  void note(std::size_t key, Subject subject, std::string message) {
+    const std::size_t origin = written_.origin[key];
+    bool& is_noted = noted_[origin][static_cast<std::size_t>(subject)];
+    if (!std::exchange(is_noted, true)) notes_.push_back({origin, std::move(message)});
+  }
+
+  void fail(std::size_t key, std::string message) {
+    if (!error_) error_ = CurveError{written_.origin[key], std::move(message)};
+  }
+
+  void find_slopes() {
+    in_.resize(keys().size());
+    out_.resize(keys().size());
+    for (int c = 0; c < D; ++c) {
+      const Slopes slopes = tangent_slopes(keys(), author_.before, author_.after, c);
+      for (std::size_t k = 0; k < keys().size(); ++k) {
+        in_[k][c] = slopes.in[k];
+        out_[k][c] = slopes.out[k];
+      }
+    }
+  }
+
+  void add_keys() {
+    for (std::size_t k = 0; k < keys().size(); ++k) {
+      const Key<D>& key = keys()[k];
+      track().frames.push_back(key.frame);
+      track().values.push_back(key.value);
+      const bool jumps = has_jump(keys(), k);
+      const bool follows_step = k > 0 && keys()[k - 1].next.kind == Interpolation::Kind::Step;
+      if (key.left && !jumps) {
+        note(k, Subject::Left, "left has no effect: the segment before is a step, which holds");
+      }
+      if (follows_step) {
+        track().arrivals.push_back(keys()[k - 1].value);
+      } else {
+        track().arrivals.push_back(jumps ? *key.left : key.value);
+      }
+    }
+    track().search = KeySearch(track().frames);
+  }
+
+  void add_segment(std::size_t k) {
+    const Interpolation& next = keys()[k].next;
+    Segment<D> segment;
+    segment.start = keys()[k].frame;
+    segment.end = keys()[k + 1].frame;
+    segment.length = segment.end - segment.start;
+    const Value<D>& start = track().values[k];
+    const Value<D>& end = track().arrivals[k + 1];
+    // Arms are looked at even where no Bézier segment reads them, for the sake of their notes.
+    const Arm<D> out = arm(k, true, segment.length);
+    const Arm<D> in = arm(k + 1, false, segment.length);
+    switch (next.kind) {
+      case Interpolation::Kind::Step:
+        segment.ends = value_cubics<D>(start, start, {}, {});
+        break;
+      case Interpolation::Kind::StepNext:
+        segment.kind = Kind::Jump;
+        segment.ends = value_cubics<D>(end, end, {}, {});
+        break;
+      case Interpolation::Kind::Linear:
+        segment.ends = value_cubics<D>(start, end, change(start, end), change(start, end));
+        break;
+      case Interpolation::Kind::Bezier:
+        shape_by_arms(k, out, in, segment);
+        break;
+      case Interpolation::Kind::CubicBezier:
+        shape_by_control(next, start, end, segment);
+        break;
+      case Interpolation::Kind::Easing:
+        ease(next, start, end, segment);
+        break;
+    }
+    track().segments.push_back(segment);
+  }
+
+  static Value<D> change(const Value<D>& start, const Value<D>& end) {
+    Value<D> change;
+    for (int c = 0; c < D; ++c) change[c] = end[c] - start[c];
+    return change;
+  }
+
+  Arm<D> arm(std::size_t key, bool is_out, double span) {
+    std::vector<std::string> changes;
+    const Key<D>& author = keys()[key];
+    const Arm<D> arm = arm_of<D>(is_out ? author.out : author.in, is_out ? out_[key] : in_[key],
+                                 span, is_out, changes);
+    for (std::string& each : changes) {
+      note(key, is_out ? Subject::OutTangent : Subject::InTangent, std::move(each));
+    }
+    return arm;
+  }
+
+  /// The outer sides of the end keys, which no segment reads.
+  void note_ends() {
+    arm(0, false, 1);
+    arm(keys().size() - 1, true, 1);
+  }
+
+  void shape_by_arms(std::size_t k, Arm<D> out, Arm<D> in, Segment<D>& segment) {
+    const double span = segment.length;
+    const Lengths lengths{out.length, in.length};
+    if (author_.overshoot == Overshoot::Error && !is_function_of_time(lengths, span)) {
+      const bool blames_out = out.length > in.length;
+      fail(blames_out ? k : k + 1,
+           std::string(blames_out ? "out" : "in") + " tangent reaches " +
+               number_text(blames_out ? out.length : in.length) + " frames into a segment of " +
+               number_text(span) + " frames: time would run backwards, and overshoot is an error");
+      return;
+    }
+    const Lengths legal = corrected(lengths, span, author_.overshoot);
+    if (legal.start != lengths.start) {
+      note(k, Subject::OutOvershoot, correction("out", lengths.start, legal.start, span));
+      out = out.with_length(legal.start);
+    }
+    if (legal.end != lengths.end) {
+      note(k + 1, Subject::InOvershoot, correction("in", lengths.end, legal.end, span));
+      in = in.with_length(legal.end);
+    }
+    const Value<D> start_rate = out.value_rate(span);
+    const Value<D> end_rate = in.value_rate(span);
+    check_rate(k, "out", out.slope, start_rate);
+    check_rate(k + 1, "in", in.slope, end_rate);
+    segment.ends =
+        value_cubics<D>(track().values[k], track().arrivals[k + 1], start_rate, end_rate);
+    // Thirds within rounding: then time is linear in the parameter, and the cubic one in time.
+    const bool is_linear_in_time =
+        (out.is_third || std::fabs(out.length - span / 3) <= 1e-15 * span) &&
+        (in.is_third || std::fabs(in.length - span / 3) <= 1e-15 * span);
+    if (is_linear_in_time) return;
+    const Pair exact_span = exact_difference(segment.end, segment.start);
+    add_time(segment, exact_span, out.frame_rate(exact_span), in.frame_rate(exact_span));
+  }
+
+  std::string correction(const std::string& side, double from, double to, double span) const {
+    const std::string reason =
+        author_.overshoot == Overshoot::Contain
+            ? "none may be longer than its segment of " + number_text(span) + " frames"
+            : "time would run backwards otherwise";
+    return side + " tangent " + (to < from ? "shortened" : "lengthened") + " from " +
+           number_text(from) + " to " + number_text(to) + " frames: " + reason;
+  }
+
+  void check_rate(std::size_t key, const std::string& side, const Value<D>& slope,
+                  const Value<D>& rate) {
+    for (int c = 0; c < D; ++c) {
+      if (std::fabs(rate[c]) <= largest_rate) continue;
+      fail(key, side + " tangent has the slope " + number_text(slope[c]) +
+                    ", which rises beyond all numbers within its segment; keys must not be that "
+                    "close together for their change of value");
+    }
+  }
+
+  void add_time(Segment<D>& segment, Pair span, Pair start_rate, Pair end_rate) {
+    segment.kind = Kind::Bezier;
+    segment.extra = static_cast<std::uint32_t>(track().times.size());
+    track().times.emplace_back(span, start_rate, end_rate);
+  }
+
+  /// A CSS timing function is a Bézier segment whose handles are shares of time and of change.
+  void shape_by_control(const Interpolation& next, const Value<D>& start, const Value<D>& end,
+                        Segment<D>& segment) {
+    const auto& [x1, y1, x2, y2] = next.control;
+    Value<D> start_rate;
+    Value<D> end_rate;
+    for (int c = 0; c < D; ++c) {
+      start_rate[c] = 3 * (y1 * (end[c] - start[c]));
+      end_rate[c] = 3 * ((1 - y2) * (end[c] - start[c]));
+    }
+    segment.ends = value_cubics<D>(start, end, start_rate, end_rate);
+    if (std::fabs(x1 - 1.0 / 3) <= 1e-15 && std::fabs(x2 - 2.0 / 3) <= 1e-15) return;
+    const Pair span = exact_difference(segment.end, segment.start);
+    add_time(segment, span, 3.0 * (x1 * span), 3.0 * (span + -1.0 * (x2 * span)));
+  }
+
+  void ease(const Interpolation& next, const Value<D>& start, const Value<D>& end,
+            Segment<D>& segment) {
+    const Value<D> rise = change(start, end);
+    segment.kind = Kind::Easing;
+    segment.extra = static_cast<std::uint32_t>(track().easings.size());
+    for (int c = 0; c < D; ++c) {
+      segment.ends[0][c] = {start[c], rise[c], 0, 0};
+      segment.ends[1][c] = {end[c], -rise[c], 0, 0};
+    }
+    const auto easing = [&](int c) { return Easing(next, segment.length, rise[c]); };
+    if constexpr (D == 1) {
+      track().easings.push_back({easing(0)});
+    } else {
+      track().easings.push_back({easing(0), easing(1), easing(2)});
+    }
+  }
+
+  Outside<D> outside(const Extrapolation<D>& author, bool is_before) {
+    using From = typename Extrapolation<D>::Kind;
+    using Mode = typename Outside<D>::Mode;
+    const std::size_t end = is_before ? 0 : keys().size() - 1;
+    Outside<D> outside;
+    outside.is_before = is_before;
+    outside.anchor = is_before ? track().arrivals.front() : track().values.back();
+    const bool is_single = keys().size() == 1;
+    switch (author.kind) {
+      case From::Hold:
+        break;
+      case From::Slope:
+        outside.slope = author.slope;
+        break;
+      case From::LinearOuter:
+        outside.slope = is_before ? in_.front() : out_.back();
+        break;
+      case From::Linear:
+        if (is_single || keys()[end].left) break;
+        outside.slope =
+            is_before ? track().velocity(track().first(), Limit::Right, 0)
+                      : track().velocity(track().last(), Limit::Left, track().segments.size() - 1);
+        break;
+      case From::RepeatOffset:
+        if (!is_single) outside.offset = change(track().arrivals.front(), track().values.back());
+        [[fallthrough]];
+      case From::Repeat:
+        if (!is_single) outside.mode = Mode::Repeat;
+        break;
+      case From::Mirror:
+        if (!is_single) outside.mode = Mode::Mirror;
+        break;
+    }
+    for (double& each : outside.slope) each = std::isfinite(each) ? each : 0;
+    outside.count = author.count.value_or(std::numeric_limits<double>::infinity());
+    return outside;
+  }
+
+  const CurveKeys<D>& author_;
+  WrittenKeys<D> written_;
+  std::vector<std::array<bool, static_cast<std::size_t>(Subject::Count)>> noted_;
+  std::vector<CurveNote> notes_;
+  std::optional<CurveError> error_;
+  std::vector<Value<D>> in_;   // slopes of the `in` tangents
+  std::vector<Value<D>> out_;  // and of the `out` tangents
+  Compiled<D> compiled_;
+};
+
+}  // namespace
+
+template <int D>
+tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys) {
+  if (const auto error = broken_rule(keys)) return tl::unexpected(*error);
+  auto written = written_out(keys);
+  if (!written) return tl::unexpected(written.error());
+  return Compiler<D>(keys, *std::move(written)).compile();
+}
+
+template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&);
+template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&);
+
+}  // namespace pliant::timeline

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve_report.hpp"
+#include "pliant/timeline/extrapolated.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::timeline {
+
+/// A curve ready to evaluate, and what an author would want to know of it.
+template <int D>
+struct Compiled {
+  Extrapolated<D> curve;
+  std::vector<CurveNote> notes;  ///< in the order of the keys
+};
+
+/// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.
+template <int D>
+tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys);
+
+extern template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&);
+extern template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&);
+
+}  // namespace pliant::timeline

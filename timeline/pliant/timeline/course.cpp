@@ -1,0 +1,87 @@
+#include "pliant/timeline/course.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::timeline {
+
+double Course::Meeting::cap() const {
+  const double before = std::fabs(secant_before);
+  const double after = std::fabs(secant_after);
+  if (!has_before) return 3 * after;
+  if (!has_after) return 3 * before;
+  return 3 * std::min(before, after);
+}
+
+double Course::Meeting::spline() const {
+  if (!has_before) return has_after ? secant_after : 0;
+  if (!has_after) return secant_before;
+  // (v_n - v_p)/(t_n - t_p) as a mean of the secants, so that it holds across a seam too.
+  const double share_after = length_after / (length_before + length_after);
+  return secant_before + (secant_after - secant_before) * share_after;
+}
+
+Course::Meeting Course::at(std::size_t key, bool is_out) const {
+  Meeting meeting;
+  const std::size_t segments = secants.size();
+  if (segments == 0) return meeting;
+  const bool is_first = key == 0;
+  const bool is_last = key == segments;
+  const std::size_t before = is_first ? segments - 1 : key - 1;
+  const std::size_t after = is_last ? 0 : key;
+  meeting.has_before = !is_first || is_periodic;
+  meeting.has_after = !is_last || is_periodic;
+  // A jump parts its two sides; the outer side of an end key has only the other side to go by.
+  if (jumps[key] && meeting.has_before && meeting.has_after) {
+    (is_out ? meeting.has_before : meeting.has_after) = false;
+  }
+  if (meeting.has_before) {
+    meeting.secant_before = secants[before];
+    meeting.length_before = lengths[before];
+  }
+  if (meeting.has_after) {
+    meeting.secant_after = secants[after];
+    meeting.length_after = lengths[after];
+  }
+  return meeting;
+}
+
+double Course::range() const {
+  double low = values.front();
+  double high = low;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    low = std::min({low, values[k], arrivals[k]});
+    high = std::max({high, values[k], arrivals[k]});
+  }
+  return high - low;
+}
+
+template <int D>
+Course course_of(const std::vector<Key<D>>& keys, const Extrapolation<D>& before,
+                 const Extrapolation<D>& after, int c) {
+  Course course;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const bool jumps = has_jump(keys, k);
+    course.values.push_back(keys[k].value[c]);
+    course.arrivals.push_back(jumps ? (*keys[k].left)[c] : keys[k].value[c]);
+    course.jumps.push_back(jumps);
+    if (k == 0) continue;
+    course.lengths.push_back(keys[k].frame - keys[k - 1].frame);
+    course.secants.push_back((course.arrivals[k] - course.values[k - 1]) / course.lengths.back());
+    course.is_bezier.push_back(keys[k - 1].next.kind == Interpolation::Kind::Bezier);
+  }
+  using Kind = typename Extrapolation<D>::Kind;
+  const auto is_kind = [&](Kind kind) { return before.kind == kind || after.kind == kind; };
+  const bool closes = course.values.front() == course.values.back();
+  // A jump at the seam makes open ends of both sides there, whatever repeats.
+  course.is_periodic = keys.size() > 1 && !course.jumps.front() && !course.jumps.back() &&
+                       (is_kind(Kind::RepeatOffset) || (is_kind(Kind::Repeat) && closes));
+  return course;
+}
+
+template Course course_of(const std::vector<Key<1>>&, const Extrapolation<1>&,
+                          const Extrapolation<1>&, int);
+template Course course_of(const std::vector<Key<3>>&, const Extrapolation<3>&,
+                          const Extrapolation<3>&, int);
+
+}  // namespace pliant::timeline

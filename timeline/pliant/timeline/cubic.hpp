@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace pliant::timeline {
+
+/// The polynomial c0 + c1 q + c2 q² + c3 q³, where q in [0, 1/2] counts from the nearer end of a
+/// segment: so both ends are met exactly and rounding grows from neither (docs/timeline.md, eq. 4).
+struct Cubic {
+  double c0 = 0;
+  double c1 = 0;
+  double c2 = 0;
+  double c3 = 0;
+
+  double value(double q) const { return c0 + q * (c1 + q * (c2 + q * c3)); }
+  double slope(double q) const { return c1 + q * (2 * c2 + q * (3 * c3)); }
+  double half_curvature(double q) const { return c2 + q * (3 * c3); }
+};
+
+/// Slope dy/dx of the curve (x(q), y(q)) for growing q: where the first derivatives vanish together
+/// the next ones decide (L'Hôpital). Infinite at a vertical, 0 where nothing moves.
+/// Requires: x does not fall.
+inline double slope_of_curve(const Cubic& x, const Cubic& y, double q) {
+  const double x_orders[] = {x.slope(q), x.half_curvature(q), x.c3};
+  const double y_orders[] = {y.slope(q), y.half_curvature(q), y.c3};
+  for (int order = 0; order < 3; ++order) {
+    const double run = x_orders[order];
+    const double rise = y_orders[order];
+    if (run > 0) return rise / run;
+    if (rise != 0) return std::copysign(std::numeric_limits<double>::infinity(), rise);
+  }
+  return 0;
+}
+
+}  // namespace pliant::timeline

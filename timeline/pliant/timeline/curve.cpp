@@ -1,0 +1,52 @@
+#include "pliant/timeline/curve.hpp"
+
+#include "pliant/timeline/compile.hpp"
+#include "pliant/timeline/extrapolated_evaluation.hpp"
+
+namespace pliant {
+
+namespace {
+
+template <int D>
+auto search(const timeline::Track<D>& track) {
+  return [&track](double frame) { return track.segment_at(frame); };
+}
+
+}  // namespace
+
+template <int D>
+tl::expected<Curve<D>, CurveError> Curve<D>::make(CurveKeys<D> keys) {
+  auto compiled = timeline::compile(keys);
+  if (!compiled) return tl::unexpected(compiled.error());
+  return Curve(std::move(keys), std::move(compiled->curve), std::move(compiled->notes));
+}
+
+template <int D>
+Value<D> Curve<D>::value(double frame) const {
+  return compiled_.value(frame, timeline::Limit::At, search(compiled_.track));
+}
+
+template <int D>
+Value<D> Curve<D>::left_value(double frame) const {
+  return compiled_.value(frame, timeline::Limit::Left, search(compiled_.track));
+}
+
+template <int D>
+Value<D> Curve<D>::velocity(double frame) const {
+  return compiled_.velocity(frame, timeline::Limit::Right, search(compiled_.track));
+}
+
+template <int D>
+Value<D> Curve<D>::left_velocity(double frame) const {
+  return compiled_.velocity(frame, timeline::Limit::Left, search(compiled_.track));
+}
+
+template <int D>
+ValueRange<D> Curve<D>::range(double from, double to) const {
+  return compiled_.bounds(from, to);
+}
+
+template class Curve<1>;
+template class Curve<3>;
+
+}  // namespace pliant

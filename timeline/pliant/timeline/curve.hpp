@@ -1,0 +1,69 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve_report.hpp"
+#include "pliant/timeline/extrapolated.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant {
+
+template <int D>
+class Sampler;
+
+/// The least and the greatest value of a curve over an interval, per component [unit].
+template <int D>
+using ValueRange = timeline::Bounds<D>;
+
+/// A keyframe curve with D components as a function of the frame: keys compiled into segments that
+/// are cheap and exact to evaluate. An immutable value, safe to share between threads; evaluation
+/// neither allocates nor locks. The rules are told in docs/timeline.md.
+///
+/// Between the keys a value is finite, whatever the keys. Outside them a slope or an offset may
+/// carry it to infinity, and the velocity is infinite at a vertical tangent; the caller checks. A
+/// frame that is NaN gives NaN, and nothing else does.
+template <int D>
+class Curve {
+ public:
+  /// Errors, naming the key: no keys; a number that is not finite or beyond 1e150; a frame not
+  /// greater than the one before; x1 or x2 of cubicBezier outside [0, 1]; more than 1e15 periods of
+  /// an elastic in its segment; overshoot = Error and a tangent that makes time run backwards; a
+  /// count of copies that is not a whole number >= 1; a loop that does not start at a key, does not
+  /// end after it, has a negative number of copies or writes out more than a million keys, or two
+  /// on one frame; keys so close that the slope between them overflows. Notes (legal): a negative
+  /// length, which counts as 0; a handle that points backwards, which counts as none; a tangent
+  /// that `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without
+  /// copies.
+  static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
+
+  Value<D> value(double frame) const;       ///< [unit]. Requires: finite. O(log keys)
+  Value<D> left_value(double frame) const;  ///< the limit from the left [unit]
+  Value<D> velocity(double frame) const;    ///< the limit of the slope from the right [unit/frame]
+  Value<D> left_velocity(
+      double frame) const;  ///< the limit of the slope from the left [unit/frame]
+
+  /// The least and greatest value over [from, to], from closed-form extrema, and the one-sided
+  /// limits inside. Cost: that of the keys in between; loops count once, however many copies.
+  ValueRange<D> range(double from, double to) const;
+
+  const CurveKeys<D>& keys() const { return keys_; }
+  const std::vector<CurveNote>& notes() const { return notes_; }
+
+ private:
+  friend class Sampler<D>;
+
+  Curve(CurveKeys<D> keys, timeline::Extrapolated<D> compiled, std::vector<CurveNote> notes)
+      : keys_(std::move(keys)), compiled_(std::move(compiled)), notes_(std::move(notes)) {}
+
+  CurveKeys<D> keys_;
+  timeline::Extrapolated<D> compiled_;
+  std::vector<CurveNote> notes_;
+};
+
+extern template class Curve<1>;
+extern template class Curve<3>;
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::timeline {
+
+/// A position in a segment as seen from both ends: passed + left = 1, each with its own digits.
+struct Progress {
+  double passed = 0;
+  double left = 1;
+};
+
+/// One easing of a segment, ready to evaluate: the share of the change of value that is done at a
+/// time, and its slope (docs/timeline.md, eq. 14 to 23).
+class Easing {
+ public:
+  /// Requires: length > 0; `change` is the segment's change of value (elastic counts its amplitude
+  /// against it); is_sound(interpolation, length).
+  Easing(const Interpolation& interpolation, double length, double change);
+
+  /// Whether the numbers of an elastic stay finite: its segment holds at most 1e15 periods.
+  static bool is_sound(const Interpolation& interpolation, double length);
+
+  /// Share done [1], counted from the nearer end: from the start while `from_start`, else what is
+  /// still to do.
+  struct Share {
+    double amount = 0;
+    bool is_from_start = true;
+  };
+  Share share(Progress at) const;
+
+  /// Whether components with another change ease differently.
+  bool is_elastic() const { return ease_ == Ease::Elastic; }
+
+  double slope(Progress at) const;  ///< d(share)/d(passed) [1]; infinite at the steep end of circ
+
+  /// The places in (0, 1) where the share may have an extremum, and how many of them count: those
+  /// that bound the share in [from, to]. The waves of an elastic shrink, so that its largest
+  /// suffice.
+  struct Places {
+    std::array<double, 12> passed = {};
+    int count = 0;
+    void add(double place) {
+      if (count < static_cast<int>(passed.size())) passed[count++] = place;
+    }
+  };
+  Places extrema(double from, double to) const;
+
+ private:
+  double ease_in(Progress at) const;
+  double ease_in_slope(Progress at) const;
+  double elastic(Progress at) const;
+  double elastic_slope(Progress at) const;
+  void add_extrema_of_ease_in(double from, double to, Places& places) const;
+  void add_extrema_of_elastic(double from, double to, Places& places) const;
+
+  Ease ease_;
+  EaseSide side_;
+  double overshoot_ = 0;         // back: q
+  double length_ = 0;            // elastic: of the whole segment [frames]
+  double period_ = 0;            // elastic [frames]
+  double amplitude_ = 1;         // elastic: A'
+  double shift_ = 0;             // elastic: s, in periods
+  double full_within_ = 0;       // elastic with A < 1: |s| [frames], otherwise 0
+  double damped_amplitude_ = 1;  // elastic with A < 1: A
+};
+
+}  // namespace pliant::timeline

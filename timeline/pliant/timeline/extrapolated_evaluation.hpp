@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cmath>
+
+#include "pliant/timeline/extrapolated.hpp"
+
+namespace pliant::timeline {
+
+/// Where a frame in a loop falls among the keys.
+template <int D>
+struct Extrapolated<D>::Place {
+  double frame = 0;          ///< between the keys
+  Limit limit = Limit::At;   ///< turned round in a mirrored copy
+  double copy = 0;           ///< offsets to add: negative before the keys
+  bool is_reversed = false;  ///< time runs backwards in this copy
+  bool is_held = false;      ///< after the last copy: the value stands still
+};
+
+/// The side that answers for a frame, or none when the keys do. On an end key that is the limit
+/// from outside.
+template <int D>
+const Outside<D>* Extrapolated<D>::outside_of(double frame, Limit limit) const {
+  if (frame < track.first() || (frame == track.first() && limit == Limit::Left)) return &before;
+  if (frame > track.last() || (frame == track.last() && limit == Limit::Right)) return &after;
+  return nullptr;
+}
+
+template <int D>
+typename Extrapolated<D>::Place Extrapolated<D>::place_in_loop(const Outside<D>& side, double frame,
+                                                               Limit limit) const {
+  // The distance d from the end key, outwards: copy k holds ((k-1) span, k span]; only the limit
+  // from farther out belongs to the next copy on a joint. fmod is exact, so that joints are met and
+  // phases do not drift however far away.
+  const double first = track.first();
+  const double last = track.last();
+  const double span = last - first;
+  const double distance = side.is_before ? first - frame : frame - last;
+  const bool is_outward = limit == (side.is_before ? Limit::Left : Limit::Right);
+  double phase = std::fmod(distance, span);
+  const bool is_mirror = side.mode == Outside<D>::Mode::Mirror;
+  bool is_odd = is_mirror && std::fmod(distance, 2 * span) < span;  // copy 1 is odd
+  double copy = std::round((distance - phase) / span) + 1;
+  if (phase == 0 && !is_outward) {
+    phase = span;
+    copy -= 1;
+    is_odd = !is_odd;
+  }
+
+  Place place;
+  place.limit = limit;
+  if (copy > side.count) {
+    // The value with which the last copy ended.
+    copy = side.count;
+    phase = span;
+    is_odd = std::fmod(copy, 2) == 1;
+    place.limit = Limit::At;
+    place.is_held = true;
+  }
+  place.is_reversed = is_mirror && is_odd;
+  if (place.is_reversed && place.limit != Limit::At) {
+    place.limit = limit == Limit::Left ? Limit::Right : Limit::Left;
+  }
+  place.copy = side.is_before ? -copy : copy;
+  const bool counts_from_first = side.is_before == place.is_reversed;
+  if (phase == span) {
+    place.frame = counts_from_first ? last : first;
+  } else {
+    place.frame = counts_from_first ? first + phase : last - phase;
+  }
+  return place;
+}
+
+template <int D>
+template <class Locate>
+Value<D> Extrapolated<D>::value(double frame, Limit limit, const Locate& locate) const {
+  const Outside<D>* side = outside_of(frame, limit);
+  Value<D> value;
+  if (side == nullptr) {
+    if (std::isnan(frame)) {  // the only frame without a value
+      value.fill(frame);
+      return value;
+    }
+    return track.value(frame, limit, locate(frame));
+  }
+  if (side->mode == Outside<D>::Mode::Line) {
+    const double distance = frame - (side->is_before ? track.first() : track.last());
+    for (int c = 0; c < D; ++c) {
+      // A level line stays level at infinity too.
+      value[c] =
+          side->slope[c] != 0 ? side->anchor[c] + side->slope[c] * distance : side->anchor[c];
+    }
+    return value;
+  }
+  const Place place = place_in_loop(*side, frame, limit);
+  value = track.value(place.frame, place.limit, locate(place.frame));
+  for (int c = 0; c < D; ++c) {
+    if (side->offset[c] != 0) value[c] += place.copy * side->offset[c];
+  }
+  return value;
+}
+
+template <int D>
+template <class Locate>
+Value<D> Extrapolated<D>::velocity(double frame, Limit limit, const Locate& locate) const {
+  const Outside<D>* side = outside_of(frame, limit);
+  if (side == nullptr) {
+    if (std::isnan(frame)) {
+      Value<D> none;
+      none.fill(frame);
+      return none;
+    }
+    return track.velocity(frame, limit, locate(frame));
+  }
+  if (side->mode == Outside<D>::Mode::Line) return side->slope;
+  const Place place = place_in_loop(*side, frame, limit);
+  if (place.is_held) return {};
+  Value<D> velocity = track.velocity(place.frame, place.limit, locate(place.frame));
+  if (place.is_reversed) {
+    for (double& each : velocity) each = 0 - each;  // no -0
+  }
+  return velocity;
+}
+
+}  // namespace pliant::timeline

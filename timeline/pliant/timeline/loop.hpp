@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve_report.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::timeline {
+
+/// Keys with the inner loop's copies written out.
+template <int D>
+struct WrittenKeys {
+  std::vector<Key<D>> keys;         ///< frames strictly increasing
+  std::vector<std::size_t> origin;  ///< the author's index of each
+  std::vector<CurveNote> notes;     ///< keys that the loop hides, a loop without copies
+};
+
+/// How many keys a loop may write out.
+inline constexpr double most_written_keys = 1e6;
+
+/// Writes out the copies of the inner loop, if there is one (docs/timeline.md, section "Inner
+/// loop"). Errors: more than `most_written_keys`; copies that rounding puts on one frame, or whose
+/// numbers exceed the size of checks.hpp. Requires: broken_rule(keys) finds nothing.
+template <int D>
+tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys);
+
+extern template tl::expected<WrittenKeys<1>, CurveError> written_out(const CurveKeys<1>&);
+extern template tl::expected<WrittenKeys<3>, CurveError> written_out(const CurveKeys<3>&);
+
+}  // namespace pliant::timeline

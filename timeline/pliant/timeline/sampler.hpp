@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant {
+
+/// Asks one curve for one frame after the other. It remembers the last segment, so that playback
+/// needs no search; the answers are those of the curve, bit for bit. One sampler per thread.
+template <int D>
+class Sampler {
+ public:
+  /// Requires: the curve outlives the sampler and stays in its place.
+  explicit Sampler(const Curve<D>& curve) : curve_(&curve) {}
+  explicit Sampler(Curve<D>&&) = delete;
+
+  Value<D> value(double frame);          ///< see Curve. Amortised O(1) from frame to frame
+  Value<D> left_value(double frame);     ///< see Curve
+  Value<D> velocity(double frame);       ///< see Curve
+  Value<D> left_velocity(double frame);  ///< see Curve
+
+ private:
+  std::size_t locate(double frame);
+
+  const Curve<D>* curve_;
+  std::size_t segment_ = 0;  // of the last frame
+};
+
+extern template class Sampler<1>;
+extern template class Sampler<3>;
+
+}  // namespace pliant
