@@ -1,0 +1,16 @@
+#pragma once
+
+namespace pliant {
+
+/// How a force fades with s = distance / force radius. SPEC 7.
+enum class Falloff {
+  Constant,  ///< 1: the thesis
+  Linear,    ///< max(0, 1-s)
+  Smooth,    ///< x^2 (3 - 2x), x = clamp(1-s, 0, 1)
+  Gaussian,  ///< exp(-4.5 s^2)
+};
+
+/// The factor at s [1]. Requires: s >= 0.
+double falloff(Falloff kind, double s);
+
+}  // namespace pliant
