@@ -1,0 +1,304 @@
+#include "pliant/mesh/read_obj.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "pliant/core/number.hpp"
+#include "pliant/core/read_file.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t max_errors = 20;
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+// Takes the next word off the front of `text`; empty at its end.
+std::string_view next_word(std::string_view& text) {
+  const std::size_t begin = std::min(text.find_first_not_of(blanks), text.size());
+  const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+  const std::string_view word = text.substr(begin, end - begin);
+  text.remove_prefix(end);
+  return word;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+// What is quoted in a message, short enough to be read.
+std::string in_quotes(std::string_view text) {
+  return text.size() <= 40 ? fmt::format("\"{}\"", text)
+                           : fmt::format("\"{}…\"", text.substr(0, 40));
+}
+
+// The faces that follow one `o` statement.
+struct Object {
+  std::string name;
+  std::size_t first_face = 0;
+};
+
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& name) : name_(name) {}
+
+  void read(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
+    std::string joined;  // a statement whose lines end in a backslash
+    int line = 0;
+    int first_line = 1;
+    while (!text.empty() && errors_.size() < max_errors) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      std::string_view statement = trimmed(text.substr(0, end));
+      text.remove_prefix(std::min(end + 1, text.size()));
+      ++line;
+      if (joined.empty()) first_line = line;
+      if (statement.ends_with('\\') && !text.empty()) {
+        statement.remove_suffix(1);
+        joined.append(statement).push_back(' ');
+        continue;
+      }
+      line_ = first_line;
+      if (joined.empty()) {
+        read_statement(statement);
+      } else {
+        joined.append(statement);
+        read_statement(joined);
+        joined.clear();
+      }
+    }
+  }
+
+  Result<Mesh> finish(const std::string& object) {
+    check_indices();
+    if (errors_.empty() && mesh_.face_sizes.empty()) {
+      add_error(0, "the file holds no faces (f)");
+    }
+    if (!errors_.empty()) return failure();
+    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    return select(object);
+  }
+
+ private:
+  void read_statement(std::string_view statement) {
+    statement = statement.substr(0, statement.find('#'));
+    const std::string_view keyword = next_word(statement);
+    if (keyword == "v") {
+      const auto numbers = read_numbers(statement, "vertex", 3, 7);
+      coordinates_.insert(coordinates_.end(), numbers.begin(), numbers.begin() + 3);
+    } else if (keyword == "vt") {
+      const auto numbers = read_numbers(statement, "texture vertex", 1, 3);
+      mesh_.uvs.push_back({numbers[0], numbers[1]});
+    } else if (keyword == "f") {
+      read_face(statement);
+    } else if (keyword == "o") {
+      objects_.push_back({std::string(trimmed(statement)), mesh_.face_sizes.size()});
+    }
+  }
+
+  // `v x y z [w]` or `v x y z r g b`, `vt u [v [w]]`. A line that cannot be read still counts, as
+  // zeros, so that the indices of the faces stay right.
+  std::array<double, 7> read_numbers(std::string_view words, std::string_view thing,
+                                     std::size_t least, std::size_t most) {
+    std::array<double, 7> numbers{};
+    std::size_t count = 0;
+    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+      const auto number = to_number(word);
+      if (!number) {
+        add_error(line_, fmt::format("{} has the coordinate {}, which is no finite decimal number",
+                                     thing, in_quotes(word)));
+        return {};
+      }
+      if (count == most) {
+        add_error(line_, fmt::format("{} has more than {} numbers", thing, most));
+        return {};
+      }
+      numbers[count++] = *number;
+    }
+    if (count < least)
+      add_error(line_, fmt::format("{} has {} of {} numbers", thing, count, least));
+    return numbers;
+  }
+
+  // What a corner says, as written: from 1, or backwards from the last one read so far.
+  struct Corner {
+    int vertex = 0;
+    std::optional<int> uv;  // none: the corner has no (u,v)
+  };
+
+  // `v`, `v/vt`, `v//vn` or `v/vt/vn`; none for anything else.
+  static std::optional<Corner> parse_corner(std::string_view word) {
+    const std::size_t slash = word.find('/');
+    const auto vertex = to_integer(word.substr(0, slash));
+    if (!vertex) return std::nullopt;
+    if (slash == std::string_view::npos) return Corner{*vertex, {}};
+    const std::string_view rest = word.substr(slash + 1);
+    const std::string_view texture = rest.substr(0, rest.find('/'));
+    const bool has_normal = texture.size() < rest.size();
+    if (has_normal && !to_integer(rest.substr(texture.size() + 1))) return std::nullopt;
+    if (texture.empty()) return has_normal ? std::optional(Corner{*vertex, {}}) : std::nullopt;
+    const auto uv = to_integer(texture);
+    return uv ? std::optional(Corner{*vertex, *uv}) : std::nullopt;
+  }
+
+  void read_face(std::string_view words) {
+    const std::size_t first_corner = mesh_.corner_vertices.size();
+    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+      const auto corner = parse_corner(word);
+      if (!corner) {
+        drop_corners(first_corner);
+        return add_error(line_, fmt::format("face corner {} is not of the form v, v/vt, v//vn or "
+                                            "v/vt/vn",
+                                            in_quotes(word)));
+      }
+      mesh_.corner_vertices.push_back(to_index(corner->vertex, coordinates_.size() / 3));
+      mesh_.corner_uvs.push_back(corner->uv ? to_index(*corner->uv, mesh_.uvs.size()) : -1);
+    }
+    const std::size_t size = mesh_.corner_vertices.size() - first_corner;
+    if (size < 3) {
+      drop_corners(first_corner);
+      return add_error(line_, fmt::format("face has {} of at least 3 corners", size));
+    }
+    mesh_.face_sizes.push_back(static_cast<int>(size));
+    face_lines_.push_back(line_);
+  }
+
+  void drop_corners(std::size_t first) {
+    mesh_.corner_vertices.resize(first);
+    mesh_.corner_uvs.resize(first);
+  }
+
+  // From 1, or backwards from the last one read so far. What lies outside stays outside, so that
+  // check_indices, which knows all vertices, finds it: missing_index for 0 and too far back.
+  static int to_index(int written, std::size_t count) {
+    if (written > 0) return written - 1;
+    const std::int64_t index = static_cast<std::int64_t>(count) + written;
+    return written == 0 || index < 0 ? missing_index : static_cast<int>(index);
+  }
+
+  void check_indices() {
+    std::size_t corner = 0;
+    for (std::size_t face = 0; face < face_lines_.size() && errors_.size() < max_errors; ++face) {
+      for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
+        const bool bad_vertex = !is_within(mesh_.corner_vertices[corner], coordinates_.size() / 3);
+        const bool bad_uv = mesh_.corner_uvs[corner] != -1 &&
+                            !is_within(mesh_.corner_uvs[corner], mesh_.uvs.size());
+        if (bad_vertex || bad_uv) {
+          add_error(
+              face_lines_[face],
+              fmt::format("corner {} of the face refers to a {} outside the file, which has {}",
+                          k + 1, bad_vertex ? "vertex" : "texture vertex",
+                          bad_vertex ? coordinates_.size() / 3 : mesh_.uvs.size()));
+          corner += static_cast<std::size_t>(mesh_.face_sizes[face] - k);
+          break;
+        }
+      }
+    }
+  }
+
+  static bool is_within(int index, std::size_t count) {
+    return index >= 0 && static_cast<std::size_t>(index) < count;
+  }
+
+  Result<Mesh> select(const std::string& object) {
+    // Objects that have faces, each up to the next one; faces ahead of the first `o` have no name.
+    struct Range {
+      std::string name;
+      std::size_t first, last;
+    };
+    std::vector<Range> ranges;
+    if (objects_.empty() || objects_.front().first_face > 0)
+      objects_.insert(objects_.begin(), {"", 0});
+    for (std::size_t k = 0; k < objects_.size(); ++k) {
+      const std::size_t last =
+          k + 1 < objects_.size() ? objects_[k + 1].first_face : mesh_.face_sizes.size();
+      if (last > objects_[k].first_face)
+        ranges.push_back({objects_[k].name, objects_[k].first_face, last});
+    }
+    if (object.empty() && ranges.size() == 1) return std::move(mesh_);
+    std::string names;
+    for (const Range& range : ranges) {
+      if (range.name == object && !object.empty()) {
+        return ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
+      }
+      names += (names.empty() ? "" : ", ") + in_quotes(range.name);
+    }
+    add_error(0, object.empty() ? fmt::format("the file holds {} objects; name one with object: {}",
+                                              ranges.size(), names)
+                                : fmt::format("the file holds no object {}; it holds: {}",
+                                              in_quotes(object), names));
+    return failure();
+  }
+
+  // The faces first..last with the vertices that they use.
+  Mesh part(std::size_t first, std::size_t last) const {
+    std::size_t corner = 0;
+    for (std::size_t face = 0; face < first; ++face) corner += mesh_.face_sizes[face];
+    std::size_t end = corner;
+    for (std::size_t face = first; face < last; ++face) end += mesh_.face_sizes[face];
+
+    std::vector<int> new_index(static_cast<std::size_t>(mesh_.vertex_count()), -1);
+    for (std::size_t k = corner; k < end; ++k) new_index[mesh_.corner_vertices[k]] = 0;
+    int count = 0;
+    for (int& index : new_index) index = index < 0 ? -1 : count++;
+
+    Mesh result;
+    result.uvs = mesh_.uvs;
+    result.positions.resize(count, 3);
+    for (int vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
+      if (new_index[vertex] >= 0) {
+        result.positions.row(new_index[vertex]) = mesh_.positions.row(vertex);
+      }
+    }
+    result.face_sizes.assign(mesh_.face_sizes.begin() + static_cast<std::ptrdiff_t>(first),
+                             mesh_.face_sizes.begin() + static_cast<std::ptrdiff_t>(last));
+    for (std::size_t k = corner; k < end; ++k) {
+      result.corner_vertices.push_back(new_index[mesh_.corner_vertices[k]]);
+      result.corner_uvs.push_back(mesh_.corner_uvs[k]);
+    }
+    return result;
+  }
+
+  void add_error(int line, std::string message) {
+    errors_.push_back({ErrorCode::InvalidInput, std::move(message), name_, line, {}});
+  }
+
+  tl::unexpected<Error> failure() const {
+    Error first = errors_.front();
+    first.others.assign(errors_.begin() + 1, errors_.end());
+    return fail(std::move(first));
+  }
+
+  static constexpr int missing_index = -2;
+
+  std::string name_;
+  int line_ = 0;
+  Mesh mesh_;
+  std::vector<double> coordinates_;  // x y z of each vertex
+  std::vector<int> face_lines_;
+  std::vector<Object> objects_;
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+Result<Mesh> parse_obj(std::string_view text, const std::string& name, const std::string& object) {
+  ObjReader reader(name);
+  reader.read(text);
+  return reader.finish(object);
+}
+
+Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object) {
+  const auto text = read_file(file);
+  if (!text) return fail(text.error());
+  return parse_obj(*text, file.string(), object);
+}
+
+}  // namespace pliant

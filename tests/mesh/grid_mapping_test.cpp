@@ -1,0 +1,156 @@
+#include "pliant/mesh/grid_mapping.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "pliant/mesh/grid_sheet.hpp"
+#include "support/catch.hpp"
+
+using namespace pliant;
+using Catch::Matchers::Contains;
+using pliant::testing::WithinAbs;
+
+namespace {
+
+Mesh sheet() { return make_mesh({.columns = 9, .rows = 6, .width = 8, .depth = 5}); }
+
+// The mesh with vertex k renamed to order[k].
+Mesh reordered(const Mesh& mesh, const std::vector<int>& order) {
+  Mesh result = mesh;
+  for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+    result.positions.row(order[vertex]) = mesh.positions.row(vertex);
+  }
+  for (int& vertex : result.corner_vertices) vertex = order[vertex];
+  return result;
+}
+
+std::string complaint(const Mesh& mesh) {
+  const auto mapping = find_grid(mesh);
+  return mapping ? "none" : mapping.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("the grid is found in any order of the vertices", "[mesh][grid_mapping]") {
+  const Mesh mesh = sheet();
+  const GridMapping expected = find_grid(mesh).value();
+  std::vector<int> order(mesh.vertex_count());
+  std::iota(order.begin(), order.end(), 0);
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 10; ++trial) {
+    std::shuffle(order.begin(), order.end(), random);
+    const auto mapping = find_grid(reordered(mesh, order));
+    REQUIRE(mapping);
+    CHECK(mapping->grid == expected.grid);
+    CHECK(mapping->rest == expected.rest);
+    for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+      CHECK(mapping->vertex_nodes[order[vertex]] == expected.vertex_nodes[vertex]);
+    }
+  }
+}
+
+TEST_CASE("any range of (u,v) makes a grid, with its own spacings", "[mesh][grid_mapping]") {
+  Mesh mesh = sheet();
+  for (auto& [u, v] : mesh.uvs) u = -3 + 0.25 * u, v = 100 + 40 * v;
+  const Grid grid = find_grid(mesh).value().grid;
+  CHECK(grid.columns == 9);
+  CHECK(grid.rows == 6);
+  CHECK_THAT(grid.hu, WithinAbs(0.25 / 8, 1e-15));
+  CHECK_THAT(grid.hv, WithinAbs(8, 1e-12));
+}
+
+TEST_CASE("uneven (u,v) count as even up to a hundredth of the spacing", "[mesh][grid_mapping]") {
+  // The corners of the lattice stay, so that its extent does not change.
+  Mesh mesh = sheet();
+  const double hu = 1.0 / 8;
+  mesh.uvs[22][0] += 0.0099 * hu;
+  CHECK(find_grid(mesh));
+  mesh.uvs[22][0] += 0.0002 * hu;
+  CHECK_THAT(complaint(mesh), Contains("vertex 23 has u = ") && Contains("uv=\"virtual\""));
+}
+
+TEST_CASE("vertices of one node move together", "[mesh][grid_mapping]") {
+  // A copy of vertex 13, as an exporter makes where normals split, used by one face.
+  Mesh mesh = sheet();
+  const int copy = mesh.vertex_count();
+  mesh.positions.conservativeResize(copy + 1, 3);
+  mesh.positions.row(copy) = mesh.positions.row(13);
+  *std::find(mesh.corner_vertices.begin(), mesh.corner_vertices.end(), 13) = copy;
+  const auto mapping = find_grid(mesh);
+  REQUIRE(mapping);
+  CHECK(mapping->vertex_nodes[copy] == mapping->vertex_nodes[13]);
+  Field nodes = Field::Random(mapping->grid.node_count(), 3);
+  const Field vertices = mapping->to_vertices(nodes);
+  CHECK(vertices.row(copy) == vertices.row(13));
+
+  mesh.positions(copy, 1) += 1e-9;
+  CHECK_THAT(complaint(mesh),
+             Contains("vertices 14 and 55 share") && Contains("not the rest position"));
+}
+
+TEST_CASE("what is no even grid is refused with a way out", "[mesh][grid_mapping]") {
+  Mesh mesh = sheet();
+  std::string expected;
+  SECTION("a seam") {
+    // Vertex 2 is a corner of two faces; in the second it takes the (u,v) of another node.
+    mesh.corner_uvs[4] = 40;
+    REQUIRE(mesh.corner_vertices[4] == 1);
+    expected = "vertex 2 has several (u,v)";
+  }
+  SECTION("a corner without (u,v)") {
+    mesh.corner_uvs[7] = -1;
+    CHECK_THAT(complaint(mesh), Contains("has no (u,v)"));
+    return;
+  }
+  SECTION("a loose vertex") {
+    mesh.positions.conservativeResize(55, 3);
+    mesh.positions.row(54).setZero();
+    CHECK_THAT(complaint(mesh), Contains("vertex 55 has no (u,v): no face uses it"));
+    return;
+  }
+  SECTION("all (u,v) alike") {
+    for (auto& uv : mesh.uvs) uv = {0.5, 0.5};
+    expected = "1 x 1 nodes";
+  }
+  SECTION("irregular (u,v)") {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (auto& [u, v] : mesh.uvs) u = unit(random), v = unit(random);
+    expected = "even lattice";
+  }
+  SECTION("graded (u,v)") {
+    for (auto& [u, v] : mesh.uvs) u *= u;
+    expected = "even lattice";
+  }
+  SECTION("an empty node") {
+    // Node (4,2) goes: its vertex takes the place of its neighbour, which it then shares.
+    mesh.uvs[22] = mesh.uvs[23];
+    mesh.positions.row(22) = mesh.positions.row(23);
+    mesh.uvs.push_back({0, 0});
+    expected = "no vertex lies at (u,v) = (0.5, 0.4), node (4, 2)";
+    // One vertex more, so that their number does not tell.
+    mesh.positions.conservativeResize(55, 3);
+    mesh.positions.row(54) = mesh.positions.row(23);
+    mesh.face_sizes.push_back(3);
+    mesh.corner_vertices.insert(mesh.corner_vertices.end(), {54, 0, 1});
+    mesh.corner_uvs.insert(mesh.corner_uvs.end(), {23, 0, 1});
+  }
+  SECTION("too few vertices") {
+    mesh.uvs[22] = mesh.uvs[23];
+    mesh.positions.row(22) = mesh.positions.row(23);
+    for (auto& uv : mesh.uvs) uv[0] = uv[0] == 1 ? 1 + 1.0 / 8 : uv[0];  // and one column is gone
+    expected = "";
+  }
+  CHECK_THAT(complaint(mesh), Contains(expected) && Contains("uv=\"virtual\""));
+}
+
+TEST_CASE("extreme (u,v) of a second corner are no harm", "[mesh][grid_mapping]") {
+  Mesh mesh = sheet();
+  mesh.uvs.push_back({1e300, -1e300});
+  mesh.corner_uvs.back() = static_cast<int>(mesh.uvs.size()) - 1;
+  CHECK_THAT(complaint(mesh), Contains("several (u,v)"));
+  mesh.uvs[13] = {1e308, -1e308};
+  mesh.uvs[14] = {-1e308, 1e308};
+  CHECK(complaint(mesh) != "none");
+}

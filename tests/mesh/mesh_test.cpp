@@ -1,0 +1,54 @@
+#include "pliant/mesh/mesh.hpp"
+
+#include <limits>
+
+#include "pliant/mesh/grid_sheet.hpp"
+#include "support/catch.hpp"
+
+using namespace pliant;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a mesh that a program made is checked", "[mesh]") {
+  Mesh mesh = make_mesh({});
+  CHECK(check_mesh(mesh));
+  std::string expected;
+  SECTION("faces") {
+    mesh.face_sizes.clear();
+    expected = "no faces";
+  }
+  SECTION("corners of a face") {
+    mesh.face_sizes[1] = 2;
+    expected = "face 2 has 2";
+  }
+  SECTION("number of corners") {
+    mesh.face_sizes.push_back(3);
+    expected = "19 corners";
+  }
+  SECTION("uvs of corners") {
+    mesh.corner_uvs.pop_back();
+    expected = "15 corner uvs";
+  }
+  SECTION("vertex too large") {
+    mesh.corner_vertices[3] = 9;
+    expected = "corner 4 refers to vertex 10 of 9";
+  }
+  SECTION("vertex negative") {
+    mesh.corner_vertices[3] = -1;
+    expected = "vertex 0 of 9";
+  }
+  SECTION("uv too large") {
+    mesh.corner_uvs[5] = 9;
+    expected = "corner 6 refers to uv 10 of 9";
+  }
+  SECTION("position") {
+    mesh.positions(4, 1) = std::numeric_limits<double>::quiet_NaN();
+    expected = "vertex 5 has a coordinate";
+  }
+  SECTION("uv") {
+    mesh.uvs[2][1] = std::numeric_limits<double>::infinity();
+    expected = "uv 3";
+  }
+  const auto checked = check_mesh(mesh);
+  REQUIRE_FALSE(checked);
+  CHECK_THAT(checked.error().message, Contains(expected));
+}

@@ -1,0 +1,156 @@
+#include "pliant/mesh/read_obj.hpp"
+
+#include <random>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "pliant/mesh/grid_sheet.hpp"
+#include "support/catch.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace pliant;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using pliant::testing::ScratchFolder;
+
+namespace {
+
+const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+
+std::string complaint(const std::string& text, const std::string& object = {}) {
+  const auto mesh = parse_obj(text, "m.obj", object);
+  return mesh ? "none" : to_lines(mesh.error()).front();
+}
+
+}  // namespace
+
+TEST_CASE("numbers of an OBJ file are read exactly", "[mesh][read_obj]") {
+  std::mt19937_64 random(9);
+  std::string text = quad + "f 1/1 2/2 3/3 4/4\n";
+  std::vector<double> written;
+  for (int k = 0; k < 3000; ++k) written.push_back(static_cast<double>(random() % 1000000) / 1024);
+  for (int k = 0; k < 3000; k += 3) {
+    text +=
+        fmt::format("v {} {:.17g} {:e}\n", written[k], written[k + 1], std::round(written[k + 2]));
+    written[k + 2] = std::round(written[k + 2]);
+  }
+  const Mesh mesh = parse_obj(text, "m.obj").value();
+  for (int k = 0; k < 3000; ++k) CHECK(mesh.positions(4 + k / 3, k % 3) == written[k]);
+}
+
+TEST_CASE("quads stay quads and vertices keep their order", "[mesh][read_obj]") {
+  const Mesh mesh = parse_obj(quad + "f 3/3 4/4 1/1 2/2\nf 1/1 2/2 3/3\n", "m.obj").value();
+  CHECK(mesh.face_sizes == std::vector{4, 3});
+  CHECK(mesh.corner_vertices == std::vector{2, 3, 0, 1, 0, 1, 2});
+  CHECK(mesh.corner_uvs == std::vector{2, 3, 0, 1, 0, 1, 2});
+  CHECK(mesh.positions.row(2) == Eigen::RowVector3d(1, 0, 1));
+}
+
+TEST_CASE("every form of corner is read", "[mesh][read_obj]") {
+  const Mesh mesh = parse_obj(quad +
+                                  "vn 0 1 0\nf 1 2 3\nf 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\n"
+                                  "f -4/-4 -3/-3 -2/-2\n",
+                              "m.obj")
+                        .value();
+  CHECK(mesh.corner_vertices == std::vector{0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 2});
+  CHECK(mesh.corner_uvs == std::vector{-1, -1, -1, 0, 1, 2, -1, -1, -1, 0, 1, 2});
+}
+
+TEST_CASE("comments, blanks, line ends and continued lines are no matter", "[mesh][read_obj]") {
+  const std::string text =
+      "# a comment\r\nmtllib a.mtl\r\n\tv  0 0\t0 # here\r\nv 1 0 0 1\r\nv 1 0 1 .5 .5 .5\r\n"
+      "vt 0 0 0\r\nvt 1\r\nvt 1 1\r\ng group\r\ns 1\r\nusemtl m\r\nf 1/1 \\\r\n 2/2 \\\r\n3/3";
+  const Mesh mesh = parse_obj(text, "m.obj").value();
+  CHECK(mesh.vertex_count() == 3);
+  CHECK(mesh.uvs == std::vector<std::array<double, 2>>{{0, 0}, {1, 0}, {1, 1}});
+  CHECK(mesh.corner_uvs == std::vector{0, 1, 2});
+}
+
+TEST_CASE("an object is taken by name, with its own vertices", "[mesh][read_obj]") {
+  const std::string text =
+      "o first\n" + quad + "f 1/1 2/2 3/3\no second\nv 5 0 0\nf 4/4 3/3 5/1\no empty\n";
+  CHECK_THAT(complaint(text), Contains("2 objects") && Contains("\"first\", \"second\""));
+  CHECK_THAT(complaint(text, "third"), Contains("no object \"third\""));
+  CHECK_THAT(complaint(text, "empty"), Contains("no object \"empty\""));
+  const Mesh second = parse_obj(text, "m.obj", "second").value();
+  CHECK(second.vertex_count() == 3);
+  CHECK(second.positions.row(0) == Eigen::RowVector3d(1, 0, 1));  // vertices 3, 4, 5, in that order
+  CHECK(second.positions.row(2) == Eigen::RowVector3d(5, 0, 0));
+  CHECK(second.corner_vertices == std::vector{1, 0, 2});
+  CHECK(parse_obj("o only\n" + quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() == 4);
+}
+
+TEST_CASE("a bad OBJ file says what is wrong in which line", "[mesh][read_obj]") {
+  struct Case {
+    std::string text, expected;
+  };
+  const Case c = GENERATE(
+      Case{"v 0 0 nan\n", "m.obj:1: error: vertex has the coordinate \"nan\""},
+      Case{"v 0 0 inf\n", "m.obj:1: error: vertex has the coordinate \"inf\""},
+      Case{"\nv 0 1,5 0\n", "m.obj:2: error: vertex has the coordinate \"1,5\""},
+      Case{"v 0 0 1e999\n", "m.obj:1: error: vertex has the coordinate \"1e999\""},
+      Case{"v 0 0\n", "m.obj:1: error: vertex has 2 of 3 numbers"},
+      Case{"vt\n", "m.obj:1: error: texture vertex has 0 of 1 numbers"},
+      Case{"vt 0 0 0 0\n", "m.obj:1: error: texture vertex has more than 3 numbers"},
+      Case{quad + "f 1 2\n", "m.obj:9: error: face has 2 of at least 3 corners"},
+      Case{quad + "f 1/1 2/2 x/3\n", "m.obj:9: error: face corner \"x/3\" is not of the form"},
+      Case{quad + "f 1/1 2/2 3/y\n", "m.obj:9: error: face corner \"3/y\""},
+      Case{quad + "f 1/1/1 2/2/1 3/3/z\n", "m.obj:9: error: face corner \"3/3/z\""},
+      Case{quad + "f 1/1 2/2 5/3\n",
+           "m.obj:9: error: corner 3 of the face refers to a vertex outside"},
+      Case{quad + "f 1/1 2/9 3/3\n",
+           "m.obj:9: error: corner 2 of the face refers to a texture vertex"},
+      Case{quad + "f 1/0 2/2 3/3\n", "m.obj:9: error: corner 1 of the face refers to a texture"},
+      Case{quad + "f 1/ 2/2 3/3\n", "m.obj:9: error: face corner \"1/\""},
+      Case{quad + "f 0/1 2/2 3/3\n", "m.obj:9: error: corner 1 of the face refers to a vertex"},
+      Case{quad + "f -9/1 2/2 3/3\n", "m.obj:9: error: corner 1 of the face refers to a vertex"},
+      Case{quad + "f 99999999999/1 2/2 3/3\n", "m.obj:9: error: face corner \"99999999999/1\""},
+      Case{quad, "m.obj: error: the file holds no faces (f)"},
+      Case{"", "m.obj: error: the file holds no"},
+      Case{"\x7f"
+           "ELF\x02\x01",
+           "m.obj: error: the file holds no faces"});
+  CHECK_THAT(complaint(c.text), StartsWith(c.expected));
+}
+
+TEST_CASE("a vertex that cannot be read does not move the others", "[mesh][read_obj]") {
+  const auto mesh = parse_obj("v 0 0 nan\nvt x\n" + quad + "f 2/2 3/3 4/4 5/5\n", "m.obj");
+  REQUIRE_FALSE(mesh);
+  CHECK(to_lines(mesh.error()).size() == 2);
+}
+
+TEST_CASE("a byte order mark is no part of the first statement", "[mesh][read_obj]") {
+  CHECK(parse_obj("\xEF\xBB\xBF" + quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() == 4);
+}
+
+TEST_CASE("all problems of an OBJ file come in one run, up to a limit", "[mesh][read_obj]") {
+  const auto two = parse_obj(quad + "v x 0 0\nf 1/1 2/2\nf 1/1 2/2 7/3\n", "m.obj");
+  REQUIRE_FALSE(two);
+  CHECK(to_lines(two.error()).size() == 3);
+  std::string many;
+  for (int k = 0; k < 1000; ++k) many += "v x\n";
+  CHECK(to_lines(parse_obj(many, "m.obj").error()).size() == 20);
+}
+
+TEST_CASE("no prefix or mutation of an OBJ file does harm", "[mesh][read_obj]") {
+  const std::string text =
+      "o a\n" + quad + "f 1/1 2/2 3/3 4/4\nf -4/-4 \\\n -3/-3 -2/-2\no b\nf 1 2 3\n";
+  for (std::size_t length = 0; length <= text.size(); ++length) {
+    // A buffer of just that length, so that the sanitizer sees one byte too many.
+    const std::vector<char> bytes(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length));
+    (void)parse_obj({bytes.data(), bytes.size()}, "m.obj", "a");
+  }
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string mutant = text;
+    for (int k = 0; k < 3; ++k) mutant[random() % mutant.size()] = static_cast<char>(random());
+    const auto mesh = parse_obj(mutant, "m.obj", "a");
+    if (mesh) CHECK(check_mesh(*mesh));
+  }
+}
+
+TEST_CASE("a missing OBJ file is unreadable", "[mesh][read_obj]") {
+  const ScratchFolder folder;
+  CHECK(read_obj(folder.file("none.obj")).error().code == ErrorCode::Unreadable);
+}
