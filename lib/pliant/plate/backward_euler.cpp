@@ -1,0 +1,45 @@
+#include "pliant/plate/backward_euler.hpp"
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/stencil.hpp"
+
+namespace pliant {
+
+Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProblem& problem,
+                                          const TimeSteps& steps, PlateState state,
+                                          const StopRequest& should_stop) {
+  const Grid& grid = problem.grid;
+  PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
+  PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
+  PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+
+  const double dt = steps.length;
+  const double inertia = problem.dynamics.density / dt;            // on v
+  const double shift = (inertia + problem.dynamics.damping) / dt;  // on w
+  if (auto factored = solver.factor({grid, problem.stiffness, shift}); !factored) {
+    return fail(factored.error());
+  }
+
+  // What the rim and the tangents contribute is L of the field that is the rim and 0 inside; it is
+  // known, so it joins the load.
+  Field w = interior_of(grid, state.displacement);
+  Field v = interior_of(grid, state.velocity);
+  const Field zero = Field::Zero(w.rows(), 3);
+  const Field rim = with_interior(grid, state.displacement, zero);
+  const Field known = interior_of(grid, problem.load) -
+                      apply_stencil(grid, problem.stiffness, problem.tangents, rim);
+
+  for (int step = 0; step < steps.count; ++step) {
+    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    auto next = solver.solve(known + shift * w + inertia * v);
+    if (!next) return fail(next.error());
+    v = (*next - w) / dt;
+    w = *std::move(next);
+  }
+
+  state.displacement = with_interior(grid, std::move(state.displacement), w);
+  state.velocity = with_interior(grid, Field::Zero(grid.node_count(), 3), v);
+  return state;
+}
+
+}  // namespace pliant

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/plate.hpp"
+#include "pliant/plate/time_steps.hpp"
+
+namespace pliant {
+
+/// One plate over one interval: everything that is held while its steps run. SPEC 4.
+struct PlateProblem {
+  Grid grid;  ///< the solved rectangle, rim included; at least 3 x 3
+  Stiffness stiffness;
+  Dynamics dynamics;
+  EdgeTangents tangents;
+  Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
+};
+
+/// Advances a plate by backward Euler: in each step of length dt
+///
+///   (rho/dt^2 + eta/dt) w' + L w' = F + (rho/dt^2 + eta/dt) w + (rho/dt) v,   v' = (w' - w)/dt (8)
+///
+/// The rim stays where it is, with velocity 0 after the first step. With rho = eta = 0 each step
+/// gives the static solution. First order in dt, stable for every dt. Requires: state fields are
+/// #nodes x 3. Errors: those of the solver.
+/// Interrupted when `should_stop`, asked ahead of every step, says so.
+Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProblem& problem,
+                                          const TimeSteps& steps, PlateState state,
+                                          const StopRequest& should_stop = {});
+
+}  // namespace pliant

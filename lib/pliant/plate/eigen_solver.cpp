@@ -1,0 +1,40 @@
+#include <Eigen/SparseCholesky>
+
+#include "pliant/plate/direct_solver.hpp"
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+namespace {
+
+class EigenFactorization {
+ public:
+  Result<void> analyze(const SparseMatrix& matrix) {
+    ldlt_.analyzePattern(matrix);
+    return {};
+  }
+
+  Result<void> factorize(const SparseMatrix& matrix) {
+    ldlt_.factorize(matrix);
+    // Eigen reports a zero pivot only; LDL^T of an indefinite matrix goes through without a word.
+    Eigen::Index pivot = 0;
+    const bool is_definite =
+        ldlt_.info() == Eigen::Success && ldlt_.vectorD().minCoeff<Eigen::PropagateNaN>(&pivot) > 0;
+    if (is_definite) return {};
+    return fail(not_positive_definite(matrix.rows(), pivot));
+  }
+
+  Result<Field> solve(const Field& right_hand_sides) {
+    return Field(ldlt_.solve(right_hand_sides));
+  }
+
+ private:
+  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::AMDOrdering<int>> ldlt_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_eigen_solver() {
+  return std::make_unique<DirectSolver<EigenFactorization>>();
+}
+
+}  // namespace pliant

@@ -1,0 +1,43 @@
+#include "pliant/plate/linear_solver.hpp"
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+
+std::vector<SolverKind> available_solvers() {
+#ifdef PLIANT_WITH_CHOLMOD
+  return {SolverKind::Cholmod, SolverKind::Eigen};
+#else
+  return {SolverKind::Eigen};
+#endif
+}
+
+std::string_view name_of(SolverKind kind) {
+  return kind == SolverKind::Cholmod ? "cholmod" : "eigen";
+}
+
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind) {
+#ifdef PLIANT_WITH_CHOLMOD
+  if (kind == SolverKind::Cholmod) return make_cholmod_solver();
+#endif
+  PLIANT_EXPECTS(kind == SolverKind::Eigen);
+  return make_eigen_solver();
+}
+
+Error not_positive_definite(long size, long pivot) {
+  return {ErrorCode::SolverFailed,
+          fmt::format("the plate's matrix of {} unknowns is not positive definite: it failed at "
+                      "pivot {}",
+                      size, pivot)};
+}
+
+Error no_memory_for_factor(long size) {
+  return {
+      ErrorCode::OutOfMemory,
+      fmt::format("the factor of the plate's matrix of {} unknowns does not fit in memory", size)};
+}
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/plate/operator.hpp"
+
+namespace pliant {
+
+/// What a solver had to do so far; tells whether work was reused.
+struct SolverCounts {
+  long analyses = 0;        ///< orderings and symbolic factorisations
+  long factorizations = 0;  ///< numeric factorisations
+  long solves = 0;          ///< right-hand sides of three columns
+};
+
+/// Solves plate systems: the one seam between the integrators and whoever solves. Every
+/// implementation gives the same errors and keeps the same tolerance, and the same tests run over
+/// all of them. Not thread-safe; give each body its own.
+class LinearSolver {
+ public:
+  LinearSolver() = default;
+  LinearSolver(const LinearSolver&) = delete;
+  LinearSolver& operator=(const LinearSolver&) = delete;
+  virtual ~LinearSolver() = default;
+
+  /// Makes ready for `system`. Reuse: nothing is done when it equals the last one; the symbolic
+  /// work is kept while the numbers of columns and rows stay. What was kept never changes a
+  /// result's bits. Errors: SolverFailed with size and pivot when the matrix is not positive
+  /// definite or not finite; OutOfMemory when the factor does not fit.
+  virtual Result<void> factor(const PlateSystem& system) = 0;
+
+  /// Solves for three right-hand sides (#unknowns x 3). Requires: `factor` succeeded.
+  /// Errors: OutOfMemory.
+  virtual Result<Field> solve(const Field& right_hand_sides) = 0;
+
+  virtual SolverCounts counts() const = 0;
+};
+
+/// The implementations that exist.
+enum class SolverKind {
+  Cholmod,  ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
+  Eigen,    ///< SimplicialLDLT, AMD order
+};
+
+/// Those in this build, the default one first.
+std::vector<SolverKind> available_solvers();
+
+std::string_view name_of(SolverKind kind);
+
+/// A solver of the given kind. Requires: `kind` is available.
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind = available_solvers().front());
+
+}  // namespace pliant

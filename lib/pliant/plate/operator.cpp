@@ -1,0 +1,108 @@
+#include "pliant/plate/operator.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+
+SparseMatrix assemble_upper(const PlateSystem& system) {
+  const Grid& grid = system.grid;
+  PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
+  const int m = grid.columns - 2;  // unknowns along u
+  const int n = grid.rows - 2;     // unknowns along v
+  const double hu = grid.hu;
+  const double hv = grid.hv;
+  const double b = system.stiffness.b / (hu * hu * hu * hu);
+  const double c = system.stiffness.c / (hu * hu * hv * hv);
+  const double d = system.stiffness.d / (hv * hv * hv * hv);
+
+  // Eq. (4) and (5) gathered by neighbour; the upper triangle has those ahead in the numbering.
+  const double centre = system.shift + 6 * b + 4 * c + 6 * d;
+  const double beside_u = -4 * b - 2 * c;
+  const double beside_v = -2 * c - 4 * d;
+
+  SparseMatrix matrix(m * n, m * n);
+  matrix.reserve(Eigen::Index{7} * m * n);
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < m; ++i) {
+      const int column = j * m + i;
+      matrix.startVec(column);
+      const auto add = [&](int di, int dj, double weight) {
+        if (i + di >= 0 && i + di < m && j + dj >= 0) {
+          matrix.insertBack(column + dj * m + di, column) = weight;
+        }
+      };
+      add(0, -2, d);
+      add(-1, -1, c);
+      add(0, -1, beside_v);
+      add(1, -1, c);
+      add(-2, 0, b);
+      add(-1, 0, beside_u);
+      // Eq. (7): a ghost mirrors its node with +, so each edge nearby adds its weight once more.
+      const int edges_u = (i == 0) + (i == m - 1);
+      const int edges_v = (j == 0) + (j == n - 1);
+      matrix.insertBack(column, column) = centre + edges_u * b + edges_v * d;
+    }
+  }
+  matrix.finalize();
+  return matrix;
+}
+
+Field residual(const PlateSystem& system, const Field& w, const Field& f) {
+  using Real = long double;
+  const Grid& grid = system.grid;
+  PLIANT_EXPECTS(w.rows() == unknown_count(grid) && f.rows() == unknown_count(grid));
+  const int M = grid.columns;
+  const Real hu = grid.hu;
+  const Real hv = grid.hv;
+  const Real b = system.stiffness.b / (hu * hu * hu * hu);
+  const Real c = system.stiffness.c / (hu * hu * hv * hv);
+  const Real d = system.stiffness.d / (hv * hv * hv * hv);
+
+  Field result(f.rows(), 3);
+  std::vector<Real> nodes(static_cast<std::size_t>(grid.node_count()));  // the rim stays 0
+  for (int component = 0; component < 3; ++component) {
+    int row = 0;
+    for (int j = 1; j < grid.rows - 1; ++j) {
+      for (int i = 1; i < M - 1; ++i) nodes[grid.node(i, j)] = w(row++, component);
+    }
+    row = 0;
+    for (int j = 1; j < grid.rows - 1; ++j) {
+      for (int i = 1; i < M - 1; ++i, ++row) {
+        const Real* const p = &nodes[grid.node(i, j)];
+        // Eq. (4) to (7) with slopes 0, as in `apply_stencil`.
+        const Real left = i == 1 ? p[0] : p[-2];
+        const Real right = i == M - 2 ? p[0] : p[2];
+        const Real below = j == 1 ? p[0] : p[-2 * M];
+        const Real above = j == grid.rows - 2 ? p[0] : p[2 * M];
+        const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
+        const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
+        const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
+                          2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
+        result(row, component) = static_cast<double>(
+            f(row, component) - (system.shift * p[0] + b * uuuu + c * uuvv + d * vvvv));
+      }
+    }
+  }
+  return result;
+}
+
+double estimate_condition(const PlateSystem& system) {
+  const auto& [b, c, d] = system.stiffness;
+  const double width = (system.grid.columns - 1) * system.grid.hu;
+  const double depth = (system.grid.rows - 1) * system.grid.hv;
+  // (1 -2 1)/h^2 has eigenvalues up to 4/h^2, and from about (pi/extent)^2 on.
+  const double most_u = 4 / (system.grid.hu * system.grid.hu);
+  const double most_v = 4 / (system.grid.hv * system.grid.hv);
+  const double least_u = std::numbers::pi * std::numbers::pi / (width * width);
+  const double least_v = std::numbers::pi * std::numbers::pi / (depth * depth);
+  const auto form = [&](double x, double y) { return b * x * x + c * x * y + d * y * y; };
+  const double most =
+      system.shift + b * most_u * most_u + std::max(c, 0.0) * most_u * most_v + d * most_v * most_v;
+  return std::max(1.0, most / (system.shift + form(least_u, least_v)));
+}
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "pliant/core/grid.hpp"
+#include "pliant/plate/plate.hpp"
+
+namespace pliant {
+
+/// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped rectangle,
+/// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
+/// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
+struct PlateSystem {
+  Grid grid;            ///< the rectangle, rim included; at least 3 x 3
+  Stiffness stiffness;  ///< elliptic
+  double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
+
+  friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
+};
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// The upper triangle of the system's matrix (#unknowns x #unknowns), by columns, rows ascending.
+/// Its pattern depends on the numbers of columns and rows only: entries that are 0 by chance are
+/// kept.
+SparseMatrix assemble_upper(const PlateSystem& system);
+
+/// f - (shift I + L) w (#unknowns x 3), its coefficients and sums in extended precision (64 bits of
+/// mantissa on x86-64), for iterative refinement: in plain double its rounding would be as large as
+/// itself.
+Field residual(const PlateSystem& system, const Field& w, const Field& f);
+
+/// About the condition number of the system's matrix: an upper bound of its eigenvalues over the
+/// smallest one of the same plate simply supported. At least 1.
+double estimate_condition(const PlateSystem& system);
+
+}  // namespace pliant

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/grid.hpp"
+
+namespace pliant {
+
+// The plate equation on one rectangle of nodes: thesis 4.2, eq. 8; SPEC 2 to 4; docs/model.md.
+//
+//   b w_uuuu + c w_uuvv + d w_vvvv + rho w_tt + eta w_t = F                                     (1)
+//
+// w is the displacement (or the position itself, SPEC 2), one column for each of x, y, z. Here a
+// `Grid` is the solved rectangle: its outermost nodes are the rim, the others the unknowns.
+
+/// b, c and d of (1): along u, mixed, along v. [1]
+struct Stiffness {
+  double b = 1;
+  double c = 2;
+  double d = 1;
+
+  /// The bound that c must exceed: -2 sqrt(b d). Requires: b, d >= 0.
+  double least_c() const;
+
+  /// Whether (1) is well posed: b > 0, d > 0, c > least_c(). docs/model.md, eq. (2).
+  bool is_elliptic() const;
+
+  friend bool operator==(const Stiffness&, const Stiffness&) = default;
+};
+
+/// What gives the plate inertia and drag.
+struct Dynamics {
+  double density = 1;  ///< rho >= 0
+  double damping = 1;  ///< eta >= 0
+};
+
+/// Slopes prescribed on the rim: dw/du on the edges of smallest and largest u, dw/dv on those of
+/// smallest and largest v. [length/uv]
+struct EdgeTangents {
+  Vector3d su0 = Vector3d::Zero();
+  Vector3d su1 = Vector3d::Zero();
+  Vector3d sv0 = Vector3d::Zero();
+  Vector3d sv1 = Vector3d::Zero();
+};
+
+/// Displacement and velocity on all nodes of the rectangle, rim included.
+struct PlateState {
+  Field displacement;  ///< #nodes x 3, row = grid.node(i, j) [length]
+  Field velocity;      ///< #nodes x 3 [length/s]
+};
+
+/// Number of unknowns: the interior nodes. Row k = (j - 1)(columns - 2) + (i - 1) is node (i,j).
+inline int unknown_count(const Grid& grid) { return (grid.columns - 2) * (grid.rows - 2); }
+
+/// The interior rows of a field on all nodes (#nodes x 3 -> #unknowns x 3).
+Field interior_of(const Grid& grid, const Field& nodes);
+
+/// Writes interior rows back: `nodes` with its interior replaced, its rim as it is.
+Field with_interior(const Grid& grid, Field nodes, const Field& interior);
+
+}  // namespace pliant

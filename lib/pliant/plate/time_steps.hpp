@@ -1,0 +1,31 @@
+#pragma once
+
+#include "pliant/core/result.hpp"
+
+namespace pliant {
+
+/// How many steps fill an interval. SPEC 4.
+enum class Stepping {
+  Exact,      ///< equal steps, at most dt long, that fill the interval: thesis 4.3 asks for this
+  Overshoot,  ///< steps of dt until the end is reached or passed: the loop of thesis 5.3 (L10)
+};
+
+/// Equal steps in time.
+struct TimeSteps {
+  int count = 1;      ///< >= 1
+  double length = 1;  ///< [s], > 0
+};
+
+/// The most steps that an interval may take.
+inline constexpr int max_steps = 100'000;
+
+/// Whether steps of dt [s] can fill an interval [s]. Requires: interval > 0.
+/// Errors: dt not > 0 or not finite; more than `max_steps` steps.
+Result<void> check_time_step(double interval, double dt);
+
+/// Divides an interval [s] into steps of dt [s]. Exact: max(1, ceil(interval/dt - 1e-9)) equal
+/// ones. Overshoot: t += dt in double precision until t >= interval. Requires: `check_time_step`
+/// holds.
+TimeSteps divide_interval(double interval, double dt, Stepping stepping);
+
+}  // namespace pliant
