@@ -1,0 +1,140 @@
+#include "pliant/scene/animate.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/scene/keys.hpp"
+#include "pliant/scene/nearest.hpp"
+
+namespace pliant::xml {
+namespace {
+
+bool is_channel(const Attribute& row) {
+  return !std::holds_alternative<std::monostate>(row.channel);
+}
+
+/// Why `name` cannot be animated here.
+std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Attribute* const> rows,
+                       std::string_view name) {
+  const std::string parent = tag(*animate.Parent()->ToElement());
+  std::vector<std::string_view> channels;
+  bool is_known = false;
+  for (const Attribute* row : rows) {
+    if (row->format.name == name && row->format.need == Need::Later)
+      return value_problem(animate, "attribute", name, not_supported());
+    is_known = is_known || row->format.name == name;
+    if (is_channel(*row)) channels.push_back(row->format.name);
+  }
+  if (is_known)
+    return value_problem(animate, "attribute", name,
+                         fmt::format("cannot be animated; the channels of {} are: {}", parent,
+                                     channels.empty() ? "none" : listed(channels)));
+  return value_problem(animate, "attribute", name,
+                       fmt::format("{} has no such channel{}", parent, hint(name, channels)));
+}
+
+/// How many numbers the keys' values have at most.
+std::size_t value_width(const tinyxml2::XMLElement& animate) {
+  std::size_t width = 0;
+  for (const auto* key = animate.FirstChildElement("key"); key;
+       key = key->NextSiblingElement("key"))
+    if (const char* value = key->Attribute("value"))
+      width = std::max(width, words_of(value).size());
+  return width;
+}
+
+bool has_boolean_values(const tinyxml2::XMLElement& animate) {
+  const auto* key = animate.FirstChildElement("key");
+  const char* value = key ? key->Attribute("value") : nullptr;
+  return value && parse_boolean(value).has_value();
+}
+
+/// Stores a curve with D components in the channel, for the kinds of channels that take one.
+template <int D>
+void read_into(const tinyxml2::XMLElement& animate, ValueKind kind, const std::string& path,
+               Findings& findings, auto&& store) {
+  if (std::optional<Curve<D>> curve = read_curve<D>(animate, kind, path, findings))
+    store(std::move(*curve));
+}
+
+struct CurveOfChannel {
+  const tinyxml2::XMLElement& animate;
+  const std::string& path;
+  Findings& findings;
+
+  /// No channel that we know: the keys are read all the same, for their own mistakes.
+  void operator()(std::monostate) const {
+    if (has_boolean_values(animate))
+      read_into<1>(animate, ValueKind::Boolean, path, findings, [](auto&&) {});
+    else if (value_width(animate) > 1)
+      read_into<3>(animate, ValueKind::Widened, path, findings, [](auto&&) {});
+    else
+      read_into<1>(animate, ValueKind::Number, path, findings, [](auto&&) {});
+  }
+  void operator()(Channel<1>* place) const {
+    read_into<1>(animate, ValueKind::Number, path, findings,
+                 [&](Curve<1> curve) { *place = Channel<1>(std::move(curve)); });
+  }
+  void operator()(Channel<3>* place) const {
+    read_into<3>(animate, ValueKind::Vector, path, findings,
+                 [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });
+  }
+  void operator()(std::optional<Channel<3>>* place) const {
+    read_into<3>(animate, ValueKind::Vector, path, findings,
+                 [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });
+  }
+  /// One number or three: three as soon as one key has three, then one number stands for all.
+  void operator()(TangentChannel* place) const {
+    if (value_width(animate) > 1)
+      read_into<3>(animate, ValueKind::Widened, path, findings,
+                   [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });
+    else
+      read_into<1>(animate, ValueKind::Number, path, findings,
+                   [&](Curve<1> curve) { *place = Channel<1>(std::move(curve)); });
+  }
+  void operator()(Switch* place) const {
+    read_into<1>(animate, ValueKind::Boolean, path, findings,
+                 [&](Curve<1> curve) { *place = Switch(std::move(curve)); });
+  }
+};
+
+}  // namespace
+
+void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* const> rows,
+                  const std::string& owner, Findings& findings) {
+  const tinyxml2::XMLAttribute* given = animate.FindAttribute("attribute");
+  const std::string name(given ? trimmed(given->Value()) : "");
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Attribute* row) {
+    return row->format.name == name && is_channel(*row);
+  });
+  ChannelPlace place;
+  if (found != rows.end()) {
+    Attribute& row = **found;
+    place = row.channel;
+    if (row.line != 0)
+      findings.add_problem(
+          animate.GetLineNum(),
+          value_problem(animate, "attribute", name,
+                        fmt::format("is {} already (line {}); one of both must go",
+                                    row.is_animated ? "animated" : "given", row.line)));
+    else
+      row.line = animate.GetLineNum();
+    row.is_animated = true;
+  } else if (given) {
+    findings.add_problem(given->GetLineNum(), no_channel(animate, rows, name));
+  }
+  std::visit(CurveOfChannel{animate, owner + '.' + name, findings}, place);
+}
+
+void read_animate(const tinyxml2::XMLElement& animate, Table& table, const std::string& owner,
+                  Findings& findings) {
+  std::vector<Attribute*> rows;
+  for (Attribute& row : table) rows.push_back(&row);
+  read_animate(animate, rows, owner, findings);
+}
+
+}  // namespace pliant::xml

@@ -1,0 +1,122 @@
+#include "pliant/scene/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace pliant {
+namespace {
+
+class SceneChecker {
+ public:
+  explicit SceneChecker(const Scene& scene) : scene_(scene) {}
+
+  std::vector<Error> check() {
+    if (!(scene_.fps > 0) || !std::isfinite(scene_.fps) || !std::isfinite(1 / scene_.fps)) {
+      complain("", "fps", fmt::format("fps is {}, but must be greater than 0", scene_.fps));
+    }
+    for (const auto& [attribute, frame] :
+         {std::pair{"start", scene_.start}, std::pair{"end", scene_.end}}) {
+      if (frame < -largest_frame || frame > largest_frame) {
+        complain("", attribute,
+                 fmt::format("{} is {}, but must be within {} frames of 0", attribute, frame,
+                             largest_frame));
+        return std::move(errors_);
+      }
+    }
+    if (scene_.end < scene_.start) {
+      complain("", "end",
+               fmt::format("end is {}, before start, which is {}", scene_.end, scene_.start));
+    } else if (std::int64_t{scene_.end} - scene_.start >= max_frames) {
+      complain("", "end",
+               fmt::format("start {} to end {} are more than {} frames", scene_.start, scene_.end,
+                           max_frames));
+    }
+    for (const Surface& surface : scene_.surfaces) {
+      check_name(surface.name);
+      if (const auto* sheet = std::get_if<GridSheet>(&surface.shape))
+        check_sheet(surface.name, *sheet);
+    }
+    for (const Force& force : scene_.forces) {
+      check_name(force.name);
+      check_targets(force);
+    }
+    return std::move(errors_);
+  }
+
+ private:
+  void check_name(const std::string& name) {
+    if (!is_name(name)) {
+      complain(name, "name",
+               fmt::format("the name \"{}\" is not a letter or _ followed by letters, "
+                           "digits, _ and -",
+                           name));
+    } else if (!names_.insert(name).second) {
+      complain(name, "name", fmt::format("the name \"{}\" is given twice", name));
+    }
+  }
+
+  void check_sheet(const std::string& name, const GridSheet& sheet) {
+    for (const auto& [attribute, count] :
+         {std::pair{"columns", sheet.columns}, std::pair{"rows", sheet.rows}}) {
+      if (count < 3) {
+        complain(name, attribute,
+                 fmt::format("{} is {}, but must be at least 3", attribute, count));
+      }
+    }
+    if (std::int64_t{sheet.columns} * sheet.rows > max_sheet_vertices) {
+      complain(name, "columns",
+               fmt::format("{} x {} vertices are more than {}", sheet.columns, sheet.rows,
+                           max_sheet_vertices));
+    }
+    for (const auto& [attribute, extent] :
+         {std::pair{"width", sheet.width}, std::pair{"depth", sheet.depth}}) {
+      if (!(extent > 0 && extent <= largest_extent)) {
+        complain(name, attribute,
+                 fmt::format("{} is {}, but must be greater than 0 and at most {}", attribute,
+                             extent, largest_extent));
+      }
+    }
+  }
+
+  void check_targets(const Force& force) {
+    for (const std::string& target : force.targets) {
+      const bool exists =
+          std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
+                      [&](const Surface& surface) { return surface.name == target; });
+      if (!exists) {
+        complain(
+            force.name, "targets",
+            fmt::format("force \"{}\" targets \"{}\", which is no surface", force.name, target));
+      }
+    }
+  }
+
+  void complain(const std::string& name, const std::string& attribute, std::string message) {
+    errors_.push_back({.code = ErrorCode::InvalidInput,
+                       .message = std::move(message),
+                       .file = scene_.origin.file,
+                       .line = scene_.origin.line_of(name, attribute)});
+  }
+
+  const Scene& scene_;
+  std::set<std::string> names_;
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+bool is_name(std::string_view text) {
+  const auto is_first = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  const auto is_later = [&](char c) { return is_first(c) || c == '-' || (c >= '0' && c <= '9'); };
+  return !text.empty() && is_first(text.front()) && std::all_of(text.begin(), text.end(), is_later);
+}
+
+std::vector<Error> check_scene(const Scene& scene) { return SceneChecker(scene).check(); }
+
+}  // namespace pliant

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// The most frames that a scene may have.
+inline constexpr int max_frames = 1'000'000;
+
+/// How far from 0 a frame of a scene may lie.
+inline constexpr int largest_frame = 1'000'000'000;
+
+/// The most vertices that a grid sheet may have.
+inline constexpr int max_sheet_vertices = 100'000'000;
+
+/// The largest width or depth of a grid sheet [length]; coordinates times counts stay finite.
+inline constexpr double largest_extent = 1e300;
+
+/// Whether a name matches [A-Za-z_][A-Za-z0-9_-]*.
+bool is_name(std::string_view text);
+
+/// What must hold of a scene as a whole, read or built in code: fps > 0; start <= end, within
+/// `largest_frame`, at most `max_frames` frames; names well formed and unique over surfaces and
+/// forces; targets that exist; sheets of at least 3 x 3 and at most `max_sheet_vertices` vertices,
+/// with positive extents. Channels are checked over the frames by `Simulation::make`. Every problem
+/// found, with its line if known.
+std::vector<Error> check_scene(const Scene& scene);
+
+}  // namespace pliant

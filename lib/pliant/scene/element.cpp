@@ -1,0 +1,140 @@
+#include "pliant/scene/element.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/scene/nearest.hpp"
+
+namespace pliant::xml {
+namespace {
+
+std::vector<std::string_view> supported_names(std::span<const Attribute> table) {
+  std::vector<std::string_view> names;
+  for (const Attribute& attribute : table)
+    if (attribute.format.need != Need::Later) names.push_back(attribute.format.name);
+  return names;
+}
+
+/// `; it belongs in <surface>` for an element that the format knows elsewhere.
+std::string where_it_belongs(std::string_view name) {
+  std::string places;
+  for (const ElementFormat& format : scene_format()) {
+    if (format.name != name) continue;
+    for (const std::string_view parent : format.parents)
+      places += fmt::format("{}<{}>", places.empty() ? "" : " or ", parent);
+  }
+  return places.empty() ? "" : "; it belongs in " + places;
+}
+
+std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XMLElement& child,
+                          std::span<const Child> children) {
+  std::vector<std::string_view> names;
+  for (const Child& known : children)
+    if (known.read) names.push_back(known.name);
+  const std::string belongs = where_it_belongs(child.Name());
+  return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
+                     belongs.empty()
+                         ? hint(child.Name(), names)
+                         : belongs + "; allowed: " + (names.empty() ? "none" : listed(names)));
+}
+
+void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given,
+                Attribute& row, Findings& findings) {
+  if (row.line != 0)
+    return findings.add_problem(
+        given.GetLineNum(),
+        value_problem(element, given.Name(), given.Value(),
+                      fmt::format("{} is animated too (line {}); one of both must go", given.Name(),
+                                  row.line)));
+  row.line = given.GetLineNum();
+  if (row.format.need == Need::Later) {
+    row.is_sound = false;
+    return findings.add_problem(
+        row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.Name()), tag(element),
+                              not_supported()));
+  }
+  if (const Reading<void> read = row.read(given.Value()); !read) {
+    row.is_sound = false;
+    findings.add_problem(row.line,
+                         value_problem(element, given.Name(), given.Value(), read.error()));
+  }
+}
+
+}  // namespace
+
+void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
+  const std::vector<std::string_view> names = supported_names(table);
+  std::vector<std::string_view> meant;  // by a misspelt attribute
+  for (const auto* given = element.FirstAttribute(); given && !findings.is_full();
+       given = given->Next()) {
+    if (Attribute* row = find(table, given->Name())) {
+      read_value(element, *given, *row, findings);
+      continue;
+    }
+    findings.add_problem(given->GetLineNum(),
+                         fmt::format("{} has no attribute {}{}", tag(element),
+                                     in_quotes(given->Name()), hint(given->Name(), names)));
+    if (const auto near = nearest_word(given->Name(), names)) meant.push_back(*near);
+  }
+  for (Attribute& row : table) {
+    if (std::find(meant.begin(), meant.end(), row.format.name) != meant.end()) row.is_sound = false;
+    if (row.format.need != Need::Required || row.line != 0 || !row.is_sound) continue;
+    row.is_sound = false;
+    findings.add_problem(element.GetLineNum(), fmt::format("{} needs the attribute \"{}\"",
+                                                           tag(element), row.format.name));
+  }
+}
+
+bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> children,
+                   Findings& findings) {
+  bool all_known = true;
+  for (const auto* node = element.FirstChild(); node && !findings.is_full();
+       node = node->NextSibling()) {
+    if (node->ToText())
+      findings.add_problem(node->GetLineNum(),
+                           fmt::format("{} holds the text {}; no text belongs here", tag(element),
+                                       in_quotes(trimmed(node->Value()))));
+    const auto* child = node->ToElement();
+    if (!child) continue;
+    const auto known = std::find_if(children.begin(), children.end(), [&](const Child& candidate) {
+      return candidate.name == child->Name();
+    });
+    if (known != children.end() && known->read) {
+      known->read(*child);
+      continue;
+    }
+    all_known = false;
+    findings.add_problem(child->GetLineNum(),
+                         known != children.end()
+                             ? fmt::format("the element {} {}", tag(*child), not_supported())
+                             : unknown_child(element, *child, children));
+  }
+  return all_known;
+}
+
+Attribute* find(std::span<Attribute> table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Attribute& attribute) {
+    return attribute.format.name == name;
+  });
+  return found != table.end() ? &*found : nullptr;
+}
+
+std::string tag(const tinyxml2::XMLElement& element) {
+  const std::string name = in_quotes(element.Name());
+  return '<' + name.substr(1, name.size() - 2) + '>';
+}
+
+std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
+                          std::string_view text, std::string_view complaint) {
+  return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
+}
+
+void record_lines(const std::string& name, std::span<const Attribute> table, SceneOrigin& origin) {
+  for (const Attribute& row : table)
+    if (row.line != 0) origin.lines[fmt::format("{}.{}", name, row.format.name)] = row.line;
+}
+
+}  // namespace pliant::xml

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/scene/attribute.hpp"
+#include "pliant/scene/findings.hpp"
+
+namespace tinyxml2 {
+class XMLElement;
+}
+
+namespace pliant::xml {
+
+using Table = std::vector<Attribute>;
+
+/// An element that may stand in another, and what is done with it.
+struct Child {
+  std::string_view name;
+  std::function<void(const tinyxml2::XMLElement&)> read;  ///< empty: a later version reads it
+};
+
+/// Reads the attributes of an element into the places of its table. Problems: one that the table
+/// does not know, a value that its row refuses, one that is animated too, a required one that is
+/// absent, unless a misspelt one was meant for it.
+void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings);
+
+/// Reads what stands between an element's tags. Problems: an element that is not among `children`,
+/// text. Returns whether every child was known: if not, a required one may be a misspelt one.
+bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> children,
+                   Findings& findings);
+
+/// The row of that name, or null.
+Attribute* find(std::span<Attribute> table, std::string_view name);
+
+/// `<grid>`.
+std::string tag(const tinyxml2::XMLElement& element);
+
+/// `<grid> width="1,5": not a number`.
+std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
+                          std::string_view text, std::string_view complaint);
+
+/// Writes down where an element and what its table holds stand in the file.
+void record_lines(const std::string& name, std::span<const Attribute> table, SceneOrigin& origin);
+
+}  // namespace pliant::xml

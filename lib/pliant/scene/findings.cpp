@@ -1,0 +1,58 @@
+#include "pliant/scene/findings.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant::xml {
+namespace {
+
+/// A file of 256 MiB may hold a problem every few bytes, and each takes some hundred bytes to tell.
+constexpr std::size_t most_listed = 10'000;
+
+}  // namespace
+
+void Findings::add_problem(int line, std::string message) {
+  ++problem_count_;
+  if (is_full()) return;
+  problems_.push_back(Error{
+      .code = ErrorCode::InvalidInput, .message = std::move(message), .file = file_, .line = line});
+}
+
+bool Findings::is_full() const { return problems_.size() >= most_listed; }
+
+void Findings::add_note(int line, std::string message) {
+  if (notes_.size() < most_listed) notes_.push_back({line, std::move(message)});
+}
+
+Error Findings::to_error() const {
+  PLIANT_EXPECTS(!problems_.empty());
+  std::vector<Error> problems = problems_;
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Error& a, const Error& b) { return a.line < b.line; });
+  std::vector<Error> distinct;
+  std::set<std::pair<int, std::string>> seen;
+  for (Error& problem : problems)
+    if (seen.emplace(problem.line, problem.message).second) distinct.push_back(std::move(problem));
+  if (is_full())
+    distinct.push_back(Error{.code = ErrorCode::InvalidInput,
+                             .message = "too many problems; reading stopped here",
+                             .file = file_,
+                             .line = problems.back().line});
+  Error first = std::move(distinct.front());
+  first.others.assign(std::make_move_iterator(distinct.begin() + 1),
+                      std::make_move_iterator(distinct.end()));
+  return first;
+}
+
+std::vector<SceneNote> Findings::notes() const {
+  std::vector<SceneNote> notes = notes_;
+  std::stable_sort(notes.begin(), notes.end(),
+                   [](const SceneNote& a, const SceneNote& b) { return a.line < b.line; });
+  return notes;
+}
+
+}  // namespace pliant::xml

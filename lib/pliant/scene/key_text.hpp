@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pliant/scene/element.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::xml {
+
+/// How the values of a channel's keys are written.
+enum class ValueKind {
+  Number,
+  Vector,   ///< three numbers
+  Widened,  ///< three numbers, or one that stands for all three
+  Boolean,  ///< `true` or `false`, kept as 1 and 0
+};
+
+/// One value of a curve with D components.
+template <int D>
+Reading<Value<D>> parse_value(std::string_view text, ValueKind kind);
+
+/// A handle as it is written: `frames value`, relative to its key.
+template <int D>
+struct Handle {
+  double frames = 0;
+  Value<D> value = {};
+};
+
+/// What a <key> says; what it leaves open, its <animate> or the curve rules decide.
+template <int D>
+struct KeyText {
+  double frame = 0;
+  Value<D> value = {};
+  std::optional<Interpolation> interpolation = {};
+  std::optional<double> amplitude = {};
+  std::optional<double> period = {};
+  std::optional<double> back = {};
+  std::optional<std::array<double, 4>> control = {};
+  std::optional<Tangent<D>> tangent = {};
+  std::optional<Tangent<D>> in = {};
+  std::optional<Tangent<D>> out = {};
+  std::optional<double> in_length = {};
+  std::optional<double> out_length = {};
+  std::optional<Handle<D>> in_handle = {};
+  std::optional<Handle<D>> out_handle = {};
+  std::optional<Value<D>> left = {};
+};
+
+/// What an <animate> says besides its keys.
+template <int D>
+struct AnimateText {
+  Extrapolation<D> before = {};
+  Extrapolation<D> after = {};
+  Tangent<D> tangent = {};           ///< of keys that say nothing
+  Interpolation interpolation = {};  ///< of keys that say nothing
+  Overshoot overshoot = Overshoot::Limit;
+};
+
+// The rows of <key>, <animate> and <loop>.
+
+template <int D>
+Table attributes_of(KeyText<D>& key, ValueKind kind);
+template <int D>
+Table attributes_of(AnimateText<D>& animate, ValueKind kind);
+template <int D>
+Table attributes_of(Loop<D>& loop, ValueKind kind);
+
+}  // namespace pliant::xml

@@ -1,0 +1,294 @@
+#include "pliant/scene/keys.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+namespace pliant::xml {
+namespace {
+
+bool is_given(Table& table, std::string_view name) {
+  const Attribute* row = find(table, name);
+  return row != nullptr && row->line != 0;
+}
+
+bool is_sound(Table& table, std::string_view name) {
+  const Attribute* row = find(table, name);
+  return row != nullptr && row->is_sound;
+}
+
+/// Reads one <animate>: first its attributes, then its children in their order.
+template <int D>
+class CurveReader {
+ public:
+  CurveReader(const tinyxml2::XMLElement& animate, ValueKind kind, std::string channel,
+              Findings& findings)
+      : animate_(animate), kind_(kind), channel_(std::move(channel)), findings_(findings) {}
+
+  std::optional<Curve<D>> read();
+
+ private:
+  void read_defaults();
+  void read_key(const tinyxml2::XMLElement& element);
+  void read_loop(const tinyxml2::XMLElement& element);
+
+  Interpolation interpolation_of(const tinyxml2::XMLElement& element);
+  Tangent<D> side_of(const tinyxml2::XMLElement& element, bool is_in);
+  void check_frame(const tinyxml2::XMLElement& element);
+  void check_stepping(const tinyxml2::XMLElement& element, Table& table,
+                      const Interpolation& interpolation);
+  void check_last_control(bool has_segment);
+  void check_loop();
+
+  const tinyxml2::XMLElement& animate_;
+  ValueKind kind_;
+  std::string channel_;
+  Findings& findings_;
+
+  AnimateText<D> defaults_;
+  CurveKeys<D> curve_;
+  std::vector<int> key_lines_;
+  int loop_line_ = 0;
+  int uncontrolled_line_ = 0;       // of the last key if it inherits cubicBezier and has no control
+  std::optional<double> previous_;  // the frame of the key before, where it could be read
+  int previous_line_ = 0;
+
+  // The key that is being read. Its table refers to it, and both serve for all keys in turn.
+  KeyText<D> key_;
+  Table key_table_;
+};
+
+template <int D>
+std::optional<Curve<D>> CurveReader<D>::read() {
+  const std::size_t problems_before = findings_.problem_count();
+  read_defaults();
+  key_table_ = attributes_of(key_, kind_);
+  const Child children[] = {
+      {"key", [&](const tinyxml2::XMLElement& element) { read_key(element); }},
+      {"loop", [&](const tinyxml2::XMLElement& element) { read_loop(element); }},
+  };
+  const bool all_known = read_children(animate_, children, findings_);
+  if (curve_.keys.empty() && all_known)
+    findings_.add_problem(
+        animate_.GetLineNum(),
+        fmt::format("{} has no keys: at least one <key> is required", tag(animate_)));
+  check_last_control(curve_.loop.has_value());
+  if (findings_.problem_count() == problems_before) check_loop();
+  if (findings_.problem_count() != problems_before) return std::nullopt;
+
+  tl::expected<Curve<D>, CurveError> curve = Curve<D>::make(std::move(curve_));
+  const auto line_of = [&](std::size_t key) {
+    return key < key_lines_.size() ? key_lines_[key] : animate_.GetLineNum();
+  };
+  if (!curve) {
+    findings_.add_problem(line_of(curve.error().key),
+                          fmt::format("{}: {}", channel_, curve.error().message));
+    return std::nullopt;
+  }
+  for (const CurveNote& note : curve->notes())
+    findings_.add_note(line_of(note.key), fmt::format("{}: {}", channel_, note.message));
+  return std::move(*curve);
+}
+
+template <int D>
+void CurveReader<D>::read_defaults() {
+  if (kind_ == ValueKind::Boolean) defaults_.interpolation.kind = Interpolation::Kind::Step;
+  Table table = attributes_of(defaults_, kind_);
+  read_attributes(animate_, table, findings_);
+  check_stepping(animate_, table, defaults_.interpolation);
+  curve_.before = defaults_.before;
+  curve_.after = defaults_.after;
+  curve_.overshoot = defaults_.overshoot;
+}
+
+template <int D>
+void CurveReader<D>::read_key(const tinyxml2::XMLElement& element) {
+  check_last_control(true);
+  key_ = {};
+  for (Attribute& row : key_table_) {
+    row.line = 0;
+    row.is_sound = true;
+  }
+  read_attributes(element, key_table_, findings_);
+  read_children(element, {}, findings_);
+  check_frame(element);
+
+  Key<D> key{.frame = key_.frame, .value = key_.value, .left = key_.left};
+  key.next = interpolation_of(element);
+  check_stepping(element, key_table_, key.next);
+  key.in = side_of(element, true);
+  key.out = side_of(element, false);
+  curve_.keys.push_back(std::move(key));
+  key_lines_.push_back(element.GetLineNum());
+}
+
+template <int D>
+void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
+  if (!is_sound(key_table_, "frame")) {
+    previous_.reset();
+    return;
+  }
+  if (previous_ && key_.frame == *previous_)
+    findings_.add_problem(element.GetLineNum(),
+                          fmt::format("{} frame {} repeats the key of line {}", tag(element),
+                                      key_.frame, previous_line_));
+  else if (previous_ && key_.frame < *previous_)
+    findings_.add_problem(element.GetLineNum(),
+                          fmt::format("{} frame {} is not after frame {} of line {}: keys stand in "
+                                      "increasing order",
+                                      tag(element), key_.frame, *previous_, previous_line_));
+  previous_ = key_.frame;
+  previous_line_ = element.GetLineNum();
+}
+
+/// A boolean channel steps: what shapes a way between two values has no meaning for it.
+template <int D>
+void CurveReader<D>::check_stepping(const tinyxml2::XMLElement& element, Table& table,
+                                    const Interpolation& interpolation) {
+  if (kind_ != ValueKind::Boolean) return;
+  constexpr std::string_view shaping[] = {
+      "tangent", "in",        "out",    "inLength", "outLength", "inHandle", "outHandle",
+      "control", "amplitude", "period", "back",     "overshoot", "offset"};
+  for (const std::string_view name : shaping)
+    if (is_given(table, name))
+      findings_.add_problem(find(table, name)->line,
+                            fmt::format("{} {}: a boolean channel steps, {} has no meaning for it",
+                                        tag(element), name, name));
+  const bool is_step = interpolation.kind == Interpolation::Kind::Step ||
+                       interpolation.kind == Interpolation::Kind::StepNext;
+  if (!is_step && is_given(table, "interpolation"))
+    findings_.add_problem(
+        find(table, "interpolation")->line,
+        fmt::format("{} interpolation: a boolean channel steps; allowed: step, stepNext",
+                    tag(element)));
+}
+
+/// The segment that starts at the key: its own interpolation or the default, with its parameters.
+template <int D>
+Interpolation CurveReader<D>::interpolation_of(const tinyxml2::XMLElement& element) {
+  Interpolation next = key_.interpolation.value_or(defaults_.interpolation);
+  next.amplitude = key_.amplitude;
+  next.period = key_.period;
+  next.back = key_.back;
+  if (key_.control) next.control = *key_.control;
+  if (kind_ == ValueKind::Boolean || !is_sound(key_table_, "interpolation")) return next;
+
+  const bool is_easing = next.kind == Interpolation::Kind::Easing;
+  const auto require = [&](std::string_view name, bool applies, std::string_view what) {
+    if (is_given(key_table_, name) && !applies)
+      findings_.add_problem(
+          find(key_table_, name)->line,
+          fmt::format("{} {} applies only to the interpolation {}", tag(element), name, what));
+  };
+  const bool is_elastic = is_easing && next.ease == Ease::Elastic;
+  require("amplitude", is_elastic, "elasticIn, elasticOut and elasticInOut");
+  require("period", is_elastic, "elasticIn, elasticOut and elasticInOut");
+  require("back", is_easing && next.ease == Ease::Back, "backIn, backOut and backInOut");
+  const bool is_cubic = next.kind == Interpolation::Kind::CubicBezier;
+  require("control", is_cubic, "cubicBezier");
+
+  if (is_cubic && !key_.control && is_sound(key_table_, "control")) {
+    if (key_.interpolation)
+      findings_.add_problem(
+          element.GetLineNum(),
+          fmt::format("{} interpolation=\"cubicBezier\" needs control=\"x1 y1 x2 y2\"",
+                      tag(element)));
+    else
+      uncontrolled_line_ = element.GetLineNum();
+  }
+  return next;
+}
+
+/// A key that inherits cubicBezier needs a control if a segment starts there. At the last key none
+/// does, unless an inner loop copies it.
+template <int D>
+void CurveReader<D>::check_last_control(bool has_segment) {
+  if (uncontrolled_line_ != 0 && has_segment)
+    findings_.add_problem(
+        uncontrolled_line_,
+        "<key> inherits interpolation=\"cubicBezier\" and needs control=\"x1 y1 x2 y2\"");
+  uncontrolled_line_ = 0;
+}
+
+/// One side of the key: what it says, else what it says for both sides, else the default.
+template <int D>
+Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_in) {
+  const std::string_view name = is_in ? "in" : "out";
+  const std::string_view length_name = is_in ? "inLength" : "outLength";
+  const std::string_view handle_name = is_in ? "inHandle" : "outHandle";
+  const auto exclude = [&](std::string_view first, std::string_view second) {
+    if (is_given(key_table_, first) && is_given(key_table_, second))
+      findings_.add_problem(
+          find(key_table_, second)->line,
+          fmt::format("{} has both {} and {}; one of them must go", tag(element), first, second));
+  };
+  exclude("tangent", name);
+  exclude("tangent", handle_name);
+  exclude(name, handle_name);
+  exclude(length_name, handle_name);
+
+  if (const auto& handle = is_in ? key_.in_handle : key_.out_handle)
+    return {.kind = Tangent<D>::Kind::Handle,
+            .handle_frames = handle->frames,
+            .handle_value = handle->value};
+  const auto& own = is_in ? key_.in : key_.out;
+  Tangent<D> side = own ? *own : key_.tangent.value_or(defaults_.tangent);
+  side.length = is_in ? key_.in_length : key_.out_length;
+  return side;
+}
+
+template <int D>
+void CurveReader<D>::read_loop(const tinyxml2::XMLElement& element) {
+  Loop<D> loop;
+  Table table = attributes_of(loop, kind_);
+  read_attributes(element, table, findings_);
+  read_children(element, {}, findings_);
+  if (curve_.loop)
+    return findings_.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} has a second <loop>; the first is at line {}", tag(animate_), loop_line_));
+  check_stepping(element, table, {});
+  curve_.loop = loop;
+  loop_line_ = element.GetLineNum();
+}
+
+/// The curve's own rules for a loop again, told at its line instead of a key's. Requires: all keys
+/// were read without a problem.
+template <int D>
+void CurveReader<D>::check_loop() {
+  if (!curve_.loop) return;
+  const Loop<D>& loop = *curve_.loop;
+  if (!(loop.to > loop.from))
+    return findings_.add_problem(
+        loop_line_, fmt::format("<loop> to=\"{}\": must be after from=\"{}\"", loop.to, loop.from));
+  const auto at = [](const Key<D>& key, double frame) { return key.frame < frame; };
+  const auto first = std::lower_bound(curve_.keys.begin(), curve_.keys.end(), loop.from, at);
+  if (first == curve_.keys.end() || first->frame != loop.from)
+    return findings_.add_problem(
+        loop_line_, fmt::format("<loop> from=\"{}\": there is no key at that frame", loop.from));
+  const auto last = std::lower_bound(first, curve_.keys.end(), loop.to, at);
+  constexpr std::int64_t most_copied_keys = 1'000'000;  // each is a segment in memory
+  const std::int64_t copied = (last - first) * (std::int64_t{loop.before} + loop.after);
+  if (copied > most_copied_keys)
+    findings_.add_problem(loop_line_,
+                          fmt::format("<loop> makes {} copied keys; at most {} are allowed", copied,
+                                      most_copied_keys));
+}
+
+}  // namespace
+
+template <int D>
+std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, ValueKind kind,
+                                   const std::string& channel, Findings& findings) {
+  return CurveReader<D>(animate, kind, channel, findings).read();
+}
+
+template std::optional<Curve<1>> read_curve<1>(const tinyxml2::XMLElement&, ValueKind,
+                                               const std::string&, Findings&);
+template std::optional<Curve<3>> read_curve<3>(const tinyxml2::XMLElement&, ValueKind,
+                                               const std::string&, Findings&);
+
+}  // namespace pliant::xml

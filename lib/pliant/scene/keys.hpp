@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "pliant/scene/findings.hpp"
+#include "pliant/scene/key_text.hpp"
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant::xml {
+
+/// Reads the keys, the loop and the outside modes of an <animate> and compiles them. `channel` is
+/// its path, such as `poke.magnitude`, for notes. Nothing if there was a problem.
+template <int D>
+std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, ValueKind kind,
+                                   const std::string& channel, Findings& findings);
+
+}  // namespace pliant::xml

@@ -1,0 +1,358 @@
+#include "pliant/scene/markup.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/encoding.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::xml {
+namespace {
+
+// Far beyond any scene, and short of what would take gigabytes or hours: tinyxml2 keeps a hundred
+// bytes for each element and attribute, and calls itself for each level.
+constexpr std::size_t deepest = 50;
+constexpr std::size_t longest_name = 100;
+constexpr std::size_t most_attributes = 100;     // of one element
+constexpr std::size_t most_markup = 20'000'000;  // elements and attributes of the file
+
+constexpr std::string_view one_scene = "; a scene file holds one <scene>";
+
+bool begins_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+bool continues_name(char c) {
+  return begins_name(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
+}
+
+/// Whether `&…;` without its & and ; stands for a character.
+bool is_reference(std::string_view name) {
+  if (!name.starts_with('#'))
+    return name == "amp" || name == "lt" || name == "gt" || name == "quot" || name == "apos";
+  const bool is_hex = name.starts_with("#x");
+  const std::string_view digits = name.substr(is_hex ? 2 : 1);
+  std::uint32_t code_point = 0;
+  const auto [stop, failure] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), code_point, is_hex ? 16 : 10);
+  return failure == std::errc() && stop == digits.data() + digits.size() &&
+         is_xml_character(code_point);
+}
+
+/// Walks through a text once, tag by tag.
+class MarkupScanner {
+ public:
+  MarkupScanner(std::string_view text, Findings& findings) : text_(text), findings_(findings) {}
+
+  void scan();
+
+ private:
+  struct Open {
+    std::string_view name;
+    int line;
+  };
+
+  void scan_text();
+  void scan_comment();
+  void scan_cdata();
+  void scan_doctype();
+  void scan_instruction();
+  void scan_closing_tag();
+  void scan_opening_tag();
+  bool scan_attribute(const Open& element, std::vector<std::string_view>& names);
+  void check_references(std::string_view text, int line);
+  void finish();
+
+  bool at_end() const { return at_ == text_.size(); }
+  char next() const { return text_[at_]; }
+  bool stands(std::string_view ahead) const { return text_.substr(at_).starts_with(ahead); }
+  void skip_blanks();
+  std::string_view take(std::size_t count);  ///< goes on, counting lines
+  std::string_view take_name();
+  /// What is ahead of `end`, which is passed over; stops at the end of the file.
+  std::string_view take_until(std::string_view end, std::string_view what);
+
+  void add(int line, std::string_view message) {
+    findings_.add_problem(line, fmt::format("malformed XML: {}", message));
+  }
+  /// Adds a problem after which the rest cannot be understood.
+  void stop(int line, std::string_view message) {
+    if (is_stopped_) return;
+    add(line, message);
+    is_stopped_ = true;
+  }
+
+  std::string_view text_;
+  Findings& findings_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  std::vector<Open> open_;  // from the root inwards
+  bool has_root_ = false;
+  bool is_prologue_ = true;  // nothing but the declaration and other instructions so far
+  std::size_t markup_count_ = 0;
+  bool is_stopped_ = false;
+};
+
+std::string_view MarkupScanner::take(std::size_t count) {
+  const std::string_view taken = text_.substr(at_, count);
+  line_ += static_cast<int>(std::count(taken.begin(), taken.end(), '\n'));
+  at_ += taken.size();
+  return taken;
+}
+
+void MarkupScanner::skip_blanks() {
+  take(std::min(text_.find_first_not_of(blanks, at_), text_.size()) - at_);
+}
+
+std::string_view MarkupScanner::take_name() {
+  std::size_t end = at_;
+  if (end < text_.size() && begins_name(text_[end]))
+    while (end < text_.size() && continues_name(text_[end])) ++end;
+  if (end - at_ > longest_name)
+    stop(line_, fmt::format("the name {} has more than {} bytes",
+                            in_quotes(text_.substr(at_, end - at_)), longest_name));
+  return take(end - at_);
+}
+
+std::string_view MarkupScanner::take_until(std::string_view end, std::string_view what) {
+  const int line = line_;
+  const std::size_t found = text_.find(end, at_);
+  if (found == std::string_view::npos) {
+    take(text_.size() - at_);
+    stop(line_, fmt::format("the file ends inside {} that begins at line {}", what, line));
+    return {};
+  }
+  const std::string_view taken = take(found - at_);
+  take(end.size());
+  return taken;
+}
+
+void MarkupScanner::scan() {
+  while (!at_end() && !is_stopped_) {
+    if (next() != '<')
+      scan_text();
+    else if (stands("<!--"))
+      scan_comment();
+    else if (stands("<![CDATA["))
+      scan_cdata();
+    else if (stands("<!DOCTYPE"))
+      scan_doctype();
+    else if (stands("<?"))
+      scan_instruction();
+    else if (stands("</"))
+      scan_closing_tag();
+    else
+      scan_opening_tag();
+  }
+  if (!is_stopped_) finish();
+}
+
+void MarkupScanner::finish() {
+  if (!open_.empty())
+    return stop(line_, fmt::format("the file ends inside <{}> of line {}, which is not closed",
+                                   open_.back().name, open_.back().line));
+  if (trimmed(text_).empty())
+    return findings_.add_problem(1, fmt::format("the file is empty{}", one_scene));
+  if (!has_root_) stop(line_, fmt::format("the file holds no element{}", one_scene));
+}
+
+void MarkupScanner::scan_text() {
+  const int line = line_;
+  const std::string_view text = take(std::min(text_.find('<', at_), text_.size()) - at_);
+  check_references(text, line);
+  if (open_.empty() && !trimmed(text).empty()) {
+    const auto ahead = text.substr(0, text.find_first_not_of(blanks));
+    stop(line + static_cast<int>(std::count(ahead.begin(), ahead.end(), '\n')),
+         fmt::format("the text {} stands outside the <scene>", in_quotes(trimmed(text))));
+  }
+}
+
+void MarkupScanner::scan_comment() {
+  is_prologue_ = false;
+  take(4);
+  take_until("-->", "a comment");
+}
+
+void MarkupScanner::scan_cdata() {
+  if (open_.empty()) return stop(line_, "a CDATA section stands outside the <scene>");
+  take(9);
+  take_until("]]>", "a CDATA section");
+}
+
+void MarkupScanner::scan_doctype() {
+  const int line = line_;
+  is_prologue_ = false;
+  if (has_root_) return stop(line, "a DOCTYPE stands ahead of the <scene> only");
+  const std::string_view text = take_until(">", "a DOCTYPE");
+  if (text.find('[') != std::string_view::npos)
+    stop(line,
+         "a DOCTYPE with declarations of its own [...] is not supported: its entities "
+         "would not be read");
+}
+
+void MarkupScanner::scan_instruction() {
+  const int line = line_;
+  if (!is_prologue_)
+    return stop(line, "the XML declaration and processing instructions stand ahead of all else");
+  take(2);
+  const std::string_view name = take_name();
+  const std::string_view text = take_until("?>", "an XML declaration or processing instruction");
+  if (is_stopped_ || name != "xml") return;
+  const std::size_t encoding = text.find("encoding");
+  const std::size_t quote = text.find_first_of("\"'", encoding);
+  if (encoding == std::string_view::npos || quote == std::string_view::npos) return;
+  const std::string_view value =
+      text.substr(quote + 1, text.find(text[quote], quote + 1) - quote - 1);
+  std::string upper(value);
+  for (char& c : upper)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  if (upper != "UTF-8" && upper != "US-ASCII" && upper != "ASCII")
+    stop(line,
+         fmt::format("the encoding {} is not supported; save the file as UTF-8", in_quotes(value)));
+}
+
+void MarkupScanner::scan_closing_tag() {
+  const int line = line_;
+  take(2);
+  const std::string_view name = take_name();
+  skip_blanks();
+  if (at_end()) return stop(line_, "the file ends inside a closing tag");
+  if (name.empty() || next() != '>')
+    return stop(line, fmt::format("a closing tag is </name>, not {}",
+                                  in_quotes(fmt::format("</{}{}", name, next()))));
+  take(1);
+  if (open_.empty()) return stop(line, fmt::format("</{}> closes nothing that is open", name));
+  if (open_.back().name != name)
+    return stop(line, fmt::format("</{}> stands where <{}> of line {} has to be closed first", name,
+                                  open_.back().name, open_.back().line));
+  open_.pop_back();
+}
+
+void MarkupScanner::scan_opening_tag() {
+  const int line = line_;
+  is_prologue_ = false;
+  take(1);
+  const Open element{take_name(), line};
+  if (element.name.empty())
+    return stop(line, at_end() ? std::string("the file ends inside a tag")
+                               : fmt::format("{} begins no tag; a literal < is written &lt;",
+                                             in_quotes(fmt::format("<{}", next()))));
+  if (open_.empty() && has_root_)
+    return stop(line, fmt::format("<{}> stands outside the root element; a file holds one <scene>",
+                                  element.name));
+  has_root_ = true;
+  if (open_.size() >= deepest)
+    return stop(line, fmt::format("<{}> is nested deeper than {} elements", element.name, deepest));
+  ++markup_count_;
+
+  std::vector<std::string_view> names;
+  for (;;) {
+    const std::size_t before = at_;
+    skip_blanks();
+    if (at_end())
+      return stop(line_,
+                  fmt::format("the file ends inside the tag <{}> of line {}", element.name, line));
+    if (stands("/>")) {
+      take(2);
+      return;
+    }
+    if (next() == '>') {
+      take(1);
+      open_.push_back(element);
+      return;
+    }
+    if (at_ == before && !names.empty() && begins_name(next()))
+      return stop(line_, fmt::format("a blank is missing behind the value of {} in <{}>",
+                                     in_quotes(names.back()), element.name));
+    if (!scan_attribute(element, names)) return;
+  }
+}
+
+/// Reads one `name="value"`. Returns whether the rest of the tag can be read.
+bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_view>& names) {
+  const int line = line_;
+  const std::string_view name = take_name();
+  const auto refuse = [&](int where, std::string_view message) {
+    stop(where, message);
+    return false;
+  };
+  const auto ends = [&] {
+    return refuse(line_, fmt::format("the file ends inside the tag <{}> of line {}", element.name,
+                                     element.line));
+  };
+  if (name.empty())
+    return refuse(line, fmt::format("{} in <{}> is no attribute; a quote or > is missing before it",
+                                    in_quotes(text_.substr(at_, 1)), element.name));
+  skip_blanks();
+  if (at_end()) return ends();
+  if (next() != '=')
+    return refuse(line, fmt::format("the attribute {} of <{}> has no value; write {}=\"…\"",
+                                    in_quotes(name), element.name, name));
+  take(1);
+  skip_blanks();
+  if (at_end()) return ends();
+  const char quote = next();
+  if (quote != '"' && quote != '\'')
+    return refuse(line, fmt::format("the value of {} in <{}> stands in no quotes", in_quotes(name),
+                                    element.name));
+  take(1);
+  const int value_line = line_;
+  const std::size_t closing = text_.find_first_of(quote == '"' ? "\"<" : "'<", at_);
+  if (closing == std::string_view::npos) {
+    take(text_.size() - at_);
+    return refuse(line_, fmt::format("the file ends inside the value of {} in <{}> of line {}",
+                                     in_quotes(name), element.name, line));
+  }
+  if (text_[closing] == '<')
+    return refuse(line,
+                  fmt::format("the value of {} in <{}> has no closing quote ahead of the next "
+                              "<; a literal < is written &lt;",
+                              in_quotes(name), element.name));
+  check_references(take(closing - at_), value_line);
+  take(1);
+  if (std::find(names.begin(), names.end(), name) != names.end())
+    add(line, fmt::format("<{}> has the attribute {} twice", element.name, in_quotes(name)));
+  names.push_back(name);
+  if (names.size() > most_attributes)
+    return refuse(line,
+                  fmt::format("<{}> has more than {} attributes", element.name, most_attributes));
+  if (++markup_count_ > most_markup)
+    return refuse(line,
+                  fmt::format("the file has more than {} elements and attributes", most_markup));
+  return true;
+}
+
+void MarkupScanner::check_references(std::string_view text, int line) {
+  constexpr std::size_t longest = 12;  // of &#x10FFFF; with a few zeros
+  std::size_t counted = 0;
+  for (std::size_t at = text.find('&'); at != std::string_view::npos; at = text.find('&', at + 1)) {
+    line += static_cast<int>(std::count(text.begin() + counted, text.begin() + at, '\n'));
+    counted = at;
+    const std::size_t end = text.substr(at, longest).find(';');
+    if (end == std::string_view::npos)
+      add(line, "\"&\" begins no entity; a literal & is written &amp;");
+    else if (!is_reference(text.substr(at + 1, end - 1)))
+      add(line, fmt::format("{} is no known entity; a literal & is written &amp;",
+                            in_quotes(text.substr(at, end + 1))));
+  }
+}
+
+}  // namespace
+
+bool check_markup(std::string_view text, Findings& findings) {
+  const std::size_t problems_before = findings.problem_count();
+  if (const auto fault = find_encoding_fault(text)) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + fault->at, '\n');
+    findings.add_problem(static_cast<int>(line), fault->message);
+    return false;
+  }
+  MarkupScanner(text, findings).scan();
+  return findings.problem_count() == problems_before;
+}
+
+}  // namespace pliant::xml

@@ -1,0 +1,115 @@
+#include "pliant/scene/read.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/force.hpp"
+#include "pliant/scene/markup.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/rules.hpp"
+#include "pliant/scene/surface.hpp"
+#include "pliant/scene/tables.hpp"
+
+namespace pliant {
+
+using namespace xml;
+
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{256} << 20U;  // bytes
+
+/// The children of <scene> that have a name, right or wrong in all else.
+std::vector<Named> named_children(const tinyxml2::XMLElement& root) {
+  std::vector<Named> named;
+  for (const auto* child = root.FirstChildElement(); child; child = child->NextSiblingElement())
+    if (const auto* name = child->FindAttribute("name"); name && is_name(name->Value()))
+      named.push_back({child->Name(), name->Value(), name->GetLineNum()});
+  return named;
+}
+
+Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
+  Scene scene;
+  Table table = attributes_of(scene);
+  read_attributes(root, table, file.findings);
+  check_frames(scene, table, file.findings);
+  file.origin.lines[""] = root.GetLineNum();
+  record_lines("", table, file.origin);
+
+  const std::optional<double> fps =
+      find(table, "fps")->is_sound ? std::optional<double>(scene.fps) : std::nullopt;
+  using Element = tinyxml2::XMLElement;
+  const auto force = [&](auto shape) {
+    return [&, shape](const Element& child) {
+      scene.forces.push_back(read_force(child, shape, file));
+    };
+  };
+  const Child children[] = {
+      {"surface",
+       [&](const Element& child) { scene.surfaces.push_back(read_surface(child, fps, file)); }},
+      {"point", force(PointChannels{})},
+      {"radial", force(RadialChannels{})},
+      {"line", force(LineChannels{})},
+      {"uniform", {}},
+      {"vortex", {}},
+      {"noise", {}},
+      {"inertia", {}},
+      {"group", {}},
+  };
+  read_children(root, children, file.findings);
+
+  const std::vector<Named> named = named_children(root);
+  check_unique(named, file.findings);
+  check_targets(scene, file.targets, named, file.findings);
+  return scene;
+}
+
+/// Reads a document whose root is a <scene> in all likelihood.
+std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneFile& file) {
+  const tinyxml2::XMLElement& root = *document.RootElement();
+  constexpr std::string_view expected[] = {"scene"};
+  if (root.Name() != expected[0]) {
+    file.findings.add_problem(root.GetLineNum(), fmt::format("the root element is {}{}", tag(root),
+                                                             hint(root.Name(), expected)));
+    return std::nullopt;
+  }
+  return read_root(root, file);
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const std::filesystem::path& file) {
+  const Result<std::string> text = read_file(file, largest_file);
+  if (!text) return fail(text.error());
+  return parse_scene(*text, file.string(), file.parent_path());
+}
+
+Result<Scene> parse_scene(std::string_view text, const std::string& name,
+                          const std::filesystem::path& folder) {
+  SceneFile file{
+      .folder = folder, .origin = {.file = name, .lines = {}}, .findings = Findings(name)};
+  if (text.size() > largest_file)
+    return fail(ErrorCode::InvalidInput, fmt::format("is larger than {} MiB", largest_file >> 20U),
+                name);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
+  if (!check_markup(text, file.findings)) return fail(file.findings.to_error());
+
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    file.findings.add_problem(document.ErrorLineNum(),
+                              fmt::format("malformed XML: {}", document.ErrorName()));
+    return fail(file.findings.to_error());
+  }
+  std::optional<Scene> scene = read_document(document, file);
+  if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
+  scene->origin = std::move(file.origin);
+  scene->notes = file.findings.notes();
+  return std::move(*scene);
+}
+
+}  // namespace pliant

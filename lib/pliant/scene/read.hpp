@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// Reads a scene file, version 1 (docs/scene-format.md). Mesh paths are relative to its folder; the
+/// meshes themselves are read by `Simulation::make`.
+/// Errors: every problem of the file in one `Error`, in the order of lines: malformed XML, which
+/// ends the reading; else structure, words, names, numbers, ranges, keys (InvalidInput). A file
+/// that cannot be opened or read, or is larger than 256 MiB (Unreadable).
+Result<Scene> load_scene(const std::filesystem::path& file);
+
+/// Reads a scene from text. `name` stands for the file in messages; mesh paths are relative to
+/// `folder`. Errors as `load_scene`.
+Result<Scene> parse_scene(std::string_view text, const std::string& name,
+                          const std::filesystem::path& folder);
+
+}  // namespace pliant

@@ -1,0 +1,117 @@
+#include "pliant/scene/rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "pliant/plate/plate.hpp"
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/nearest.hpp"
+
+namespace pliant::xml {
+namespace {
+
+bool are_constant(std::span<Attribute> table, std::initializer_list<std::string_view> names) {
+  return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
+    const Attribute* row = find(table, name);
+    return row != nullptr && row->is_constant();
+  });
+}
+
+/// The line of the last of these attributes that is given, else `line`.
+int last_line(std::span<Attribute> table, std::initializer_list<std::string_view> names,
+              int line = 0) {
+  for (const std::string_view name : names) line = std::max(line, find(table, name)->line);
+  return line;
+}
+
+}  // namespace
+
+void check_frames(const Scene& scene, std::span<Attribute> table, Findings& findings) {
+  if (!are_constant(table, {"start", "end"})) return;
+  const std::int64_t frames = std::int64_t{scene.end} - scene.start + 1;
+  const int line = find(table, "end")->line;
+  if (frames < 1)
+    findings.add_problem(line, fmt::format("<scene> end=\"{}\": must not be before start=\"{}\"",
+                                           scene.end, scene.start));
+  else if (frames > max_frames)
+    findings.add_problem(line, fmt::format("<scene> has {} frames from {} to {}; at most {} are "
+                                           "allowed",
+                                           frames, scene.start, scene.end, max_frames));
+}
+
+void check_nodes(const GridSheet& grid, std::span<Attribute> table, int line, Findings& findings) {
+  if (!are_constant(table, {"columns", "rows"})) return;
+  const std::int64_t nodes = std::int64_t{grid.columns} * grid.rows;
+  if (nodes > max_sheet_vertices)
+    findings.add_problem(last_line(table, {"columns", "rows"}, line),
+                         fmt::format("<grid> has {} x {} = {} vertices; at most {} are allowed",
+                                     grid.columns, grid.rows, nodes, max_sheet_vertices));
+}
+
+void check_well_posed(const MaterialChannels& material, std::span<Attribute> table,
+                      Findings& findings) {
+  if (!are_constant(table, {"b", "c", "d"})) return;
+  const Stiffness stiffness{material.b.at(0)[0], material.c.at(0)[0], material.d.at(0)[0]};
+  if (stiffness.is_elliptic()) return;
+  findings.add_problem(
+      last_line(table, {"b", "c", "d"}),
+      fmt::format("<material> c = {}: must be greater than -2 sqrt(b d) = {}, "
+                  "with b = {} and d = {}; otherwise the plate has no stable shape",
+                  stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d));
+}
+
+void check_steps(const SolverSettings& solver, std::span<Attribute> table, double fps, int line,
+                 Findings& findings) {
+  if (!are_constant(table, {"dt"})) return;
+  const double dt = solver.dt.at(0)[0];
+  if (const auto checked = check_time_step(1 / fps, dt); !checked) {
+    findings.add_problem(last_line(table, {"dt"}, line), "<solver> dt " + checked.error().message);
+  }
+}
+
+void check_unique(std::span<const Named> named, Findings& findings) {
+  std::map<std::string_view, int> first_lines;
+  for (const Named& one : named) {
+    const auto [first, is_new] = first_lines.emplace(one.name, one.line);
+    if (!is_new)
+      findings.add_problem(one.line,
+                           fmt::format("<{}> name={}: the name is taken at line {}; surfaces, "
+                                       "forces and groups have names of their own",
+                                       one.element, in_quotes(one.name), first->second));
+  }
+}
+
+void check_targets(const Scene& scene, std::span<const Targets> targets,
+                   std::span<const Named> named, Findings& findings) {
+  std::map<std::string_view, std::string_view> elements;
+  for (const Named& one : named) elements.emplace(one.name, one.element);
+  std::vector<std::string_view> surfaces;
+  for (const Surface& surface : scene.surfaces) surfaces.push_back(surface.name);
+  const std::set<std::string_view> names(surfaces.begin(), surfaces.end());
+  if (names.contains("")) return;  // a surface without a readable name may be the one that is meant
+
+  for (const Targets& listed : targets)
+    for (const std::string& target : listed.surfaces) {
+      if (findings.is_full()) return;
+      if (names.contains(target)) continue;
+      const auto found = elements.find(target);
+      const bool is_named = found != elements.end();
+      const bool is_force = is_named && (found->second == "point" || found->second == "radial" ||
+                                         found->second == "line");
+      if (is_named && !is_force) continue;
+      findings.add_problem(
+          listed.line,
+          fmt::format("<{}> targets: {}{}", listed.element,
+                      is_force ? fmt::format("{} is a <{}>, not a surface", in_quotes(target),
+                                             found->second)
+                               : fmt::format("no surface is named {}", in_quotes(target)),
+                      hint(target, surfaces)));
+    }
+}
+
+}  // namespace pliant::xml

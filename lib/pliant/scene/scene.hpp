@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pliant/body/settings.hpp"
+#include "pliant/core/transform.hpp"
+#include "pliant/forces/falloff.hpp"
+#include "pliant/mesh/grid_sheet.hpp"
+#include "pliant/mesh/mesh.hpp"
+#include "pliant/timeline/channel.hpp"
+
+namespace pliant {
+
+/// A mesh in a file.
+struct MeshFile {
+  std::filesystem::path path;  ///< as it is to be opened
+  std::string object;          ///< the one to take when the file holds several; empty: the only one
+};
+
+/// Where a surface's rest shape comes from; a `Mesh` is one that a program made.
+using SurfaceShape = std::variant<GridSheet, MeshFile, Mesh>;
+
+/// p_world = translate + R S p, right-handed. SPEC 7.
+struct TransformChannels {
+  Channel<3> translate = Value<3>{0, 0, 0};  ///< [length]
+  Channel<3> rotate = Value<3>{0, 0, 0};     ///< [degrees]
+  Channel<3> scale = Value<3>{1, 1, 1};      ///< [1], no component 0
+  RotateOrder rotate_order = RotateOrder::Xyz;
+};
+
+/// The coefficients of the plate equation. SPEC 2; thesis 5.2.1.2.
+struct MaterialChannels {
+  Channel<1> density = 1;  ///< rho >= 0
+  Channel<1> damping = 1;  ///< eta >= 0
+  Channel<1> b = 1;        ///< along u, > 0
+  Channel<1> c = 2;        ///< mixed, > -2 sqrt(b d)
+  Channel<1> d = 1;        ///< along v, > 0
+};
+
+/// A boundary tangent: one number for all of x, y, z, or three. [length/uv]
+using TangentChannel = std::variant<Channel<1>, Channel<3>>;
+
+/// The slopes prescribed on the region's edges. SPEC 3; thesis 5.2.1.2, fig. 9.
+struct TangentChannels {
+  TangentChannel su0 = Channel<1>(0);  ///< d/du on the edge of smallest u
+  TangentChannel su1 = Channel<1>(0);  ///< d/du on the edge of largest u
+  TangentChannel sv0 = Channel<1>(0);  ///< d/dv on the edge of smallest v
+  TangentChannel sv1 = Channel<1>(0);  ///< d/dv on the edge of largest v
+};
+
+/// How a surface is solved.
+struct SolverSettings {
+  Channel<1> dt = 0.01;                 ///< [s], > 0
+  std::optional<int> start_frame = {};  ///< absent: the scene's start
+  Stepping stepping = Stepping::Exact;
+  Reference reference = Reference::Rest;
+  Measure measure = Measure::Current;
+};
+
+/// One elastic surface.
+struct Surface {
+  std::string name;     ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  bool enabled = true;  ///< false: written at rest, not solved
+  SurfaceShape shape = GridSheet{};
+  TransformChannels transform = {};
+  MaterialChannels material = {};
+  TangentChannels tangents = {};
+  SolverSettings solver = {};
+};
+
+/// The thesis's force: a sphere that pushes along one direction.
+struct PointChannels {
+  Channel<3> center = Value<3>{0, 0, 0};     ///< world [length]
+  Channel<3> direction = Value<3>{0, 1, 0};  ///< world; normalised
+};
+
+/// Pushes away from a centre; a negative magnitude attracts.
+struct RadialChannels {
+  Channel<3> center = Value<3>{0, 0, 0};  ///< world [length]
+};
+
+/// Acts around a segment, along `direction` or away from the segment when there is none.
+struct LineChannels {
+  Channel<3> from = Value<3>{0, 0, 0};  ///< world [length]
+  Channel<3> to = Value<3>{1, 0, 0};    ///< world [length]
+  std::optional<Channel<3>> direction = {};
+};
+
+/// One force of a scene.
+struct Force {
+  std::string name;                   ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  Switch enabled = true;              ///< a disabled force selects nothing
+  std::vector<std::string> targets;   ///< names of surfaces; empty: all
+  Channel<1> magnitude = 0;           ///< [length b/uv^4]
+  Channel<1> deformation_radius = 1;  ///< selects the region, world [length], >= 0
+  Channel<1> force_radius = 1;        ///< selects the nodes that are pushed, world [length], >= 0
+  Falloff falloff = Falloff::Constant;
+  std::variant<PointChannels, RadialChannels, LineChannels> shape = PointChannels{};
+};
+
+/// Where a scene's parts were written, for messages. Empty for a scene built in code.
+struct SceneOrigin {
+  std::string file;  ///< as the caller named it
+  /// Of `NAME` and of `NAME.attribute`, as far as written. The empty name is the scene itself:
+  /// ``, `.fps`, `.end`.
+  std::map<std::string, int, std::less<>> lines;
+
+  /// The line of a channel, else of its element, else 0.
+  int line_of(const std::string& name, const std::string& attribute = {}) const;
+};
+
+/// Something legal in a scene file that its author would want to know, such as a tangent that the
+/// curve rules shortened.
+struct SceneNote {
+  int line = 0;         ///< counted from 1
+  std::string message;  ///< one line, begins with the channel: `poke.magnitude: …`
+
+  friend bool operator==(const SceneNote&, const SceneNote&) = default;
+};
+
+/// Everything pliant is asked to compute: values only, made by `load_scene` or in code.
+struct Scene {
+  double fps = 24;  ///< [1/s], > 0
+  int start = 1;    ///< first frame
+  int end = 1;      ///< last frame, >= start, at most 10^6 frames
+  std::uint64_t seed = 0;
+  std::vector<Surface> surfaces;
+  std::vector<Force> forces;
+  SceneOrigin origin = {};
+  std::vector<SceneNote> notes = {};  ///< found while reading, in the order of lines
+};
+
+}  // namespace pliant

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pliant/scene/findings.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant::xml {
+
+/// The surfaces that a force names; checked once all surfaces are known.
+struct Targets {
+  std::string element;  ///< of the force: `point`
+  std::vector<std::string> surfaces;
+  int line = 0;
+};
+
+/// A scene file while it is read: where it is, and what has been found in it.
+struct SceneFile {
+  std::filesystem::path folder;  ///< that mesh paths are relative to
+  SceneOrigin origin;
+  Findings findings;
+  std::vector<Targets> targets = {};
+};
+
+}  // namespace pliant::xml

@@ -1,0 +1,157 @@
+#include "pliant/scene/surface.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/scene/animate.hpp"
+#include "pliant/scene/rules.hpp"
+#include "pliant/scene/tables.hpp"
+
+namespace pliant::xml {
+namespace {
+
+/// An element that stands at most once in a surface, with its table.
+struct Part {
+  Table table;
+  int line = 0;  ///< of the element, 0: absent
+};
+
+class SurfaceReader {
+ public:
+  SurfaceReader(const tinyxml2::XMLElement& element, SceneFile& file)
+      : element_(element),
+        file_(file),
+        own_(attributes_of(surface_)),
+        transform_{attributes_of(surface_.transform)},
+        material_{attributes_of(surface_.material)},
+        tangents_{attributes_of(surface_.tangents)},
+        solver_{attributes_of(surface_.solver)} {}
+
+  Surface read(std::optional<double> fps);
+
+ private:
+  void read_grid(const tinyxml2::XMLElement& element);
+  void read_mesh(const tinyxml2::XMLElement& element);
+  void read_part(const tinyxml2::XMLElement& element, Part& part);
+  void read_own_animate(const tinyxml2::XMLElement& element);
+  bool takes_shape(const tinyxml2::XMLElement& element);
+  std::string title() const;  ///< `<surface> "sheet"`
+
+  const tinyxml2::XMLElement& element_;
+  SceneFile& file_;
+  Surface surface_;  // the tables refer to it
+  Table own_;
+  Part transform_;
+  Part material_;
+  Part tangents_;
+  Part solver_;
+  int shape_line_ = 0;
+};
+
+Surface SurfaceReader::read(std::optional<double> fps) {
+  read_attributes(element_, own_, file_.findings);
+  using Element = tinyxml2::XMLElement;
+  const Child children[] = {
+      {"grid", [&](const Element& child) { read_grid(child); }},
+      {"mesh", [&](const Element& child) { read_mesh(child); }},
+      {"nurbs", {}},
+      {"subdivision", {}},
+      {"transform", [&](const Element& child) { read_part(child, transform_); }},
+      {"material", [&](const Element& child) { read_part(child, material_); }},
+      {"tangents", [&](const Element& child) { read_part(child, tangents_); }},
+      {"solver", [&](const Element& child) { read_part(child, solver_); }},
+      {"animate", [&](const Element& child) { read_own_animate(child); }},
+  };
+  const bool all_known = read_children(element_, children, file_.findings);
+  if (shape_line_ == 0 && all_known)
+    file_.findings.add_problem(
+        element_.GetLineNum(),
+        fmt::format("{} has no shape: one <grid> or <mesh> is required", title()));
+
+  check_well_posed(surface_.material, material_.table, file_.findings);
+  if (fps)
+    check_steps(surface_.solver, solver_.table, *fps,
+                solver_.line != 0 ? solver_.line : element_.GetLineNum(), file_.findings);
+
+  if (!surface_.name.empty()) {
+    file_.origin.lines[surface_.name] = element_.GetLineNum();
+    record_lines(surface_.name, own_, file_.origin);
+    for (const Part* part : {&transform_, &material_, &tangents_, &solver_})
+      record_lines(surface_.name, part->table, file_.origin);
+  }
+  return std::move(surface_);
+}
+
+std::string SurfaceReader::title() const {
+  return surface_.name.empty() ? tag(element_)
+                               : fmt::format("{} {}", tag(element_), in_quotes(surface_.name));
+}
+
+/// Whether this shape is the surface's; a second one is a problem, but is read for its own
+/// mistakes.
+bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
+  if (shape_line_ == 0) {
+    shape_line_ = element.GetLineNum();
+    return true;
+  }
+  file_.findings.add_problem(
+      element.GetLineNum(),
+      fmt::format("{} has two shapes; the first is at line {}", title(), shape_line_));
+  return false;
+}
+
+void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
+  const bool is_first = takes_shape(element);
+  GridSheet grid;
+  Table table = attributes_of(grid);
+  read_attributes(element, table, file_.findings);
+  read_children(element, {}, file_.findings);
+  check_nodes(grid, table, element.GetLineNum(), file_.findings);
+  if (!is_first) return;
+  surface_.shape = grid;
+  if (!surface_.name.empty()) record_lines(surface_.name, table, file_.origin);
+}
+
+void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
+  const bool is_first = takes_shape(element);
+  MeshFile mesh;
+  Table table = attributes_of(mesh, file_.folder);
+  read_attributes(element, table, file_.findings);
+  read_children(element, {}, file_.findings);
+  if (!is_first) return;
+  surface_.shape = mesh;
+  if (!surface_.name.empty()) record_lines(surface_.name, table, file_.origin);
+}
+
+void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
+  if (part.line != 0)
+    return file_.findings.add_problem(
+        element.GetLineNum(), fmt::format("{} has a second {}; the first is at line {}", title(),
+                                          tag(element), part.line));
+  part.line = element.GetLineNum();
+  read_attributes(element, part.table, file_.findings);
+  const Child children[] = {{"animate", [&](const tinyxml2::XMLElement& child) {
+                               read_animate(child, part.table, surface_.name, file_.findings);
+                             }}};
+  read_children(element, children, file_.findings);
+}
+
+/// Directly in the surface an <animate> may name a channel of any of its parts: the names differ.
+void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
+  std::vector<Attribute*> rows;
+  for (Table* table :
+       {&own_, &transform_.table, &material_.table, &tangents_.table, &solver_.table})
+    for (Attribute& row : *table) rows.push_back(&row);
+  read_animate(element, rows, surface_.name, file_.findings);
+}
+
+}  // namespace
+
+Surface read_surface(const tinyxml2::XMLElement& element, std::optional<double> fps,
+                     SceneFile& file) {
+  return SurfaceReader(element, file).read(fps);
+}
+
+}  // namespace pliant::xml

@@ -1,0 +1,157 @@
+#include "pliant/scene/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace pliant::xml {
+namespace {
+
+/// Words for how many numbers a vector has.
+std::string counted_numbers(std::size_t count) {
+  static constexpr std::string_view words[] = {"no number", "one number", "two numbers",
+                                               "three numbers", "four numbers"};
+  return count < std::size(words) ? std::string(words[count]) : fmt::format("{} numbers", count);
+}
+
+/// Why from_chars stopped at `rest` instead of the end of `word`.
+std::string trailing_complaint(std::string_view word, std::string_view rest,
+                               std::string_view what) {
+  const std::string_view number = word.substr(0, word.size() - rest.size());
+  if (rest.front() == ',')
+    return fmt::format("not {}: {} stands after {} (a decimal point is written \".\")", what,
+                       in_quotes(rest), number);
+  return fmt::format("not {}: {} stands after {}", what, in_quotes(rest), number);
+}
+
+/// Reads a whole word by from_chars; `what` names what it should have been.
+template <class T>
+Reading<T> parse_word(std::string_view word, std::string_view what) {
+  if (word.empty()) return tl::unexpected(fmt::format("is empty; {} is required", what));
+  if (word.front() == '+')
+    return tl::unexpected(fmt::format("not {}: write it without the plus sign", what));
+  T number = 0;
+  const char* const end = word.data() + word.size();
+  const auto [stop, failure] = std::from_chars(word.data(), end, number);
+  if (failure == std::errc::invalid_argument) return tl::unexpected(fmt::format("not {}", what));
+  if (stop != end)
+    return tl::unexpected(trailing_complaint(word, word.substr(stop - word.data()), what));
+  if (failure == std::errc::result_out_of_range)
+    return tl::unexpected(std::string("outside the range of the numbers that can be stored"));
+  return number;
+}
+
+/// Also refuses what from_chars takes: `nan`, `inf`.
+Reading<double> parse_finite(std::string_view word) {
+  Reading<double> number = parse_word<double>(word, "a number");
+  if (number && !std::isfinite(*number)) return tl::unexpected(std::string("not a finite number"));
+  return number;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = text.find_first_not_of(blanks, end);
+  }
+  return words;
+}
+
+Reading<double> parse_number(std::string_view text) {
+  double number = 0;
+  const Reading<void> read = parse_numbers(text, {&number, 1});
+  if (!read) return tl::unexpected(read.error());
+  return number;
+}
+
+Reading<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most) {
+  Reading<std::int64_t> number = parse_word<std::int64_t>(trimmed(text), "a whole number");
+  if (!number) return number;
+  if (*number < least) return tl::unexpected(fmt::format("must be at least {}", least));
+  if (*number > most) return tl::unexpected(fmt::format("must be at most {}", most));
+  return number;
+}
+
+Reading<std::uint64_t> parse_natural(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  if (word.starts_with('-')) return tl::unexpected(std::string("must be at least 0"));
+  return parse_word<std::uint64_t>(word, "a whole number");
+}
+
+Reading<void> parse_numbers(std::string_view text, std::span<double> numbers) {
+  const std::vector<std::string_view> words = words_of(text);
+  if (words.empty())
+    return tl::unexpected(fmt::format("is empty; {} {} required", counted_numbers(numbers.size()),
+                                      numbers.size() == 1 ? "is" : "are"));
+  std::vector<double> found;
+  for (const std::string_view word : words) {
+    const Reading<double> number = parse_finite(word);
+    if (!number)
+      return tl::unexpected(words.size() == 1
+                                ? number.error()
+                                : fmt::format("{}: {}", in_quotes(word), number.error()));
+    found.push_back(*number);
+  }
+  if (found.size() != numbers.size())
+    return tl::unexpected(fmt::format("{} {} required, not {}{}", counted_numbers(numbers.size()),
+                                      numbers.size() == 1 ? "is" : "are", found.size(),
+                                      numbers.size() > 1 ? " (separated by spaces)" : ""));
+  std::copy(found.begin(), found.end(), numbers.begin());
+  return {};
+}
+
+Reading<bool> parse_boolean(std::string_view text) {
+  const std::string_view word = trimmed(text);
+  if (word == "true") return true;
+  if (word == "false") return false;
+  return tl::unexpected(std::string("must be true or false"));
+}
+
+Reading<double> parse_rate(std::string_view text) {
+  const std::string_view whole = trimmed(text);
+  const std::size_t slash = whole.find('/');
+  Reading<double> over = parse_finite(whole.substr(0, slash));
+  if (!over) return over;
+  double rate = *over;
+  if (slash != std::string_view::npos) {
+    const Reading<double> under = parse_finite(whole.substr(slash + 1));
+    if (!under)
+      return tl::unexpected(fmt::format("after the \"/\" of the fraction: {}", under.error()));
+    if (*under <= 0) return tl::unexpected(std::string("a fraction needs a number > 0 below"));
+    rate /= *under;
+  }
+  if (!(rate > 0) || !std::isfinite(rate))
+    return tl::unexpected(std::string("must be greater than 0 and finite"));
+  return rate;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;  // bytes; what a line of a terminal has room for
+  std::string_view shown = text.substr(0, longest);
+  if (shown.size() < text.size())  // not within a character: continuation bytes are 10xxxxxx
+    while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U)
+      shown.remove_suffix(1);
+  std::string result = "\"";
+  for (const char c : shown) result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  if (shown.size() < text.size()) result += "…";
+  return result + '"';
+}
+
+std::string listed(std::span<const std::string_view> words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace pliant::xml

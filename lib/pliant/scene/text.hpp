@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+/// What reading a scene from XML is made of; programs need only read.hpp and format.hpp.
+namespace pliant::xml {
+
+/// What a text means, or why it means nothing: words that follow `<grid> width="1,5": `.
+template <class T>
+using Reading = tl::expected<T, std::string>;
+
+/// XML's blanks: space, tab, carriage return, line feed.
+inline constexpr std::string_view blanks = " \t\r\n";
+
+/// The text without the blanks around it.
+std::string_view trimmed(std::string_view text);
+
+/// The parts of a text between blanks.
+std::vector<std::string_view> words_of(std::string_view text);
+
+/// One finite number in the C locale, blanks around it allowed. The whole text must be the number:
+/// `1,5`, `1.5abc`, `0x10`, `+1`, `nan`, `inf` and `1e999` are complaints.
+Reading<double> parse_number(std::string_view text);
+
+/// A whole number in [least, most], written without point or exponent.
+Reading<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most);
+
+/// A whole number in [0, 2^64).
+Reading<std::uint64_t> parse_natural(std::string_view text);
+
+/// As many numbers as `numbers` holds, separated by blanks; on a complaint `numbers` is as before.
+Reading<void> parse_numbers(std::string_view text, std::span<double> numbers);
+
+/// `true` or `false`.
+Reading<bool> parse_boolean(std::string_view text);
+
+/// A number greater than 0, or a fraction of two such as `24000/1001`: the double quotient.
+Reading<double> parse_rate(std::string_view text);
+
+/// The text in double quotes, fit for one line of a message: control characters become blanks, and
+/// of a long text only the beginning is shown.
+std::string in_quotes(std::string_view text);
+
+/// `one, two, three`.
+std::string listed(std::span<const std::string_view> words);
+
+}  // namespace pliant::xml

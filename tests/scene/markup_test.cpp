@@ -1,0 +1,173 @@
+#include "pliant/scene/markup.hpp"
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "scene/scene_text.hpp"
+#include "support/catch.hpp"
+
+namespace pliant::testing {
+namespace {
+
+using namespace std::string_literals;
+
+TEST_CASE("each malformed document is told in one line", "[scene][markup]") {
+  const std::string root = "<scene start=\"1\" end=\"2\">\n";
+  check_each({
+      {"", 1, {"the file is empty", "<scene>"}},
+      {" \n\n ", 1, {"the file is empty"}},
+      {"\xEF\xBB\xBF", 1, {"the file is empty"}},
+      {"<?xml version=\"1.0\"?>\n", 2, {"holds no element", "<scene>"}},
+      {"<!-- only a comment -->", 1, {"holds no element"}},
+      {"just text", 1, {"the text \"just text\" stands outside"}},
+      {root + "</scene>\n\nmore", 4, {"the text \"more\" stands outside"}},
+      {root + "</scene>\n<scene/>", 3, {"<scene> stands outside the root element"}},
+      {root + "</scene>\n</scene>", 3, {"</scene> closes nothing"}},
+      {root + "<point name=\"a\">\n</scene>", 3, {"</scene>", "<point> of line 2", "closed first"}},
+      {root + "<point name=\"a\">\n", 3, {"ends inside <point> of line 2, which is not closed"}},
+      {root + "<point name=\"a\"\n", 3, {"ends inside the tag <point> of line 2"}},
+      {root + "<point name", 2, {"ends inside the tag <point>"}},
+      {root + "<point name=\"a", 2, {"ends inside the value of \"name\" in <point> of line 2"}},
+      {root + "<!-- never closed\n", 3, {"ends inside a comment that begins at line 2"}},
+      {root + "<![CDATA[ x ", 2, {"ends inside a CDATA section"}},
+      {root + "</scene", 2, {"ends inside a closing tag"}},
+      {root + "</scene x>", 2, {"a closing tag is </name>"}},
+      {root + "<point name=a/></scene>", 2, {"\"name\" in <point> stands in no quotes"}},
+      {root + "<point name/></scene>", 2, {"\"name\" of <point> has no value"}},
+      {root + "<point name=\"a\"center=\"0 0 0\"/></scene>",
+       2,
+       {"a blank is missing behind", "name"}},
+      {root + "<point name=\"a center=\"0 0 0\"/></scene>", 2, {"in <point> is no attribute"}},
+      {root + "<point name=\"a/>\n<point name=\"b\"/></scene>",
+       2,
+       {"\"name\" in <point> has no closing quote"}},
+      {root + "<point\n name=\"a\"\n name=\"b\"/></scene>",
+       4,
+       {"<point> has the attribute \"name\" twice"}},
+      {root + "<1/></scene>", 2, {"\"<1\" begins no tag"}},
+      {root + "< point/></scene>", 2, {"begins no tag"}},
+      {root + "<point name=\"&foo;\"/></scene>", 2, {"\"&foo;\" is no known entity"}},
+      {root + "<point name=\"a\n&foo;\"/></scene>", 3, {"\"&foo;\" is no known entity"}},
+      {root + "<point name=\"a & b\"/></scene>", 2, {"begins no entity", "&amp;"}},
+      {root + "<point name=\"&#0;\"/></scene>", 2, {"\"&#0;\" is no known entity"}},
+      {root + "<point name=\"&#xD800;\"/></scene>", 2, {"no known entity"}},
+      {root + "<point name=\"&#x110000;\"/></scene>", 2, {"no known entity"}},
+      {root + "&foo;</scene>", 2, {"\"&foo;\" is no known entity"}},
+      {"<!DOCTYPE scene [<!ENTITY x \"1\">]>\n" + root + "</scene>",
+       1,
+       {"DOCTYPE", "not supported"}},
+      {root + "<!DOCTYPE scene></scene>", 2, {"DOCTYPE stands ahead of the <scene>"}},
+      {root + "<!ENTITY x \"1\"></scene>", 2, {"begins no tag"}},
+      {root + "<?pi?></scene>", 2, {"stand ahead of all else"}},
+      {"<!-- x -->\n<?xml version=\"1.0\"?>" + root + "</scene>", 2, {"stand ahead of all else"}},
+      {"<?xml version=\"1.0\" encoding=\"latin1\"?>" + root + "</scene>",
+       1,
+       {"\"latin1\"", "UTF-8"}},
+      {root + "<point name=\"\xE4\"/></scene>", 2, {"the byte 0xE4 is no UTF-8"}},
+      {root + "\n<point name=\"a\0b\"/></scene>"s, 3, {"a NUL byte"}},
+      {root + "<point name=\"\x01\"/></scene>", 2, {"the control character 0x01"}},
+      {"\xFF\xFE<\0s\0"s, 1, {"UTF-16"}},
+      {"<scen/>", 1, {"the root element is <scen>", "did you mean \"scene\"?"}},
+      {"<html><body/></html>", 1, {"the root element is <html>", "allowed: scene"}},
+  });
+}
+
+TEST_CASE("what XML allows around a scene is read over", "[scene][markup]") {
+  const std::string scene = "<scene start=\"1\" end=\"2\"><!-- <x> & -- --></scene>";
+  for (const std::string& text :
+       {scene, "\xEF\xBB\xBF" + scene, "\n  " + scene + "\n<!-- end -->\n",
+        "<?xml version=\"1.0\" encoding=\"utf-8\" standalone=\"yes\"?>\r\n" + scene,
+        "<?xml version='1.0'?><?xml-stylesheet href=\"a.css\"?><!DOCTYPE scene SYSTEM \"s.dtd\">" +
+            scene,
+        "<scene\tstart = '1'\r\n end\n=\n\"2\"\n></scene\n>"s}) {
+    CAPTURE(text);
+    CHECK(problems_of(text).empty());
+  }
+}
+
+TEST_CASE("references to characters are read", "[scene][markup]") {
+  const Scene scene = scene_of(force_with("").replace(
+      force_with("").find("name=\"poke\""), 11, "name=\"&#112;&#x6f;ke\" magnitude='&#49;0'"));
+  CHECK(scene.forces.at(0).name == "poke");
+  CHECK(scene.forces.at(0).magnitude.at(1)[0] == 10);
+}
+
+TEST_CASE("all malformed values of a well-nested document are told in one run", "[scene][markup]") {
+  const std::vector<std::string> problems =
+      problems_of("<scene start=\"&a;\"\n end=\"&b;\"\n end=\"3\"/>");
+  REQUIRE(problems.size() == 3);
+  CHECK_THAT(problems[0], contains_text("1: malformed XML: \"&a;\""));
+  CHECK_THAT(problems[1], contains_text("2: malformed XML: \"&b;\""));
+  CHECK_THAT(problems[2], contains_text("3: malformed XML: <scene> has the attribute"));
+}
+
+TEST_CASE("sizes that would take gigabytes or hours are refused early", "[scene][markup]") {
+  const auto repeated = [](std::string_view text, int count) {
+    std::string result;
+    for (int k = 0; k < count; ++k) result += text;
+    return result;
+  };
+  CHECK(problems_of(repeated("<a>", 100'000)) ==
+        std::vector<std::string>{"1: malformed XML: <a> is nested deeper than 50 elements"});
+  std::string many = "<scene";
+  for (int k = 0; k < 100'000; ++k) many += " a" + std::to_string(k) + "=\"\"";
+  CHECK(problems_of(many + "/>") ==
+        std::vector<std::string>{"1: malformed XML: <scene> has more than 100 attributes"});
+  CHECK_THAT(problems_of("<" + std::string(1'000'000, 'a') + "/>").at(0),
+             contains_text("has more than 100 bytes"));
+  CHECK_THAT(problems_of("<scene start=\"" + std::string(1'000'000, '9') + "\" end=\"1\"/>").at(0),
+             contains_text("outside the range"));
+  CHECK(problems_of(scene_with(repeated("<a/>", 30'000))).size() < 20'000);
+}
+
+TEST_CASE("every truncated prefix of a scene is an error with a line", "[scene][markup]") {
+  REQUIRE(problems_of(rich_scene).empty());
+  const std::size_t whole = rich_scene.find_last_of('>') + 1;  // only a line feed follows
+  for (std::size_t length = 0; length < whole; ++length) {
+    const Result<Scene> scene = read(rich_scene.substr(0, length));
+    if (scene || scene.error().line < 1 || scene.error().message.empty()) {
+      CAPTURE(length);
+      FAIL("a prefix was read, or told without a line");
+    }
+  }
+}
+
+TEST_CASE("no mutation of a scene crashes the reader", "[scene][markup]") {
+  // A fixed seed: a crash can be repeated. Bytes are flipped, cut out, doubled, or replaced by
+  // those that mean something to XML and to numbers.
+  std::mt19937 random(20'050'613);
+  const auto below = [&](std::size_t count) { return random() % count; };
+  constexpr std::string_view telling = "<>\"'&;=/!?-.,+eE0123456789 \n\t#xX:ax\xC3\x00\xFF";
+  int sound = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::string text(rich_scene);
+    for (std::size_t count = 1 + below(4); count > 0; --count) {
+      const std::size_t at = below(text.size());
+      switch (below(5)) {
+        case 0:
+          text[at] = static_cast<char>(text[at] ^ (1 << below(8)));
+          break;
+        case 1:
+          text.erase(at, 1 + below(20));
+          break;
+        case 2:
+          text.insert(at, text.substr(below(text.size()), 1 + below(40)));
+          break;
+        case 3:
+          text[at] = telling[below(telling.size())];
+          break;
+        default:
+          text.insert(at, 1, telling[below(telling.size())]);
+          break;
+      }
+    }
+    const Result<Scene> scene = read(text);
+    sound += scene ? 1 : 0;
+    if (!scene && scene.error().message.empty()) FAIL(text);
+  }
+  CHECK(sound > 0);  // some only change a value or a comment
+}
+
+}  // namespace
+}  // namespace pliant::testing
