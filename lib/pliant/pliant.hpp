@@ -1,0 +1,8 @@
+#pragma once
+
+// Everything that a program needs to load or build a scene, simulate it and write it.
+
+#include "pliant/io/writer.hpp"
+#include "pliant/scene/read.hpp"
+#include "pliant/scene/scene.hpp"
+#include "pliant/simulation/simulation.hpp"

@@ -1,0 +1,167 @@
+#include "pliant/simulation/channel_check.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pliant/plate/plate.hpp"
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/simulation/sampling.hpp"
+
+namespace pliant {
+namespace {
+
+// What is wrong with a value, in words that follow "NAME.attribute at frame F"; none: nothing.
+using Complaint = std::optional<std::string>;
+
+template <int D>
+std::string spelled(const Value<D>& value) {
+  return fmt::format("{}", fmt::join(value, " "));
+}
+
+template <int D>
+bool is_finite(const Value<D>& value) {
+  for (const double component : value) {
+    if (!std::isfinite(component)) return false;
+  }
+  return true;
+}
+
+Complaint at_least_zero(const Value<1>& value) {
+  if (value[0] >= 0) return {};
+  return fmt::format("is {}, but must be at least 0", value[0]);
+}
+
+Complaint greater_than_zero(const Value<1>& value) {
+  if (value[0] > 0) return {};
+  return fmt::format("is {}, but must be greater than 0", value[0]);
+}
+
+template <int D>
+Complaint anything(const Value<D>&) {
+  return {};
+}
+
+class ChannelChecker {
+ public:
+  explicit ChannelChecker(const Scene& scene) : scene_(scene) {}
+
+  void check(const Surface& surface) {
+    check(surface.name, "translate", surface.transform.translate, anything<3>);
+    check(surface.name, "rotate", surface.transform.rotate, anything<3>);
+    check(surface.name, "scale", surface.transform.scale, [](const Value<3>& scale) -> Complaint {
+      const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
+                                                 {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
+      if (transform.is_invertible()) return {};
+      return fmt::format("is {}, but a scale of 0 in any direction cannot be undone",
+                         spelled<3>(scale));
+    });
+    const MaterialChannels& material = surface.material;
+    check(surface.name, "density", material.density, at_least_zero);
+    check(surface.name, "damping", material.damping, at_least_zero);
+    const bool b_is_good = check(surface.name, "b", material.b, greater_than_zero);
+    const bool d_is_good = check(surface.name, "d", material.d, greater_than_zero);
+    if (b_is_good && d_is_good) check_ellipticity(surface);
+    for (const auto& [attribute, tangent] :
+         {std::pair{"su0", &surface.tangents.su0}, std::pair{"su1", &surface.tangents.su1},
+          std::pair{"sv0", &surface.tangents.sv0}, std::pair{"sv1", &surface.tangents.sv1}}) {
+      std::visit(
+          [&, name = attribute](const auto& channel) { check_finite(surface.name, name, channel); },
+          *tangent);
+    }
+    check(surface.name, "dt", surface.solver.dt, [&](const Value<1>& dt) -> Complaint {
+      const auto checked = check_time_step(1 / scene_.fps, dt[0]);
+      return checked ? Complaint{} : checked.error().message;
+    });
+  }
+
+  void check(const Force& force) {
+    check(force.name, "magnitude", force.magnitude, anything<1>);
+    check(force.name, "deformationRadius", force.deformation_radius, at_least_zero);
+    check(force.name, "forceRadius", force.force_radius, at_least_zero);
+    std::visit([&](const auto& shape) { check_shape(force.name, shape); }, force.shape);
+  }
+
+  std::vector<Error> take_errors() { return std::move(errors_); }
+
+ private:
+  void check_shape(const std::string& name, const PointChannels& point) {
+    check(name, "center", point.center, anything<3>);
+    check(name, "direction", point.direction, anything<3>);
+  }
+  void check_shape(const std::string& name, const RadialChannels& radial) {
+    check(name, "center", radial.center, anything<3>);
+  }
+  void check_shape(const std::string& name, const LineChannels& line) {
+    check(name, "from", line.from, anything<3>);
+    check(name, "to", line.to, anything<3>);
+    if (line.direction) check(name, "direction", *line.direction, anything<3>);
+  }
+
+  template <int D>
+  void check_finite(const std::string& name, std::string_view attribute,
+                    const Channel<D>& channel) {
+    check(name, attribute, channel, anything<D>);
+  }
+
+  // Whether the channel keeps `rule` at every frame; a constant one is looked at once.
+  template <int D, class Rule>
+  bool check(const std::string& name, std::string_view attribute, const Channel<D>& channel,
+             const Rule& rule) {
+    const int last = channel.is_animated() ? scene_.end : scene_.start;
+    for (int frame = scene_.start; frame <= last; ++frame) {
+      const Value<D> value = channel.at(frame);
+      const Complaint complaint =
+          is_finite<D>(value) ? rule(value)
+                              : fmt::format("is {}, which is not finite", spelled<D>(value));
+      if (complaint) {
+        add_error(name, attribute, frame, *complaint);
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void check_ellipticity(const Surface& surface) {
+    const auto& [density, damping, b, c, d] = surface.material;
+    const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
+    const int last = is_animated ? scene_.end : scene_.start;
+    for (int frame = scene_.start; frame <= last; ++frame) {
+      const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
+      if (!stiffness.is_elliptic() || !std::isfinite(stiffness.c)) {
+        return add_error(surface.name, "c", frame,
+                         fmt::format("is {}, but must be greater than -2 sqrt(b d) = {} (b = {}, "
+                                     "d = {})",
+                                     stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d));
+      }
+    }
+  }
+
+  void add_error(const std::string& name, std::string_view attribute, int frame,
+                 const std::string& complaint) {
+    errors_.push_back(
+        {.code = ErrorCode::InvalidInput,
+         .message = fmt::format("{}.{} at frame {} {}", name, attribute, frame, complaint),
+         .file = scene_.origin.file,
+         .line = scene_.origin.line_of(name, std::string(attribute))});
+  }
+
+  const Scene& scene_;
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+std::vector<Error> check_channels(const Scene& scene) {
+  ChannelChecker checker(scene);
+  for (const Surface& surface : scene.surfaces) checker.check(surface);
+  for (const Force& force : scene.forces) checker.check(force);
+  return checker.take_errors();
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/transform.hpp"
+
+namespace pliant {
+
+/// One surface at one frame. A value of its own: it may outlive the simulation.
+class SurfaceFrame {
+ public:
+  SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
+               double peak_displacement);
+
+  const std::string& name() const { return name_; }
+
+  /// #vertices x 3 in the order of the mesh, world space [length]. Computed from the object-space
+  /// positions at each call.
+  Field positions() const { return to_world(transform_, object_positions_); }
+
+  /// #vertices x 3 in the order of the mesh, object space [length].
+  const Field& object_positions() const { return object_positions_; }
+
+  const Transform& transform() const { return transform_; }  ///< object to world, at this frame
+
+  /// The largest distance of a vertex from its rest position, in world space. [length]
+  double peak_displacement() const { return peak_displacement_; }
+
+ private:
+  std::string name_;
+  Field object_positions_;
+  Transform transform_;
+  double peak_displacement_;
+};
+
+/// All surfaces at one frame.
+class Frame {
+ public:
+  Frame(int number, std::vector<SurfaceFrame> surfaces);
+
+  int number() const { return number_; }
+
+  /// In the order of the scene.
+  std::span<const SurfaceFrame> surfaces() const { return surfaces_; }
+
+  /// nullptr when the scene has no surface of that name.
+  const SurfaceFrame* find_surface(std::string_view name) const;
+
+  /// Requires: the scene has a surface of that name.
+  const SurfaceFrame& surface(std::string_view name) const;
+
+ private:
+  int number_;
+  std::vector<SurfaceFrame> surfaces_;
+};
+
+}  // namespace pliant

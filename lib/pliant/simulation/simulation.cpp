@@ -1,0 +1,179 @@
+#include "pliant/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/check.hpp"
+#include "pliant/simulation/channel_check.hpp"
+#include "pliant/simulation/sampling.hpp"
+
+namespace pliant {
+namespace {
+
+// The largest distance of a node from rest once its displacement is taken to world space.
+double peak_displacement(const Transform& transform, const Field& positions, const Field& rest) {
+  return vectors_to_world(transform, positions - rest).rowwise().norm().maxCoeff();
+}
+
+tl::unexpected<Error> fail_with_all(std::vector<Error> errors) {
+  Error first = std::move(errors.front());
+  for (std::size_t k = 1; k < errors.size(); ++k) {
+    Error& error = errors[k];
+    std::vector<Error> others = std::exchange(error.others, {});
+    first.others.push_back(std::move(error));
+    std::move(others.begin(), others.end(), std::back_inserter(first.others));
+  }
+  return fail(std::move(first));
+}
+
+}  // namespace
+
+Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
+  std::vector<Error> errors = check_scene(scene);
+  if (scene.surfaces.empty()) {
+    errors.push_back({.code = ErrorCode::InvalidInput,
+                      .message = "the scene has no surface to simulate",
+                      .file = scene.origin.file});
+  }
+  if (!errors.empty()) return fail_with_all(std::move(errors));
+
+  errors = check_channels(scene);
+  std::vector<RestShape> rest_shapes;
+  for (const Surface& surface : scene.surfaces) {
+    auto rest_shape = make_rest_shape(surface, scene.origin);
+    if (rest_shape) {
+      rest_shapes.push_back(*std::move(rest_shape));
+    } else {
+      errors.push_back(std::move(rest_shape.error()));
+    }
+  }
+  if (!errors.empty()) return fail_with_all(std::move(errors));
+  return Simulation(std::move(scene), std::move(rest_shapes), options);
+}
+
+Simulation::Simulation(Scene scene, std::vector<RestShape> rest_shapes,
+                       const SimulationOptions& options)
+    : scene_(std::move(scene)),
+      rest_shapes_(std::move(rest_shapes)),
+      frame_(scene_.start),
+      checkpoints_(scene_.start, options.checkpoint_bytes),
+      should_stop_(options.should_stop) {
+  for (std::size_t k = 0; k < rest_shapes_.size(); ++k) {
+    const SolverSettings& solver = scene_.surfaces[k].solver;
+    const GridMapping& mapping = rest_shapes_[k].mapping;
+    bodies_.emplace_back(mapping.grid, mapping.rest,
+                         BodySettings{solver.stepping, solver.reference, solver.measure});
+  }
+}
+
+// The error with the surface and the frame that it befell.
+Error Simulation::located(Error error, const Surface& surface, int frame) const {
+  error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
+  error.file = scene_.origin.file;
+  error.line = scene_.origin.line_of(surface.name);
+  return error;
+}
+
+Result<Frame> Simulation::at(int frame) {
+  if (frame < scene_.start || frame > scene_.end) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("frame {} is outside the scene's frames {} to {}", frame, scene_.start,
+                            scene_.end));
+  }
+  if (auto reached = go_to(frame); !reached) {
+    // Some bodies may have stepped and others not: start over, so that the next call is sound.
+    rewind(scene_.start);
+    return fail(reached.error());
+  }
+  std::vector<SurfaceFrame> surfaces;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Surface& surface = scene_.surfaces[k];
+    const Field& nodes = bodies_[k].state().positions;
+    const Transform transform = sample_transform(surface.transform, frame);
+    if (!to_world(transform, nodes).allFinite()) {
+      return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
+                          surface, frame));
+    }
+    surfaces.emplace_back(surface.name, rest_shapes_[k].mapping.to_vertices(nodes), transform,
+                          peak_displacement(transform, nodes, bodies_[k].rest()));
+  }
+  return Frame(frame, std::move(surfaces));
+}
+
+Result<void> Simulation::go_to(int frame) {
+  const auto* checkpoint = checkpoints_.latest_until(frame);
+  if (frame < frame_ || (checkpoint && checkpoint->first > frame_)) {
+    rewind(checkpoint ? checkpoint->first : scene_.start);
+  }
+  while (frame_ < frame) {
+    if (auto stepped = step(); !stepped) return stepped;
+    ++frame_;
+    if (checkpoints_.is_due(frame_)) checkpoints_.offer(frame_, states());
+  }
+  return {};
+}
+
+// From the output of frame_ to that of the next frame.
+Result<void> Simulation::step() {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Surface& surface = scene_.surfaces[k];
+    if (!surface.enabled || frame_ < start_frame(surface)) continue;
+    const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
+    const auto report = bodies_[k].step(inputs.body, should_stop_);
+    if (!report) return fail(located(report.error(), surface, frame_));
+    warn(surface, inputs.force_indices, *report);
+  }
+  return {};
+}
+
+void Simulation::warn(const Surface& surface, std::span<const std::size_t> forces,
+                      const StepReport& report) {
+  for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
+    if (!report.is_solved && !report.selection.forces[k].deformation.is_empty()) {
+      warnings_.add(Warning::Kind::RegionTooSmall, surface.name, scene_.forces[forces[k]].name,
+                    frame_);
+    }
+  }
+  for (const int k : report.lost) {
+    warnings_.add(Warning::Kind::LostNodes, surface.name, scene_.forces[forces[k]].name, frame_);
+  }
+}
+
+// Back to a kept frame, or to the start, where all is at rest.
+void Simulation::rewind(int frame) {
+  const auto* checkpoint = checkpoints_.latest_until(frame);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (checkpoint) {
+      bodies_[k].restore(checkpoint->second[k]);
+    } else {
+      bodies_[k].reset();
+    }
+  }
+  frame_ = checkpoint ? checkpoint->first : scene_.start;
+}
+
+std::vector<BodyState> Simulation::states() const {
+  std::vector<BodyState> states;
+  for (const Body& body : bodies_) states.push_back(body.state());
+  return states;
+}
+
+int Simulation::start_frame(const Surface& surface) const {
+  return std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
+}
+
+SolverCounts Simulation::solver_counts() const {
+  SolverCounts total;
+  for (const Body& body : bodies_) {
+    const SolverCounts counts = body.solver_counts();
+    total.analyses += counts.analyses;
+    total.factorizations += counts.factorizations;
+    total.solves += counts.solves;
+  }
+  return total;
+}
+
+}  // namespace pliant

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <ranges>
+#include <span>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "pliant/scene/scene.hpp"
+#include "pliant/simulation/checkpoints.hpp"
+#include "pliant/simulation/frame.hpp"
+#include "pliant/simulation/rest_shape.hpp"
+#include "pliant/simulation/warnings.hpp"
+
+namespace pliant {
+
+/// How a simulation runs; none of it changes a result.
+struct SimulationOptions {
+  /// Memory for kept states, so that going back in time is quick. [bytes]
+  std::size_t checkpoint_bytes = std::size_t{256} << 20;
+
+  /// Asked ahead of every time step; `at` then fails with Interrupted.
+  StopRequest should_stop = {};
+};
+
+/// All bodies of a scene over its frames. Thesis 5.3; SPEC 6.
+///
+/// The output of a frame is the mesh before that frame's solve: at the start frame it is the rest
+/// mesh, and the first motion shows one frame later. Frames are computed in order from the scene's
+/// first one, whatever order they are asked for in, so they have the same bits in any order.
+/// Two simulations may run in two threads; one may not.
+class Simulation {
+ public:
+  /// Reads the meshes, finds the grids and checks every channel at every frame of the range.
+  /// Errors: every problem found, with file and line where the scene came from a file.
+  static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
+
+  /// The scene's frames, start to end.
+  std::ranges::iota_view<int, int> frames() const { return {scene_.start, scene_.end + 1}; }
+
+  /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
+  /// ahead. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed, OutOfMemory,
+  /// Interrupted, naming surface and frame.
+  Result<Frame> at(int frame);
+
+  const Scene& scene() const { return scene_; }
+
+  /// The surfaces at rest, in the order of the scene.
+  std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
+
+  /// What the frames computed so far gave reason to warn about.
+  std::vector<Warning> warnings() const { return warnings_.warnings(); }
+
+  /// What the surfaces' solvers had to do so far, added up.
+  SolverCounts solver_counts() const;
+
+ private:
+  Simulation(Scene scene, std::vector<RestShape> rest_shapes, const SimulationOptions& options);
+
+  Result<void> go_to(int frame);
+  Result<void> step();
+  void warn(const Surface& surface, std::span<const std::size_t> forces, const StepReport& report);
+  void rewind(int frame);
+  std::vector<BodyState> states() const;
+  Error located(Error error, const Surface& surface, int frame) const;
+  int start_frame(const Surface& surface) const;
+
+  Scene scene_;
+  std::vector<RestShape> rest_shapes_;
+  std::vector<Body> bodies_;  // one a surface
+  int frame_;                 // whose output the bodies hold
+  Checkpoints checkpoints_;
+  StopRequest should_stop_;
+  WarningLog warnings_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,244 @@
+#include "pliant/simulation/simulation.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "support/catch.hpp"
+#include "support/scenes.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+double peak(const std::vector<Field>& frames) {
+  double largest = 0;
+  for (const Field& frame : frames) {
+    largest = std::max(largest, (frame - frames.front()).rowwise().norm().maxCoeff());
+  }
+  return largest;
+}
+
+// A force that travels, swells and rests for some frames.
+Force travelling() {
+  Force force = poke("travelling", {});
+  force.shape = PointChannels{.center = vector_curve({{1, {-4, 0, -2}}, {12, {4, 0, 3}}}),
+                              .direction = Value<3>{0.3, 1, 0}};
+  force.magnitude = curve({{1, 0}, {6, 8000}, {12, 2000}});
+  force.enabled = switch_at({{1, true}, {7, false}, {9, true}});
+  return force;
+}
+
+}  // namespace
+
+TEST_CASE("the first motion shows one frame after the start", "[simulation]") {
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  s.surfaces[0].solver.start_frame = GENERATE(-5, 1, 4, 11);
+  const int start = std::max(1, *s.surfaces[0].solver.start_frame);
+  const auto frames = baked(s, "s");
+  for (int frame = 1; frame <= 12; ++frame) {
+    CHECK((frames[frame - 1] == frames[0]) == (frame <= start));
+  }
+}
+
+TEST_CASE("a surface whose start lies beyond the end stays at rest", "[simulation]") {
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  s.surfaces[0].solver.start_frame = 13;
+  CHECK(peak(baked(s, "s")) == 0);
+}
+
+TEST_CASE("a disabled surface stays at rest", "[simulation]") {
+  Scene s = scene({sheet("s"), sheet("off")}, {poke("f", {0, 0, 0})});
+  s.surfaces[1].enabled = false;
+  CHECK(peak(baked(s, "s")) > 0);
+  CHECK(peak(baked(s, "off")) == 0);
+}
+
+TEST_CASE("the same scene gives the same bits twice", "[simulation]") {
+  const Scene s = scene({sheet("s")}, {travelling(), poke("f", {1, 0, 2})});
+  CHECK(baked(s, "s") == baked(s, "s"));
+}
+
+TEST_CASE("frames have the same bits in any order, whatever is kept", "[simulation]") {
+  const Scene s = scene({sheet("s"), sheet("t", 9)}, {travelling()});
+  const auto expected_s = baked(s, "s"), expected_t = baked(s, "t");
+  const std::size_t kept = GENERATE(std::size_t{0}, std::size_t{60'000}, std::size_t{1} << 28);
+  auto simulation = Simulation::make(s, {.checkpoint_bytes = kept}).value();
+  for (const int frame : {12, 1, 7, 6, 8, 12, 2, 2, 11, 1, 12}) {
+    const Frame at = simulation.at(frame).value();
+    CHECK(at.number() == frame);
+    CHECK(at.surface("s").positions() == expected_s[frame - 1]);
+    CHECK(at.surface("t").positions() == expected_t[frame - 1]);
+  }
+}
+
+TEST_CASE("going back to the start resets, also what velocity was carried", "[simulation]") {
+  const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  auto simulation = Simulation::make(s, {.checkpoint_bytes = 0}).value();
+  const Field second = simulation.at(2)->surface("s").positions();
+  REQUIRE(simulation.at(12));
+  CHECK(simulation.at(1)->surface("s").peak_displacement() == 0);
+  CHECK(simulation.at(2)->surface("s").positions() == second);
+}
+
+TEST_CASE("surfaces of one scene do not know each other", "[simulation]") {
+  Surface second = sheet("b", 9);
+  second.material.density = 10.0;
+  second.solver.stepping = Stepping::Overshoot;
+  const std::vector<Force> forces{travelling()};
+  const Scene both = scene({sheet("a"), second}, forces);
+  CHECK(baked(both, "a") == baked(scene({sheet("a")}, forces), "a"));
+  CHECK(baked(both, "b") == baked(scene({second}, forces), "b"));
+}
+
+TEST_CASE("a rigid motion of surface and forces together moves the result", "[simulation]") {
+  const Value<3> rotate{30, -50, 110}, translate{5, -7, 2};
+  const Transform move = make_transform({5, -7, 2}, {30, -50, 110}, {1, 1, 1}, RotateOrder::Xyz);
+  const auto moved = [&](const Value<3>& p) {
+    const Vector3d q = move.linear * Vector3d(p[0], p[1], p[2]) + move.translation;
+    return Value<3>{q[0], q[1], q[2]};
+  };
+  const auto turned = [&](const Value<3>& d) {
+    const Vector3d q = move.linear * Vector3d(d[0], d[1], d[2]);
+    return Value<3>{q[0], q[1], q[2]};
+  };
+  Force point = poke("point", {-2.3, 0, 1.2});
+  std::get<PointChannels>(point.shape).direction = Value<3>{0.4, 1, -0.2};
+  Force radial = poke("radial", {});
+  radial.shape = RadialChannels{.center = Value<3>{2.2, -1.3, -0.4}};
+  radial.falloff = Falloff::Smooth;
+  Force line = poke("line", {}, -3000);
+  line.shape = LineChannels{.from = Value<3>{-4.1, 0.3, -3}, .to = Value<3>{3.3, 0.2, -2.1}};
+  Scene original = scene({sheet("s")}, {point, radial, line});
+
+  Scene image = original;
+  image.surfaces[0].transform.translate = translate;
+  image.surfaces[0].transform.rotate = rotate;
+  std::get<PointChannels>(image.forces[0].shape) = {.center = moved({-2.3, 0, 1.2}),
+                                                    .direction = turned({0.4, 1, -0.2})};
+  std::get<RadialChannels>(image.forces[1].shape) = {.center = moved({2.2, -1.3, -0.4})};
+  std::get<LineChannels>(image.forces[2].shape) = {.from = moved({-4.1, 0.3, -3}),
+                                                   .to = moved({3.3, 0.2, -2.1})};
+  const auto frames = baked(original, "s"), image_frames = baked(image, "s");
+  REQUIRE(peak(frames) > 0.1);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    CHECK(largest_difference(to_world(move, frames[k]), image_frames[k]) < 1e-11 * peak(frames));
+  }
+}
+
+TEST_CASE("a scaled surface feels world-space radii and forces", "[simulation]") {
+  // Twice as large in space, half as large in the transform: the same world.
+  Surface small = sheet("s");
+  std::get<GridSheet>(small.shape).width = std::get<GridSheet>(small.shape).depth = 6;
+  small.transform.scale = Value<3>{2, 2, 2};
+  const std::vector<Force> forces{travelling()};
+  const auto frames = baked(scene({sheet("s")}, forces), "s");
+  const auto scaled = baked(scene({small}, forces), "s");
+  for (std::size_t k = 0; k < frames.size(); ++k) CHECK(frames[k] == scaled[k]);  // powers of 2
+}
+
+TEST_CASE("output is the mesh under the frame's own transform", "[simulation]") {
+  Scene s = scene({sheet("s")}, {});
+  s.surfaces[0].transform.translate = vector_curve({{1, {0, 0, 0}}, {12, {0, 11, 0}}});
+  auto simulation = Simulation::make(s).value();
+  const Field rest = simulation.at(1)->surface("s").positions();
+  const Field last = simulation.at(12)->surface("s").positions();
+  CHECK((last - rest).col(1).isConstant(11));
+  CHECK(simulation.at(12)->surface("s").object_positions() == rest);
+  CHECK(simulation.at(12)->surface("s").peak_displacement() == 0);
+}
+
+TEST_CASE("a frame rate may be a fraction", "[simulation]") {
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  const auto at_24 = baked(s, "s");
+  s.fps = 24000.0 / 1001;
+  const auto at_23_976 = baked(s, "s");
+  CHECK(at_24[1] != at_23_976[1]);
+  CHECK(largest_difference(at_24[11], at_23_976[11]) < 0.01 * peak(at_24));
+}
+
+TEST_CASE("a small scene in other units is the same scene", "[simulation]") {
+  // Lengths times k: positions, radii and magnitudes scale, (u,v) do not.
+  const double k = GENERATE(1e-3, 1e3);
+  Scene s = scene({sheet("s")}, {poke("f", {0.3, 0, 0.2})});
+  const auto frames = baked(s, "s");
+  auto& shape = std::get<GridSheet>(s.surfaces[0].shape);
+  shape.width *= k;
+  shape.depth *= k;
+  s.forces[0] = poke("f", {0.3 * k, 0, 0.2 * k}, 5000 * k);
+  s.forces[0].deformation_radius = 4.5 * k;
+  s.forces[0].force_radius = 2.5 * k;
+  const auto scaled = baked(s, "s");
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    CHECK(largest_difference(k * frames[f], scaled[f]) < 1e-12 * k * peak(frames));
+  }
+}
+
+TEST_CASE("every problem of a scene is found before the first solve", "[simulation]") {
+  Scene s = scene({sheet("s"), sheet("t")}, {poke("f", {0, 0, 0})});
+  s.surfaces[0].material.density = -1.0;
+  s.surfaces[1].shape = Mesh{};
+  s.forces[0].force_radius = -1.0;
+  const auto simulation = Simulation::make(s);
+  REQUIRE_FALSE(simulation);
+  CHECK(to_lines(simulation.error()).size() == 3);
+  CHECK_THAT(Simulation::make(scene({}, {})).error().message, Contains("no surface"));
+}
+
+TEST_CASE("a frame outside the range and a run that fails are errors, and the next call is sound",
+          "[simulation]") {
+  Scene s = scene({sheet("a"), sheet("s")}, {poke("f", {0, 0, 0})});
+  auto& material = s.surfaces[1].material;
+  material.density = material.damping = 0.0;
+  material.b = material.d = 1e-170;  // so soft that the load below is beyond double
+  material.c = 2e-170;
+  s.forces[0].targets = {"s"};
+  CurveKeys<1> jump;
+  jump.keys = {{.frame = 1, .value = {1e-169}}, {.frame = 8, .value = {1e149}}};
+  jump.keys[0].next.kind = Interpolation::Kind::Step;
+  s.forces[0].magnitude = Curve<1>::make(jump).value();
+  auto simulation = Simulation::make(s).value();
+  CHECK_THAT(simulation.at(0).error().message,
+             Contains("frame 0 is outside the scene's frames 1 to 12"));
+  CHECK(simulation.at(13).error().code == ErrorCode::InvalidInput);
+  const Field fifth = simulation.at(5)->surface("s").positions();
+  const auto failed = simulation.at(12);
+  REQUIRE_FALSE(failed);
+  CHECK(failed.error().code == ErrorCode::NotFinite);
+  CHECK_THAT(failed.error().message, Contains("surface \"s\", frame 8"));
+  CHECK(simulation.at(5)->surface("s").positions() == fifth);
+}
+
+TEST_CASE("a position beyond double in world space is an error", "[simulation]") {
+  Scene s = scene({sheet("s")}, {});
+  std::get<GridSheet>(s.surfaces[0].shape).width = 1e200;
+  s.surfaces[0].transform.scale = Value<3>{1e200, 1, 1};
+  const auto frame = Simulation::make(s).value().at(1);
+  REQUIRE_FALSE(frame);
+  CHECK_THAT(frame.error().message, Contains("surface \"s\", frame 1: a position in world space"));
+}
+
+TEST_CASE("a run stops when asked to, and goes on afterwards", "[simulation]") {
+  const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  int steps_left = 12;  // 5 a frame
+  auto simulation = Simulation::make(s, {.should_stop = [&] { return steps_left-- == 0; }}).value();
+  const auto stopped = simulation.at(12);
+  REQUIRE_FALSE(stopped);
+  CHECK(stopped.error().code == ErrorCode::Interrupted);
+  CHECK_THAT(stopped.error().message, Contains("frame 3"));
+  CHECK(simulation.at(12)->surface("s").positions() == baked(s, "s").back());
+}
+
+TEST_CASE("a region too small to solve is told once, with its frames", "[simulation]") {
+  Scene s = scene({sheet("s")}, {poke("tiny", {0, 0, 0})});
+  s.forces[0].deformation_radius = 0.5;
+  s.forces[0].enabled = switch_at({{1, true}, {4, false}, {6, true}});
+  auto simulation = Simulation::make(s).value();
+  REQUIRE(simulation.at(12));
+  REQUIRE(simulation.at(1));
+  REQUIRE(simulation.at(12));
+  REQUIRE(simulation.warnings().size() == 1);
+  CHECK_THAT(simulation.warnings()[0].message(),
+             Contains("\"tiny\"") && Contains("frames 1-3, 6-11"));
+}

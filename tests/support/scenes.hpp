@@ -1,0 +1,81 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pliant/pliant.hpp"
+
+namespace pliant::testing {
+
+/// A curve from keys with automatic tangents.
+inline Curve<1> curve(std::vector<std::pair<double, double>> keys) {
+  CurveKeys<1> curve_keys;
+  for (const auto& [frame, value] : keys) {
+    curve_keys.keys.push_back({.frame = frame, .value = {value}});
+  }
+  return Curve<1>::make(std::move(curve_keys)).value();
+}
+
+inline Curve<3> vector_curve(std::vector<std::pair<double, Value<3>>> keys) {
+  CurveKeys<3> curve_keys;
+  for (const auto& [frame, value] : keys)
+    curve_keys.keys.push_back({.frame = frame, .value = value});
+  return Curve<3>::make(std::move(curve_keys)).value();
+}
+
+/// A switch that steps between the given states.
+inline Switch switch_at(std::vector<std::pair<double, bool>> keys) {
+  CurveKeys<1> curve_keys;
+  for (const auto& [frame, state] : keys) {
+    Key<1> key{.frame = frame, .value = {state ? 1.0 : 0.0}};
+    key.next.kind = Interpolation::Kind::Step;
+    curve_keys.keys.push_back(key);
+  }
+  return Switch(Curve<1>::make(std::move(curve_keys)).value());
+}
+
+/// A square sheet with a spacing of 1 between vertices.
+inline Surface sheet(const std::string& name, int count = 13) {
+  Surface surface;
+  surface.name = name;
+  surface.shape =
+      GridSheet{.columns = count, .rows = count, .width = count - 1.0, .depth = count - 1.0};
+  surface.material.density = 40.0;
+  surface.material.damping = 20.0;
+  return surface;
+}
+
+inline Force poke(const std::string& name, const Value<3>& center, double magnitude = 5000) {
+  Force force;
+  force.name = name;
+  force.magnitude = magnitude;
+  force.deformation_radius = 4.5;
+  force.force_radius = 2.5;
+  force.shape = PointChannels{.center = center};
+  return force;
+}
+
+/// Frames 1 to `end` of the given surfaces and forces.
+inline Scene scene(std::vector<Surface> surfaces, std::vector<Force> forces, int end = 12) {
+  Scene scene;
+  scene.end = end;
+  scene.surfaces = std::move(surfaces);
+  scene.forces = std::move(forces);
+  return scene;
+}
+
+/// World positions of one surface at every frame, in order.
+inline std::vector<Field> baked(const Scene& scene, const std::string& surface) {
+  auto simulation = Simulation::make(scene).value();
+  std::vector<Field> frames;
+  for (const int frame : simulation.frames()) {
+    frames.push_back(simulation.at(frame).value().surface(surface).positions());
+  }
+  return frames;
+}
+
+inline double largest_difference(const Field& a, const Field& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+}  // namespace pliant::testing
