@@ -1,0 +1,191 @@
+#include "bake.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+#include "pliant/pliant.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+namespace {
+
+struct FrameRange {
+  int first = 0;
+  int last = 0;
+};
+
+// A:B within the scene's frames; all of them when nothing is asked for.
+Result<FrameRange> parse_frames(const std::string& text, const Scene& scene) {
+  if (text.empty()) return FrameRange{scene.start, scene.end};
+  const std::size_t colon = text.find(':');
+  const auto first = to_integer(text.substr(0, colon));
+  const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
+  if (!first || !last || *first > *last) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--frames {}: not of the form A:B with A <= B", text));
+  }
+  if (*first < scene.start || *last > scene.end) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--frames {}: the scene has the frames {} to {}", text, scene.start,
+                            scene.end));
+  }
+  return FrameRange{*first, *last};
+}
+
+// One surface on its way to a file.
+struct Output {
+  std::size_t surface = 0;  // index in the scene
+  std::unique_ptr<AnimationWriter> writer;
+};
+
+// OUT, or OUT-NAME.ext when there are several surfaces.
+std::filesystem::path file_for(const std::filesystem::path& out, const std::string& surface,
+                               bool is_single) {
+  if (is_single) return out;
+  const std::string name =
+      fmt::format("{}-{}{}", out.stem().string(), surface, out.extension().string());
+  return out.parent_path() / name;
+}
+
+Result<std::vector<Output>> open_outputs(const Simulation& simulation, const BakeOptions& options,
+                                         const FrameRange& frames) {
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < simulation.rest_shapes().size(); ++k) {
+    names.push_back(simulation.rest_shapes()[k].name);
+    if (options.surface.empty() || options.surface == names.back()) chosen.push_back(k);
+  }
+  if (chosen.empty()) {
+    return fail(ErrorCode::InvalidInput, fmt::format("--surface {}: the scene has the surfaces {}",
+                                                     options.surface, fmt::join(names, ", ")));
+  }
+  std::vector<Output> outputs;
+  for (const std::size_t k : chosen) {
+    const RestShape& shape = simulation.rest_shapes()[k];
+    auto writer = make_writer({.file = file_for(options.out, shape.name, chosen.size() == 1),
+                               .mesh = &shape.mesh,
+                               .first_frame = frames.first,
+                               .last_frame = frames.last});
+    if (!writer) return fail(writer.error());
+    outputs.push_back({k, *std::move(writer)});
+  }
+  return outputs;
+}
+
+// What the one-line summary tells.
+struct Summary {
+  int frame_count = 0;
+  long vertex_count = 0;
+  double peak_displacement = 0;
+};
+
+// One frame of every chosen surface.
+Result<void> write_frame(const Frame& frame, const BakeOptions& options,
+                         const std::vector<Output>& outputs, Summary& summary) {
+  ++summary.frame_count;
+  for (const Output& output : outputs) {
+    const SurfaceFrame& surface = frame.surfaces()[output.surface];
+    summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
+    auto written = options.space == "world"
+                       ? output.writer->write(frame.number(), surface.positions())
+                       : output.writer->write(frame.number(), surface.object_positions());
+    if (!written) return written;
+  }
+  return {};
+}
+
+Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
+                             const FrameRange& frames, std::vector<Output>& outputs) {
+  Summary summary;
+  for (const Output& output : outputs) {
+    summary.vertex_count += simulation.rest_shapes()[output.surface].mesh.vertex_count();
+  }
+  Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
+  for (int number = simulation.scene().start; number <= frames.last; ++number) {
+    if (was_interrupted())
+      return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
+    const auto frame = simulation.at(number);  // from the start, whatever frames are written
+    if (!frame) return fail(frame.error());
+    if (number >= frames.first) {
+      if (auto written = write_frame(*frame, options, outputs, summary); !written) {
+        return fail(written.error());
+      }
+    }
+    progress.advance();
+  }
+  for (const Output& output : outputs) {
+    if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
+  }
+  return summary;
+}
+
+// What the author should know although the run went on, each with the line of its force.
+void print_warnings(const Simulation& simulation) {
+  const SceneOrigin& origin = simulation.scene().origin;
+  for (const Warning& warning : simulation.warnings()) {
+    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, origin.line_of(warning.force),
+                              warning.message()));
+  }
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app, BakeOptions& options) {
+  CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
+  bake->add_option("SCENE", options.scene, "Scene file")->required();
+  bake->add_option(
+          "-o,--out", options.out,
+          fmt::format("Output; its ending picks the format: {}. Several surfaces go to "
+                      "OUT-NAME; a sequence has the frame in each name (OUT.0001.obj; a run "
+                      "of # sets the digits)",
+                      fmt::join(known_endings(), ", ")))
+      ->required();
+  bake->add_option("--frames", options.frames, "A:B, or one frame; all of them by default");
+  bake->add_option("--surface", options.surface, "Write this surface only");
+  bake->add_option("--space", options.space, "Space of the positions")
+      ->check(CLI::IsMember({"world", "object"}))
+      ->capture_default_str();
+  bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
+}
+
+int run_bake(const BakeOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  catch_interrupts();
+
+  if (auto known = check_ending(options.out); !known) return report(known.error());
+  auto scene = load_scene(options.scene);
+  if (!scene) return report(scene.error());
+  const auto frames = parse_frames(options.frames, *scene);
+  if (!frames) return report(frames.error());
+
+  // Frames are asked for once and in order: nothing needs to be kept for going back.
+  auto simulation =
+      Simulation::make(*std::move(scene), {.checkpoint_bytes = 0, .should_stop = &was_interrupted});
+  if (!simulation) return report(simulation.error());
+  auto outputs = open_outputs(*simulation, options, *frames);
+  if (!outputs) return report(outputs.error());
+
+  const auto summary = write_frames(*simulation, options, *frames, *outputs);
+  print_warnings(*simulation);
+  if (!summary) return report(summary.error());
+
+  if (!options.is_quiet) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}\n",
+                              options.out, summary->frame_count, summary->vertex_count,
+                              elapsed.count(), summary->peak_displacement));
+  }
+  return exit_done;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace pliant::cli {
+
+/// What `pliant bake` was asked to do.
+struct BakeOptions {
+  std::string scene;
+  std::string out;
+  std::string frames;   ///< A:B; empty: all
+  std::string surface;  ///< empty: all
+  std::string space = "world";
+  bool is_quiet = false;
+};
+
+void add_bake(CLI::App& app, BakeOptions& options);
+
+/// Simulates a scene and writes the animation. Gives the exit code.
+int run_bake(const BakeOptions& options);
+
+}  // namespace pliant::cli

@@ -1,0 +1,49 @@
+// The command `pliant`. It uses the public API only; each subcommand has its own file.
+
+#include <exception>
+#include <new>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "bake.hpp"
+#include "report.hpp"
+
+namespace {
+
+using namespace pliant::cli;
+
+int run(int count, char* arguments[]) {
+  CLI::App app(
+      "pliant: elastic animation of surfaces under several forces.\n"
+      "Scenes are XML; docs/scene-format.md describes them.",
+      "pliant");
+  app.set_version_flag("--version", "pliant " PLIANT_VERSION);
+  app.require_subcommand(1);
+
+  BakeOptions bake;
+  add_bake(app, bake);
+
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    print(stderr, fmt::format("pliant: error: {}; pliant --help tells more\n", error.what()));
+    return exit_usage;
+  }
+  return run_bake(bake);
+}
+
+}  // namespace
+
+int main(int count, char* arguments[]) {
+  try {
+    return run(count, arguments);
+  } catch (const std::bad_alloc&) {
+    print(stderr, "pliant: error: out of memory\n");
+  } catch (const std::exception& error) {  // of a library; ours returns its errors
+    print(stderr, fmt::format("pliant: error: {}\n", error.what()));
+  }
+  return exit_failed;
+}

@@ -1,0 +1,40 @@
+#include "progress.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "report.hpp"
+
+namespace pliant::cli {
+
+Progress::Progress(int frame_count, bool is_quiet)
+    : frame_count_(frame_count), is_shown_(!is_quiet && isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (is_shown_) print(stderr, "\r\033[K");
+}
+
+void Progress::advance() {
+  ++done_;
+  const auto now = Clock::now();
+  if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < frame_count_)) return;
+  drawn_ = now;
+  draw(now);
+}
+
+void Progress::draw(Clock::time_point now) const {
+  constexpr int width = 30;
+  const int filled = static_cast<int>(static_cast<long>(width) * done_ / frame_count_);
+  const double elapsed = std::chrono::duration<double>(now - begin_).count();
+  const double rate = elapsed > 0 ? done_ / elapsed : 0;
+  const double seconds_left = rate > 0 ? std::min((frame_count_ - done_) / rate, 359'999.0) : 0;
+  const auto left = static_cast<int>(seconds_left + 0.5);
+  print(stderr, fmt::format("\r\033[K[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left",
+                            std::string(filled, '#'), std::string(width - filled, '.'), done_,
+                            frame_count_, rate, left / 60, left % 60));
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+
+namespace pliant::cli {
+
+/// A bar on stderr with frames, frames per second and time left; nothing where stderr is no
+/// terminal.
+class Progress {
+ public:
+  Progress(int frame_count, bool is_quiet);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();  ///< wipes the bar
+
+  /// One frame more is done. Draws at most ten times a second.
+  void advance();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void draw(Clock::time_point now) const;
+
+  int frame_count_;
+  int done_ = 0;
+  bool is_shown_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point drawn_ = {};
+};
+
+}  // namespace pliant::cli
