@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Compares an engine's bakes with the reference implementation, scene by scene.
+
+    python3 compare.py PLIANT_BINARY SCENE... [--keep DIR]
+
+Each scene is baked with `PLIANT_BINARY bake SCENE -o OUT.npy` and with the reference; the largest
+difference must stay within 1e-8 of the surface's peak displacement over the run. A surface that
+never moves must be exactly at rest. Exit 1 when a scene fails.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from engine import bake
+from reference import output_path
+from scene import Scene
+
+# The condition number of the 13-point operator grows like nodes^2 (about 1e5 at 25x25), so two
+# good solvers differ by about 1e-11 of the peak; 1e-8 leaves room for a hundred frames of it.
+TOLERANCE = 1e-8
+
+
+def tolerance_of(reference):
+    """Absolute tolerance of a surface: 0, but for the rounding of a transform, when it rests.
+
+    A transform may follow a weighted curve, whose time is solved to a few ulps: the error in value is
+    that times the slope, which grows without bound near a vertical tangent.
+    """
+    peak = reference.peak()
+    if reference.object.ptp(axis=0).any():
+        return TOLERANCE * peak
+    if reference.is_always_identity:
+        return 0.0
+    return 1e-10 * float(np.abs(reference.world).max() + 1.0)
+
+
+def first_difference(scene, name, reference, positions, tolerance):
+    """A message that names the first frame and the vertex that differ; None when all agree."""
+    expected = reference.world
+    if positions.dtype != np.float64 or positions.shape != expected.shape:
+        return (f"surface {name}: {positions.dtype} {positions.shape}, "
+                f"expected float64 {expected.shape}")
+    difference = np.abs(positions - expected)
+    wrong = ~(difference <= tolerance)
+    if not wrong.any():
+        return None
+    frame, vertex = np.argwhere(wrong.any(axis=-1))[0]
+    i, j = next(s for s in scene.surfaces if s.name == name).grid.node[vertex]
+    worst = np.nanmax(difference)
+    return (f"surface {name}: first difference at frame {scene.start + frame}, vertex {vertex} "
+            f"(node {i},{j}): {positions[frame, vertex]} instead of {expected[frame, vertex]} "
+            f"(rest {reference.world_rest[frame, vertex]}); "
+            f"{int(wrong.any(axis=-1)[frame].sum())} vertices differ there, "
+            f"tolerance {tolerance:.3g}, worst of the run {worst:.3g}")
+
+
+def compare_scene(binary, path, folder):
+    """Bakes and compares one scene; returns whether it agrees."""
+    scene = Scene(path)
+    began = time.monotonic()
+    references = bake(scene)
+    took = time.monotonic() - began
+    out = os.path.join(folder, os.path.splitext(os.path.basename(path))[0] + ".npy")
+    run = subprocess.run([binary, "bake", path, "-o", out, "--quiet"], capture_output=True,
+                         text=True, check=False)
+    if run.returncode != 0:
+        print(f"FAIL {path}: exit {run.returncode} from bake: {run.stderr.strip()}")
+        return False
+    agrees = True
+    for name, reference in references.items():
+        file = output_path(out, scene, name)
+        if not os.path.exists(file):
+            print(f"FAIL {path}: {os.path.basename(file)} was not written")
+            agrees = False
+            continue
+        positions = np.load(file)
+        tolerance, peak = tolerance_of(reference), reference.peak()
+        message = first_difference(scene, name, reference, positions, tolerance)
+        if message is None:
+            worst = float(np.abs(positions - reference.world).max())
+            relative = worst / peak if tolerance > 0 and peak > 0 else worst
+            print(f"ok   {path}: {name}: difference {relative:.2e} of peak {peak:.6g}, "
+                  f"{len(positions)} frames, reference {took:.1f} s")
+        else:
+            print(f"FAIL {path}: {message}")
+            agrees = False
+    return agrees
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("binary", help="the pliant executable")
+    parser.add_argument("scenes", nargs="+", metavar="SCENE")
+    parser.add_argument("--keep", metavar="DIR", help="keep the engine's bakes here")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = arguments.keep or temporary
+        os.makedirs(folder, exist_ok=True)
+        failed = [path for path in arguments.scenes
+                  if not compare_scene(arguments.binary, path, folder)]
+    count = len(arguments.scenes)
+    print(f"{count - len(failed)} of {count} scenes agree")
+    for path in failed:
+        print(f"  failed: {path}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

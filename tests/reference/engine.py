@@ -1,0 +1,465 @@
+"""The reference engine: SPEC 2-7, evaluated literally and slowly.
+
+Nothing is shared with the library under test; a sparse matrix is assembled from the 13-point
+stencil for every solve and factored anew.
+"""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+
+from curves import Curve
+
+# The 13-point stencil (SPEC 4), as {(di, dj): weight} of each of the three derivatives.
+FOURTH = {-2: 1, -1: -4, 0: 6, 1: -4, 2: 1}
+SECOND = {-1: 1, 0: -2, 1: 1}
+
+
+def stencil(hu, hv, b, c, d):
+    """Weights of b w_uuuu + c w_uuvv + d w_vvvv at a node (SPEC 2 and 4)."""
+    weights = {}
+    for offset, weight in FOURTH.items():
+        weights[offset, 0] = weights.get((offset, 0), 0.0) + b * weight / hu**4
+        weights[0, offset] = weights.get((0, offset), 0.0) + d * weight / hv**4
+    for di, weight_u in SECOND.items():
+        for dj, weight_v in SECOND.items():
+            mixed = c * weight_u * weight_v / (hu**2 * hv**2)
+            weights[di, dj] = weights.get((di, dj), 0.0) + mixed
+    return weights
+
+
+def apply_operator(w, hu, hv, b, c, d, tangents):
+    """L w at the interior nodes of `w` (M x N x 3), ghost nodes included (SPEC 4)."""
+    m, n = w.shape[:2]
+    extended = np.full((m + 2, n + 2, 3), np.nan)
+    extended[1:-1, 1:-1] = w
+    extended[0, 1:-1] = w[1] - 2 * hu * tangents["su0"]
+    extended[-1, 1:-1] = w[m - 2] + 2 * hu * tangents["su1"]
+    extended[1:-1, 0] = w[:, 1] - 2 * hv * tangents["sv0"]
+    extended[1:-1, -1] = w[:, n - 2] + 2 * hv * tangents["sv1"]
+    result = np.zeros((m - 2, n - 2, 3))
+    for (di, dj), weight in stencil(hu, hv, b, c, d).items():
+        result += weight * extended[2 + di:m + di, 2 + dj:n + dj]
+    return result
+
+
+def assemble(m, n, hu, hv, b, c, d):
+    """The matrix of L on the interior nodes, row (i-1)*(n-2) + (j-1), ghosts eliminated (SPEC 4).
+
+    What rim values and tangents add is the operator applied to a field with a zero interior.
+    """
+    i, j = np.meshgrid(np.arange(1, m - 1), np.arange(1, n - 1), indexing="ij")
+    rows, columns, values = [], [], []
+    for (di, dj), weight in stencil(hu, hv, b, c, d).items():
+        # A ghost is its mirror node plus a known tangent term.
+        near_i, near_j = np.abs(i + di), np.abs(j + dj)
+        near_i = np.where(near_i > m - 1, 2 * (m - 1) - near_i, near_i)
+        near_j = np.where(near_j > n - 1, 2 * (n - 1) - near_j, near_j)
+        is_unknown = (0 < near_i) & (near_i < m - 1) & (0 < near_j) & (near_j < n - 1)
+        rows.append(((i - 1) * (n - 2) + j - 1)[is_unknown])
+        columns.append(((near_i - 1) * (n - 2) + near_j - 1)[is_unknown])
+        values.append(np.full(int(is_unknown.sum()), weight))
+    size = (m - 2) * (n - 2)
+    triplets = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    return scipy.sparse.csc_matrix(triplets, shape=(size, size))
+
+
+def check_coefficients(density, damping, b, c, d, dt):
+    """Well-posedness (SPEC 2)."""
+    assert b > 0 and d > 0 and c > -2 * math.sqrt(b * d), f"b={b} c={c} d={d}"
+    assert density >= 0 and damping >= 0, f"density={density} damping={damping}"
+    assert dt > 0, f"dt={dt}"
+
+
+def steps_of_frame(frame_length, dt, stepping):
+    """Number and length of the steps in a frame (SPEC 4, "Steps per frame")."""
+    if stepping == "exact":
+        count = max(1, math.ceil(frame_length / dt - 1e-9))
+        return count, frame_length / count
+    count, time = 0, 0.0
+    while True:
+        time += dt
+        count += 1
+        if time >= frame_length:
+            return count, dt
+
+
+def advance(w, velocity, load, hu, hv, material, tangents, count, dt):
+    """`count` backward Euler steps of the region `w` (M x N x 3); returns w and velocity.
+
+    SPEC 3: the rim is fixed; SPEC 4: everything but w and its velocity is held over the steps.
+    """
+    m, n = w.shape[:2]
+    density, damping = material["density"], material["damping"]
+    coefficients = material["b"], material["c"], material["d"]
+    operator = assemble(m, n, hu, hv, *coefficients)
+    rim_only = w.copy()
+    rim_only[1:-1, 1:-1] = 0.0
+    known = apply_operator(rim_only, hu, hv, *coefficients, tangents).reshape(-1, 3)
+    mass = density / dt**2 + damping / dt
+    matrix = (operator + mass * scipy.sparse.identity(operator.shape[0])).tocsc()
+    factor = scipy.sparse.linalg.splu(matrix)
+    unknown = w[1:-1, 1:-1].reshape(-1, 3)
+    speed = velocity[1:-1, 1:-1].reshape(-1, 3)
+    force = load[1:-1, 1:-1].reshape(-1, 3)
+    for _ in range(count):
+        right = force - known + mass * unknown + density / dt * speed
+        solution = factor.solve(right)
+        solution += factor.solve(right - matrix @ solution)  # iterative refinement
+        speed = (solution - unknown) / dt
+        unknown = solution
+    w, velocity = w.copy(), np.zeros_like(w)
+    w[1:-1, 1:-1] = unknown.reshape(m - 2, n - 2, 3)
+    velocity[1:-1, 1:-1] = speed.reshape(m - 2, n - 2, 3)
+    return w, velocity
+
+
+# Transforms (SPEC 7, "Transforms")
+
+
+def rotation(order, degrees):
+    """R; the first letter of `order` is applied first."""
+    result = np.eye(3)
+    for letter in order:
+        axis = "xyz".index(letter)
+        angle = math.radians(degrees[axis])
+        turn = np.eye(3)
+        p, q = (axis + 1) % 3, (axis + 2) % 3
+        turn[p, p] = turn[q, q] = math.cos(angle)
+        turn[q, p], turn[p, q] = math.sin(angle), -math.sin(angle)
+        result = turn @ result
+    return result
+
+
+class Transform:
+    """p_world = T + R S p."""
+
+    def __init__(self, surface, frame):
+        self.translate = surface.channels["translate"](frame)
+        degrees, scale = surface.channels["rotate"](frame), surface.channels["scale"](frame)
+        assert (scale != 0).all()
+        self.is_identity = not (self.translate.any() or degrees.any() or (scale != 1).any())
+        self.linear = rotation(surface.rotate_order, degrees) @ np.diag(scale)
+
+    def to_world(self, points):
+        if self.is_identity:
+            return points.copy()
+        return self.translate + points @ self.linear.T
+
+    def vector_to_object(self, vectors):
+        """Vectors enter object space through the inverse linear part."""
+        if self.is_identity:
+            return vectors.copy()
+        return np.linalg.solve(self.linear, vectors.reshape(-1, 3).T).T.reshape(vectors.shape)
+
+
+# Forces (SPEC 7)
+
+
+def closest_point(force, frame, points):
+    """The point of the force's centre or segment that is closest to each of `points`."""
+    if force.kind in ("point", "radial"):
+        return np.broadcast_to(force.sample("center", frame), points.shape)
+    start, end = force.sample("from", frame), force.sample("to", frame)
+    along = end - start
+    squared_length = along @ along
+    if squared_length == 0:
+        return np.broadcast_to(start, points.shape)
+    t = np.clip((points - start) @ along / squared_length, 0.0, 1.0)
+    return start + t[..., None] * along
+
+
+def distances(force, frame, points):
+    """delta at each point."""
+    offset = points - closest_point(force, frame, points)
+    return np.sqrt((offset**2).sum(axis=-1))
+
+
+def falloff(force, s):
+    """falloff(s), s = delta/forceRadius."""
+    if isinstance(force.falloff, Curve):
+        return np.array([force.falloff(at)[0] for at in s.ravel()]).reshape(s.shape)
+    if force.falloff == "constant":
+        return np.ones_like(s)
+    if force.falloff == "linear":
+        return np.maximum(0.0, 1 - s)
+    if force.falloff == "smooth":
+        x = np.clip(1 - s, 0.0, 1.0)
+        return x * x * (3 - 2 * x)
+    return np.exp(-4.5 * s * s)
+
+
+def has_direction(force):
+    return force.kind == "point" or (force.kind == "line" and force.channels["direction"])
+
+
+def unit_directions(force, frame, points):
+    """n at each point, in world space; a direction of length 0 gives no force."""
+    if has_direction(force):
+        direction = force.sample("direction", frame)
+        length = math.sqrt(direction @ direction)
+        unit = direction / length if length > 0 else np.zeros(3)
+        return np.broadcast_to(unit, points.shape)
+    outward = points - closest_point(force, frame, points)
+    distance = distances(force, frame, points)
+    safe = np.where(distance > 0, distance, 1.0)
+    return np.where((distance > 0)[..., None], outward / safe[..., None], 0.0)
+
+
+def bounding_box(selected):
+    """(i0, i1, j0, j1), ends included, of the selected nodes; None when there are none (SPEC 5)."""
+    if not selected.any():
+        return None
+    i, j = np.nonzero(selected)
+    return i.min(), i.max(), j.min(), j.max()
+
+
+# Diagnostics: whether another implementation may be expected to agree
+
+
+def is_exact_distance(force, frame, point, radius):
+    """Whether delta - radius is decided in exact arithmetic: every intermediate is a double."""
+    def is_double(value):
+        return Fraction(float(value)) == value
+
+    def exact(vector):
+        return [Fraction(float(x)) for x in vector]
+
+    p, used = exact(point), []
+    if force.kind in ("point", "radial"):
+        nearest = exact(force.sample("center", frame))
+    else:
+        start, end = exact(force.sample("from", frame)), exact(force.sample("to", frame))
+        along = [q - r for q, r in zip(end, start)]
+        to_point = [q - r for q, r in zip(p, start)]
+        products = [q * r for q, r in zip(to_point, along)] + [q * q for q in along]
+        numerator, squared_length = sum(products[:3]), sum(products[3:])
+        used += along + to_point + products + [numerator, squared_length]
+        t = min(Fraction(1), max(Fraction(0), numerator / squared_length)) if squared_length else 0
+        moved = [t * q for q in along]
+        nearest = [q + r for q, r in zip(start, moved)]
+        used += [t] + moved + nearest
+    offset = [q - r for q, r in zip(p, nearest)]
+    squares = [q * q for q in offset]
+    used += offset + squares + [sum(squares[:2]), sum(squares[1:]), squares[0] + squares[2],
+                                sum(squares)]
+    root = Fraction(math.sqrt(float(sum(squares))))
+    return all(is_double(x) for x in used) and (root * root == sum(squares) or root != radius)
+
+
+class Diagnostics:
+    """What a scene exercised, and how near it came to decisions that rounding could turn."""
+
+    def __init__(self):
+        self.solves = []  # (frame, surface, (i0, i1, j0, j1))
+        self.skips = []  # (frame, surface, reason)
+        self.exact_ties = 0
+        self.tie_margin = math.inf  # smallest |delta - radius| / radius that is not an exact tie
+        self.direction_margin = math.inf  # smallest non-exact delta where delta gives a direction
+        self.time_margin = math.inf  # smallest |t - T| / T of an overshoot step
+
+    def note_distances(self, force, frame, points, is_untouched, radii):
+        """`is_untouched`: nodes at their rest position under an identity transform."""
+        delta = distances(force, frame, points)
+        for radius in radii:
+            close = np.abs(delta - radius) <= 1e-7 * max(radius, 1e-12)
+            for i, j in zip(*np.nonzero(close)):
+                if is_untouched[i, j] and is_exact_distance(force, frame, points[i, j], radius):
+                    self.exact_ties += delta[i, j] == radius
+                    close[i, j] = False
+                    delta[i, j] = math.nan
+            margin = np.abs(delta - radius) / max(radius, 1e-12)
+            if not np.isnan(margin).all():
+                self.tie_margin = min(self.tie_margin, np.nanmin(margin))
+            delta = distances(force, frame, points)
+        if not has_direction(force):
+            near = delta < 1e-3
+            for i, j in zip(*np.nonzero(near)):
+                is_exact = is_untouched[i, j] and is_exact_distance(force, frame, points[i, j], 0.0)
+                if not (is_exact and delta[i, j] == 0):
+                    self.direction_margin = min(self.direction_margin, delta[i, j])
+
+    def note_steps(self, frame_length, dt):
+        ratio = frame_length / dt
+        self.time_margin = min(self.time_margin, abs(ratio - round(ratio)) / ratio)
+
+
+# The run (SPEC 5 and 6)
+
+
+class SurfaceRun:
+    """The state of one surface: the mesh, and the velocities of the last solve."""
+
+    def __init__(self, scene, surface, diagnostics, noise=None):
+        self.scene, self.surface, self.noise = scene, surface, noise
+        self.diagnostics = diagnostics
+        self.rest = surface.grid.rest
+        self.reset()
+
+    def reset(self):
+        self.position = self.rest.copy()
+        # Zero where the last solve did not reach: such nodes start from velocity 0 (SPEC 6).
+        self.velocity = np.zeros_like(self.rest)
+
+    def enabled_forces(self, frame):
+        """(force, selects a region) and (group) lists of what acts on this surface."""
+        def acts(item):
+            is_target = item.targets is None or self.surface.name in item.targets
+            return is_target and item.enabled(frame)[0] != 0
+
+        groups = [group for group in self.scene.groups if acts(group)]
+        forces = [force for force in self.scene.forces if acts(force)]
+        forces += [force for group in groups for force in group.forces if acts(force)]
+        return forces, groups
+
+    def measured_points(self, transform):
+        """World positions where distances are measured (SPEC 5, `measure`)."""
+        is_rest = self.surface.choices["measure"] == "rest"
+        return transform.to_world(self.rest if is_rest else self.position)
+
+    def select(self, frame, points, forces, groups):
+        """The box of the solved region, or None (SPEC 5, steps 1 and 2)."""
+        selected = np.zeros(points.shape[:2], dtype=bool)
+        for force in forces:
+            if not force.is_in_group:
+                delta = distances(force, frame, points)
+                selected |= delta < force.sample("deformationRadius", frame)
+        for group in groups:
+            offset = points - group.center(frame)
+            delta = np.sqrt((offset**2).sum(axis=-1))
+            selected |= delta < float(group.deformation_radius(frame)[0])
+        return bounding_box(selected)
+
+    def load(self, frame, points, forces, transform):
+        """The load at every node of the surface, in object space (SPEC 5, step 3; SPEC 7)."""
+        total = np.zeros_like(points)
+        for force in forces:
+            delta = distances(force, frame, points)
+            radius = force.sample("forceRadius", frame)
+            box = bounding_box(delta < radius)
+            if box is None:
+                continue
+            i0, i1, j0, j1 = box
+            inside = np.s_[i0:i1 + 1, j0:j1 + 1]
+            strength = force.sample("magnitude", frame) * falloff(force, delta[inside] / radius)
+            direction = unit_directions(force, frame, points[inside])
+            total[inside] += strength[..., None] * direction
+        return transform.vector_to_object(total)
+
+    def solve(self, frame):
+        """The solve at `frame`, which makes the mesh of frame + 1."""
+        surface = self.surface
+        forces, groups = self.enabled_forces(frame)
+        transform = Transform(surface, frame)
+        points = self.measured_points(transform)
+        self.diagnose(frame, points, forces, groups, transform)
+        box = self.select(frame, points, forces, groups)
+        if box is None or min(box[1] - box[0], box[3] - box[2]) < 2:
+            self.diagnostics.skips.append((frame, surface.name, "no node" if box is None else
+                                           "below 3x3"))
+            return
+        self.diagnostics.solves.append((frame, surface.name, box))
+        region = np.s_[box[0]:box[1] + 1, box[2]:box[3] + 1]
+        is_displacement = surface.choices["reference"] == "rest"
+        origin = self.rest if is_displacement else np.zeros_like(self.rest)
+        material = {name: surface.sample(name, frame)
+                    for name in ("density", "damping", "b", "c", "d")}
+        tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
+        count, dt = steps_of_frame(self.scene.frame_length, surface.sample("dt", frame),
+                                   surface.choices["stepping"])
+        w, velocity = advance(
+            (self.position - origin)[region], self.velocity[region],
+            self.load(frame, points, forces, transform)[region],
+            surface.grid.hu, surface.grid.hv, material, tangents, count, dt)
+        interior = np.s_[box[0] + 1:box[1], box[2] + 1:box[3]]
+        self.position[interior] = (origin[region] + w)[1:-1, 1:-1]
+        if self.noise is not None:  # a stand-in for another implementation's rounding
+            shift = (self.position - self.rest)[interior]
+            shift *= 1 + 1e-12 * self.noise.standard_normal(shift.shape)
+            self.position[interior] = self.rest[interior] + shift
+        self.velocity = np.zeros_like(self.rest)
+        self.velocity[region] = velocity
+        assert np.isfinite(self.position).all(), f"not finite after frame {frame}"
+
+    def diagnose(self, frame, points, forces, groups, transform):
+        is_rest = self.surface.choices["measure"] == "rest"
+        at_rest = (self.position == self.rest).all(axis=-1) | is_rest
+        is_untouched = at_rest & transform.is_identity
+        for force in forces:
+            radii = [force.sample("forceRadius", frame)]
+            if not force.is_in_group:
+                radii.append(force.sample("deformationRadius", frame))
+            self.diagnostics.note_distances(force, frame, points, is_untouched, radii)
+        for group in groups:
+            sphere = GroupSphere(group)
+            radius = float(group.deformation_radius(frame)[0])
+            self.diagnostics.note_distances(sphere, frame, points, is_untouched, [radius])
+        if self.surface.choices["stepping"] == "overshoot" and self.scene.fps.denominator != 1:
+            dt = self.surface.sample("dt", frame)
+            self.diagnostics.note_steps(self.scene.frame_length, dt)
+
+    def check_channels(self, frames):
+        """SPEC 2: channels are checked at every integer frame before the first solve."""
+        for frame in frames:
+            check_coefficients(*(self.surface.sample(name, frame)
+                                 for name in ("density", "damping", "b", "c", "d", "dt")))
+            assert self.scene.frame_length / self.surface.sample("dt", frame) <= 1e5
+        for force in self.scene.forces + [f for g in self.scene.groups for f in g.forces]:
+            for name in ("deformationRadius", "forceRadius"):
+                assert all(force.sample(name, frame) >= 0 for frame in frames), name
+        for group in self.scene.groups:
+            assert all(group.deformation_radius(frame)[0] >= 0 for frame in frames)
+
+    def run(self):
+        """Yields (frame, object positions, transform) from the scene's first to its last frame."""
+        frames = range(self.scene.start, self.scene.end + 1)
+        self.check_channels(frames)
+        for frame in frames:
+            if frame <= self.surface.start_frame:
+                self.reset()
+            yield frame, self.position.copy(), Transform(self.surface, frame)
+            if self.surface.is_enabled and frame >= self.surface.start_frame:
+                self.solve(frame)
+
+
+class GroupSphere:
+    """A group's region, as a point force for the diagnostics."""
+
+    kind = "point"
+
+    def __init__(self, group):
+        self.channels = {"direction": True}
+        self.center = group.center
+
+    def sample(self, name, frame):
+        assert name == "center"
+        return self.center(frame)
+
+
+class Bake:
+    """Positions of one surface, frames x vertices x 3, in either space, and the rest in world."""
+
+    def __init__(self, scene, surface, diagnostics, noise=None):
+        to_vertices = surface.grid.to_vertices
+        object_frames, world_frames, rest_frames = [], [], []
+        for _, position, transform in SurfaceRun(scene, surface, diagnostics, noise).run():
+            object_frames.append(to_vertices(position))
+            world_frames.append(to_vertices(transform.to_world(position)))
+            rest_frames.append(to_vertices(transform.to_world(surface.grid.rest)))
+        self.object, self.world = np.array(object_frames), np.array(world_frames)
+        self.world_rest = np.array(rest_frames)
+        self.is_always_identity = all(
+            Transform(surface, frame).is_identity for frame in range(scene.start, scene.end + 1))
+
+    def peak(self):
+        """The largest |position - rest| of the run, in world space."""
+        return float(np.sqrt(((self.world - self.world_rest)**2).sum(axis=-1)).max())
+
+
+def bake(scene, diagnostics=None, noise=None):
+    """{surface name: Bake} of a whole scene."""
+    diagnostics = diagnostics or Diagnostics()
+    return {surface.name: Bake(scene, surface, diagnostics, noise) for surface in scene.surfaces}

@@ -1,0 +1,13 @@
+# Generates random scenes and compares them.
+# usage: cmake -DPYTHON=… -DREFERENCE=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
+file(REMOVE_RECURSE "${WORK}")
+file(MAKE_DIRECTORY "${WORK}")
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/random_scenes.py"
+  --seed ${SEED} --count ${COUNT} --plain -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB scenes "${WORK}/*.xml")
+list(LENGTH scenes count)
+if(NOT count EQUAL COUNT)
+  message(FATAL_ERROR "${count} scenes of ${COUNT} were made")
+endif()
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes}
+  COMMAND_ERROR_IS_FATAL ANY)

@@ -1,0 +1,268 @@
+"""Reads scene files and meshes, trusting them (SCENE_FORMAT; SPEC 1).
+
+Only what the reference engine evaluates is understood; anything else fails an assertion.
+"""
+
+import os
+import xml.etree.ElementTree as ElementTree
+from fractions import Fraction
+
+import numpy as np
+
+from curves import Constant, Curve, Key
+
+TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
+MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1}
+TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
+SOLVER_CHANNELS = {"dt": 0.01}
+SOLVER_CHOICES = {
+    "stepping": ("exact", "overshoot"), "reference": ("rest", "none"), "combine": ("box",),
+    "release": ("freeze",), "measure": ("current", "rest"), "integrator": ("backwardEuler",),
+    "region": ("forces",)}
+FORCE_CHANNELS = {"magnitude": 0, "deformationRadius": 1, "forceRadius": 1}
+KIND_CHANNELS = {
+    "point": {"center": (0, 0, 0), "direction": (0, 1, 0)},
+    "radial": {"center": (0, 0, 0)},
+    "line": {"from": (0, 0, 0), "to": (1, 0, 0), "direction": None}}
+FALLOFFS = ("constant", "linear", "smooth", "gaussian")
+TANGENT_KINDS = ("auto", "spline", "flat", "linear", "plateau")
+LOOPS = ("repeat", "repeatOffset", "mirror")
+
+
+def numbers(text):
+    """The numbers of an attribute; `true` and `false` count as 1 and 0."""
+    return np.array([{"true": 1.0, "false": 0.0}.get(word) if word in ("true", "false")
+                     else float(word) for word in text.split()])
+
+
+# Channels
+
+
+def read_tangent(text):
+    return text if text in TANGENT_KINDS else numbers(text)
+
+
+def read_outside(text):
+    """`before` or `after`: the mode with its slope or its number of copies."""
+    kind, *rest = text.split()
+    if kind == "slope":
+        return kind, np.array([float(word) for word in rest])
+    if kind in LOOPS:
+        return kind, int(rest[0]) if rest else None
+    assert kind in ("hold", "linear", "linearOuter") and not rest, text
+    return kind, None
+
+
+def read_keys(element, time_attribute, is_boolean=False):
+    """The keys of an <animate> or a <falloff>, with the element's defaults applied."""
+    assert element.get("overshoot", "limit") == "limit" and element.find("loop") is None
+    default_tangent = element.get("tangent", "auto")
+    default_interpolation = element.get("interpolation", "bezier")
+    known = {time_attribute, "value", "interpolation", "tangent", "in", "out", "inLength",
+             "outLength"}
+    keys = []
+    for child in element.findall("key"):
+        assert set(child.keys()) <= known, child.attrib
+        both = child.get("tangent", default_tangent)
+        lengths = [float(child.get(name)) if name in child.keys() else None
+                   for name in ("inLength", "outLength")]
+        interpolation = child.get("interpolation", default_interpolation)
+        keys.append(Key(float(child.get(time_attribute)), numbers(child.get("value")),
+                        "step" if is_boolean else interpolation,
+                        read_tangent(child.get("in", both)), read_tangent(child.get("out", both)),
+                        *lengths))
+    return keys
+
+
+def read_channel(element, owner, name, default, is_boolean=False):
+    """A channel of `element`, constant or animated; `owner` holds the <animate> children.
+
+    A transform, material, tangents or solver element is its own owner. None without a default.
+    """
+    for animate in owner.findall("animate"):
+        if animate.get("attribute") == name:
+            assert name not in element.keys(), f"{name} is both given and animated"
+            return Curve(read_keys(animate, "frame", is_boolean),
+                         read_outside(animate.get("before", "hold")),
+                         read_outside(animate.get("after", "hold")))
+    if name in element.keys():
+        return Constant(numbers(element.get(name)))
+    return None if default is None else Constant(default)
+
+
+# Meshes (SPEC 1)
+
+
+class Grid:
+    """Vertices with their lattice: `node[k]` is the (i, j) of vertex k, `rest` is M x N x 3."""
+
+    def __init__(self, vertices, u, v):
+        self.vertices = vertices
+        column, self.hu, self.columns = lattice_index(u)
+        row, self.hv, self.rows = lattice_index(v)
+        self.node = np.stack([column, row], axis=1)
+        self.rest = np.full((self.columns, self.rows, 3), np.nan)
+        for (i, j), position in zip(self.node, vertices):
+            is_new = np.isnan(self.rest[i, j, 0])
+            assert is_new or (self.rest[i, j] == position).all(), f"node {i},{j} has two positions"
+            self.rest[i, j] = position
+        assert not np.isnan(self.rest).any(), "a node without a vertex"
+
+    def to_vertices(self, node_values):
+        """Values per vertex, in the order of the source mesh."""
+        return node_values[self.node[:, 0], self.node[:, 1]]
+
+
+def lattice_index(values):
+    """Lattice index of each u (or v), the spacing and the number of columns (SPEC 1)."""
+    values = np.asarray(values, dtype=float)
+    ordered = np.sort(values)
+    gaps = np.diff(ordered)
+    count = 1 + int(np.sum(gaps > 0.5 * gaps.max()))
+    spacing = (ordered[-1] - ordered[0]) / (count - 1)
+    index = np.rint((values - ordered[0]) / spacing).astype(int)
+    uneven = np.abs(values - (ordered[0] + index * spacing))
+    assert count >= 3 and (uneven <= 1e-2 * spacing).all(), "spacing is not even"
+    return index, spacing, count
+
+
+def flat_grid(element):
+    """A <grid>: vertex j*columns + i at node (i, j), in the xz-plane, u with x and v with z."""
+    columns, rows = int(element.get("columns")), int(element.get("rows"))
+    width, depth = float(element.get("width", "1")), float(element.get("depth", "1"))
+    vertices, u, v = [], [], []
+    for j in range(rows):
+        for i in range(columns):
+            x = width * (2 * i - (columns - 1)) / (2 * (columns - 1))
+            z = depth * (2 * j - (rows - 1)) / (2 * (rows - 1))
+            vertices.append((x, 0.0, z))
+            u.append(i / (columns - 1))
+            v.append(j / (rows - 1))
+    return Grid(np.array(vertices), u, v)
+
+
+def read_obj(path):
+    """A <mesh>: positions in file order, and the one (u,v) of each, from the faces."""
+    positions, coordinates, uv_of = [], [], {}
+    with open(path, encoding="utf-8") as lines:
+        for line in lines:
+            words = line.split("#")[0].split()
+            if not words:
+                continue
+            if words[0] == "v":
+                positions.append([float(word) for word in words[1:4]])
+            elif words[0] == "vt":
+                coordinates.append((float(words[1]), float(words[2])))
+            elif words[0] == "f":
+                for corner in words[1:]:
+                    vertex, texture = (int(word) for word in corner.split("/")[:2])
+                    vertex += len(positions) if vertex < 0 else -1
+                    uv = coordinates[texture if texture < 0 else texture - 1]
+                    assert uv_of.setdefault(vertex, uv) == uv, "a vertex with several UVs"
+    u, v = zip(*(uv_of[k] for k in range(len(positions))))
+    return Grid(np.array(positions), u, v)
+
+
+# Elements
+
+
+def child_or_empty(element, tag):
+    child = element.find(tag)
+    return child if child is not None else ElementTree.Element(tag)
+
+
+class Surface:
+    """A <surface> with its channels."""
+
+    def __init__(self, element, folder, scene_start):
+        self.name = element.get("name")
+        self.is_enabled = element.get("enabled", "true") == "true"
+        grid, mesh = element.find("grid"), element.find("mesh")
+        if grid is not None:
+            self.grid = flat_grid(grid)
+        else:
+            assert set(mesh.keys()) <= {"file", "uv", "wrap"} and mesh.get("uv", "grid") == "grid"
+            assert mesh.get("wrap", "none") == "none"
+            self.grid = read_obj(os.path.join(folder, mesh.get("file")))
+        self.channels = {}
+        solver = child_or_empty(element, "solver")
+        for tag, defaults in (("transform", TRANSFORM_CHANNELS), ("material", MATERIAL_CHANNELS),
+                              ("tangents", TANGENT_CHANNELS), ("solver", SOLVER_CHANNELS)):
+            part = child_or_empty(element, tag)
+            for name, default in defaults.items():
+                self.channels[name] = read_channel(part, part, name, default)
+        self.rotate_order = child_or_empty(element, "transform").get("rotateOrder", "xyz")
+        self.choices = {}
+        for name, allowed in SOLVER_CHOICES.items():
+            self.choices[name] = solver.get(name, allowed[0])
+            assert self.choices[name] in allowed, f"{name}={self.choices[name]}"
+        # An earlier start acts as the scene's start.
+        self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
+
+    def sample(self, name, frame):
+        """A scalar channel at a frame."""
+        value = self.channels[name](frame)
+        assert len(value) == 1
+        return float(value[0])
+
+
+class Force:
+    """A <point>, <radial> or <line>; a child of a group has no region of its own."""
+
+    def __init__(self, element, is_in_group):
+        self.kind = element.tag
+        self.name = element.get("name")
+        self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
+        self.is_in_group = is_in_group
+        self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
+        self.channels = {
+            name: read_channel(element, element, name, default)
+            for name, default in {**FORCE_CHANNELS, **KIND_CHANNELS[self.kind]}.items()}
+        self.falloff = element.get("falloff", "constant")
+        authored = element.find("falloff")
+        if authored is not None:
+            self.falloff = Curve(read_keys(authored, "at"))
+        else:
+            assert self.falloff in FALLOFFS, self.falloff
+
+    def sample(self, name, frame):
+        """A channel at a frame: a number, a vector, or None for a missing direction."""
+        channel = self.channels[name]
+        if channel is None:
+            return None
+        value = channel(frame)
+        return float(value[0]) if len(value) == 1 else value
+
+
+class Group:
+    """A <group>: one deformation region, and forces that only add force (SPEC 7)."""
+
+    def __init__(self, element):
+        self.name = element.get("name")
+        self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
+        self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
+        self.center = read_channel(element, element, "center", (0, 0, 0))
+        self.deformation_radius = read_channel(element, element, "deformationRadius", 1)
+        self.forces = [Force(child, True) for child in element if child.tag in KIND_CHANNELS]
+
+
+class Scene:
+    """A whole scene; `frame_length` is T = 1/fps in seconds (SPEC 4)."""
+
+    def __init__(self, path):
+        root = ElementTree.parse(path).getroot()
+        assert root.tag == "scene" and root.get("version") == "1"
+        self.fps = Fraction(root.get("fps", "24"))
+        # The frame rate as a double first, then its reciprocal.
+        self.frame_length = 1.0 / float(self.fps)
+        self.start, self.end = int(root.get("start")), int(root.get("end"))
+        folder = os.path.dirname(os.path.abspath(path))
+        self.surfaces, self.forces, self.groups = [], [], []
+        for element in root:
+            if element.tag == "surface":
+                self.surfaces.append(Surface(element, folder, self.start))
+            elif element.tag in KIND_CHANNELS:
+                self.forces.append(Force(element, False))
+            else:
+                assert element.tag == "group", element.tag
+                self.groups.append(Group(element))

@@ -1,0 +1,49 @@
+"""Whether two good implementations must agree on a scene.
+
+No selection distance within rounding of a radius (exact ties on representable lattices excepted),
+no direction from a point that is all but the node itself, no curve sampled where it is vertical,
+and a run that does not amplify noise of 1e-12 to anything near the tolerance of the comparison.
+"""
+
+import numpy as np
+
+from curves import Curve
+from engine import Diagnostics, bake
+from scene import Scene
+
+
+def curves_of(scene):
+    """Every animated channel of a scene."""
+    owners = [surface.channels for surface in scene.surfaces]
+    forces = scene.forces + [force for group in scene.groups for force in group.forces]
+    owners += [force.channels for force in forces]
+    channels = [channel for owner in owners for channel in owner.values()]
+    channels += [group.center for group in scene.groups]
+    channels += [force.falloff for force in forces]
+    return [channel for channel in channels if isinstance(channel, Curve)]
+
+
+def trouble_of(path):
+    """Why a scene is rejected (None when it is kept), its relative peak, and its diagnostics."""
+    scene, diagnostics = Scene(path), Diagnostics()
+    results = bake(scene, diagnostics)
+    relative = 0.0
+    for result in results.values():
+        size = float(result.world_rest[0].ptp(axis=0).max())
+        relative = max(relative, result.peak() / size)
+    if diagnostics.tie_margin < 1e-8:
+        return "a radius within rounding of a distance", relative, diagnostics
+    if diagnostics.direction_margin < 1e-6:
+        return "a direction from a point at the node itself", relative, diagnostics
+    if diagnostics.time_margin < 1e-9:
+        return "a step that ends with the frame", relative, diagnostics
+    for curve in curves_of(scene):
+        scale = max(np.abs(key.value).max() for key in curve.keys)
+        if any(segment.sensitivity > 1e-12 * scale for segment in curve.segments):
+            return "a curve sampled where it is vertical", relative, diagnostics
+    shaken = bake(Scene(path), noise=np.random.default_rng(1))
+    for name, result in results.items():
+        change = np.abs(shaken[name].world - result.world).max()
+        if not change <= 1e-9 * result.peak():
+            return "the reference amplifies noise", relative, diagnostics
+    return None, relative, diagnostics
