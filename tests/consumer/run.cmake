@@ -1,0 +1,29 @@
+# Installs the build to a scratch prefix, builds the consumer against it alone, and runs it.
+# The C++ of the README is built with it, so that it stays true.
+# usage: cmake -DBUILD=… -DSOURCE=… -DREADME=… -DWORK=… -DSANITIZE=… -P run.cmake
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${ARGV}\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/prefix")
+
+file(READ "${README}" readme)
+string(REGEX MATCH "```cpp\n(#include[^\n]*\n)([^`]*)```" code "${readme}")
+if(NOT code)
+  message(FATAL_ERROR "${README} shows no C++")
+endif()
+file(WRITE "${WORK}/readme.cpp" "${CMAKE_MATCH_1}\nint main() {\n${CMAKE_MATCH_2}}\n")
+
+set(flags "")
+if(SANITIZE)
+  set(flags "-DCMAKE_CXX_FLAGS=-fsanitize=${SANITIZE}")
+endif()
+run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${WORK}/build"
+    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DREADME_CODE=${WORK}/readme.cpp" ${flags})
+run("${CMAKE_COMMAND}" --build "${WORK}/build")
+run("${WORK}/build/consumer")
+run("${WORK}/prefix/bin/pliant" --version)

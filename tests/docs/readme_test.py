@@ -1,0 +1,36 @@
+"""Follows the README: its scene is written to a file and its commands are run, in order.
+
+usage: readme_test.py PLIANT SOURCE_FOLDER
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
+
+
+def main():
+    with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
+        readme = file.read()
+    scene = re.search(r"`(\w+\.xml)`.*?```xml\n(.*?)```", readme, re.DOTALL)
+    commands = re.findall(r"^    ((?:build/release/pliant|script/render) .*?)(?:\s+#.*)?$", readme,
+                          re.MULTILINE)
+    assert scene and len(commands) >= 3, "the README shows no scene or no commands"
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, scene.group(1)), "w", encoding="utf-8") as file:
+            file.write(scene.group(2))
+        for command in commands:
+            words = shlex.split(command)
+            words[0] = PLIANT if words[0].endswith("pliant") else os.path.join(SOURCE, words[0])
+            subprocess.run(words, cwd=folder, check=True, timeout=120)
+            print("ok", command)
+    for path in re.findall(r"\]\((?!https?:)([^)#]+)\)", readme):
+        assert os.path.exists(os.path.join(SOURCE, path)), f"the README links to {path}"
+
+
+if __name__ == "__main__":
+    main()
