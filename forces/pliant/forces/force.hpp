@@ -14,20 +14,20 @@ namespace pliant {
 
 /// The thesis's force (5.2.2): a sphere around `center` that pushes along one direction.
 struct PointForce {
-  Vector3d center;     ///< world [length]
-  Vector3d direction;  ///< any length; zero: no force
+  Vector3d center = Vector3d::Zero();      ///< world [length]
+  Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
 };
 
 /// Pushes away from `center`.
 struct RadialForce {
-  Vector3d center;  ///< world [length]
+  Vector3d center = Vector3d::Zero();  ///< world [length]
 };
 
 /// Acts around the segment from..to, along `direction` or, without one, away from the segment.
 struct LineForce {
-  Vector3d from;                      ///< world [length]
-  Vector3d to;                        ///< world [length]; may equal `from`
-  std::optional<Vector3d> direction;  ///< any length; zero: no force
+  Vector3d from = Vector3d::Zero();        ///< world [length]
+  Vector3d to = Vector3d::UnitX();         ///< world [length]; may equal `from`
+  std::optional<Vector3d> direction = {};  ///< any length; zero: no force
 };
 
 using ForceShape = std::variant<PointForce, RadialForce, LineForce>;
