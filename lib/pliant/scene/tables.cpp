@@ -67,7 +67,7 @@ Attribute object_name(std::string& object) {
   });
 }
 
-/// Which of a mesh's UV sets is the grid: the first, for now the only one that is read.
+/// Which of a mesh's UV sets is the grid: the first, the only one that this version reads.
 Attribute uv_set() {
   return custom("uvSet", "integer", "", "0", "0", [](std::string_view text) -> Reading<void> {
     const Reading<std::int64_t> set = parse_integer(text, 0, std::numeric_limits<int>::max());
