@@ -28,3 +28,11 @@ TEST_CASE("a file that cannot be read says which and why", "[core][read_file]") 
   CHECK(read_file(folder.write("big", std::string(3u << 20, 'x')), 2u << 20).error().message ==
         "cannot read the file: it is larger than 2 MiB");
 }
+
+TEST_CASE("whether a file can be read is known without reading it", "[core][read_file]") {
+  const ScratchFolder folder;
+  CHECK(check_readable(folder.write("f", "x")));
+  for (const auto& path : {folder.path(), folder.file("missing")}) {
+    CHECK(check_readable(path).error().message == read_file(path).error().message);
+  }
+}

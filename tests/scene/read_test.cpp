@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {
@@ -290,6 +292,50 @@ TEST_CASE("a file that cannot be read is one clear line", "[scene][read]") {
   const Error too_large = refused(huge);
   CHECK(too_large.code == ErrorCode::Unreadable);
   CHECK_THAT(too_large.message, contains_text("larger than 256 MiB"));
+}
+
+TEST_CASE("a file with a mistake tells also what a run would have refused", "[scene][read]") {
+  const std::string rest =
+      "<surface name=\"sheet\">\n"                                               // 2
+      "<mesh file=\"none.obj\"/>\n"                                              // 3
+      "<material{}>\n"                                                           // 4
+      "<animate attribute=\"c\"><key frame=\"1\" value=\"0\"/>"                  // 5
+      "<key frame=\"5\" value=\"-3\"/><key frame=\"9\" value=\"0\"/></animate>"  // 5
+      "</material></surface>\n"                                                  // 5
+      "<point name=\"poke\">\n"                                                  // 6
+      "<animate attribute=\"forceRadius\"><key frame=\"1\" value=\"1\"/>"        // 7
+      "<key frame=\"20\" value=\"-1\"/></animate>{}</point>";                    // 7
+  const auto with = [&](std::string_view material, std::string_view point) {
+    return problems_of(scene_with(fmt::format(fmt::runtime(rest), material, point)));
+  };
+  CHECK(with("", "").empty());  // alone these wait for the run: curves may be looked at without one
+
+  const auto all = with("", "<pond/>");
+  REQUIRE(all.size() == 4);
+  CHECK_THAT(all[0], Catch::Matchers::StartsWith(
+                         "3: surface \"sheet\": shots/none.obj: cannot read the file: No such"));
+  CHECK_THAT(all[1], Catch::Matchers::StartsWith("5: sheet.c at frame 4 is -2."));
+  CHECK_THAT(all[3], Catch::Matchers::StartsWith("7: poke.forceRadius at frame 11 is -"));
+  CHECK_THAT(all[2], Catch::Matchers::StartsWith("7: <point> has no element \"pond\""));
+
+  // What is not sound is not held against its default: c is not judged by a d that is no number.
+  const auto some = with(" d=\"9x\"", "");
+  REQUIRE(some.size() == 3);
+  CHECK_THAT(some[1], Catch::Matchers::StartsWith("4: <material> d=\"9x\""));
+  CHECK_THAT(some[2], Catch::Matchers::StartsWith("7: poke.forceRadius"));
+}
+
+TEST_CASE("channels of names given twice, or over bad frames, are not judged", "[scene][read]") {
+  const std::string_view surface =
+      "<surface name=\"a\"><grid columns=\"3\" rows=\"3\"/><material>"
+      "<animate attribute=\"b\"><key frame=\"1\" value=\"-1\"/></animate></material></surface>\n";
+  const auto twice = problems_of(scene_with(fmt::format("{0}{0}", surface)));
+  REQUIRE(twice.size() == 1);
+  CHECK_THAT(twice[0], contains_text("the name is taken"));
+  const auto backwards =
+      problems_of(fmt::format("<scene version=\"1\" start=\"9\" end=\"1\">{}</scene>", surface));
+  REQUIRE(backwards.size() == 1);
+  CHECK_THAT(backwards[0], contains_text("must not be before"));
 }
 
 }  // namespace

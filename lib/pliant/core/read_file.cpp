@@ -5,14 +5,28 @@
 #include <cstring>
 #include <memory>
 
+#include <unistd.h>
+
 namespace pliant {
 
-Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
-  const auto unreadable = [&](const std::string& reason) {
-    return fail(ErrorCode::Unreadable, "cannot read the file: " + reason, file.string());
-  };
+namespace {
+
+tl::unexpected<Error> cannot_read(const std::filesystem::path& file, const std::string& reason) {
+  return fail(ErrorCode::Unreadable, "cannot read the file: " + reason, file.string());
+}
+
+}  // namespace
+
+Result<void> check_readable(const std::filesystem::path& file) {
   std::error_code status_error;
-  if (std::filesystem::is_directory(file, status_error)) return unreadable("it is a folder");
+  if (std::filesystem::is_directory(file, status_error)) return cannot_read(file, "it is a folder");
+  if (access(file.c_str(), R_OK) != 0) return cannot_read(file, std::strerror(errno));
+  return {};
+}
+
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
+  const auto unreadable = [&](const std::string& reason) { return cannot_read(file, reason); };
+  if (auto readable = check_readable(file); !readable) return fail(readable.error());
 
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),

@@ -12,4 +12,8 @@ namespace pliant {
 Result<std::string> read_file(const std::filesystem::path& file,
                               std::size_t max_bytes = std::size_t{4} << 30);
 
+/// Whether a file is there, is no folder and may be read, without opening it. Errors as
+/// `read_file`.
+Result<void> check_readable(const std::filesystem::path& file);
+
 }  // namespace pliant

@@ -112,6 +112,7 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* cons
     return row->format.name == name && is_channel(*row);
   });
   ChannelPlace place;
+  const std::size_t problems = findings.problem_count();
   if (found != rows.end()) {
     Attribute& row = **found;
     place = row.channel;
@@ -128,6 +129,7 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* cons
     findings.add_problem(given->GetLineNum(), no_channel(animate, rows, name));
   }
   std::visit(CurveOfChannel{animate, owner + '.' + name, findings}, place);
+  if (found != rows.end() && findings.problem_count() != problems) (*found)->is_sound = false;
 }
 
 void read_animate(const tinyxml2::XMLElement& animate, Table& table, const std::string& owner,

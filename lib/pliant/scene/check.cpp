@@ -117,6 +117,13 @@ bool is_name(std::string_view text) {
   return !text.empty() && is_first(text.front()) && std::all_of(text.begin(), text.end(), is_later);
 }
 
+Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin) {
+  return {.code = ErrorCode::Unreadable,
+          .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message),
+          .file = origin.file,
+          .line = origin.line_of(surface, "file")};
+}
+
 std::vector<Error> check_scene(const Scene& scene) { return SceneChecker(scene).check(); }
 
 }  // namespace pliant

@@ -30,4 +30,8 @@ bool is_name(std::string_view text);
 /// found, with its line if known.
 std::vector<Error> check_scene(const Scene& scene);
 
+/// A mesh file that cannot be read is the scene's mistake: the reader's error (Unreadable) as that
+/// of the surface, at the line where the file is named.
+Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin);
+
 }  // namespace pliant

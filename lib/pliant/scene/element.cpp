@@ -132,9 +132,12 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
 }
 
-void record_lines(const std::string& name, std::span<const Attribute> table, SceneOrigin& origin) {
-  for (const Attribute& row : table)
-    if (row.line != 0) origin.lines[fmt::format("{}.{}", name, row.format.name)] = row.line;
+void record(const std::string& name, std::span<const Attribute> table, SceneFile& file) {
+  for (const Attribute& row : table) {
+    const std::string path = fmt::format("{}.{}", name, row.format.name);
+    if (row.line != 0) file.origin.lines[path] = row.line;
+    if (!row.is_sound) file.unsound.insert(path);
+  }
 }
 
 }  // namespace pliant::xml

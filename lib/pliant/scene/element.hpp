@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pliant/scene/attribute.hpp"
-#include "pliant/scene/findings.hpp"
+#include "pliant/scene/scene_file.hpp"
 
 namespace tinyxml2 {
 class XMLElement;
@@ -43,7 +43,7 @@ std::string tag(const tinyxml2::XMLElement& element);
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint);
 
-/// Writes down where an element and what its table holds stand in the file.
-void record_lines(const std::string& name, std::span<const Attribute> table, SceneOrigin& origin);
+/// Writes down where what an element's table holds stands in the file, and what is not sound.
+void record(const std::string& name, std::span<const Attribute> table, SceneFile& file);
 
 }  // namespace pliant::xml

@@ -27,7 +27,7 @@ Force read_force(const tinyxml2::XMLElement& element, decltype(Force::shape) sha
     file.targets.push_back({element.Name(), force.targets, find(table, "targets")->line});
   if (!force.name.empty()) {
     file.origin.lines[force.name] = element.GetLineNum();
-    record_lines(force.name, table, file.origin);
+    record(force.name, table, file);
   }
   return force;
 }

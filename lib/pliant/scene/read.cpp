@@ -39,7 +39,7 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   read_attributes(root, table, file.findings);
   check_frames(scene, table, file.findings);
   file.origin.lines[""] = root.GetLineNum();
-  record_lines("", table, file.origin);
+  record("", table, file);
 
   const std::optional<double> fps =
       find(table, "fps")->is_sound ? std::optional<double>(scene.fps) : std::nullopt;
@@ -66,6 +66,8 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   const std::vector<Named> named = named_children(root);
   check_unique(named, file.findings);
   check_targets(scene, file.targets, named, file.findings);
+  scene.origin = file.origin;
+  if (file.findings.problem_count() != 0) check_further(scene, named, file);
   return scene;
 }
 
@@ -107,7 +109,6 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name,
   }
   std::optional<Scene> scene = read_document(document, file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
-  scene->origin = std::move(file.origin);
   scene->notes = file.findings.notes();
   return std::move(*scene);
 }

@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/read_file.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
+#include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/nearest.hpp"
 
@@ -35,6 +37,7 @@ void check_frames(const Scene& scene, std::span<Attribute> table, Findings& find
   if (!are_constant(table, {"start", "end"})) return;
   const std::int64_t frames = std::int64_t{scene.end} - scene.start + 1;
   const int line = find(table, "end")->line;
+  find(table, "end")->is_sound = frames >= 1 && frames <= max_frames;
   if (frames < 1)
     findings.add_problem(line, fmt::format("<scene> end=\"{}\": must not be before start=\"{}\"",
                                            scene.end, scene.start));
@@ -58,6 +61,7 @@ void check_well_posed(const MaterialChannels& material, std::span<Attribute> tab
   if (!are_constant(table, {"b", "c", "d"})) return;
   const Stiffness stiffness{material.b.at(0)[0], material.c.at(0)[0], material.d.at(0)[0]};
   if (stiffness.is_elliptic()) return;
+  find(table, "c")->is_sound = false;
   findings.add_problem(
       last_line(table, {"b", "c", "d"}),
       fmt::format("<material> c = {}: must be greater than -2 sqrt(b d) = {}, "
@@ -70,6 +74,7 @@ void check_steps(const SolverSettings& solver, std::span<Attribute> table, doubl
   if (!are_constant(table, {"dt"})) return;
   const double dt = solver.dt.at(0)[0];
   if (const auto checked = check_time_step(1 / fps, dt); !checked) {
+    find(table, "dt")->is_sound = false;
     findings.add_problem(last_line(table, {"dt"}, line), "<solver> dt " + checked.error().message);
   }
 }
@@ -112,6 +117,35 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
                                : fmt::format("no surface is named {}", in_quotes(target)),
                       hint(target, surfaces)));
     }
+}
+
+void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file) {
+  std::map<std::string_view, int> times;  // a name has been given
+  for (const Named& one : named) ++times[one.name];
+  const auto is_sound = [&](const std::string& name, std::string_view attribute) {
+    const auto found = times.find(name);
+    return found != times.end() && found->second == 1 &&
+           !file.unsound.contains(fmt::format("{}.{}", name, attribute));
+  };
+  const auto is_plain = [&](std::string_view attribute) {
+    return !file.unsound.contains(fmt::format(".{}", attribute));
+  };
+  if (is_plain("start") && is_plain("end")) {
+    const auto is_checked = [&](const std::string& name, std::string_view attribute) {
+      return is_sound(name, attribute) && (attribute != "dt" || is_plain("fps"));
+    };
+    for (Error& error : check_channels(scene, is_checked)) {
+      file.findings.add_problem(error.line, std::move(error.message));
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    const auto* mesh = std::get_if<MeshFile>(&surface.shape);
+    if (!mesh || !is_sound(surface.name, "file")) continue;
+    if (const auto readable = check_readable(mesh->path); !readable) {
+      const Error error = unreadable_mesh(readable.error(), surface.name, file.origin);
+      file.findings.add_problem(error.line, error.message);
+    }
+  }
 }
 
 }  // namespace pliant::xml

@@ -11,8 +11,8 @@
 namespace pliant::xml {
 
 // Rules between values that are each right by themselves. A rule is not checked where one of its
-// values was not readable, is animated (the simulation checks those frame by frame), or is refused
-// already.
+// values was not readable, is animated (`check_channels` checks those frame by frame), or is
+// refused already; a value that breaks one is no longer sound.
 
 /// end >= start, and at most 10^6 frames. SCENE FORMAT, scene.
 void check_frames(const Scene& scene, std::span<Attribute> table, Findings& findings);
@@ -42,5 +42,10 @@ void check_unique(std::span<const Named> named, Findings& findings);
 /// be read: what is wrong with them is told elsewhere.
 void check_targets(const Scene& scene, std::span<const Targets> targets,
                    std::span<const Named> named, Findings& findings);
+
+/// What a run would refuse besides, so that a file with problems tells all of them at once:
+/// channels that break their rule at a frame, mesh files that cannot be opened. Looks only at what
+/// is sound.
+void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file);
 
 }  // namespace pliant::xml

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,8 @@ struct SceneFile {
   SceneOrigin origin;
   Findings findings;
   std::vector<Targets> targets = {};
+  /// `NAME.attribute` of those with a mistake: their values are not what the author means.
+  std::set<std::string, std::less<>> unsound = {};
 };
 
 }  // namespace pliant::xml

@@ -77,9 +77,9 @@ Surface SurfaceReader::read(std::optional<double> fps) {
 
   if (!surface_.name.empty()) {
     file_.origin.lines[surface_.name] = element_.GetLineNum();
-    record_lines(surface_.name, own_, file_.origin);
+    record(surface_.name, own_, file_);
     for (const Part* part : {&transform_, &material_, &tangents_, &solver_})
-      record_lines(surface_.name, part->table, file_.origin);
+      record(surface_.name, part->table, file_);
   }
   return std::move(surface_);
 }
@@ -111,7 +111,7 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   check_nodes(grid, table, element.GetLineNum(), file_.findings);
   if (!is_first) return;
   surface_.shape = grid;
-  if (!surface_.name.empty()) record_lines(surface_.name, table, file_.origin);
+  if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
 void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
@@ -122,7 +122,7 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   read_children(element, {}, file_.findings);
   if (!is_first) return;
   surface_.shape = mesh;
-  if (!surface_.name.empty()) record_lines(surface_.name, table, file_.origin);
+  if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
 void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {

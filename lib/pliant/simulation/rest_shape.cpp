@@ -6,6 +6,7 @@
 
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/read_obj.hpp"
+#include "pliant/scene/check.hpp"
 
 namespace pliant {
 namespace {
@@ -33,11 +34,8 @@ struct MakeMesh {
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin) {
   const auto at_scene = [&](Error error) {
     // A file that cannot be opened is the scene's mistake; one with bad contents speaks for itself.
-    if (error.code == ErrorCode::Unreadable) {
-      error.message =
-          fmt::format("surface \"{}\": {}: {}", surface.name, error.file, error.message);
-      error.file.clear();
-    }
+    if (error.code == ErrorCode::Unreadable)
+      return fail(unreadable_mesh(error, surface.name, origin));
     if (error.file.empty()) {
       error.file = origin.file;
       error.line = origin.line_of(surface.name, "file");

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
-#include "pliant/simulation/channel_check.hpp"
 #include "pliant/simulation/sampling.hpp"
 
 namespace pliant {

@@ -1,4 +1,4 @@
-#include "pliant/simulation/channel_check.hpp"
+#include "pliant/scene/channel_check.hpp"
 
 #include <cmath>
 #include <optional>
@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/core/transform.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
-#include "pliant/simulation/sampling.hpp"
 
 namespace pliant {
 namespace {
@@ -49,7 +49,8 @@ Complaint anything(const Value<D>&) {
 
 class ChannelChecker {
  public:
-  explicit ChannelChecker(const Scene& scene) : scene_(scene) {}
+  ChannelChecker(const Scene& scene, const ChannelFilter& is_checked)
+      : scene_(scene), is_checked_(is_checked) {}
 
   void check(const Surface& surface) {
     check(surface.name, "translate", surface.transform.translate, anything<3>);
@@ -113,6 +114,7 @@ class ChannelChecker {
   template <int D, class Rule>
   bool check(const std::string& name, std::string_view attribute, const Channel<D>& channel,
              const Rule& rule) {
+    if (!is_checked(name, attribute)) return false;
     const int last = channel.is_animated() ? scene_.end : scene_.start;
     for (int frame = scene_.start; frame <= last; ++frame) {
       const Value<D> value = channel.at(frame);
@@ -128,6 +130,7 @@ class ChannelChecker {
   }
 
   void check_ellipticity(const Surface& surface) {
+    if (!is_checked(surface.name, "c")) return;
     const auto& [density, damping, b, c, d] = surface.material;
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
     const int last = is_animated ? scene_.end : scene_.start;
@@ -142,6 +145,10 @@ class ChannelChecker {
     }
   }
 
+  bool is_checked(const std::string& name, std::string_view attribute) const {
+    return !is_checked_ || is_checked_(name, attribute);
+  }
+
   void add_error(const std::string& name, std::string_view attribute, int frame,
                  const std::string& complaint) {
     errors_.push_back(
@@ -152,13 +159,14 @@ class ChannelChecker {
   }
 
   const Scene& scene_;
+  const ChannelFilter& is_checked_;
   std::vector<Error> errors_;
 };
 
 }  // namespace
 
-std::vector<Error> check_channels(const Scene& scene) {
-  ChannelChecker checker(scene);
+std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked) {
+  ChannelChecker checker(scene, is_checked);
   for (const Surface& surface : scene.surfaces) checker.check(surface);
   for (const Force& force : scene.forces) checker.check(force);
   return checker.take_errors();

@@ -1,4 +1,4 @@
-#include "pliant/simulation/channel_check.hpp"
+#include "pliant/scene/channel_check.hpp"
 
 #include <limits>
 #include <string>
@@ -19,11 +19,11 @@ std::string complaint(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("a sound scene has nothing to complain about", "[simulation][channels]") {
+TEST_CASE("a sound scene has nothing to complain about", "[scene][channels]") {
   CHECK(complaint(scene({sheet("s")}, {poke("f", {0, 0, 0})})) == "none");
 }
 
-TEST_CASE("each channel's rule is checked at each frame of the range", "[simulation][channels]") {
+TEST_CASE("each channel's rule is checked at each frame of the range", "[scene][channels]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})}, 24);
   Surface& surface = s.surfaces[0];
   Force& force = s.forces[0];
@@ -79,13 +79,13 @@ TEST_CASE("each channel's rule is checked at each frame of the range", "[simulat
   CHECK(check_channels(s).size() == 1);
 }
 
-TEST_CASE("what happens outside the range is no matter", "[simulation][channels]") {
+TEST_CASE("what happens outside the range is no matter", "[scene][channels]") {
   Scene s = scene({sheet("s")}, {}, 5);
   s.surfaces[0].material.density = curve({{1, 1}, {5, 1}, {20, -100}});
   CHECK(complaint(s) == "none");
 }
 
-TEST_CASE("a channel's error has the line where it was written", "[simulation][channels]") {
+TEST_CASE("a channel's error has the line where it was written", "[scene][channels]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
   s.origin = {"a.xml", {{"s", 3}, {"s.density", 5}, {"f", 9}}};
   s.surfaces[0].material.density = -1.0;
