@@ -129,11 +129,21 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   return summary;
 }
 
-// What the author should know although the run went on, each with the line of its force.
+// Where a warning's cause stands: the force, or the tangents that come first.
+int line_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.force.empty()) return origin.line_of(warning.force);
+  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
+    const auto found = origin.lines.find(warning.surface + '.' + tangent);
+    if (found != origin.lines.end()) return found->second;
+  }
+  return origin.line_of(warning.surface);
+}
+
+// What the author should know although the run went on, each with its line.
 void print_warnings(const Simulation& simulation) {
   const SceneOrigin& origin = simulation.scene().origin;
   for (const Warning& warning : simulation.warnings()) {
-    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, origin.line_of(warning.force),
+    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, line_of(warning, origin),
                               warning.message()));
   }
 }

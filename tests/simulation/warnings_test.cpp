@@ -1,8 +1,10 @@
 #include "pliant/simulation/warnings.hpp"
 
 #include "support/catch.hpp"
+#include "support/scenes.hpp"
 
 using namespace pliant;
+using namespace pliant::testing;
 using Catch::Matchers::Contains;
 
 TEST_CASE("warnings come once a cause, with all its frames", "[simulation][warnings]") {
@@ -10,7 +12,7 @@ TEST_CASE("warnings come once a cause, with all its frames", "[simulation][warni
   for (const int frame : {7, 5, 6, 9}) log.add(Warning::Kind::LostNodes, "sheet", "poke", frame);
   log.add(Warning::Kind::RegionTooSmall, "sheet", "poke", 2);
   log.add(Warning::Kind::LostNodes, "sheet", "other", 7);
-  const auto warnings = log.warnings();
+  const auto warnings = log.warnings(false);
   REQUIRE(warnings.size() == 3);
   CHECK_THAT(
       warnings[0].message(),
@@ -19,4 +21,85 @@ TEST_CASE("warnings come once a cause, with all its frames", "[simulation][warni
              Contains("\"other\" lost its own nodes on \"sheet\" at frame 7:"));
   CHECK_THAT(warnings[2].message(),
              Contains("\"poke\" lost its own nodes") && Contains("at frames 5-7, 9"));
+}
+
+TEST_CASE("what never happened is told once the range is complete", "[simulation][warnings]") {
+  WarningLog log;
+  using enum Warning::Kind;
+  for (const int frame : {1, 2, 3}) {
+    log.expect(SelectsNothing, "sheet", "poke", frame);
+    log.expect(SelectsNothing, "", "other", frame);
+  }
+  log.happened(SelectsNothing, "", "other");
+  CHECK(log.warnings(false).empty());
+  REQUIRE(log.warnings(true).size() == 1);
+  CHECK_THAT(log.warnings(true)[0].message(),
+             Contains("\"poke\" selects no node of \"sheet\" at frames 1-3"));
+}
+
+namespace {
+
+std::vector<Warning> warnings_of(const Scene& s, int last_frame) {
+  auto simulation = Simulation::make(s).value();
+  REQUIRE(simulation.at(last_frame));
+  return simulation.warnings();
+}
+
+}  // namespace
+
+TEST_CASE("a force that selects nothing is a warning only over the whole range",
+          "[simulation][warnings]") {
+  Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})}, 9);
+  s.surfaces[1].transform.translate = Value<3>{100, 0, 0};
+  CHECK(warnings_of(s, 9).empty());  // it touches a, and b is not named
+
+  s.forces[0].targets = {"a", "b"};
+  const auto missed = warnings_of(s, 9);
+  REQUIRE(missed.size() == 1);
+  CHECK_THAT(missed[0].message(), Contains("\"f\" selects no node of \"b\" at frames 1-8"));
+  CHECK(warnings_of(s, 8).empty());  // it may still come
+
+  s.forces[0].targets.clear();
+  s.forces[0].shape = PointChannels{.center = Value<3>{0, 50, 0}};
+  const auto nowhere = warnings_of(s, 9);
+  REQUIRE(nowhere.size() == 1);
+  CHECK_THAT(nowhere[0].message(), Contains("selects no node of any surface at frames 1-8"));
+  s.forces[0].enabled = switch_at({{1, false}, {6, true}});
+  CHECK_THAT(warnings_of(s, 9)[0].message(), Contains("at frames 6-8"));
+  s.forces[0].enabled = false;
+  CHECK(warnings_of(s, 9).empty());  // switched off on purpose
+  s.forces[0].enabled = true;
+  s.forces[0].shape =
+      PointChannels{.center = vector_curve({{1, {0, 50, 0}}, {7, {0, 50, 0}}, {8, {0, 0, 0}}})};
+  CHECK(warnings_of(s, 9).empty());  // it comes at last
+}
+
+TEST_CASE("a force box outside the region is a warning, one that reaches out is not",
+          "[simulation][warnings]") {
+  // The second force selects nothing itself: it pushes where the first one's region reaches.
+  Scene s = scene({sheet("a", 41)}, {poke("f", {0, 0, 0}), poke("g", {12, 0, 0})}, 5);
+  s.forces[1].deformation_radius = 0;
+  const auto outside = warnings_of(s, 5);
+  REQUIRE(outside.size() == 2);
+  CHECK(outside[0].kind == Warning::Kind::OutsideRegion);
+  CHECK_THAT(outside[0].message(), Contains("box of \"g\" lies outside the region solved on \"a\" "
+                                            "at frames 1-4"));
+  CHECK(outside[1].kind == Warning::Kind::SelectsNothing);
+  s.forces[1].magnitude = 0.0;
+  CHECK(warnings_of(s, 5).size() == 1);  // nothing is lost
+  s.forces[1] = poke("g", {5, 0, 0});
+  s.forces[1].deformation_radius = 0;
+  CHECK(warnings_of(s, 5).empty());
+}
+
+TEST_CASE("tangents that no force ever selects are a warning", "[simulation][warnings]") {
+  Scene s = scene({sheet("a")}, {}, 5);
+  s.surfaces[0].tangents.sv1 = Channel<3>(Value<3>{0, 2, 0});
+  const auto unused = warnings_of(s, 5);
+  REQUIRE(unused.size() == 1);
+  CHECK_THAT(unused[0].message(), Contains("tangents of \"a\" have no effect at frames 1-4"));
+  s.forces.push_back(poke("f", {0, 0, 0}, 0));
+  CHECK(warnings_of(s, 5).empty());
+  s.surfaces[0].enabled = false;
+  CHECK(warnings_of(s, 5).empty());  // nothing is solved on purpose
 }

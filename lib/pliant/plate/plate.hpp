@@ -40,6 +40,8 @@ struct EdgeTangents {
   Vector3d su1 = Vector3d::Zero();
   Vector3d sv0 = Vector3d::Zero();
   Vector3d sv1 = Vector3d::Zero();
+
+  bool are_zero() const { return su0.isZero(0) && su1.isZero(0) && sv0.isZero(0) && sv1.isZero(0); }
 };
 
 /// Displacement and velocity on all nodes of the rectangle, rim included.

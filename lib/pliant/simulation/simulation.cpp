@@ -59,6 +59,7 @@ Simulation::Simulation(Scene scene, std::vector<RestShape> rest_shapes,
     : scene_(std::move(scene)),
       rest_shapes_(std::move(rest_shapes)),
       frame_(scene_.start),
+      furthest_frame_(scene_.start),
       checkpoints_(scene_.start, options.checkpoint_bytes),
       should_stop_(options.should_stop) {
   for (std::size_t k = 0; k < rest_shapes_.size(); ++k) {
@@ -111,6 +112,7 @@ Result<void> Simulation::go_to(int frame) {
   while (frame_ < frame) {
     if (auto stepped = step(); !stepped) return stepped;
     ++frame_;
+    furthest_frame_ = std::max(furthest_frame_, frame_);
     if (checkpoints_.is_due(frame_)) checkpoints_.offer(frame_, states());
   }
   return {};
@@ -124,22 +126,42 @@ Result<void> Simulation::step() {
     const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
     const auto report = bodies_[k].step(inputs.body, should_stop_);
     if (!report) return fail(located(report.error(), surface, frame_));
-    warn(surface, inputs.force_indices, *report);
+    warn(surface, inputs, *report);
   }
   return {};
 }
 
-void Simulation::warn(const Surface& surface, std::span<const std::size_t> forces,
+void Simulation::warn(const Surface& surface, const SurfaceInputs& inputs,
                       const StepReport& report) {
+  using enum Warning::Kind;
   for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
-    if (!report.is_solved && !report.selection.forces[k].deformation.is_empty()) {
-      warnings_.add(Warning::Kind::RegionTooSmall, surface.name, scene_.forces[forces[k]].name,
-                    frame_);
+    const Force& force = scene_.forces[inputs.force_indices[k]];
+    const auto& [deformation, box] = report.selection.forces[k];
+    const bool acts = report.is_solved && !intersection(box, report.selection.region).is_empty();
+    if (!report.is_solved && !deformation.is_empty()) {
+      warnings_.add(RegionTooSmall, surface.name, force.name, frame_);
     }
+    const bool is_outside = report.is_solved && !box.is_empty() && !acts;
+    if (is_outside && inputs.body.forces[k].magnitude != 0) {
+      warnings_.add(OutsideRegion, surface.name, force.name, frame_);
+    }
+    // A force that names its targets is expected to touch each; one for all surfaces, some of them.
+    const std::string place = force.targets.empty() ? std::string() : surface.name;
+    warnings_.expect(SelectsNothing, place, force.name, frame_);
+    if (!deformation.is_empty() || acts) warnings_.happened(SelectsNothing, place, force.name);
   }
   for (const int k : report.lost) {
-    warnings_.add(Warning::Kind::LostNodes, surface.name, scene_.forces[forces[k]].name, frame_);
+    const Force& force = scene_.forces[inputs.force_indices[static_cast<std::size_t>(k)]];
+    warnings_.add(LostNodes, surface.name, force.name, frame_);
   }
+  if (!inputs.body.tangents.are_zero()) {
+    warnings_.expect(TangentsUnused, surface.name, {}, frame_);
+    if (report.is_solved) warnings_.happened(TangentsUnused, surface.name, {});
+  }
+}
+
+std::vector<Warning> Simulation::warnings() const {
+  return warnings_.warnings(furthest_frame_ == scene_.end);
 }
 
 // Back to a kept frame, or to the start, where all is at rest.

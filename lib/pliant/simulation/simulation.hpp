@@ -15,6 +15,8 @@
 
 namespace pliant {
 
+struct SurfaceInputs;
+
 /// How a simulation runs; none of it changes a result.
 struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick. [bytes]
@@ -49,8 +51,10 @@ class Simulation {
   /// The surfaces at rest, in the order of the scene.
   std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
 
-  /// What the frames computed so far gave reason to warn about.
-  std::vector<Warning> warnings() const { return warnings_.warnings(); }
+  /// What the frames computed so far gave reason to warn about, each cause once with its frames.
+  /// What happens in no frame at all, such as a force that selects nothing, is told once the last
+  /// frame has been computed.
+  std::vector<Warning> warnings() const;
 
   /// What the surfaces' solvers had to do so far, added up.
   SolverCounts solver_counts() const;
@@ -60,7 +64,7 @@ class Simulation {
 
   Result<void> go_to(int frame);
   Result<void> step();
-  void warn(const Surface& surface, std::span<const std::size_t> forces, const StepReport& report);
+  void warn(const Surface& surface, const SurfaceInputs& inputs, const StepReport& report);
   void rewind(int frame);
   std::vector<BodyState> states() const;
   Error located(Error error, const Surface& surface, int frame) const;
@@ -70,6 +74,7 @@ class Simulation {
   std::vector<RestShape> rest_shapes_;
   std::vector<Body> bodies_;  // one a surface
   int frame_;                 // whose output the bodies hold
+  int furthest_frame_;        // that was ever computed
   Checkpoints checkpoints_;
   StopRequest should_stop_;
   WarningLog warnings_;

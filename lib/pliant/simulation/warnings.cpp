@@ -18,6 +18,17 @@ std::string Warning::message() const {
           "force \"{}\" lost its own nodes on \"{}\" {}: they are out of its reach; "
           "measure=\"rest\" measures on the rest mesh",
           force, surface, when);
+    case Kind::OutsideRegion:
+      return fmt::format(
+          "the force box of \"{}\" lies outside the region solved on \"{}\" {}: it pushes nothing",
+          force, surface, when);
+    case Kind::SelectsNothing:
+      return fmt::format(
+          "force \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", force,
+          surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+    case Kind::TangentsUnused:
+      return fmt::format("the tangents of \"{}\" have no effect {}: no force selects a region",
+                         surface, when);
   }
   return {};
 }
@@ -27,9 +38,25 @@ void WarningLog::add(Warning::Kind kind, const std::string& surface, const std::
   frames_[{kind, surface, force}].add(frame);
 }
 
-std::vector<Warning> WarningLog::warnings() const {
+void WarningLog::expect(Warning::Kind kind, const std::string& surface, const std::string& force,
+                        int frame) {
+  expected_[{kind, surface, force}].add(frame);
+}
+
+void WarningLog::happened(Warning::Kind kind, const std::string& surface,
+                          const std::string& force) {
+  happened_.insert({kind, surface, force});
+}
+
+std::vector<Warning> WarningLog::warnings(bool is_range_complete) const {
+  std::map<Cause, FrameRanges> all = frames_;
+  if (is_range_complete) {
+    for (const auto& [cause, frames] : expected_) {
+      if (!happened_.contains(cause)) all.emplace(cause, frames);
+    }
+  }
   std::vector<Warning> warnings;
-  for (const auto& [cause, frames] : frames_) {
+  for (const auto& [cause, frames] : all) {
     warnings.push_back({cause.kind, cause.surface, cause.force, frames});
   }
   return warnings;
