@@ -1,0 +1,51 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pliant {
+
+/// Threads that wait for work. What the work computes must not depend on which thread does it or in
+/// which order: then nothing depends on how many there are. SPEC 10.
+class ThreadPool {
+ public:
+  /// `threads` in all, the calling one among them; 1 starts none. Requires: threads >= 1.
+  explicit ThreadPool(int threads);
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+  ~ThreadPool();
+
+  int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Calls work(0) to work(count - 1), each once, some of them at the same time, and returns when
+  /// all are done. An exception of theirs goes on from here, the one of the smallest index. One
+  /// call at a time, and none from within the work.
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
+
+ private:
+  struct Failure {
+    std::size_t index = 0;
+    std::exception_ptr exception;
+  };
+
+  void wait_for_work();
+  void take_part();
+
+  std::mutex mutex_;
+  std::condition_variable work_is_there_;
+  std::condition_variable work_is_done_;
+  const std::function<void(std::size_t)>* work_ = nullptr;
+  std::size_t count_ = 0;
+  std::size_t next_ = 0;  // index that nobody has taken yet
+  std::size_t done_ = 0;
+  Failure failure_;
+  bool is_closing_ = false;
+  std::vector<std::jthread> threads_;  // last: they use all of the above
+};
+
+}  // namespace pliant
