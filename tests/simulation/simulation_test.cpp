@@ -9,6 +9,8 @@
 using namespace pliant;
 using namespace pliant::testing;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -241,4 +243,61 @@ TEST_CASE("a region too small to solve is told once, with its frames", "[simulat
   REQUIRE(simulation.warnings().size() == 1);
   CHECK_THAT(simulation.warnings()[0].message(),
              Contains("\"tiny\"") && Contains("frames 1-3, 6-11"));
+}
+
+TEST_CASE("the number of threads changes no bit", "[simulation][threads]") {
+  Scene s = scene({sheet("a", 21), sheet("b", 13), sheet("c", 17), sheet("d", 9)},
+                  {poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)}, 8);
+  s.surfaces[1].enabled = false;
+  const auto all_frames = [&](int threads) {
+    auto simulation = Simulation::make(s, {.threads = threads}).value();
+    std::vector<Field> positions;
+    for (const int frame : simulation.frames()) {
+      const Frame at_frame = simulation.at(frame).value();
+      for (const auto& surface : at_frame.surfaces()) {
+        positions.push_back(surface.positions());
+      }
+    }
+    return positions;
+  };
+  const auto alone = all_frames(1);
+  for (const int threads : {2, 3, 8}) CHECK((all_frames(threads) == alone));
+}
+
+TEST_CASE("what a run takes is known before it is allocated", "[simulation][memory]") {
+  Scene s = scene({sheet("small"), sheet("large", 10'000)}, {poke("f", {0, 0, 0})});
+  s.origin = {"scene.xml", {{"small", 3}, {"large", 4}}};
+  const auto too_large = Simulation::make(s, {.max_memory = 1'000'000'000});
+  REQUIRE_FALSE(too_large);
+  CHECK(too_large.error().code == ErrorCode::OutOfMemory);
+  CHECK(too_large.error().line == 4);
+  CHECK_THAT(too_large.error().message,
+             StartsWith("surface \"large\" takes ") && EndsWith("of the 1 GB allowed"));
+  CHECK(Simulation::check(s));  // all else about it is right
+
+  // The surface fits, and so does the factor of a small region; that of a large one does not.
+  s = scene({sheet("s", 151)}, {poke("f", {0, 0, 0})}, 3);
+  s.forces[0].deformation_radius = curve({{1, 4.5}, {2, 100}});
+  auto simulation = Simulation::make(s, {.max_memory = 30'000'000}).value();
+  CHECK(simulation.at(2));
+  const auto refused = simulation.at(3);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::OutOfMemory);
+  CHECK_THAT(
+      refused.error().message,
+      StartsWith("surface \"s\", frame 2: the factor of the plate's matrix of 22201 unknowns "
+                 "takes "));
+  CHECK(simulation.at(2));  // and it goes on
+  CHECK(Simulation::make(s, {.max_memory = 60'000'000}).value().at(3));
+}
+
+TEST_CASE("a scene is checked without being run", "[simulation][check]") {
+  CHECK(Simulation::check(scene({}, {poke("f", {0, 0, 0})})));  // no surface: nothing to refuse
+  Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})});
+  CHECK(Simulation::check(s));
+  s.surfaces[0].shape = MeshFile{"none.obj", ""};
+  s.surfaces[1].material.density = -1;
+  const auto refused = Simulation::check(s);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().others.size() == 1);  // both
 }

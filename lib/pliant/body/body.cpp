@@ -55,8 +55,11 @@ std::vector<int> lost_forces(const Grid& grid, const Transform& transform, const
 
 }  // namespace
 
-Body::Body(const Grid& grid, Field rest, const BodySettings& settings)
-    : grid_(grid), rest_(std::move(rest)), settings_(settings), solver_(make_solver()) {
+Body::Body(const Grid& grid, Field rest, const BodySettings& settings, MemoryBudget* budget)
+    : grid_(grid),
+      rest_(std::move(rest)),
+      settings_(settings),
+      solver_(make_solver(available_solvers().front(), budget)) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
   reset();
 }

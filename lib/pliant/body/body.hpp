@@ -46,7 +46,8 @@ struct StepReport {
 class Body {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
-  Body(const Grid& grid, Field rest, const BodySettings& settings);
+  /// The solver takes its memory out of `budget`, which outlives the body; none: no limit.
+  Body(const Grid& grid, Field rest, const BodySettings& settings, MemoryBudget* budget = nullptr);
 
   /// The rest mesh, and no carried velocity.
   void reset();

@@ -41,6 +41,9 @@ class CholmodFactorization {
     return check(matrix.rows());
   }
 
+  // Of the factor of what was analysed.
+  std::size_t factor_entries() const { return static_cast<std::size_t>(common_.lnz); }
+
   Result<void> factorize(const SparseMatrix& matrix) {
     cholmod_sparse view = view_of(matrix);
     cholmod_factorize(&view, factor_, &common_);
@@ -107,8 +110,8 @@ class CholmodFactorization {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_cholmod_solver() {
-  return std::make_unique<DirectSolver<CholmodFactorization>>();
+std::unique_ptr<LinearSolver> make_cholmod_solver(MemoryBudget* budget) {
+  return std::make_unique<DirectSolver<CholmodFactorization>>(budget);
 }
 
 }  // namespace pliant

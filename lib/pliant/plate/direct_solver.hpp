@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <new>
 #include <optional>
 #include <utility>
@@ -11,24 +13,34 @@
 namespace pliant {
 
 /// A solver that factors the sparse matrix, and what such solvers share: what is kept, and when.
-/// `Factorization` has `Result<void> analyze(const SparseMatrix&)`, `Result<void> factorize(const
-/// SparseMatrix&)` for a matrix of the pattern analysed last, and `Result<Field> solve(const
-/// Field&)`; the matrices are upper triangles.
+/// `Factorization` has `Result<void> analyze(const SparseMatrix&)`, `std::size_t factor_entries()
+/// const` for what was analysed, `Result<void> factorize(const SparseMatrix&)` for a matrix of the
+/// same pattern, and `Result<Field> solve(const Field&)`; the matrices are upper triangles.
 template <class Factorization>
 class DirectSolver final : public LinearSolver {
  public:
+  explicit DirectSolver(MemoryBudget* budget) : memory_(budget) {}
+
   Result<void> factor(const PlateSystem& system) override try {
     if (factored_ == system) return {};
     const bool same_pattern = factored_ && factored_->grid.columns == system.grid.columns &&
                               factored_->grid.rows == system.grid.rows;
     factored_.reset();
+    const long size = unknown_count(system.grid);
+    if (!same_pattern) {
+      // The old factor goes first, so that there is room for the new one.
+      factorization_ = std::make_unique<Factorization>();
+      if (auto taken = take(size, bytes_to_analyze * size); !taken) return taken;
+    }
     const SparseMatrix matrix = assemble_upper(system);
     if (!same_pattern) {
       ++counts_.analyses;
-      if (auto analyzed = factorization_.analyze(matrix); !analyzed) return analyzed;
+      if (auto analyzed = factorization_->analyze(matrix); !analyzed) return analyzed;
+      const std::size_t factor = bytes_of_entry * factorization_->factor_entries();
+      if (auto taken = take(size, bytes_to_factorize * size + factor); !taken) return taken;
     }
     ++counts_.factorizations;
-    if (auto factorized = factorization_.factorize(matrix); !factorized) return factorized;
+    if (auto factorized = factorization_->factorize(matrix); !factorized) return factorized;
     factored_ = system;
     refinement_passes_ = passes_for(estimate_condition(system));
     return {};
@@ -39,10 +51,10 @@ class DirectSolver final : public LinearSolver {
   Result<Field> solve(const Field& right_hand_sides) override try {
     PLIANT_EXPECTS(factored_ && right_hand_sides.rows() == unknown_count(factored_->grid));
     ++counts_.solves;
-    auto solution = factorization_.solve(right_hand_sides);
+    auto solution = factorization_->solve(right_hand_sides);
     for (int pass = 0; solution && pass < refinement_passes_; ++pass) {
       const auto correction =
-          factorization_.solve(residual(*factored_, *solution, right_hand_sides));
+          factorization_->solve(residual(*factored_, *solution, right_hand_sides));
       if (!correction) return correction;
       *solution += *correction;
     }
@@ -53,7 +65,22 @@ class DirectSolver final : public LinearSolver {
 
   SolverCounts counts() const override { return counts_; }
 
+  std::size_t memory() const override { return memory_.bytes(); }
+
  private:
+  // For each unknown: the matrix's upper triangle, 7 entries of 12 bytes, and the full pattern that
+  // the ordering copies, with elbow room and a dozen integers; then, beside the factor, the matrix,
+  // once more as permuted, and right-hand sides, solution and workspace of three columns each.
+  static constexpr std::size_t bytes_to_analyze = 250;
+  static constexpr std::size_t bytes_to_factorize = 350;
+  static constexpr std::size_t bytes_of_entry = 12;  // of the factor: a double and an index
+
+  Result<void> take(long size, std::size_t bytes) {
+    if (memory_.try_resize(bytes)) return {};
+    factorization_.reset();
+    return fail(factor_too_large(size, memory_.complaint(bytes)));
+  }
+
   // Iterative refinement. A factorisation leaves a relative error of up to condition x eps, and
   // each pass with an exact residual multiplies the error by that much again. Without it a static
   // plate of 401 x 401 is off by 1e-8; one pass where the error may pass 1e-9, two beyond 1e-5.
@@ -62,7 +89,8 @@ class DirectSolver final : public LinearSolver {
     return condition > 1e7 ? 1 : 0;
   }
 
-  Factorization factorization_;
+  MemoryShare memory_;
+  std::unique_ptr<Factorization> factorization_;
   std::optional<PlateSystem> factored_;  // what `factorization_` holds; none after a failure
   int refinement_passes_ = 0;            // that `factored_` asks for
   SolverCounts counts_;

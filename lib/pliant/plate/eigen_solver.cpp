@@ -13,6 +13,9 @@ class EigenFactorization {
     return {};
   }
 
+  // Of the factor of what was analysed.
+  std::size_t factor_entries() const { return ldlt_.factor_entries(); }
+
   Result<void> factorize(const SparseMatrix& matrix) {
     ldlt_.factorize(matrix);
     // Eigen reports a zero pivot only; LDL^T of an indefinite matrix goes through without a word.
@@ -28,13 +31,20 @@ class EigenFactorization {
   }
 
  private:
-  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::AMDOrdering<int>> ldlt_;
+  using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::AMDOrdering<int>>;
+
+  // Eigen counts the entries of the factor ahead, but keeps the count to itself.
+  struct CountingLdlt : Ldlt {
+    std::size_t factor_entries() const { return m_nonZerosPerCol.cast<std::size_t>().sum(); }
+  };
+
+  CountingLdlt ldlt_;
 };
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_eigen_solver() {
-  return std::make_unique<DirectSolver<EigenFactorization>>();
+std::unique_ptr<LinearSolver> make_eigen_solver(MemoryBudget* budget) {
+  return std::make_unique<DirectSolver<EigenFactorization>>(budget);
 }
 
 }  // namespace pliant

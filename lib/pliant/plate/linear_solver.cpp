@@ -19,12 +19,12 @@ std::string_view name_of(SolverKind kind) {
   return kind == SolverKind::Cholmod ? "cholmod" : "eigen";
 }
 
-std::unique_ptr<LinearSolver> make_solver(SolverKind kind) {
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind, MemoryBudget* budget) {
 #ifdef PLIANT_WITH_CHOLMOD
-  if (kind == SolverKind::Cholmod) return make_cholmod_solver();
+  if (kind == SolverKind::Cholmod) return make_cholmod_solver(budget);
 #endif
   PLIANT_EXPECTS(kind == SolverKind::Eigen);
-  return make_eigen_solver();
+  return make_eigen_solver(budget);
 }
 
 Error not_positive_definite(long size, long pivot) {
@@ -32,6 +32,11 @@ Error not_positive_definite(long size, long pivot) {
           fmt::format("the plate's matrix of {} unknowns is not positive definite: it failed at "
                       "pivot {}",
                       size, pivot)};
+}
+
+Error factor_too_large(long size, const std::string& complaint) {
+  return {ErrorCode::OutOfMemory,
+          fmt::format("the factor of the plate's matrix of {} unknowns {}", size, complaint)};
 }
 
 Error no_memory_for_factor(long size) {

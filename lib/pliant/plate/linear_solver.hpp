@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/plate/operator.hpp"
 
@@ -30,7 +32,8 @@ class LinearSolver {
   /// Makes ready for `system`. Reuse: nothing is done when it equals the last one; the symbolic
   /// work is kept while the numbers of columns and rows stay. What was kept never changes a
   /// result's bits. Errors: SolverFailed with size and pivot when the matrix is not positive
-  /// definite or not finite; OutOfMemory when the factor does not fit.
+  /// definite or not finite; OutOfMemory when the factor does not fit in the budget, which is
+  /// known before it is computed, or in memory.
   virtual Result<void> factor(const PlateSystem& system) = 0;
 
   /// Solves for three right-hand sides (#unknowns x 3). Requires: `factor` succeeded.
@@ -38,6 +41,9 @@ class LinearSolver {
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
 
   virtual SolverCounts counts() const = 0;
+
+  /// What the solver holds now. [bytes]
+  virtual std::size_t memory() const = 0;
 };
 
 /// The implementations that exist.
@@ -51,7 +57,9 @@ std::vector<SolverKind> available_solvers();
 
 std::string_view name_of(SolverKind kind);
 
-/// A solver of the given kind. Requires: `kind` is available.
-std::unique_ptr<LinearSolver> make_solver(SolverKind kind = available_solvers().front());
+/// A solver of the given kind that takes its memory out of `budget`, which outlives it; none: no
+/// limit. Requires: `kind` is available.
+std::unique_ptr<LinearSolver> make_solver(SolverKind kind = available_solvers().front(),
+                                          MemoryBudget* budget = nullptr);
 
 }  // namespace pliant

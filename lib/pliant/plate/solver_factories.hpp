@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "pliant/plate/linear_solver.hpp"
 
@@ -8,13 +9,16 @@ namespace pliant {
 
 // What each implementation gives to `make_solver`; not for other rooms.
 
-std::unique_ptr<LinearSolver> make_cholmod_solver();
-std::unique_ptr<LinearSolver> make_eigen_solver();
+std::unique_ptr<LinearSolver> make_cholmod_solver(MemoryBudget* budget);
+std::unique_ptr<LinearSolver> make_eigen_solver(MemoryBudget* budget);
 
 /// The error that all implementations report for a matrix they cannot factor.
 Error not_positive_definite(long size, long pivot);
 
-/// The error that all implementations report when the factor does not fit in memory.
+/// The error that all implementations report when the factor is more than the budget has.
+Error factor_too_large(long size, const std::string& complaint);
+
+/// The error that all implementations report when the factor does not fit in memory all the same.
 Error no_memory_for_factor(long size);
 
 }  // namespace pliant

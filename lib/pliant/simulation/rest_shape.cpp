@@ -1,5 +1,7 @@
 #include "pliant/simulation/rest_shape.hpp"
 
+#include <cstdint>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -7,6 +9,7 @@
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/read_obj.hpp"
 #include "pliant/scene/check.hpp"
+#include "pliant/simulation/memory.hpp"
 
 namespace pliant {
 namespace {
@@ -29,9 +32,25 @@ struct MakeMesh {
   }
 };
 
+// What making a shape takes, as far as it is known ahead.
+struct BytesToMake {
+  std::size_t operator()(const GridSheet& sheet) const {
+    const auto vertex_count = static_cast<std::size_t>(sheet.columns) * sheet.rows;
+    return bytes_of(sheet) + bytes_to_run(vertex_count);
+  }
+  std::size_t operator()(const MeshFile& file) const {
+    // The file and the mesh read from it; a reader may need it twice more on the way.
+    std::error_code unknown;  // of a file that is not there: reading it says so
+    const std::uintmax_t bytes = std::filesystem::file_size(file.path, unknown);
+    return unknown ? 0 : 4 * static_cast<std::size_t>(bytes);
+  }
+  std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
+};
+
 }  // namespace
 
-Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin) {
+Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                  MemoryShare& memory) {
   const auto at_scene = [&](Error error) {
     // A file that cannot be opened is the scene's mistake; one with bad contents speaks for itself.
     if (error.code == ErrorCode::Unreadable)
@@ -42,8 +61,22 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     }
     return fail(std::move(error));
   };
+  const auto take = [&](std::size_t bytes) -> Result<void> {
+    if (memory.try_resize(bytes)) return {};
+    return fail({.code = ErrorCode::OutOfMemory,
+                 .message = fmt::format("surface \"{}\" {}", surface.name, memory.complaint(bytes)),
+                 .file = origin.file,
+                 .line = origin.line_of(surface.name)});
+  };
+  if (auto taken = take(std::visit(BytesToMake{}, surface.shape)); !taken) {
+    return fail(taken.error());
+  }
   auto mesh = std::visit(MakeMesh{}, surface.shape);
   if (!mesh) return at_scene(mesh.error());
+  const auto vertex_count = static_cast<std::size_t>(mesh->vertex_count());
+  if (auto taken = take(bytes_of(*mesh) + bytes_to_run(vertex_count)); !taken) {
+    return fail(taken.error());
+  }
   auto mapping = find_grid(*mesh);
   if (!mapping) {
     Error error = mapping.error();
@@ -53,6 +86,11 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     return at_scene(std::move(error));
   }
   return RestShape{surface.name, *std::move(mesh), *std::move(mapping)};
+}
+
+Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin) {
+  MemoryShare unlimited(nullptr);
+  return make_rest_shape(surface, origin, unlimited);
 }
 
 }  // namespace pliant

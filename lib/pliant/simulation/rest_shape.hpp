@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/mesh.hpp"
@@ -19,6 +20,13 @@ struct RestShape {
 /// Makes or reads a surface's mesh and finds its grid. Errors: those of `read_obj` and
 /// `check_mesh`; what `find_grid` finds, at the surface's line in the scene; a kind of file that is
 /// not read.
+///
+/// `memory` is sized to what the shape and its body will take, before a sheet is made and once a
+/// file is read. Errors, besides: OutOfMemory when the budget has less.
+Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                  MemoryShare& memory);
+
+/// The same without a limit to memory.
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin);
 
 }  // namespace pliant

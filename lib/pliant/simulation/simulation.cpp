@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/simulation/sampling.hpp"
@@ -29,9 +32,12 @@ tl::unexpected<Error> fail_with_all(std::vector<Error> errors) {
   return fail(std::move(first));
 }
 
+tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
+
 }  // namespace
 
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
+  PLIANT_EXPECTS(options.threads >= 1);
   std::vector<Error> errors = check_scene(scene);
   if (scene.surfaces.empty()) {
     errors.push_back({.code = ErrorCode::InvalidInput,
@@ -41,33 +47,55 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
   if (!errors.empty()) return fail_with_all(std::move(errors));
 
   errors = check_channels(scene);
-  std::vector<RestShape> rest_shapes;
-  for (const Surface& surface : scene.surfaces) {
-    auto rest_shape = make_rest_shape(surface, scene.origin);
-    if (rest_shape) {
-      rest_shapes.push_back(*std::move(rest_shape));
-    } else {
+  Simulation simulation(std::move(scene), options);
+  for (const Surface& surface : simulation.scene_.surfaces) {
+    if (options.should_stop && options.should_stop()) return interrupted();
+    MemoryShare share(simulation.memory_.get());
+    auto rest_shape = make_rest_shape(surface, simulation.scene_.origin, share);
+    if (!rest_shape) {
       errors.push_back(std::move(rest_shape.error()));
+      continue;
     }
+    simulation.add_body(surface, *std::move(rest_shape), std::move(share));
   }
   if (!errors.empty()) return fail_with_all(std::move(errors));
-  return Simulation(std::move(scene), std::move(rest_shapes), options);
+  return simulation;
 }
 
-Simulation::Simulation(Scene scene, std::vector<RestShape> rest_shapes,
-                       const SimulationOptions& options)
+Result<void> Simulation::check(const Scene& scene, const SimulationOptions& options) {
+  std::vector<Error> errors = check_scene(scene);
+  if (!errors.empty()) return fail_with_all(std::move(errors));
+
+  errors = check_channels(scene);
+  MemoryBudget memory(options.max_memory);
+  for (const Surface& surface : scene.surfaces) {
+    if (std::holds_alternative<GridSheet>(surface.shape)) continue;  // `check_scene` looked at it
+    if (options.should_stop && options.should_stop()) return interrupted();
+    MemoryShare share(&memory);
+    auto rest_shape = make_rest_shape(surface, scene.origin, share);
+    if (!rest_shape) errors.push_back(std::move(rest_shape.error()));
+  }
+  if (!errors.empty()) return fail_with_all(std::move(errors));
+  return {};
+}
+
+Simulation::Simulation(Scene scene, const SimulationOptions& options)
     : scene_(std::move(scene)),
-      rest_shapes_(std::move(rest_shapes)),
+      memory_(std::make_unique<MemoryBudget>(options.max_memory)),
       frame_(scene_.start),
       furthest_frame_(scene_.start),
       checkpoints_(scene_.start, options.checkpoint_bytes),
-      should_stop_(options.should_stop) {
-  for (std::size_t k = 0; k < rest_shapes_.size(); ++k) {
-    const SolverSettings& solver = scene_.surfaces[k].solver;
-    const GridMapping& mapping = rest_shapes_[k].mapping;
-    bodies_.emplace_back(mapping.grid, mapping.rest,
-                         BodySettings{solver.stepping, solver.reference, solver.measure});
-  }
+      threads_(std::make_unique<ThreadPool>(options.threads)),
+      should_stop_(options.should_stop) {}
+
+void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemoryShare share) {
+  const SolverSettings& solver = surface.solver;
+  const GridMapping& mapping = rest_shape.mapping;
+  bodies_.emplace_back(mapping.grid, mapping.rest,
+                       BodySettings{solver.stepping, solver.reference, solver.measure},
+                       memory_.get());
+  rest_shapes_.push_back(std::move(rest_shape));
+  shares_.push_back(std::move(share));
 }
 
 // The error with the surface and the frame that it befell.
@@ -118,13 +146,25 @@ Result<void> Simulation::go_to(int frame) {
   return {};
 }
 
-// From the output of frame_ to that of the next frame.
+// From the output of frame_ to that of the next frame. The surfaces know nothing of each other, so
+// they may go at the same time; what they report is looked at in their order.
 Result<void> Simulation::step() {
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+  struct Outcome {
+    SurfaceInputs inputs;
+    Result<StepReport> report;
+  };
+  std::vector<std::optional<Outcome>> outcomes(bodies_.size());
+  threads_->for_each(bodies_.size(), [&](std::size_t k) {
     const Surface& surface = scene_.surfaces[k];
-    if (!surface.enabled || frame_ < start_frame(surface)) continue;
-    const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
-    const auto report = bodies_[k].step(inputs.body, should_stop_);
+    if (!surface.enabled || frame_ < start_frame(surface)) return;
+    SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
+    Result<StepReport> report = bodies_[k].step(inputs.body, should_stop_);
+    outcomes[k] = Outcome{std::move(inputs), std::move(report)};
+  });
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!outcomes[k]) continue;
+    const auto& [inputs, report] = *outcomes[k];
+    const Surface& surface = scene_.surfaces[k];
     if (!report) return fail(located(report.error(), surface, frame_));
     warn(surface, inputs, *report);
   }
@@ -185,6 +225,12 @@ std::vector<BodyState> Simulation::states() const {
 
 int Simulation::start_frame(const Surface& surface) const {
   return std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
+}
+
+std::size_t Simulation::surface_memory() const {
+  std::size_t bytes = 0;
+  for (const MemoryShare& share : shares_) bytes += share.bytes();
+  return bytes;
 }
 
 SolverCounts Simulation::solver_counts() const {

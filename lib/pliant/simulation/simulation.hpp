@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
+#include <memory>
 #include <ranges>
 #include <span>
 #include <vector>
 
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/checkpoints.hpp"
 #include "pliant/simulation/frame.hpp"
@@ -22,7 +26,15 @@ struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick. [bytes]
   std::size_t checkpoint_bytes = std::size_t{256} << 20;
 
-  /// Asked ahead of every time step; `at` then fails with Interrupted.
+  /// Memory that surfaces and solvers may take together; what does not fit is refused before it is
+  /// allocated. Checkpoints come on top. [bytes]
+  std::size_t max_memory = std::numeric_limits<std::size_t>::max();
+
+  /// Threads that work on several surfaces at the same time, the caller's among them. >= 1
+  int threads = 1;
+
+  /// Asked ahead of every surface that is read and of every time step, by any of the threads;
+  /// `make` and `at` then fail with Interrupted.
   StopRequest should_stop = {};
 };
 
@@ -35,8 +47,14 @@ struct SimulationOptions {
 class Simulation {
  public:
   /// Reads the meshes, finds the grids and checks every channel at every frame of the range.
-  /// Errors: every problem found, with file and line where the scene came from a file.
+  /// Errors: every problem found, with file and line where the scene came from a file; OutOfMemory
+  /// where a surface is larger than `max_memory`; Interrupted.
   static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
+
+  /// Whether `make` would succeed, as far as it is known without making the sheets of the scene:
+  /// reads its mesh files and looks at all channels. A scene without a surface is all right.
+  /// Errors: as `make`.
+  static Result<void> check(const Scene& scene, const SimulationOptions& options = {});
 
   /// The scene's frames, start to end.
   std::ranges::iota_view<int, int> frames() const { return {scene_.start, scene_.end + 1}; }
@@ -56,12 +74,16 @@ class Simulation {
   /// frame has been computed.
   std::vector<Warning> warnings() const;
 
+  /// What the surfaces take, and a frame of each, without their solvers' factors. [bytes]
+  std::size_t surface_memory() const;
+
   /// What the surfaces' solvers had to do so far, added up.
   SolverCounts solver_counts() const;
 
  private:
-  Simulation(Scene scene, std::vector<RestShape> rest_shapes, const SimulationOptions& options);
+  Simulation(Scene scene, const SimulationOptions& options);
 
+  void add_body(const Surface& surface, RestShape rest_shape, MemoryShare share);
   Result<void> go_to(int frame);
   Result<void> step();
   void warn(const Surface& surface, const SurfaceInputs& inputs, const StepReport& report);
@@ -71,11 +93,14 @@ class Simulation {
   int start_frame(const Surface& surface) const;
 
   Scene scene_;
+  std::unique_ptr<MemoryBudget> memory_;
+  std::vector<MemoryShare> shares_;  // one a surface
   std::vector<RestShape> rest_shapes_;
   std::vector<Body> bodies_;  // one a surface
   int frame_;                 // whose output the bodies hold
   int furthest_frame_;        // that was ever computed
   Checkpoints checkpoints_;
+  std::unique_ptr<ThreadPool> threads_;
   StopRequest should_stop_;
   WarningLog warnings_;
 };

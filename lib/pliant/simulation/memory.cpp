@@ -1,0 +1,40 @@
+#include "pliant/simulation/memory.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t bytes_of_vector = 3 * sizeof(double);
+constexpr std::size_t bytes_of_uv = 2 * sizeof(double);
+
+std::size_t bytes_of_mesh(std::size_t vertices, std::size_t uvs, std::size_t faces,
+                          std::size_t corners) {
+  return vertices * bytes_of_vector + uvs * bytes_of_uv + (faces + 2 * corners) * sizeof(int);
+}
+
+}  // namespace
+
+std::size_t bytes_of(const Mesh& mesh) {
+  return bytes_of_mesh(static_cast<std::size_t>(mesh.positions.rows()), mesh.uvs.size(),
+                       mesh.face_sizes.size(), mesh.corner_vertices.size());
+}
+
+std::size_t bytes_of(const GridSheet& sheet) {
+  const auto columns = static_cast<std::size_t>(sheet.columns);
+  const auto rows = static_cast<std::size_t>(sheet.rows);
+  const std::size_t quads = (columns - 1) * (rows - 1);
+  return bytes_of_mesh(columns * rows, columns * rows, (sheet.triangles ? 2 : 1) * quads,
+                       (sheet.triangles ? 6 : 4) * quads);
+}
+
+std::size_t bytes_to_run(std::size_t vertex_count) {
+  // Vectors for each node: rest in the mapping and in the body, position, velocity; while a frame
+  // is solved, nodes in world space, load in world and object space, reference, displacement,
+  // velocity, known, rim, right-hand side, solution and the temporaries of these; the frame in
+  // object space, in world space and in the writer's order. And the text of an OBJ file, or the
+  // index arrays and sorted (u,v) that finding the grid needs, which is less.
+  constexpr std::size_t vectors = 24;
+  constexpr std::size_t text = 200;
+  return vertex_count * (vectors * bytes_of_vector + text);
+}
+
+}  // namespace pliant
