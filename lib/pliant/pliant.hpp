@@ -3,6 +3,8 @@
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
 #include "pliant/io/writer.hpp"
+#include "pliant/scene/channels.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/scene.hpp"
+#include "pliant/simulation/preview.hpp"
 #include "pliant/simulation/simulation.hpp"

@@ -31,6 +31,8 @@ struct SampleShape {
   }
 };
 
+}  // namespace
+
 SampledForce sample_force(const Force& force, int frame) {
   return {.shape = std::visit(SampleShape{frame}, force.shape),
           .magnitude = force.magnitude.at(frame)[0],
@@ -38,8 +40,6 @@ SampledForce sample_force(const Force& force, int frame) {
           .force_radius = force.force_radius.at(frame)[0],
           .falloff = force.falloff};
 }
-
-}  // namespace
 
 bool targets(const Force& force, const std::string& surface) {
   return force.targets.empty() ||

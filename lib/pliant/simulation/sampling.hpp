@@ -17,6 +17,8 @@ struct SurfaceInputs {
 };
 SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame);
 
+SampledForce sample_force(const Force& force, int frame);
+
 Transform sample_transform(const TransformChannels& channels, int frame);
 
 /// Whether a force acts on a surface at all.

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// A channel of a scene with its path, `NAME.attribute`.
+struct NamedChannel {
+  std::string path;
+  std::variant<const Channel<1>*, const Channel<3>*, const Switch*> channel;
+
+  bool is_animated() const;
+};
+
+/// All channels, constant ones too, surface by surface and then force by force, each in the order
+/// of docs/scene-format.md. They point into `scene`, which must outlive them unchanged.
+std::vector<NamedChannel> channels_of(const Scene& scene);
+
+}  // namespace pliant
