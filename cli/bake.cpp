@@ -165,6 +165,7 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   bake->add_option("--space", options.space, "Space of the positions")
       ->check(CLI::IsMember({"world", "object"}))
       ->capture_default_str();
+  add_resources(*bake, options.resources);
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
 }
 
@@ -178,9 +179,7 @@ int run_bake(const BakeOptions& options) {
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
 
-  // Frames are asked for once and in order: nothing needs to be kept for going back.
-  auto simulation =
-      Simulation::make(*std::move(scene), {.checkpoint_bytes = 0, .should_stop = &was_interrupted});
+  auto simulation = Simulation::make(*std::move(scene), simulation_options(options.resources));
   if (!simulation) return report(simulation.error());
   auto outputs = open_outputs(*simulation, options, *frames);
   if (!outputs) return report(outputs.error());

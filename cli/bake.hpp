@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "resources.hpp"
+
 namespace pliant::cli {
 
 /// What `pliant bake` was asked to do.
@@ -14,6 +16,7 @@ struct BakeOptions {
   std::string surface;  ///< empty: all
   std::string space = "world";
   bool is_quiet = false;
+  ResourceOptions resources;
 };
 
 void add_bake(CLI::App& app, BakeOptions& options);

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include "bake.hpp"
+#include "info.hpp"
 #include "report.hpp"
+#include "validate.hpp"
 
 namespace {
 
@@ -23,6 +25,10 @@ int run(int count, char* arguments[]) {
 
   BakeOptions bake;
   add_bake(app, bake);
+  ValidateOptions validate;
+  add_validate(app, validate);
+  InfoOptions info;
+  add_info(app, info);
 
   try {
     app.parse(count, arguments);
@@ -32,6 +38,8 @@ int run(int count, char* arguments[]) {
     print(stderr, fmt::format("pliant: error: {}; pliant --help tells more\n", error.what()));
     return exit_usage;
   }
+  if (app.got_subcommand("validate")) return run_validate(validate);
+  if (app.got_subcommand("info")) return run_info(info);
   return run_bake(bake);
 }
 

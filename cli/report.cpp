@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include <fmt/format.h>
+
 namespace pliant::cli {
 
 void print(std::FILE* stream, std::string_view text) {
@@ -12,6 +14,12 @@ int report(const Error& error) {
   const bool is_input =
       error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
   return is_input ? exit_usage : exit_failed;
+}
+
+void print_notes(const Scene& scene) {
+  for (const SceneNote& note : scene.notes) {
+    print(stderr, fmt::format("{}:{}: note: {}\n", scene.origin.file, note.line, note.message));
+  }
 }
 
 }  // namespace pliant::cli

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/scene/scene.hpp"
 
 namespace pliant::cli {
 
@@ -17,5 +18,8 @@ void print(std::FILE* stream, std::string_view text);
 
 /// Prints every problem on stderr, one line each, and gives the exit code.
 int report(const Error& error);
+
+/// Prints what reading a scene found that is legal, but that its author would want to know.
+void print_notes(const Scene& scene);
 
 }  // namespace pliant::cli

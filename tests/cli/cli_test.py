@@ -1,11 +1,12 @@
 """Runs the command as a user does and checks exit codes, messages and files.
 
-usage: cli_test.py PLIANT SOURCE_FOLDER
+usage: cli_test.py PLIANT SOURCE_FOLDER [sanitized]
 """
 
 import os
 import pty
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import numpy as np
 
 PLIANT = None
 SOURCE = None
+SANITIZED = False  # built with a sanitizer, which takes memory of its own
 
 SCENE = """<?xml version="1.0"?>
 <scene version="1" start="1" end="{end}">
@@ -161,6 +163,214 @@ class Bake(Command):
                                         r'nodes of "sheet", too few to solve, at frames 1-4\n$')
 
 
+    def test_threads_change_no_bit(self):
+        scene = self.write("two.xml", SCENE.format(end=6).replace(
+            "<point", '<surface name="other"><grid columns="17" rows="9" width="8" depth="8"/>'
+            '</surface><point'))
+        for threads in ("1", "2", "8"):
+            self.bake(scene, "-o", self.path(f"t{threads}.npy"), "--threads", threads)
+        for name in ("sheet", "other"):
+            files = []
+            for threads in ("1", "2", "8"):
+                with open(self.path(f"t{threads}-{name}.npy"), "rb") as file:
+                    files.append(file.read())
+            self.assertEqual(files[0], files[1])
+            self.assertEqual(files[0], files[2])
+
+    def test_memory_is_refused_ahead(self):
+        scene = self.write("large.xml", SCENE.format(end=3).replace('"13"', '"9000"').replace(
+            '"11"', '"9000"'))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", "--max-memory", "2", code=1)
+        self.assertRegex(result.stderr, r'^\S*large\.xml:3: error: surface "sheet" takes \S+ GB, more '
+                                        r'than the 2 GB left of the 2 GB allowed\n$')
+        for wrong in ("0", "-1", "nan", "all", "1,5"):
+            self.run_pliant("bake", scene, "-o", "a.npy", "--max-memory", wrong, code=2)
+        self.assertEqual(self.files(), ["large.xml"])
+
+    def test_the_memory_told_ahead_is_the_memory_taken(self):
+        # One bake with a region as large as the surface; info's sum bounds it, but not by far.
+        scene = self.write("all.xml", SCENE.format(end=2).replace('"13"', '"301"').replace(
+            '"11"', '"301"').replace('"4.5"', '"100"'))
+        told = self.run_pliant("info", scene).stdout
+        surfaces, solver = re.search(r"memory\n  (\S+) MB for the surfaces, (\S+) MB for the solver",
+                                     told).groups()
+        told = (float(surfaces) + float(solver)) * 1e6
+        for out in ("a.npy", "a.obj"):
+            code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True);"
+                    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+            taken = 1000 * int(subprocess.run(
+                [sys.executable, "-c", code, PLIANT, "bake", scene, "-o", self.path(out), "--quiet"],
+                capture_output=True, text=True, check=True, timeout=120).stdout)
+            if not SANITIZED:  # their shadow memory counts too
+                self.assertLess(taken - 20e6, told)  # what any program takes
+                self.assertGreater(taken, 0.5 * told)
+
+
+class Validate(Command):
+    def test_every_scene_is_told_of(self):
+        good = self.scene()
+        bad = self.write("bad.xml", SCENE.format(end=0))
+        missing = self.write("m.xml", SCENE.format(end=9).replace(
+            '<grid columns="13" rows="11" width="12" depth="10"/>', '<mesh file="none.obj"/>'))
+        result = self.run_pliant("validate", good, bad, missing, code=2)
+        self.assertRegex(result.stdout, r"^\S*scene\.xml: all right: 1 surface, 1 force, "
+                                        r"frames 1 to 12\n$")
+        self.assertRegex(result.stderr, r"bad\.xml:2: error: .*\n\S*m\.xml:3: error: .*none\.obj")
+        self.assertEqual(self.run_pliant("validate", good, "--quiet").stdout, "")
+
+    def test_a_scene_without_a_surface_is_legal(self):
+        scene = self.write("curves.xml", '<scene version="1" start="1" end="9"><point name="p"/></scene>')
+        self.run_pliant("validate", scene)
+        self.assertIn("no surface", self.run_pliant("info", scene).stdout)
+        self.assertIn("no surface", self.run_pliant("bake", scene, "-o", "a.npy", code=2).stderr)
+
+    def test_nothing_is_run_or_allocated(self):
+        scene = self.write("large.xml", SCENE.format(end=1000000).replace('"13"', '"10000"').replace(
+            '"11"', '"10000"'))
+        self.run_pliant("validate", scene)
+
+    def test_notes_are_told(self):
+        scene = self.write("n.xml", SCENE.format(end=9).replace(' magnitude="3000"/>', """>
+    <animate attribute="magnitude">
+      <key frame="1" value="0" out="1" outLength="-2"/><key frame="9" value="5"/></animate></point>"""))
+        result = self.run_pliant("validate", scene)
+        self.assertRegex(result.stderr, r"^\S*n\.xml:6: note: poke\.magnitude: [^\n]+\n$")
+
+
+class Info(Command):
+    def test_what_an_author_chooses_numbers_by(self):
+        scene = self.write("i.xml", SCENE.format(end=48).replace(' magnitude="3000"/>', """>
+    <animate attribute="magnitude">
+      <key frame="1" value="0"/><key frame="9" value="-4000"/></animate></point>"""))
+        told = self.run_pliant("info", scene).stdout
+        for words in ("frames 1 to 48 at 24 frames/s",
+                      "sheet  sheet, grid 13 x 11, 143 vertices",
+                      "poke (point) on sheet: from frame 1 it selects 9 x 9 nodes, columns 2 to 10, "
+                      "rows 1 to 9",
+                      "at magnitude -4000 (frame 9)", " Hz, damping ratio",
+                      "poke.magnitude  2 keys: 1 = 0, 9 = -4000", "memory"):
+            self.assertIn(words, told)
+
+    def test_a_force_out_of_reach(self):
+        scene = self.write("far.xml", SCENE.format(end=9).replace('"0 0 0"', '"0 90 0"'))
+        self.assertIn("poke (point) on sheet: selects nothing at rest", self.run_pliant("info", scene).stdout)
+
+
+GRID = '<grid columns="13" rows="11" width="12" depth="10"/>'
+POINT = '<point name="poke" center="0 0 0" deformationRadius="4.5" forceRadius="2.5" magnitude="3000"/>'
+
+
+def animated(attribute, *keys):
+    return f'<animate attribute="{attribute}">' + "".join(
+        f'<key frame="{frame}" value="{value}"/>' for frame, value in keys) + "</animate>"
+
+
+# name: what is replaced in the scene, by what, the line of the error, words of its message
+BAD_SCENES = {
+    "a misspelt element": ("<grid", "<gird", 3, 'did you mean "grid"'),
+    "a misspelt attribute": ("magnitude", "magnitud", 4, 'did you mean "magnitude"'),
+    "a missing mesh file": (GRID, '<mesh file="none.obj"/>', 3, "No such file"),
+    "a folder as a mesh file": (GRID, '<mesh file="folder.obj"/>', 3, "it is a folder"),
+    "nan": ("3000", "nan", 4, "not a finite number"),
+    "a decimal comma": ("3000", "1,5", 4, 'a decimal point is written "."'),
+    "a hexadecimal number": ("3000", "0x10", 4, "stands after 0"),
+    "a number beyond all": ("3000", "1e999", 4, "outside the range"),
+    "text after a number": ("3000", "3000N", 4, '"N" stands after 3000'),
+    "a vector of two numbers": ("0 0 0", "0 0", 4, "three numbers are required, not 2"),
+    "two surfaces of one name": ("<point", f'<surface name="sheet">{GRID}</surface><point', 4,
+                                 "the name is taken at line 3"),
+    "two keys at one frame": (POINT, '<point name="p">' + animated("magnitude", (1, 0), (1, 2)) +
+                              "</point>", 4, "repeats the key"),
+    "an attribute given and animated": (POINT, '<point name="p" magnitude="3">' +
+                                        animated("magnitude", (1, 0)) + "</point>", 4, "one of both"),
+    "two columns": ('columns="13"', 'columns="2"', 3, "at least 3"),
+    "end before start": ('end="9"', 'end="0"', 2, "must not be before"),
+    "dt of 0": (GRID, GRID + '<solver dt="0"/>', 3, "must be greater than 0"),
+    "a million steps": (GRID, GRID + '<solver dt="4e-8"/>', 3, "at most 100000 are allowed"),
+    "c too small at a frame in the middle": (
+        GRID, GRID + "<material>" + animated("c", (1, 0), (5, -3), (9, 0)) + "</material>", 3,
+        "sheet.c at frame 4 is -2."),
+    "a NUL byte": ("poke", "po\0ke", 4, "a NUL byte"),
+    "a grid of 200000 x 200000": (GRID, '<grid columns="200000" rows="200000"/>', 3, "at most 100000000"),
+    "10^5 nested elements": (GRID, "<a>" * 100000 + "</a>" * 100000, 3, "nested deeper"),
+}
+
+# name: text of the mesh file, line of the error in it, words of its message
+BAD_MESHES = {
+    "an index out of range": ("v 0 0 0\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 9/1\n", 5, "9"),
+    "coordinates that are not finite": ("v 0 0 nan\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 3/1\n", 1, "nan"),
+    "no faces": ("v 0 0 0\n", None, "no faces"),
+}
+
+
+class BadInput(Command):
+    def refused(self, scene):
+        """The lines that a bake prints of a scene that it refuses; within bounds, leaving nothing."""
+        before = self.files()
+        limit = (2 << 30, 2 << 30)
+
+        def bounded():
+            if not SANITIZED:  # they reserve more than any machine has
+                resource.setrlimit(resource.RLIMIT_AS, limit)
+
+        result = subprocess.run([PLIANT, "bake", scene, "-o", self.path("out.npy")], timeout=30,
+                                capture_output=True, text=True, check=False, preexec_fn=bounded)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(self.files(), before)
+        self.assertEqual(result.stdout, "")
+        return result.stderr.splitlines()
+
+    def test_bad_scenes(self):
+        os.mkdir(self.path("folder.obj"))
+        for name, (old, new, line, words) in BAD_SCENES.items():
+            with self.subTest(name):
+                text = SCENE.format(end=9)
+                self.assertIn(old, text)
+                lines = self.refused(self.write("s.xml", text.replace(old, new, 1)))
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], rf"^\S*s\.xml:{line}: error: ")
+                self.assertIn(words, lines[0])
+
+    def test_all_at_once(self):
+        text = SCENE.format(end=9)
+        for old, new in ((POINT, '<point name="poke" magnitud="3" center="0 0"/>'),
+                         (GRID, '<mesh file="none.obj"/><material>' +
+                          animated("c", (1, 0), (5, -3), (9, 0)) + "</material><nonsense/>")):
+            text = text.replace(old, new)
+        lines = self.refused(self.write("s.xml", text))
+        self.assertEqual(len(lines), 5, lines)
+
+    def test_bad_meshes(self):
+        scene = self.write("s.xml", SCENE.format(end=9).replace(GRID, '<mesh file="m.obj"/>'))
+        for name, (text, line, words) in BAD_MESHES.items():
+            with self.subTest(name):
+                self.write("m.obj", text)
+                lines = self.refused(scene)
+                self.assertEqual(len(lines), 1, lines)
+                place = f":{line}" if line else ""
+                self.assertRegex(lines[0], rf"^\S*m\.obj{place}: error: ")
+                self.assertIn(words, lines[0])
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")  # no (u,v): no grid
+        self.assertRegex(self.refused(scene)[0], r"s\.xml:3: error: surface \"sheet\", mesh .*no \(u,v\)")
+
+    def test_files_that_are_no_scene(self):
+        for name, text in (("empty", ""), ("blank", "\n\n"), ("text", "hello"), ("root", "<a/>")):
+            with self.subTest(name):
+                lines = self.refused(self.write("s.xml", text))
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], r"^\S*s\.xml:\d+: error: ")
+        self.assertIn("it is a folder", self.refused(self.folder)[0])
+
+    def test_every_prefix_of_a_scene(self):
+        text = SCENE.format(end=2).replace("magnitude=", 'falloff="smooth" magnitude=')
+        text = text.replace(POINT.replace("magnitude=", 'falloff="smooth" magnitude='), "")
+        whole = text.rstrip()
+        for length in range(len(whole)):
+            lines = self.refused(self.write("s.xml", whole[:length]))
+            self.assertEqual(len(lines), 1, (length, lines))
+            self.assertRegex(lines[0], r"^\S*s\.xml:\d+: error: ")
+
+
 class Errors(Command):
     def test_every_problem_of_a_scene_with_its_line(self):
         scene = self.write("bad.xml", "\n".join((
@@ -285,4 +495,5 @@ class Errors(Command):
 
 if __name__ == "__main__":
     PLIANT, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    SANITIZED = sys.argv[3:] == ["sanitized"]
     unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "resources.hpp"
+
+namespace pliant::cli {
+
+/// What `pliant info` was asked to do.
+struct InfoOptions {
+  std::string scene;
+  ResourceOptions resources;
+};
+
+void add_info(CLI::App& app, InfoOptions& options);
+
+/// Prints what is in a scene, and what each force would do. Gives the exit code.
+int run_info(const InfoOptions& options);
+
+}  // namespace pliant::cli

@@ -1,0 +1,65 @@
+#include "resources.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include <unistd.h>
+
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// What the machine has, or what the container that we run in may use of it. [bytes]
+std::size_t machine_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const long page = sysconf(_SC_PAGESIZE);
+  std::size_t memory = pages > 0 && page > 0
+                           ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(page)
+                           : std::numeric_limits<std::size_t>::max();
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::size_t limit = 0;
+    if (std::ifstream(file) >> limit && limit > 0) memory = std::min(memory, limit);
+  }
+  return memory;
+}
+
+}  // namespace
+
+void add_resources(CLI::App& command, ResourceOptions& options) {
+  command
+      .add_option("--threads", options.threads, "Threads; as many as the machine has by default")
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            const auto count = to_integer(text);
+            return count && *count >= 1 && *count <= 1024 ? "" : text + ": not from 1 to 1024";
+          },
+          "1 to 1024"));
+  command
+      .add_option("--max-memory", options.max_memory,
+                  "Memory in GB, refused ahead where a run needs more; three quarters of what the "
+                  "machine has by default")
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            const auto amount = to_number(text);
+            return amount && *amount > 0 && *amount <= 1e9 ? "" : text + ": not a number above 0";
+          },
+          "> 0"));
+}
+
+SimulationOptions simulation_options(const ResourceOptions& options) {
+  const auto machine_threads = static_cast<int>(std::thread::hardware_concurrency());
+  return {.checkpoint_bytes = 0,
+          .max_memory = options.max_memory > 0 ? static_cast<std::size_t>(options.max_memory * 1e9)
+                                               : machine_memory() / 4 * 3,
+          .threads = options.threads > 0 ? options.threads : std::max(1, machine_threads),
+          .should_stop = &was_interrupted};
+}
+
+}  // namespace pliant::cli

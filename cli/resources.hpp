@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "pliant/simulation/simulation.hpp"
+
+namespace pliant::cli {
+
+/// What a command may use of the machine.
+struct ResourceOptions {
+  int threads = 0;        ///< 0: as many as the machine runs at once
+  double max_memory = 0;  ///< [GB of 10^9 bytes]; 0: three quarters of what the machine has
+};
+
+void add_resources(CLI::App& command, ResourceOptions& options);
+
+/// How a simulation of this command runs: these resources, and Ctrl-C stops it. Frames are asked
+/// for in order, so that nothing is kept for going back.
+SimulationOptions simulation_options(const ResourceOptions& options);
+
+}  // namespace pliant::cli

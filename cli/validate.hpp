@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "resources.hpp"
+
+namespace pliant::cli {
+
+/// What `pliant validate` was asked to do.
+struct ValidateOptions {
+  std::vector<std::string> scenes;
+  bool is_quiet = false;
+  ResourceOptions resources;
+};
+
+void add_validate(CLI::App& app, ValidateOptions& options);
+
+/// Reads and checks scenes without running them. Gives the exit code.
+int run_validate(const ValidateOptions& options);
+
+}  // namespace pliant::cli
