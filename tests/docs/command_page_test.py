@@ -1,0 +1,37 @@
+"""Holds docs/command.md against the command's own help: the same commands, options and endings.
+
+usage: command_page_test.py PLIANT SOURCE_FOLDER
+"""
+
+import os
+import re
+import subprocess
+import sys
+
+PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
+
+
+def help_of(*command):
+    return subprocess.run([PLIANT, *command, "--help"], check=True, capture_output=True, text=True,
+                          timeout=60).stdout
+
+
+def options_in(text):
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help", "--version"}
+
+
+def main():
+    with open(os.path.join(SOURCE, "docs/command.md"), encoding="utf-8") as file:
+        page = file.read()
+    commands = set(re.findall(r"^  ([a-z]+) ", help_of().split("Subcommands:")[1], re.MULTILINE))
+    assert commands == set(re.findall(r"^\| `pliant ([a-z]+)", page, re.MULTILINE)), commands
+    offered = set().union(*(options_in(help_of(command)) for command in commands))
+    assert offered == options_in(page), offered ^ options_in(page)
+    listed = re.search(r"picks the format: (.*?)\. Several", " ".join(help_of("bake").split())).group(1)
+    endings = re.findall(r"^\| `(\.\w+)`", page, re.MULTILINE)
+    assert sorted(endings) == sorted(listed.split(", ")), (endings, listed)
+    print("ok", sorted(commands), sorted(offered), endings)
+
+
+if __name__ == "__main__":
+    main()
