@@ -9,6 +9,7 @@
 
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/mesh/file_object.hpp"
 
 namespace pliant {
 namespace {
@@ -30,12 +31,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-// What is quoted in a message, short enough to be read.
-std::string in_quotes(std::string_view text) {
-  return text.size() <= 40 ? fmt::format("\"{}\"", text)
-                           : fmt::format("\"{}…\"", text.substr(0, 40));
 }
 
 // The faces that follow one `o` statement.
@@ -222,19 +217,15 @@ class ObjReader {
       if (last > objects_[k].first_face)
         ranges.push_back({objects_[k].name, objects_[k].first_face, last});
     }
-    if (object.empty() && ranges.size() == 1) return std::move(mesh_);
-    std::string names;
-    for (const Range& range : ranges) {
-      if (range.name == object && !object.empty()) {
-        return ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
-      }
-      names += (names.empty() ? "" : ", ") + in_quotes(range.name);
+    std::vector<std::string> names;
+    for (const Range& range : ranges) names.push_back(range.name);
+    const auto chosen = choose_object(names, object);
+    if (!chosen) {
+      add_error(0, chosen.error().message);
+      return failure();
     }
-    add_error(0, object.empty() ? fmt::format("the file holds {} objects; name one with object: {}",
-                                              ranges.size(), names)
-                                : fmt::format("the file holds no object {}; it holds: {}",
-                                              in_quotes(object), names));
-    return failure();
+    if (ranges.size() == 1) return std::move(mesh_);
+    return part(ranges[*chosen].first, ranges[*chosen].last);
   }
 
   // The faces first..last with the vertices that they use.

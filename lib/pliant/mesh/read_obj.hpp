@@ -22,8 +22,8 @@ namespace pliant {
 /// the vertices that its faces use, in the order of the file. Empty: the file's only object.
 ///
 /// Errors, each with its line, at most 20: a number that is none or not finite; a face with fewer
-/// than three corners; an index outside the file; no faces; an object that is not there, or none
-/// named where there are several. Unreadable: the file cannot be read.
+/// than three corners; an index outside the file; no faces; an object that is not there, or that
+/// is there twice, or none named where there are several. Unreadable: the file cannot be read.
 Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object = {});
 
 /// The same from text; `name` stands for the file in messages.

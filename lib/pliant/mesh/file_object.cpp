@@ -1,0 +1,61 @@
+#include "pliant/mesh/file_object.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t most_listed = 10;
+
+std::string listed(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names.first(std::min(names.size(), most_listed)))
+    list += (list.empty() ? "" : ", ") + in_quotes(name);
+  if (names.size() > most_listed) list += fmt::format(", … ({} in all)", names.size());
+  return list;
+}
+
+}  // namespace
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  std::string quoted(text.substr(0, longest));
+  for (char& c : quoted)  // a message is one line
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+  return fmt::format("\"{}{}\"", quoted, text.size() > longest ? "…" : "");
+}
+
+Result<std::size_t> choose_object(std::span<const std::string> names, const std::string& object) {
+  PLIANT_EXPECTS(!names.empty());
+  if (object.empty()) {
+    if (names.size() == 1) return 0;
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the file holds {} objects; name one with object: {}", names.size(),
+                            listed(names)));
+  }
+  const auto found = std::find(names.begin(), names.end(), object);
+  if (found == names.end()) {
+    return fail(ErrorCode::InvalidInput, fmt::format("the file holds no object {}; it holds: {}",
+                                                     in_quotes(object), listed(names)));
+  }
+  if (const auto count = std::count(found, names.end(), object); count > 1) {
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("the file holds {} objects of the name {}; give them names of their own", count,
+                    in_quotes(object)));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+Result<void> check_uv_set(int uv_set, int set_count) {
+  if (uv_set == 0 || uv_set < set_count) return {};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("the object has {} UV set{}, so there is no set {} (they count from 0)",
+                          set_count, set_count == 1 ? "" : "s", uv_set));
+}
+
+}  // namespace pliant

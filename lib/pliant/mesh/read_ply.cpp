@@ -1,0 +1,453 @@
+#include "pliant/mesh/read_ply.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/core/number.hpp"
+#include "pliant/core/read_file.hpp"
+#include "pliant/mesh/file_object.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
+enum class Encoding { Ascii, LittleEndian, BigEndian };
+
+enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+std::size_t size_of(NumberType type) {
+  constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+
+std::optional<NumberType> to_type(std::string_view word) {
+  constexpr std::array<std::array<std::string_view, 2>, 8> words = {{{"char", "int8"},
+                                                                     {"uchar", "uint8"},
+                                                                     {"short", "int16"},
+                                                                     {"ushort", "uint16"},
+                                                                     {"int", "int32"},
+                                                                     {"uint", "uint32"},
+                                                                     {"float", "float32"},
+                                                                     {"double", "float64"}}};
+  for (std::size_t k = 0; k < words.size(); ++k)
+    if (word == words[k][0] || word == words[k][1]) return static_cast<NumberType>(k);
+  return std::nullopt;
+}
+
+struct Property {
+  std::string name;
+  NumberType type = NumberType::Float32;
+  std::optional<NumberType> count_type = {};  // of a list
+};
+
+struct Element {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<Property> properties;
+
+  // The place of the first property of these names; -1: there is none.
+  int find(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view each : names)
+      for (std::size_t k = 0; k < properties.size(); ++k)
+        if (properties[k].name == each) return static_cast<int>(k);
+    return -1;
+  }
+};
+
+struct Header {
+  Encoding encoding = Encoding::Ascii;
+  std::vector<Element> elements;
+  std::size_t size = 0;  // where the elements begin
+  int line_count = 0;
+};
+
+tl::unexpected<Error> broken(std::string message, int line = 0) {
+  return fail(ErrorCode::InvalidInput, std::move(message), {}, line);
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(blanks, end);
+  }
+  return words;
+}
+
+// `property TYPE NAME` or `property list COUNT_TYPE TYPE NAME`.
+std::optional<Property> to_property(std::span<const std::string_view> words) {
+  if (words.size() == 3) {
+    const auto type = to_type(words[1]);
+    return type ? std::optional(Property{std::string(words[2]), *type}) : std::nullopt;
+  }
+  if (words.size() != 5 || words[1] != "list") return std::nullopt;
+  const auto count_type = to_type(words[2]);
+  const auto type = to_type(words[3]);
+  const bool is_whole = count_type && *count_type < NumberType::Float32;
+  return is_whole && type ? std::optional(Property{std::string(words[4]), *type, count_type})
+                          : std::nullopt;
+}
+
+Result<Encoding> to_encoding(std::span<const std::string_view> words, int line) {
+  if (words.size() == 3 && words[2] == "1.0") {
+    if (words[1] == "ascii") return Encoding::Ascii;
+    if (words[1] == "binary_little_endian") return Encoding::LittleEndian;
+    if (words[1] == "binary_big_endian") return Encoding::BigEndian;
+  }
+  return broken(
+      "the format must be ascii, binary_little_endian or binary_big_endian, each of version 1.0",
+      line);
+}
+
+// Adds what one line of the header says.
+Result<void> read_header_line(std::span<const std::string_view> words, int line, Header& header) {
+  const std::string_view keyword = words[0];
+  if (keyword == "comment" || keyword == "obj_info") return {};
+  if (keyword == "format") {
+    const auto encoding = to_encoding(words, line);
+    if (!encoding) return fail(encoding.error());
+    header.encoding = *encoding;
+    return {};
+  }
+  if (keyword == "element" && words.size() == 3) {
+    const auto count = to_integer(words[2]);
+    if (!count || *count < 0) {
+      return broken(fmt::format("the number of elements {} is not a whole number from 0 to {}",
+                                in_quotes(words[2]), std::numeric_limits<int>::max()),
+                    line);
+    }
+    header.elements.push_back({std::string(words[1]), *count, {}});
+    return {};
+  }
+  if (keyword == "property" && !header.elements.empty()) {
+    const auto property = to_property(words);
+    if (!property) {
+      return broken(
+          "a property is not of the form `property TYPE NAME` or `property list TYPE "
+          "TYPE NAME`",
+          line);
+    }
+    header.elements.back().properties.push_back(*property);
+    return {};
+  }
+  return broken(fmt::format("the header has the line {}, which is no part of one",
+                            in_quotes(std::string(keyword))),
+                line);
+}
+
+Result<Header> read_header(std::string_view bytes) {
+  Header header;
+  bool has_format = false;
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    const auto words = words_of(bytes.substr(at, end - at));
+    const int line = ++header.line_count;
+    at = std::min(end + 1, bytes.size());
+    if (line == 1) {
+      if (words.size() != 1 || words[0] != "ply") break;
+      continue;
+    }
+    if (words.empty()) continue;
+    if (words[0] == "end_header") {
+      if (!has_format) return broken("the header names no format", line);
+      header.size = at;
+      return header;
+    }
+    has_format = has_format || words[0] == "format";
+    if (auto read = read_header_line(words, line, header); !read) return fail(read.error());
+  }
+  return broken(header.line_count < 2 ? "the file is no PLY: its first line is not `ply`"
+                                      : "the file ends within its header");
+}
+
+// The numbers of the elements, one after the other.
+class Numbers {
+ public:
+  Numbers(std::string_view bytes, Encoding encoding, int line)
+      : bytes_(bytes), encoding_(encoding), line_(line) {}
+
+  // None: the file ends here, or what is here is no finite number.
+  std::optional<double> next(NumberType type) {
+    return encoding_ == Encoding::Ascii ? next_word() : next_bytes(type);
+  }
+
+  // How many numbers of this type there can be at most.
+  std::int64_t room(NumberType type) const {
+    const std::size_t left = bytes_.size() - at_;
+    return static_cast<std::int64_t>(encoding_ == Encoding::Ascii ? (left + 1) / 2
+                                                                  : left / size_of(type));
+  }
+
+  // Whether the last number was missed because the file ends there.
+  bool has_run_out() const { return has_run_out_; }
+
+  bool is_at_end() const { return bytes_.find_first_not_of(blanks, at_) == std::string_view::npos; }
+
+  int line() const { return encoding_ == Encoding::Ascii ? line_ : 0; }
+
+ private:
+  std::optional<double> next_word() {
+    while (at_ < bytes_.size() && blanks.find(bytes_[at_]) != std::string_view::npos)
+      line_ += bytes_[at_++] == '\n';
+    const std::size_t end = std::min(bytes_.find_first_of(blanks, at_), bytes_.size());
+    const std::string_view word = bytes_.substr(at_, end - at_);
+    at_ = end;
+    has_run_out_ = word.empty();
+    return to_number(word);
+  }
+
+  std::optional<double> next_bytes(NumberType type) {
+    const std::size_t size = size_of(type);
+    has_run_out_ = bytes_.size() - at_ < size;
+    if (has_run_out_) return std::nullopt;
+    std::uint64_t bits = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      const std::size_t place = encoding_ == Encoding::LittleEndian ? k : size - 1 - k;
+      bits |= std::uint64_t{static_cast<unsigned char>(bytes_[at_ + k])} << 8 * place;
+    }
+    at_ += size;
+    const double number = to_double(bits, type);
+    return std::isfinite(number) ? std::optional(number) : std::nullopt;
+  }
+
+  static double to_double(std::uint64_t bits, NumberType type) {
+    switch (type) {
+      case NumberType::Int8:
+        return static_cast<std::int8_t>(bits);
+      case NumberType::Int16:
+        return static_cast<std::int16_t>(bits);
+      case NumberType::Int32:
+        return static_cast<std::int32_t>(bits);
+      case NumberType::Float32:
+        return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+      case NumberType::Float64:
+        return std::bit_cast<double>(bits);
+      default:
+        return static_cast<double>(bits);
+    }
+  }
+
+  std::string_view bytes_;
+  Encoding encoding_;
+  int line_;
+  std::size_t at_ = 0;
+  bool has_run_out_ = false;
+};
+
+class PlyReader {
+ public:
+  PlyReader(const Header& header, std::string_view body)
+      : header_(header), numbers_(body, header.encoding, header.line_count + 1) {}
+
+  Result<Mesh> read() {
+    for (const Element& element : header_.elements) {
+      if (auto read = read_element(element); !read) return fail(read.error());
+    }
+    if (!numbers_.is_at_end()) return broken("the file goes on after its last element", line());
+    if (!mesh_.corner_vertices.empty()) {
+      if (auto checked = check_indices(); !checked) return fail(checked.error());
+    }
+    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    if (mesh_.face_sizes.empty()) return broken("the file holds no faces");
+    return std::move(mesh_);
+  }
+
+ private:
+  // A property's number, or the numbers of its list.
+  using Values = std::vector<std::vector<double>>;
+
+  Result<void> read_element(const Element& element) {
+    const bool is_vertex = element.name == "vertex";
+    const bool is_face = element.name == "face";
+    if (element.properties.empty() && element.count > 0)
+      return broken(fmt::format("the element {} has no properties", in_quotes(element.name)));
+    if (is_vertex) {
+      if (auto found = find_vertex_properties(element); !found) return found;
+    }
+    if (is_face) {
+      if (auto found = find_face_properties(element); !found) return found;
+    }
+    Values values(element.properties.size());
+    for (std::int64_t k = 0; k < element.count; ++k) {
+      if (auto read = read_values(element, k, values); !read) return read;
+      if (is_vertex) add_vertex(values);
+      if (!is_face) continue;
+      if (auto added = add_face(values, k); !added) return added;
+    }
+    return {};
+  }
+
+  Result<void> find_vertex_properties(const Element& vertex) {
+    x_ = vertex.find({"x"});
+    y_ = vertex.find({"y"});
+    z_ = vertex.find({"z"});
+    using Pair = std::array<std::string_view, 2>;
+    for (const auto& [u, v] :
+         {Pair{"s", "t"}, Pair{"u", "v"}, Pair{"texture_u", "texture_v"}, Pair{"tx", "ty"}}) {
+      if (u_ >= 0 || vertex.find({u}) < 0 || vertex.find({v}) < 0) continue;
+      u_ = vertex.find({u});
+      v_ = vertex.find({v});
+    }
+    if (x_ < 0 || y_ < 0 || z_ < 0) return broken("the vertices have no x, y and z");
+    for (const int property : {x_, y_, z_, u_, v_}) {
+      if (property >= 0 && vertex.properties[static_cast<std::size_t>(property)].count_type)
+        return broken("a coordinate of the vertices is a list");
+    }
+    return {};
+  }
+
+  Result<void> find_face_properties(const Element& face) {
+    corners_ = face.find({"vertex_indices", "vertex_index"});
+    corner_uvs_ = face.find({"texcoord"});
+    const auto is_list = [&](int k) {
+      return face.properties[static_cast<std::size_t>(k)].count_type.has_value();
+    };
+    if (corners_ < 0 || !is_list(corners_)) return broken("the faces have no list vertex_indices");
+    if (corner_uvs_ >= 0 && !is_list(corner_uvs_)) corner_uvs_ = -1;
+    return {};
+  }
+
+  Result<void> read_values(const Element& element, std::int64_t index, Values& values) {
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const Property& property = element.properties[k];
+      const auto count = property.count_type ? numbers_.next(*property.count_type) : 1.0;
+      if (!count || *count < 0 || *count != std::floor(*count)) return no_number(element, index, k);
+      if (*count > static_cast<double>(numbers_.room(property.type)))
+        return ends_within(element, index);
+      values[k].clear();
+      for (double n = 0; n < *count; ++n) {
+        const auto number = numbers_.next(property.type);
+        if (!number) return no_number(element, index, k);
+        values[k].push_back(*number);
+      }
+    }
+    return {};
+  }
+
+  tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
+                                  std::size_t property) const {
+    if (numbers_.has_run_out()) return ends_within(element, index);
+    return broken(fmt::format("{} {} has no finite number where its {} should be", element.name,
+                              index + 1, in_quotes(element.properties[property].name)),
+                  line());
+  }
+
+  tl::unexpected<Error> ends_within(const Element& element, std::int64_t index) const {
+    return broken(fmt::format("the file ends within {} {} of {}", in_quotes(element.name),
+                              index + 1, element.count),
+                  line());
+  }
+
+  void add_vertex(const Values& values) {
+    const auto number = [&](int property) { return values[static_cast<std::size_t>(property)][0]; };
+    coordinates_.insert(coordinates_.end(), {number(x_), number(y_), number(z_)});
+    if (u_ >= 0) mesh_.uvs.push_back({number(u_), number(v_)});
+  }
+
+  Result<void> add_face(const Values& values, std::int64_t index) {
+    const std::vector<double>& corners = values[static_cast<std::size_t>(corners_)];
+    if (corners.size() < 3) return {};  // a point or a line
+    constexpr std::size_t most = std::numeric_limits<int>::max();
+    if (corners.size() > most - mesh_.corner_vertices.size())
+      return broken(fmt::format("the faces have more than {} corners", most));
+    const std::vector<double> none;
+    const auto& uvs = corner_uvs_ < 0 ? none : values[static_cast<std::size_t>(corner_uvs_)];
+    if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
+      return broken(fmt::format("face {} has {} corners, but {} texture coordinates", index + 1,
+                                corners.size(), uvs.size()),
+                    line());
+    }
+    mesh_.face_sizes.push_back(static_cast<int>(corners.size()));
+    faces_.push_back(index);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const bool is_index = corners[k] >= 0 && corners[k] < static_cast<double>(most) &&
+                            corners[k] == std::floor(corners[k]);
+      mesh_.corner_vertices.push_back(is_index ? static_cast<int>(corners[k]) : -1);
+      // Those of the vertices are known by check_indices only: faces may come first.
+      mesh_.corner_uvs.push_back(uvs.empty() ? -1 : static_cast<int>(corner_pairs_.size()));
+      if (!uvs.empty()) corner_pairs_.push_back({uvs[2 * k], uvs[2 * k + 1]});
+    }
+    return {};
+  }
+
+  // Corners without (u,v) of their own take the vertex's.
+  Result<void> check_indices() {
+    const std::size_t vertex_count = coordinates_.size() / 3;
+    const auto first_pair = static_cast<int>(mesh_.uvs.size());
+    std::size_t corner = 0;
+    for (std::size_t face = 0; face < mesh_.face_sizes.size(); ++face) {
+      for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
+        const int vertex = mesh_.corner_vertices[corner];
+        if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
+          return broken(
+              fmt::format("corner {} of face {} refers to a vertex outside the file, which has {}",
+                          k + 1, faces_[face] + 1, vertex_count));
+        }
+        int& uv = mesh_.corner_uvs[corner];
+        if (uv >= 0) {
+          uv += first_pair;
+        } else if (first_pair > 0) {
+          uv = vertex;
+        }
+      }
+    }
+    mesh_.uvs.insert(mesh_.uvs.end(), corner_pairs_.begin(), corner_pairs_.end());
+    return {};
+  }
+
+  int line() const { return numbers_.line(); }
+
+  const Header& header_;
+  Numbers numbers_;
+  Mesh mesh_;
+  std::vector<double> coordinates_;                  // x y z of each vertex
+  std::vector<std::array<double, 2>> corner_pairs_;  // (u,v) of corners
+  std::vector<std::int64_t> faces_;                  // of each face kept, its place in the file
+  int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;   // properties of a vertex
+  int corners_ = -1, corner_uvs_ = -1;               // properties of a face
+};
+
+Result<Mesh> parse(std::string_view bytes, const std::string& object) {
+  const auto header = read_header(bytes);
+  if (!header) return fail(header.error());
+  auto mesh = PlyReader(*header, bytes.substr(header->size)).read();
+  if (!mesh) return mesh;
+  const std::vector<std::string> names = {""};
+  if (const auto chosen = choose_object(names, object); !chosen) return fail(chosen.error());
+  return mesh;
+}
+
+}  // namespace
+
+Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const std::string& object) {
+  try {
+    auto mesh = parse(bytes, object);
+    if (!mesh) mesh.error().file = name;
+    return mesh;
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
+  }
+}
+
+Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object) {
+  const auto bytes = read_file(file);
+  if (!bytes) return fail(bytes.error());
+  return parse_ply(*bytes, file.string(), object);
+}
+
+}  // namespace pliant
