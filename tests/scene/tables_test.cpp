@@ -59,6 +59,7 @@ TEST_CASE("each value out of its range is told with the rule", "[scene][tables]"
       {mesh("file=\"\""), 3, {"names no file"}},
       {mesh("file=\"/dev/null\" object=\"\""), 3, {"names no object"}},
       {mesh("file=\"/dev/null\" uvSet=\"-1\""), 3, {"must be at least 0"}},
+      {mesh("file=\"/dev/null\" uvSet=\"8\""), 3, {"must be at most 7"}},
       {mesh("file=\"/dev/null\" uv=\"gird\""), 3, {"did you mean \"grid\"?"}},
       {mesh("file=\"/dev/null\" wrap=\"w\""), 3, {"unknown word; allowed: none"}},
       {part("transform", "translate=\"0 0\""), 3, {"three numbers are required, not 2"}},

@@ -46,7 +46,7 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[simulation
       obj += " " + std::to_string(corner) + "/" + std::to_string(corner);
     obj += "\n";
   }
-  const auto from_file = make_rest_shape(with_shape(MeshFile{folder.write("m.obj", obj), ""}), {});
+  const auto from_file = make_rest_shape(with_shape(MeshFile{folder.write("m.obj", obj)}), {});
   REQUIRE(from_file);
   CHECK(from_file->mapping.rest == from_sheet.mapping.rest);
 }
@@ -54,14 +54,21 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[simulation
 TEST_CASE("a shape that cannot be had is the scene's error or the file's",
           "[simulation][rest_shape]") {
   const ScratchFolder folder;
-  CHECK_THAT(complaint(MeshFile{folder.file("none.obj"), ""}),
+  CHECK_THAT(complaint(MeshFile{folder.file("none.obj")}),
              StartsWith("a.xml:4: error: surface \"s\": ") && Contains("none.obj") &&
                  Contains("No such file"));
-  CHECK_THAT(complaint(MeshFile{folder.write("bad.obj", "v 1 2\n"), ""}),
+  CHECK_THAT(complaint(MeshFile{folder.write("bad.obj", "v 1 2\n")}),
              Contains("bad.obj:1: error: vertex has 2 of 3 numbers"));
+  CHECK_THAT(complaint(MeshFile{folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")}),
+             StartsWith("a.xml:4: error: surface \"s\", mesh ") && Contains("has no (u,v)"));
+  for (const std::string ending : {".ply", ".gltf", ".glb", ".fbx", ".dae"}) {
+    CHECK_THAT(complaint(MeshFile{folder.file("none" + ending)}),
+               StartsWith("a.xml:4: error: surface \"s\": ") && Contains("No such file"));
+  }
+  CHECK_THAT(complaint(MeshFile{folder.file("mesh.stl")}),
+             StartsWith("a.xml:4: error: ") && Contains("allowed: .obj, .ply"));
   CHECK_THAT(
-      complaint(MeshFile{folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), ""}),
-      StartsWith("a.xml:4: error: surface \"s\", mesh ") && Contains("has no (u,v)"));
-  CHECK_THAT(complaint(MeshFile{folder.file("mesh.fbx"), ""}), Contains("allowed: .obj"));
+      complaint(MeshFile{folder.write("set.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "", 1}),
+      Contains("set.obj: error: the object has 0 UV sets"));
   CHECK_THAT(complaint(Mesh{}), StartsWith("a.xml:2: error: ") || StartsWith("a.xml:4: error: "));
 }

@@ -3,6 +3,7 @@
 #include <iterator>
 #include <limits>
 
+#include "pliant/mesh/read_assimp.hpp"
 #include "pliant/scene/check.hpp"
 
 namespace pliant::xml {
@@ -67,16 +68,6 @@ Attribute object_name(std::string& object) {
   });
 }
 
-/// Which of a mesh's UV sets is the grid: the first, the only one that this version reads.
-Attribute uv_set() {
-  return custom("uvSet", "integer", "", "0", "0", [](std::string_view text) -> Reading<void> {
-    const Reading<std::int64_t> set = parse_integer(text, 0, std::numeric_limits<int>::max());
-    if (!set) return tl::unexpected(set.error());
-    if (*set != 0) return tl::unexpected("a set other than 0 " + not_supported());
-    return {};
-  });
-}
-
 }  // namespace
 
 Table attributes_of(Scene& scene) {
@@ -107,7 +98,7 @@ Table attributes_of(MeshFile& mesh, const std::filesystem::path& folder) {
   return {
       mesh_path(mesh.path, folder),
       if_absent(object_name(mesh.object), "the only one"),
-      uv_set(),
+      integer("uvSet", mesh.uv_set, "", 0, max_uv_sets - 1),
       fixed("uv", "grid", {"virtual"}),
       later("resolution"),
       fixed("wrap", "none", {"u", "v", "uv"}),

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "pliant/mesh/grid_sheet.hpp"
-#include "pliant/mesh/read_obj.hpp"
+#include "pliant/mesh/read_mesh.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/simulation/memory.hpp"
 
@@ -17,14 +17,7 @@ namespace {
 struct MakeMesh {
   Result<Mesh> operator()(const GridSheet& sheet) const { return make_mesh(sheet); }
   Result<Mesh> operator()(const MeshFile& file) const {
-    const std::string ending = file.path.extension().string();
-    if (ending != ".obj" && ending != ".OBJ") {
-      return fail(
-          ErrorCode::InvalidInput,
-          fmt::format("the mesh file {} is not read by this version of pliant; allowed: .obj",
-                      file.path.string()));
-    }
-    return read_obj(file.path, file.object);
+    return read_mesh(file.path, file.object, file.uv_set);
   }
   Result<Mesh> operator()(const Mesh& mesh) const {
     if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());

@@ -17,9 +17,8 @@ struct RestShape {
   GridMapping mapping;
 };
 
-/// Makes or reads a surface's mesh and finds its grid. Errors: those of `read_obj` and
-/// `check_mesh`; what `find_grid` finds, at the surface's line in the scene; a kind of file that is
-/// not read.
+/// Makes or reads a surface's mesh and finds its grid. Errors: those of `read_mesh` and
+/// `check_mesh`; what `find_grid` finds, at the surface's line in the scene.
 ///
 /// `memory` is sized to what the shape and its body will take, before a sheet is made and once a
 /// file is read. Errors, besides: OutOfMemory when the budget has less.

@@ -1,0 +1,51 @@
+#include "pliant/mesh/read_mesh.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/read_assimp.hpp"
+#include "pliant/mesh/read_obj.hpp"
+#include "pliant/mesh/read_ply.hpp"
+
+namespace pliant {
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+// Of a format that has one set of (u,v) at most.
+Result<Mesh> with_only_set(Result<Mesh> mesh, const std::filesystem::path& file, int uv_set) {
+  if (!mesh) return mesh;
+  const auto checked = check_uv_set(uv_set, mesh->uvs.empty() ? 0 : 1);
+  if (checked) return mesh;
+  return fail(checked.error().code, checked.error().message, file.string());
+}
+
+}  // namespace
+
+std::vector<std::string> mesh_endings() {
+  return {".obj", ".ply", ".gltf", ".glb", ".fbx", ".dae"};
+}
+
+Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set) {
+  const std::vector<std::string> endings = mesh_endings();
+  const std::string ending = lower_case(file.extension().string());
+  if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("no mesh file has the ending of {}; allowed: {}", file.string(),
+                            fmt::join(endings, ", ")));
+  }
+  if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);
+  if (ending == ".ply") return with_only_set(read_ply(file, object), file, uv_set);
+  return read_assimp(file, object, uv_set);
+}
+
+}  // namespace pliant

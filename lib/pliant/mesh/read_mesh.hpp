@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/mesh/mesh.hpp"
+
+namespace pliant {
+
+/// The endings of the mesh files that `read_mesh` reads, in lower case with their dots.
+std::vector<std::string> mesh_endings();
+
+/// Reads one object of a mesh file with the reader that the file's ending, in any case, names:
+/// `read_obj`, `read_ply`, or `read_assimp` for glTF, FBX and Collada. `object` names the one to
+/// take when the file holds several; `uv_set`, counted from 0, is the set of (u,v): OBJ and PLY
+/// have one. Errors: InvalidInput for another ending; those of the readers.
+/// Requires: 0 <= uv_set < max_uv_sets.
+Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object = {},
+                       int uv_set = 0);
+
+}  // namespace pliant
