@@ -8,16 +8,6 @@
 using namespace pliant;
 using namespace pliant::testing;
 
-TEST_CASE("sequence files carry the frame in their names", "[io][obj]") {
-  CHECK(sequence_file("a/out.obj", 1) == "a/out.0001.obj");
-  CHECK(sequence_file("out.obj", 12345) == "out.12345.obj");
-  CHECK(sequence_file("out.obj", -3) == "out.-0003.obj");
-  CHECK(sequence_file("out.##.obj", 7) == "out.07.obj");
-  CHECK(sequence_file("out_######.obj", 7) == "out_000007.obj");
-  CHECK(sequence_file("#/o##t#.obj", 7) == "#/o##t7.obj");
-  CHECK(sequence_file("v1.2.obj", 7) == "v1.2.0007.obj");
-}
-
 TEST_CASE("an OBJ sequence reads back exactly, quads, order and (u,v)", "[io][obj]") {
   const ScratchFolder folder;
   Mesh mesh = make_mesh({.columns = 5, .rows = 4, .triangles = GENERATE(false, true)});

@@ -18,6 +18,6 @@ TEST_CASE("every known ending has a writer, and no other", "[io][writer]") {
     const auto writer = make_writer({folder.file(name), &mesh, 1, 1});
     REQUIRE_FALSE(writer);
     CHECK(writer.error().code == ErrorCode::InvalidInput);
-    CHECK_THAT(writer.error().message, Contains("allowed: .npy, .obj"));
+    CHECK_THAT(writer.error().message, Contains("allowed: .npy, .obj, .ply"));
   }
 }

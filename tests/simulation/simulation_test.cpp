@@ -5,6 +5,7 @@
 
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -33,6 +34,20 @@ Force travelling() {
 }
 
 }  // namespace
+
+TEST_CASE("a sheet and its PLY file move alike, bit for bit", "[simulation]") {
+  const ScratchFolder folder;
+  Surface from_grid = sheet("s");
+  const Mesh mesh = make_mesh(std::get<GridSheet>(from_grid.shape));
+  auto writer = make_writer({folder.file("#.ply"), &mesh, 1, 1}).value();
+  REQUIRE(writer->write(1, mesh.positions));
+  Surface from_file = from_grid;
+  from_file.shape = MeshFile{folder.file("1.ply")};
+  const std::vector<Force> forces = {poke("p", {1.5, 0, -2})};
+  const auto expected = baked(scene({from_grid}, forces), "s");
+  CHECK(baked(scene({from_file}, forces), "s") == expected);
+  CHECK(largest_difference(expected.front(), expected.back()) > 0.1);
+}
 
 TEST_CASE("the first motion shows one frame after the start", "[simulation]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});

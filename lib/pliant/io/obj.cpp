@@ -1,12 +1,12 @@
 #include "pliant/io/obj.hpp"
 
-#include <cstdlib>
 #include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pliant/io/atomic_file.hpp"
+#include "pliant/io/sequence.hpp"
 
 namespace pliant {
 namespace {
@@ -57,28 +57,8 @@ class ObjWriter final : public AnimationWriter {
 
 }  // namespace
 
-std::filesystem::path sequence_file(const std::filesystem::path& pattern, int frame) {
-  std::string name = pattern.filename().string();
-  std::size_t last = name.rfind('#');
-  std::size_t width = 4;
-  if (last == std::string::npos) {
-    const std::size_t dot = name.rfind('.');
-    name.insert(dot, ".#");
-    last = dot + 1;
-  } else {
-    width = last + 1 - (name.find_last_not_of('#', last) + 1);
-  }
-  const std::size_t first = name.find_last_not_of('#', last) + 1;
-  name.replace(first, last + 1 - first,
-               fmt::format("{}{:0{}}", frame < 0 ? "-" : "", std::abs(std::int64_t{frame}), width));
-  return pattern.parent_path() / name;
-}
-
 Result<std::unique_ptr<AnimationWriter>> make_obj_writer(const AnimationPlan& plan) {
-  // A folder that cannot be written to should not show only after a long run.
-  if (auto probe = AtomicFile::create(sequence_file(plan.file, plan.first_frame)); !probe) {
-    return fail(probe.error());
-  }
+  if (auto checked = check_sequence(plan); !checked) return fail(checked.error());
   return std::make_unique<ObjWriter>(plan);
 }
 

@@ -8,10 +8,11 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/io/npy.hpp"
 #include "pliant/io/obj.hpp"
+#include "pliant/io/ply.hpp"
 
 namespace pliant {
 
-std::vector<std::string> known_endings() { return {".npy", ".obj"}; }
+std::vector<std::string> known_endings() { return {".npy", ".obj", ".ply"}; }
 
 Result<void> check_ending(const std::filesystem::path& file) {
   const std::vector<std::string> endings = known_endings();
@@ -25,7 +26,10 @@ Result<void> check_ending(const std::filesystem::path& file) {
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) {
   PLIANT_EXPECTS(plan.mesh && plan.first_frame <= plan.last_frame);
   if (auto known = check_ending(plan.file); !known) return fail(known.error());
-  return plan.file.extension() == ".npy" ? make_npy_writer(plan) : make_obj_writer(plan);
+  const std::string ending = plan.file.extension().string();
+  if (ending == ".npy") return make_npy_writer(plan);
+  if (ending == ".obj") return make_obj_writer(plan);
+  return make_ply_writer(plan);
 }
 
 }  // namespace pliant

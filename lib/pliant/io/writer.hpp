@@ -41,7 +41,8 @@ std::vector<std::string> known_endings();
 /// Whether the file's ending names a format. Errors: InvalidInput, listing the endings.
 Result<void> check_ending(const std::filesystem::path& file);
 
-/// A writer for the format that the file's ending names: `.npy` or an `.obj` sequence.
+/// A writer for the format that the file's ending names: `.npy`, or an `.obj` or
+/// `.ply` sequence.
 /// Errors: InvalidInput for an unknown ending; Unwritable.
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan);
 
