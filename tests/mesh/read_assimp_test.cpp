@@ -392,6 +392,45 @@ TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp]") {
   }
 }
 
+TEST_CASE("parts within parts without end are refused", "[mesh][read_assimp]") {
+  const ScratchFolder folder;
+  const auto repeated = [](const std::string& text, int count) {
+    std::string all;
+    for (int k = 0; k < count; ++k) all += text;
+    return all;
+  };
+  Gltf gltf;
+  const std::string meshes = gltf_mesh(gltf.primitive(small_sheet(true)));
+  std::string chain, doubling;
+  for (int k = 1; k <= 3000; ++k) chain += fmt::format(R"({{"children":[{}]}},)", k);
+  for (int k = 1; k <= 40; ++k) doubling += fmt::format(R"({{"children":[{0},{0}]}},)", k);
+  const std::string circle =
+      "<node id=\"q\"><instance_geometry url=\"#g\"/>"
+      "<instance_node url=\"#q\"/></node>";
+  std::string copies = "<node id=\"q0\"><instance_geometry url=\"#g\"/></node>";
+  for (int k = 1; k <= 40; ++k) {
+    copies += fmt::format(
+        "<node id=\"q{0}\"><instance_node url=\"#q{1}\"/><instance_node url=\"#q{1}\"/></node>", k,
+        k - 1);
+  }
+  struct Case {
+    std::string name, text, expected;
+  };
+  const std::vector<Case> cases = {
+      {"a.gltf", repeated("[", 1000000), "nests its parts more than 200 deep"},
+      {"b.gltf", gltf.text(meshes, chain + cloth_node), "more than 2000 nodes with children"},
+      {"c.gltf", gltf.text(meshes, doubling + cloth_node), "node 1 of the file is a child twice"},
+      {"a.glb", gltf.glb(meshes, doubling + cloth_node), "node 1 of the file is a child twice"},
+      {"a.fbx", "; FBX\n" + repeated("a: {\n", 300000), "nests its parts more than 200 deep"},
+      {"a.dae", repeated("<node>", 100000), "XML_ELEMENT_DEPTH_EXCEEDED"},
+      {"b.dae", sheet_collada(circle), "nests its parts more than 200 deep"},
+      {"c.dae", sheet_collada(copies), "instances make more than 1000000 nodes"}};
+  for (const Case& c : cases) {
+    CAPTURE(c.name);
+    CHECK_THAT(complaint(folder.write(c.name, c.text)), contains_text(c.expected));
+  }
+}
+
 TEST_CASE("no prefix or mutation of a mesh file does harm", "[mesh][read_assimp]") {
   const ScratchFolder folder;
   Gltf gltf;
