@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <memory>
 #include <string_view>
 #include <utility>
 
@@ -18,7 +17,6 @@ namespace {
 class MemoryStream final : public Assimp::IOStream {
  public:
   explicit MemoryStream(std::string_view bytes) : bytes_(bytes) {}
-  explicit MemoryStream(std::string bytes) : owned_(std::move(bytes)), bytes_(owned_) {}
 
   std::size_t Read(void* place, std::size_t item_size, std::size_t item_count) override {
     if (item_size == 0) return 0;
@@ -45,7 +43,6 @@ class MemoryStream final : public Assimp::IOStream {
   void Flush() override {}
 
  private:
-  std::string owned_;
   std::string_view bytes_;
   std::size_t at_ = 0;
 };
@@ -85,14 +82,14 @@ bool AssimpFiles::Exists(const char* file) const {
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
   if (std::string_view(mode).find('w') != std::string_view::npos) return nullptr;
-  if (file == file_.string()) return new MemoryStream(std::string_view(bytes_));
+  if (file == file_.string()) return new MemoryStream(bytes_);
   auto bytes = read_reference(is_regular(file) ? file : percent_decoded(file));
   if (!bytes) {
     if (!missing_) missing_ = bytes.error();
     return nullptr;
   }
   bytes_left_ -= bytes->size();
-  return new MemoryStream(*std::move(bytes));
+  return new MemoryStream(references_.emplace_back(*std::move(bytes)));
 }
 
 void AssimpFiles::Close(Assimp::IOStream* stream) { delete stream; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ class AssimpFiles final : public Assimp::IOSystem {
 
   std::filesystem::path file_;
   std::string bytes_;
+  std::deque<std::string> references_;  // not the streams': assimp loses those when it gives up
   std::size_t bytes_left_;
   std::optional<Error> missing_;
 };
