@@ -175,10 +175,12 @@ TEST_CASE("a bad PLY file says what is wrong, and where", "[mesh][read_ply]") {
       {both + points + "4 0 1 2 3\n4 0 1 2 3\n",
        "m.ply:15: error: the file goes on after its last"},
       {both + points + "4 0 1 2 4\n",
-       "m.ply: error: corner 4 of face 1 refers to a vertex outside the file, which has 4"},
-      {both + points + "3 0 -1 2\n", "m.ply: error: corner 2 of face 1 refers to a vertex outside"},
+       "m.ply: error: corner 4 of face 1 refers to vertex 4 (from 0), outside the file, which has "
+       "4"},
+      {both + points + "3 0 -1 2\n",
+       "m.ply: error: corner 2 of face 1 refers to no vertex of the file"},
       {both + points + "3 0 1.5 2\n",
-       "m.ply: error: corner 2 of face 1 refers to a vertex outside"},
+       "m.ply: error: corner 2 of face 1 refers to no vertex of the file"},
       {both + points + "2 0 1\n", "m.ply: error: the file holds no faces"},
       {header(four_vertices) + points, "m.ply: error: the file holds no faces"},
       {header(with_uvs + one_face + "property list uchar float texcoord\n") + points_with_uvs +

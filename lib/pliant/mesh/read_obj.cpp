@@ -178,6 +178,11 @@ class ObjReader {
     return written == 0 || index < 0 ? missing_index : static_cast<int>(index);
   }
 
+  static std::string outside(std::string_view thing, int index, std::size_t count) {
+    if (index == missing_index) return fmt::format("a {} ahead of the file's first", thing);
+    return fmt::format("{} {}, outside the file, which has {}", thing, index + 1, count);
+  }
+
   void check_indices() {
     std::size_t corner = 0;
     for (std::size_t face = 0; face < face_lines_.size() && errors_.size() < max_errors; ++face) {
@@ -186,11 +191,12 @@ class ObjReader {
         const bool bad_uv = mesh_.corner_uvs[corner] != -1 &&
                             !is_within(mesh_.corner_uvs[corner], mesh_.uvs.size());
         if (bad_vertex || bad_uv) {
-          add_error(
-              face_lines_[face],
-              fmt::format("corner {} of the face refers to a {} outside the file, which has {}",
-                          k + 1, bad_vertex ? "vertex" : "texture vertex",
-                          bad_vertex ? coordinates_.size() / 3 : mesh_.uvs.size()));
+          add_error(face_lines_[face],
+                    fmt::format("corner {} of the face refers to {}", k + 1,
+                                bad_vertex ? outside("vertex", mesh_.corner_vertices[corner],
+                                                     coordinates_.size() / 3)
+                                           : outside("texture vertex", mesh_.corner_uvs[corner],
+                                                     mesh_.uvs.size())));
           corner += static_cast<std::size_t>(mesh_.face_sizes[face] - k);
           break;
         }

@@ -385,6 +385,11 @@ class PlyReader {
     return {};
   }
 
+  static std::string outside(int vertex, std::size_t count) {
+    if (vertex < 0) return "no vertex of the file: they count from 0";
+    return fmt::format("vertex {} (from 0), outside the file, which has {}", vertex, count);
+  }
+
   // Corners without (u,v) of their own take the vertex's.
   Result<void> check_indices() {
     const std::size_t vertex_count = coordinates_.size() / 3;
@@ -394,9 +399,8 @@ class PlyReader {
       for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
         const int vertex = mesh_.corner_vertices[corner];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
-          return broken(
-              fmt::format("corner {} of face {} refers to a vertex outside the file, which has {}",
-                          k + 1, faces_[face] + 1, vertex_count));
+          return broken(fmt::format("corner {} of face {} refers to {}", k + 1, faces_[face] + 1,
+                                    outside(vertex, vertex_count)));
         }
         int& uv = mesh_.corner_uvs[corner];
         if (uv >= 0) {
