@@ -179,6 +179,8 @@ class Compiler {
     check_rate(k + 1, "in", in.slope, end_rate);
     segment.ends =
         value_cubics<D>(track().values[k], track().arrivals[k + 1], start_rate, end_rate);
+    add_handle(segment.start, track().values[k], out.length, start_rate);
+    add_handle(segment.end, track().arrivals[k + 1], -in.length, end_rate);
     // Thirds within rounding: then time is linear in the parameter, and the cubic one in time.
     const bool is_linear_in_time =
         (out.is_third || std::fabs(out.length - span / 3) <= 1e-15 * span) &&
@@ -186,6 +188,13 @@ class Compiler {
     if (is_linear_in_time) return;
     const Pair exact_span = exact_difference(segment.end, segment.start);
     add_time(segment, exact_span, out.frame_rate(exact_span), in.frame_rate(exact_span));
+  }
+
+  /// `reach` is the length, negative for an `in`; `rate` is three times the rise over it.
+  void add_handle(double frame, const Value<D>& value, double reach, const Value<D>& rate) {
+    KeyHandle<D> handle{frame, value, frame + reach, value};
+    for (int c = 0; c < D; ++c) handle.value[c] += (reach < 0 ? -1 : 1) * rate[c] / 3;
+    compiled_.handles.push_back(handle);
   }
 
   std::string correction(const std::string& side, double from, double to, double span) const {

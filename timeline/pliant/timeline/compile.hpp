@@ -6,6 +6,7 @@
 
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/extrapolated.hpp"
+#include "pliant/timeline/handle.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant::timeline {
@@ -14,7 +15,8 @@ namespace pliant::timeline {
 template <int D>
 struct Compiled {
   Extrapolated<D> curve;
-  std::vector<CurveNote> notes;  ///< in the order of the keys
+  std::vector<CurveNote> notes;       ///< in the order of the keys
+  std::vector<KeyHandle<D>> handles;  ///< of the Bézier segments, in the order of frames
 };
 
 /// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.

@@ -18,8 +18,15 @@ template <int D>
 tl::expected<Curve<D>, CurveError> Curve<D>::make(CurveKeys<D> keys) {
   auto compiled = timeline::compile(keys);
   if (!compiled) return tl::unexpected(compiled.error());
-  return Curve(std::move(keys), std::move(compiled->curve), std::move(compiled->notes));
+  return Curve(std::move(keys), *std::move(compiled));
 }
+
+template <int D>
+Curve<D>::Curve(CurveKeys<D> keys, timeline::Compiled<D> compiled)
+    : keys_(std::move(keys)),
+      compiled_(std::move(compiled.curve)),
+      notes_(std::move(compiled.notes)),
+      handles_(std::move(compiled.handles)) {}
 
 template <int D>
 Value<D> Curve<D>::value(double frame) const {

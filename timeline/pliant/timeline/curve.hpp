@@ -7,12 +7,18 @@
 
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/extrapolated.hpp"
+#include "pliant/timeline/handle.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant {
 
 template <int D>
 class Sampler;
+
+namespace timeline {
+template <int D>
+struct Compiled;
+}
 
 /// The least and the greatest value of a curve over an interval, per component [unit].
 template <int D>
@@ -52,15 +58,19 @@ class Curve {
   const CurveKeys<D>& keys() const { return keys_; }
   const std::vector<CurveNote>& notes() const { return notes_; }
 
+  /// The handles of the Bézier segments, those of a loop's copies too, in the order of frames: to
+  /// draw the curve as its author thinks of it.
+  const std::vector<KeyHandle<D>>& handles() const { return handles_; }
+
  private:
   friend class Sampler<D>;
 
-  Curve(CurveKeys<D> keys, timeline::Extrapolated<D> compiled, std::vector<CurveNote> notes)
-      : keys_(std::move(keys)), compiled_(std::move(compiled)), notes_(std::move(notes)) {}
+  Curve(CurveKeys<D> keys, timeline::Compiled<D> compiled);
 
   CurveKeys<D> keys_;
   timeline::Extrapolated<D> compiled_;
   std::vector<CurveNote> notes_;
+  std::vector<KeyHandle<D>> handles_;
 };
 
 extern template class Curve<1>;
