@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "bake.hpp"
+#include "curves.hpp"
 #include "info.hpp"
 #include "report.hpp"
 #include "validate.hpp"
@@ -25,6 +26,8 @@ int run(int count, char* arguments[]) {
 
   BakeOptions bake;
   add_bake(app, bake);
+  CurvesOptions curves;
+  add_curves(app, curves);
   ValidateOptions validate;
   add_validate(app, validate);
   InfoOptions info;
@@ -38,6 +41,7 @@ int run(int count, char* arguments[]) {
     print(stderr, fmt::format("pliant: error: {}; pliant --help tells more\n", error.what()));
     return exit_usage;
   }
+  if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
   return run_bake(bake);

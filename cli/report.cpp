@@ -10,7 +10,9 @@ void print(std::FILE* stream, std::string_view text) {
 }
 
 int report(const Error& error) {
-  for (const std::string& line : to_lines(error)) print(stderr, line + '\n');
+  for (const std::string& line : to_lines(error)) {
+    print(stderr, (line.starts_with("error: ") ? "pliant: " : "") + line + '\n');
+  }
   const bool is_input =
       error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
   return is_input ? exit_usage : exit_failed;

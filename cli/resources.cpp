@@ -32,6 +32,15 @@ std::size_t machine_memory() {
 
 }  // namespace
 
+CLI::Validator positive_number() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const auto number = to_number(text);
+        return number && *number > 0 && *number <= 1e9 ? "" : text + ": not a number above 0";
+      },
+      "> 0");
+}
+
 void add_resources(CLI::App& command, ResourceOptions& options) {
   command
       .add_option("--threads", options.threads, "Threads; as many as the machine has by default")
@@ -45,12 +54,7 @@ void add_resources(CLI::App& command, ResourceOptions& options) {
       .add_option("--max-memory", options.max_memory,
                   "Memory in GB, refused ahead where a run needs more; three quarters of what the "
                   "machine has by default")
-      ->check(CLI::Validator(
-          [](std::string& text) -> std::string {
-            const auto amount = to_number(text);
-            return amount && *amount > 0 && *amount <= 1e9 ? "" : text + ": not a number above 0";
-          },
-          "> 0"));
+      ->check(positive_number());
 }
 
 SimulationOptions simulation_options(const ResourceOptions& options) {

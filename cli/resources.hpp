@@ -14,6 +14,9 @@ struct ResourceOptions {
   double max_memory = 0;  ///< [GB of 10^9 bytes]; 0: three quarters of what the machine has
 };
 
+/// Of an option that takes a number above 0, at most 10^9.
+CLI::Validator positive_number();
+
 void add_resources(CLI::App& command, ResourceOptions& options);
 
 /// How a simulation of this command runs: these resources, and Ctrl-C stops it. Frames are asked

@@ -8,3 +8,4 @@
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/preview.hpp"
 #include "pliant/simulation/simulation.hpp"
+#include "pliant/timeline/sampler.hpp"

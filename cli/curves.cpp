@@ -1,0 +1,282 @@
+#include "curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "curve_plot.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+#include "pliant/core/read_file.hpp"
+#include "pliant/io/atomic_file.hpp"
+#include "pliant/pliant.hpp"
+#include "report.hpp"
+#include "resources.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// The frames asked for: a list, or first, first + step, ….
+struct Frames {
+  std::vector<double> listed;
+  double first = 0;
+  double step = 1;
+  std::size_t count = 0;
+
+  double operator[](std::size_t k) const {
+    return listed.empty() ? first + static_cast<double>(k) * step : listed[k];
+  }
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+// One number a line; empty lines are passed over.
+Result<Frames> read_frames(const std::string& file) {
+  const auto text = read_file(file);
+  if (!text) return fail(text.error());
+  Frames frames;
+  std::string_view rest = *text;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view word = trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (word.empty()) continue;
+    const auto frame = to_number(word);
+    if (!frame) {
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("\"{}\" is not a frame: one finite number a line is required",
+                              word.substr(0, 40)),
+                  file, line);
+    }
+    frames.listed.push_back(*frame);
+  }
+  frames.count = frames.listed.size();
+  return frames;
+}
+
+// A:B, or one frame: any finite numbers, within the scene's range or not.
+Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
+  const auto usage = [](std::string message) {
+    return fail(ErrorCode::InvalidInput, std::move(message));
+  };
+  double first = scene.start, last = scene.end;
+  if (!options.frames.empty()) {
+    const std::size_t colon = options.frames.find(':');
+    const auto from = to_number(std::string_view(options.frames).substr(0, colon));
+    const auto to = colon == std::string::npos
+                        ? from
+                        : to_number(std::string_view(options.frames).substr(colon + 1));
+    if (!from || !to || *from > *to) {
+      return usage(fmt::format("--frames {}: not of the form A:B with A <= B", options.frames));
+    }
+    first = *from;
+    last = *to;
+  }
+  constexpr double most = 1e9;
+  // A step that ends on the last frame but for rounding does end on it.
+  const double steps = std::floor((last - first) / options.step * (1 + 1e-14) + 1e-9);
+  if (!(steps < most)) {
+    return usage(
+        fmt::format("frames {} to {} by {} are more than {}", first, last, options.step, most));
+  }
+  return Frames{{}, first, options.step, static_cast<std::size_t>(steps) + 1};
+}
+
+Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
+                                                  const std::vector<std::string>& paths) {
+  const std::vector<NamedChannel> all = channels_of(scene);
+  std::vector<NamedChannel> chosen;
+  if (paths.empty()) {
+    std::copy_if(all.begin(), all.end(), std::back_inserter(chosen),
+                 [](const NamedChannel& channel) { return channel.is_animated(); });
+    return chosen;
+  }
+  for (const std::string& path : paths) {
+    const auto found = std::find_if(
+        all.begin(), all.end(), [&](const NamedChannel& channel) { return channel.path == path; });
+    if (found == all.end()) {
+      // Those of the same surface or force, if there is one, else all.
+      const std::string owner = path.substr(0, path.find('.') + 1);
+      std::vector<std::string> near, any;
+      for (const NamedChannel& channel : all) {
+        any.push_back(channel.path);
+        if (!owner.empty() && channel.path.starts_with(owner)) near.push_back(channel.path);
+      }
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("--channel {}: the scene has no such channel; it has {}", path,
+                              fmt::join(near.empty() ? any : near, ", ")));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+// Where the rows go: stdout, or a file that is there whole or not at all.
+class Output {
+ public:
+  static Result<Output> open(const std::string& file) {
+    if (file.empty()) return Output({});
+    auto created = AtomicFile::create(file);
+    if (!created) return fail(created.error());
+    return Output(*std::move(created));
+  }
+
+  Result<void> write(std::string_view text) {
+    if (file_) return file_->write(text);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+    return fail(ErrorCode::Unwritable, "cannot write to the standard output");
+  }
+
+  Result<void> finish() {
+    if (file_) return file_->commit();
+    if (std::fflush(stdout) == 0) return {};
+    return fail(ErrorCode::Unwritable, "cannot write to the standard output");
+  }
+
+ private:
+  explicit Output(std::optional<AtomicFile> file) : file_(std::move(file)) {}
+
+  std::optional<AtomicFile> file_;
+};
+
+// Rows `channel,frame,value`, numbers as the shortest text that reads back the same.
+class Table {
+ public:
+  Table(Output& output, const Frames& frames, bool has_sides)
+      : output_(output), frames_(frames), has_sides_(has_sides) {}
+
+  Result<void> write(std::span<const NamedChannel> channels) {
+    text_ = has_sides_ ? "channel,frame,value,value_left,velocity,velocity_left\n"
+                       : "channel,frame,value\n";
+    for (const NamedChannel& channel : channels) {
+      auto written = std::visit([&](const auto* held) { return write(channel.path, plain(*held)); },
+                                channel.channel);
+      if (!written) return written;
+    }
+    return output_.write(text_);
+  }
+
+ private:
+  template <int D>
+  static const Channel<D>& plain(const Channel<D>& channel) {
+    return channel;
+  }
+  static const Channel<1>& plain(const Switch& channel) { return channel.channel(); }
+
+  template <int D>
+  Result<void> write(const std::string& path, const Channel<D>& channel) {
+    std::optional<Sampler<D>> sampler;
+    if (channel.is_animated()) sampler.emplace(channel.curve());
+    for (std::size_t k = 0; k < frames_.count; ++k) {
+      const double frame = frames_[k];
+      fmt::format_to(std::back_inserter(text_), "{},{}", path, frame);
+      append<D>(sampler ? sampler->value(frame) : channel.at(frame));
+      if (has_sides_) {
+        append<D>(sampler ? sampler->left_value(frame) : channel.at(frame));
+        append<D>(sampler ? sampler->velocity(frame) : Value<D>{});
+        append<D>(sampler ? sampler->left_velocity(frame) : Value<D>{});
+      }
+      text_ += '\n';
+      if (text_.size() < chunk) continue;
+      if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+      if (auto written = output_.write(text_); !written) return written;
+      text_.clear();
+    }
+    return {};
+  }
+
+  template <int D>
+  void append(const Value<D>& value) {
+    for (const double component : value) {
+      fmt::format_to(std::back_inserter(text_), ",{}", component);
+    }
+  }
+
+  static constexpr std::size_t chunk = std::size_t{1} << 20;
+
+  Output& output_;
+  const Frames& frames_;
+  bool has_sides_;
+  std::string text_;
+};
+
+// From the first to the last of the frames asked for.
+Result<void> write_plot(Output& output, std::span<const NamedChannel> channels,
+                        const Frames& frames, const CurvesOptions& options) {
+  if (frames.count == 0) return fail(ErrorCode::InvalidInput, "no frames to plot");
+  double first = frames[0], last = frames[frames.count - 1];
+  for (const double frame : frames.listed) {
+    first = std::min(first, frame);
+    last = std::max(last, frame);
+  }
+  if (!(first < last)) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("a plot needs two frames at least, not {} alone", first));
+  }
+  const std::string title = std::filesystem::path(options.scene).filename().string();
+  return output.write(curve_plot(channels, first, last, title));
+}
+
+}  // namespace
+
+void add_curves(CLI::App& app, CurvesOptions& options) {
+  CLI::App* curves = app.add_subcommand("curves", "Sample channels of a scene at full precision");
+  curves->add_option("SCENE", options.scene, "Scene file")->required();
+  curves->add_option("--channel", options.channels,
+                     "Paths NAME.attribute; all animated channels by default");
+  auto* frames = curves->add_option("--frames", options.frames,
+                                    "A:B, or one frame, whole or not, also outside the scene's; "
+                                    "the scene's by default");
+  auto* step = curves->add_option("--step", options.step, "Frames from one row to the next")
+                   ->check(positive_number())
+                   ->capture_default_str();
+  curves->add_option("--at", options.at, "File with the frames, one a line")
+      ->excludes(frames)
+      ->excludes(step);
+  curves->add_option("-o,--out", options.out,
+                     "A .csv table or an .svg plot; CSV on stdout by default");
+  curves->add_flag("--sides", options.has_sides,
+                   "Left value, velocity and left velocity (per frame) too");
+}
+
+int run_curves(const CurvesOptions& options) {
+  catch_interrupts();
+  const std::string ending = std::filesystem::path(options.out).extension().string();
+  if (!options.out.empty() && ending != ".csv" && ending != ".svg") {
+    return report({ErrorCode::InvalidInput,
+                   fmt::format("{}: no format of curves has the ending \"{}\"; allowed: .csv, .svg",
+                               options.out, ending)});
+  }
+  const auto scene = load_scene(options.scene);
+  if (!scene) return report(scene.error());
+  const auto channels = choose_channels(*scene, options.channels);
+  if (!channels) return report(channels.error());
+  const auto frames = options.at.empty() ? parse_frames(options, *scene) : read_frames(options.at);
+  if (!frames) return report(frames.error());
+
+  auto output = Output::open(options.out);
+  if (!output) return report(output.error());
+  auto written = ending == ".svg" ? write_plot(*output, *channels, *frames, options)
+                                  : Table(*output, *frames, options.has_sides).write(*channels);
+  if (!written) return report(written.error());
+  if (auto finished = output->finish(); !finished) return report(finished.error());
+  return exit_done;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace pliant::cli {
+
+/// What `pliant curves` was asked to do.
+struct CurvesOptions {
+  std::string scene;
+  std::vector<std::string> channels;  ///< paths; none: all that are animated
+  std::string frames;                 ///< A:B or one frame; empty: the scene's
+  double step = 1;                    ///< [frames]
+  std::string at;                     ///< file with a frame in each line; empty: none
+  std::string out;                    ///< .csv or .svg; empty: CSV on stdout
+  bool has_sides = false;
+};
+
+void add_curves(CLI::App& app, CurvesOptions& options);
+
+/// Samples channels of a scene, as a table or a plot. Gives the exit code.
+int run_curves(const CurvesOptions& options);
+
+}  // namespace pliant::cli
