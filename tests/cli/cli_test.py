@@ -235,7 +235,7 @@ class Validate(Command):
     <animate attribute="magnitude">
       <key frame="1" value="0" out="1" outLength="-2"/><key frame="9" value="5"/></animate></point>"""))
         result = self.run_pliant("validate", scene)
-        self.assertRegex(result.stderr, r"^\S*n\.xml:6: note: poke\.magnitude: [^\n]+\n$")
+        self.assertRegex(result.stderr, r"^\S*n\.xml:6: note: poke\.magnitude: key 1: [^\n]+\n$")
 
 
 class Info(Command):

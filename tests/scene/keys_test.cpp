@@ -115,7 +115,7 @@ TEST_CASE("what the curve rules refuse or change is told at the line of its key"
   REQUIRE_FALSE(scene.notes.empty());
   for (const SceneNote& note : scene.notes) {
     CHECK((note.line == 5 || note.line == 6));
-    CHECK_THAT(note.message, Catch::Matchers::StartsWith("poke.magnitude: "));
+    CHECK_THAT(note.message, Catch::Matchers::StartsWith("poke.magnitude: key "));
   }
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("a negative length counts as 0, with a note", "[scene][keys]") {
   REQUIRE(scene.notes.size() == 1);
   CHECK(scene.notes[0].line == 6);
   CHECK_THAT(scene.notes[0].message,
-             Catch::Matchers::StartsWith("poke.magnitude: ") && contains_text("-3"));
+             Catch::Matchers::StartsWith("poke.magnitude: key 12: ") && contains_text("-3"));
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_CASE("general lengths agree with a bisection in long double", "[timeline][c
 
 TEST_CASE("the curve is a finite function of time, whatever the tangents", "[timeline][curve]") {
   Whim whim(3);
-  for (int round = 0; round < 60000; ++round) {
+  for (int round = 0; round < 100000; ++round) {
     const CurveKeys<1> keys = whim.keys(4);
     const auto curve = Curve<1>::make(keys);
     REQUIRE(curve);

@@ -89,7 +89,9 @@ std::optional<Curve<D>> CurveReader<D>::read() {
     return std::nullopt;
   }
   for (const CurveNote& note : curve->notes())
-    findings_.add_note(line_of(note.key), fmt::format("{}: {}", channel_, note.message));
+    findings_.add_note(
+        line_of(note.key),
+        fmt::format("{}: key {}: {}", channel_, curve->keys().keys[note.key].frame, note.message));
   return std::move(*curve);
 }
 

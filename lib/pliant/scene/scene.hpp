@@ -120,7 +120,7 @@ struct SceneOrigin {
 /// curve rules shortened.
 struct SceneNote {
   int line = 0;         ///< counted from 1
-  std::string message;  ///< one line, begins with the channel: `poke.magnitude: …`
+  std::string message;  ///< one line, begins with the channel: `poke.magnitude: key 12: …`
 
   friend bool operator==(const SceneNote&, const SceneNote&) = default;
 };
