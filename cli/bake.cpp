@@ -25,8 +25,9 @@ struct FrameRange {
 };
 
 // A:B within the scene's frames; all of them when nothing is asked for.
-Result<FrameRange> parse_frames(const std::string& text, const Scene& scene) {
-  if (text.empty()) return FrameRange{scene.start, scene.end};
+Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
+  if (!asked) return FrameRange{scene.start, scene.end};
+  const std::string& text = *asked;
   const std::size_t colon = text.find(':');
   const auto first = to_integer(text.substr(0, colon));
   const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
@@ -48,13 +49,16 @@ struct Output {
   std::unique_ptr<AnimationWriter> writer;
 };
 
-// OUT, or OUT-NAME.ext when there are several surfaces.
+// OUT, or OUT-NAME.ext when there are several surfaces; ahead of the frame's place if OUT says
+// where that is, so that a sequence stays one: x.###.obj goes to x-NAME.###.obj.
 std::filesystem::path file_for(const std::filesystem::path& out, const std::string& surface,
                                bool is_single) {
   if (is_single) return out;
-  const std::string name =
-      fmt::format("{}-{}{}", out.stem().string(), surface, out.extension().string());
-  return out.parent_path() / name;
+  std::string name = out.filename().string();
+  const std::size_t frame = name.find('#');
+  std::size_t place = frame == std::string::npos ? out.stem().string().size() : frame;
+  if (frame != std::string::npos && place > 0 && name[place - 1] == '.') --place;
+  return out.parent_path() / name.insert(place, '-' + surface);
 }
 
 Result<std::vector<Output>> open_outputs(const Simulation& simulation, const BakeOptions& options,
@@ -63,11 +67,11 @@ Result<std::vector<Output>> open_outputs(const Simulation& simulation, const Bak
   std::vector<std::string> names;
   for (std::size_t k = 0; k < simulation.rest_shapes().size(); ++k) {
     names.push_back(simulation.rest_shapes()[k].name);
-    if (options.surface.empty() || options.surface == names.back()) chosen.push_back(k);
+    if (!options.surface || *options.surface == names.back()) chosen.push_back(k);
   }
   if (chosen.empty()) {
     return fail(ErrorCode::InvalidInput, fmt::format("--surface {}: the scene has the surfaces {}",
-                                                     options.surface, fmt::join(names, ", ")));
+                                                     *options.surface, fmt::join(names, ", ")));
   }
   std::vector<Output> outputs;
   for (const std::size_t k : chosen) {
@@ -132,6 +136,9 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
 // Where a warning's cause stands: the force, or the tangents that come first.
 int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (!warning.force.empty()) return origin.line_of(warning.force);
+  if (warning.kind == Warning::Kind::NeverStarts) {
+    return origin.line_of(warning.surface, "startFrame");
+  }
   for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
     const auto found = origin.lines.find(warning.surface + '.' + tangent);
     if (found != origin.lines.end()) return found->second;
@@ -165,13 +172,15 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   bake->add_option("--space", options.space, "Space of the positions")
       ->check(CLI::IsMember({"world", "object"}))
       ->capture_default_str();
-  add_resources(*bake, options.resources);
+  add_threads(*bake, options.resources);
+  add_memory(*bake, options.resources);
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
 }
 
 int run_bake(const BakeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
+  outlive_readers();
 
   if (auto known = check_ending(options.out); !known) return report(known.error());
   auto scene = load_scene(options.scene);
@@ -191,7 +200,7 @@ int run_bake(const BakeOptions& options) {
   if (!options.is_quiet) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
     print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}\n",
-                              options.out, summary->frame_count, summary->vertex_count,
+                              printable(options.out), summary->frame_count, summary->vertex_count,
                               elapsed.count(), summary->peak_displacement));
   }
   return exit_done;

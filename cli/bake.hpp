@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -12,8 +13,8 @@ namespace pliant::cli {
 struct BakeOptions {
   std::string scene;
   std::string out;
-  std::string frames;   ///< A:B; empty: all
-  std::string surface;  ///< empty: all
+  std::optional<std::string> frames = {};   ///< A:B; none: all
+  std::optional<std::string> surface = {};  ///< none: all
   std::string space = "world";
   bool is_quiet = false;
   ResourceOptions resources;

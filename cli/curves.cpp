@@ -17,6 +17,7 @@
 
 #include "curve_plot.hpp"
 #include "interrupt.hpp"
+#include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/io/atomic_file.hpp"
@@ -244,7 +245,7 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
                                     "A:B, or one frame, whole or not, also outside the scene's; "
                                     "the scene's by default");
   auto* step = curves->add_option("--step", options.step, "Frames from one row to the next")
-                   ->check(positive_number())
+                   ->check(number_from(1e-9))
                    ->capture_default_str();
   curves->add_option("--at", options.at, "File with the frames, one a line")
       ->excludes(frames)
@@ -257,7 +258,7 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
 
 int run_curves(const CurvesOptions& options) {
   catch_interrupts();
-  const std::string ending = std::filesystem::path(options.out).extension().string();
+  const std::string ending = ending_of(options.out);
   if (!options.out.empty() && ending != ".csv" && ending != ".svg") {
     return report({ErrorCode::InvalidInput,
                    fmt::format("{}: no format of curves has the ending \"{}\"; allowed: .csv, .svg",

@@ -39,14 +39,18 @@ void print_preview(const ForcePreview& preview, const Simulation& simulation) {
   std::string text = fmt::format("  {} ({}) on {}: ", force.name, kind_of(force),
                                  scene.surfaces[preview.surface].name);
   if (!preview.frame) {
-    text += "selects nothing at rest\n";
+    text += fmt::format("selects nothing at rest; its largest magnitude is {:g} (frame {})\n",
+                        preview.magnitude, preview.magnitude_frame);
   } else {
     const Box& box = preview.region;
     text += fmt::format("from frame {} it selects {} x {} nodes, columns {} to {}, rows {} to {}\n",
                         *preview.frame, box.columns(), box.rows(), box.i0, box.i1, box.j0, box.j1);
     if (!preview.is_solvable) text += "    fewer than 3 x 3 nodes: too few to solve\n";
   }
-  if (preview.is_solvable) {
+  if (preview.is_solvable && !preview.is_solved) {
+    text += "    too many to preview the static peak and the natural frequency\n";
+  }
+  if (preview.is_solved) {
     text += fmt::format("    static peak displacement {:.4g} at magnitude {:g} (frame {})\n",
                         preview.static_peak, preview.magnitude, preview.magnitude_frame);
     text += preview.frequency > 0
@@ -56,6 +60,17 @@ void print_preview(const ForcePreview& preview, const Simulation& simulation) {
                 : "    first natural frequency: none, the density is 0\n";
   }
   print(stdout, text);
+}
+
+// A force without a preview, and why it has none.
+std::string idle_text(const Force& force, const Scene& scene) {
+  bool is_enabled = false;
+  for (int frame = scene.start; frame <= scene.end && !is_enabled; ++frame) {
+    is_enabled = force.enabled.at(frame);
+  }
+  return fmt::format(
+      "  {} ({}): {}\n", force.name, kind_of(force),
+      is_enabled ? "no surface that is solved while it is enabled" : "never enabled");
 }
 
 template <int D>
@@ -103,13 +118,14 @@ void print_channels(const Scene& scene) {
 void add_info(CLI::App& app, InfoOptions& options) {
   CLI::App* info = app.add_subcommand("info", "Tell what is in a scene, to choose numbers by");
   info->add_option("SCENE", options.scene, "Scene file")->required();
-  add_resources(*info, options.resources);
+  add_memory(*info, options.resources);
 }
 
 int run_info(const InfoOptions& options) {
   catch_interrupts();
   auto scene = load_scene(options.scene);
   if (!scene) return report(scene.error());
+  print_notes(*scene);
   const SimulationOptions run = simulation_options(options.resources);
   if (scene->surfaces.empty()) {
     if (const auto checked = Simulation::check(*scene, run); !checked) {
@@ -138,7 +154,13 @@ int run_info(const InfoOptions& options) {
     print_preview(preview, *simulation);
     solver_memory = std::max(solver_memory, preview.solver_memory);
   }
-  if (previews->empty()) print(stdout, "  none that is enabled\n");
+  for (std::size_t k = 0; k < made.forces.size(); ++k) {
+    const bool is_previewed =
+        std::any_of(previews->begin(), previews->end(),
+                    [&](const ForcePreview& preview) { return preview.force == k; });
+    if (!is_previewed) print(stdout, idle_text(made.forces[k], made));
+  }
+  if (made.forces.empty()) print(stdout, "  none\n");
   print_channels(made);
   print(stdout,
         fmt::format("memory\n  {} for the surfaces, {} for the solver of the largest region "

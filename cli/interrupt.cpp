@@ -15,9 +15,15 @@ void note_interrupt(int) { interrupted = true; }
 }  // namespace
 
 void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, &note_interrupt);
+  struct sigaction action = {};
+  action.sa_handler = &note_interrupt;
+  // Without SA_RESTART: a read that waits for a pipe ends too. The second one ends the program.
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
 }
+
+void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool was_interrupted() { return interrupted; }
 

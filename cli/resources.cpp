@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "interrupt.hpp"
@@ -32,16 +33,19 @@ std::size_t machine_memory() {
 
 }  // namespace
 
-CLI::Validator positive_number() {
+CLI::Validator number_from(double least) {
+  constexpr double most = 1e9;
+  const std::string range = fmt::format("from {} to {:.0f}", least, most);
   return CLI::Validator(
-      [](std::string& text) -> std::string {
+      [=](std::string& text) -> std::string {
         const auto number = to_number(text);
-        return number && *number > 0 && *number <= 1e9 ? "" : text + ": not a number above 0";
+        if (number && *number >= least && *number <= most) return "";
+        return fmt::format("{}: not a number {}", text, range);
       },
-      "> 0");
+      range);
 }
 
-void add_resources(CLI::App& command, ResourceOptions& options) {
+void add_threads(CLI::App& command, ResourceOptions& options) {
   command
       .add_option("--threads", options.threads, "Threads; as many as the machine has by default")
       ->check(CLI::Validator(
@@ -49,12 +53,16 @@ void add_resources(CLI::App& command, ResourceOptions& options) {
             const auto count = to_integer(text);
             return count && *count >= 1 && *count <= 1024 ? "" : text + ": not from 1 to 1024";
           },
-          "1 to 1024"));
+          "from 1 to 1024"));
+}
+
+void add_memory(CLI::App& command, ResourceOptions& options) {
+  constexpr double least = 1e-6;  // a kilobyte
   command
       .add_option("--max-memory", options.max_memory,
                   "Memory in GB, refused ahead where a run needs more; three quarters of what the "
                   "machine has by default")
-      ->check(positive_number());
+      ->check(number_from(least));
 }
 
 SimulationOptions simulation_options(const ResourceOptions& options) {

@@ -14,10 +14,11 @@ struct ResourceOptions {
   double max_memory = 0;  ///< [GB of 10^9 bytes]; 0: three quarters of what the machine has
 };
 
-/// Of an option that takes a number above 0, at most 10^9.
-CLI::Validator positive_number();
+/// Of an option that takes a number from `least` to 10^9.
+CLI::Validator number_from(double least);
 
-void add_resources(CLI::App& command, ResourceOptions& options);
+void add_threads(CLI::App& command, ResourceOptions& options);
+void add_memory(CLI::App& command, ResourceOptions& options);
 
 /// How a simulation of this command runs: these resources, and Ctrl-C stops it. Frames are asked
 /// for in order, so that nothing is kept for going back.

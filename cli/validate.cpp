@@ -37,7 +37,7 @@ void add_validate(CLI::App& app, ValidateOptions& options) {
   CLI::App* validate = app.add_subcommand("validate", "Read and check scenes without running them");
   validate->add_option("SCENE", options.scenes, "Scene files")->required();
   validate->add_flag("--quiet", options.is_quiet, "Say nothing of scenes that are all right");
-  add_resources(*validate, options.resources);
+  add_memory(*validate, options.resources);
 }
 
 int run_validate(const ValidateOptions& options) {
@@ -45,7 +45,7 @@ int run_validate(const ValidateOptions& options) {
   int worst = exit_done;
   for (const std::string& file : options.scenes) {
     worst = std::max(worst, validate(file, options));
-    if (was_interrupted()) break;
+    if (was_interrupted()) return report({ErrorCode::Interrupted, "interrupted"});
   }
   return worst;
 }

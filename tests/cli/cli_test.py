@@ -228,7 +228,26 @@ class Validate(Command):
     def test_nothing_is_run_or_allocated(self):
         scene = self.write("large.xml", SCENE.format(end=1000000).replace('"13"', '"10000"').replace(
             '"11"', '"10000"'))
-        self.run_pliant("validate", scene)
+        self.run_pliant("validate", scene, "--max-memory", "1000000")
+        self.assertIn("takes 85", self.run_pliant("validate", scene, "--max-memory", "2", code=1).stderr)
+
+    def test_interrupted_it_does_not_say_all_right(self):
+        os.mkfifo(self.path("pipe.xml"))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([PLIANT, "validate", self.path("pipe.xml"), self.scene()],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                time.sleep(0.5)  # it waits for someone to write to the pipe
+                process.send_signal(number)
+                out, _ = process.communicate(timeout=30)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertEqual(out, "")
+
+    def test_a_mesh_that_is_no_file_is_not_waited_for(self):
+        os.mkfifo(self.path("m.obj"))
+        os.symlink("/dev/zero", self.path("z.obj"))
+        for name in ("m.obj", "z.obj"):
+            scene = self.write("p.xml", SCENE.format(end=9).replace(GRID, f'<mesh file="{name}"/>'))
+            self.assertIn("it is no regular file", self.run_pliant("validate", scene, code=2).stderr)
 
     def test_notes_are_told(self):
         scene = self.write("n.xml", SCENE.format(end=9).replace(' magnitude="3000"/>', """>
@@ -251,6 +270,23 @@ class Info(Command):
                       "at magnitude -4000 (frame 9)", " Hz, damping ratio",
                       "poke.magnitude  2 keys: 1 = 0, 9 = -4000", "memory"):
             self.assertIn(words, told)
+
+    def test_forces_that_do_nothing_are_listed_with_the_reason(self):
+        text = SCENE.format(end=9)
+        for old, new, words in (
+                ("<point", '<point enabled="false"', "poke (point): never enabled"),
+                ('name="sheet"', 'name="sheet" enabled="false"', "poke (point): no surface that is solved"),
+                ("</surface>", '<solver startFrame="50"/></surface>', "poke (point): no surface that is solved")):
+            self.assertIn(words, self.run_pliant("info", self.write("n.xml", text.replace(old, new))).stdout)
+
+    def test_what_would_take_too_long_is_left_out(self):
+        scene = self.write("l.xml", SCENE.format(end=1000000).replace('"13"', '"601"').replace(
+            '"11"', '"601"').replace('"4.5"', '"100"'))
+        self.assertIn("too many to preview", self.run_pliant("info", scene).stdout)
+        scene = self.write("f.xml", SCENE.format(end=1000000).replace('"0 0 0"', '"0 4.6 0"').replace(
+            '"13"', '"201"').replace('"11"', '"201"').replace('magnitude="3000"/>', """>
+    <animate attribute="magnitude"><key frame="1" value="0"/><key frame="9" value="9"/></animate></point>"""))
+        self.assertIn("selects nothing at rest", self.run_pliant("info", scene).stdout)
 
     def test_a_force_out_of_reach(self):
         scene = self.write("far.xml", SCENE.format(end=9).replace('"0 0 0"', '"0 90 0"'))
@@ -355,8 +391,8 @@ class Curves(Command):
                                  (["--frames", "3:1"], "A:B with A <= B"),
                                  (["--frames", "nan:1"], "A:B with A <= B"),
                                  (["--frames", "0:1e300"], "more than"),
-                                 (["--step", "0"], "not a number above 0"),
-                                 (["--step", "nan"], "not a number above 0"),
+                                 (["--step", "0"], "not a number from"),
+                                 (["--step", "nan"], "not a number from"),
                                  (["--at", "at.txt", "--step", "2"], "excludes"),
                                  (["-o", "c.png"], "allowed: .csv, .svg"),
                                  (["-o", "c.svg", "--frames", "3"], "two frames")):

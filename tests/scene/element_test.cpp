@@ -65,7 +65,7 @@ TEST_CASE("what a later version brings is not taken for a misspelling", "[scene]
   for (const std::string given :
        {"uv=\"virtual\"", "wrap=\"u\"", "wrap=\"v\"", "wrap=\"uv\"", "resolution=\"9\""})
     scenes.push_back(
-        {scene_with("<surface name=\"s\"><mesh file=\"/dev/null\" " + given + "/></surface>"),
+        {scene_with("<surface name=\"s\"><mesh file=\"/etc/passwd\" " + given + "/></surface>"),
          2,
          {given.substr(0, given.find('=')), later}});
   check_each(scenes);

@@ -118,7 +118,7 @@ std::string scene_around(const std::string& element, const std::string& attribut
   const std::set<std::string> parts = {"transform", "material", "tangents", "solver"};
   const std::set<std::string> key_parts = {"animate", "key", "loop"};
   const std::string force = forces.contains(element) ? element : "point";
-  const std::string shape = element == "mesh" ? begin("mesh", " file=\"/dev/null\"")
+  const std::string shape = element == "mesh" ? begin("mesh", " file=\"/etc/passwd\"")
                                               : begin("grid", " columns=\"3\" rows=\"3\"");
   const std::string part = parts.contains(element) ? begin(element, "") + "/>" : "";
   const std::string animate =

@@ -12,7 +12,7 @@ TEST_CASE("a surface has one shape and each part once", "[scene][surface]") {
       {scene_with("<surface name=\"s\"/>"),
        2,
        {"<surface> \"s\" has no shape", "<grid> or <mesh>"}},
-      {surface_with("<mesh file=\"/dev/null\"/>"), 3, {"\"sheet\" has two shapes", "at line 2"}},
+      {surface_with("<mesh file=\"/etc/passwd\"/>"), 3, {"\"sheet\" has two shapes", "at line 2"}},
       {surface_with("<grid columns=\"3\" rows=\"3\"/>"), 3, {"two shapes"}},
       {surface_with("<material/>\n<material/>"), 4, {"second <material>", "first is at line 3"}},
       {surface_with("<transform/><solver/>\n<transform/>"), 4, {"second <transform>"}},
@@ -24,7 +24,7 @@ TEST_CASE("a surface has one shape and each part once", "[scene][surface]") {
 TEST_CASE("the parts of a surface stand in any order", "[scene][surface]") {
   const Scene scene =
       scene_of(scene_with("<surface name=\"s\"><solver dt=\"0.5\"/><material density=\"3\"/><mesh "
-                          "file=\"/dev/null\"/></surface>"));
+                          "file=\"/etc/passwd\"/></surface>"));
   CHECK(scene.surfaces.at(0).solver.dt.at(1)[0] == 0.5);
   CHECK(scene.surfaces.at(0).material.density.at(1)[0] == 3);
   CHECK(std::holds_alternative<MeshFile>(scene.surfaces.at(0).shape));

@@ -65,7 +65,7 @@ TEST_CASE("a shape that cannot be had is the scene's error or the file's",
     CHECK_THAT(complaint(MeshFile{folder.file("none" + ending)}),
                StartsWith("a.xml:4: error: surface \"s\": ") && Contains("No such file"));
   }
-  CHECK_THAT(complaint(MeshFile{folder.file("mesh.stl")}),
+  CHECK_THAT(complaint(MeshFile{folder.write("mesh.stl", "")}),
              StartsWith("a.xml:4: error: ") && Contains("allowed: .obj, .ply"));
   CHECK_THAT(
       complaint(MeshFile{folder.write("set.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "", 1}),

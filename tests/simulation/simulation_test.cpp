@@ -238,8 +238,9 @@ TEST_CASE("a position beyond double in world space is an error", "[simulation]")
 
 TEST_CASE("a run stops when asked to, and goes on afterwards", "[simulation]") {
   const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
-  int steps_left = 12;  // 5 a frame
+  int steps_left = 1000;
   auto simulation = Simulation::make(s, {.should_stop = [&] { return steps_left-- == 0; }}).value();
+  steps_left = 12;  // 5 a frame
   const auto stopped = simulation.at(12);
   REQUIRE_FALSE(stopped);
   CHECK(stopped.error().code == ErrorCode::Interrupted);
@@ -289,6 +290,8 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   CHECK_THAT(too_large.error().message,
              StartsWith("surface \"large\" takes ") && EndsWith("of the 1 GB allowed"));
   CHECK(Simulation::check(s));  // all else about it is right
+  CHECK(Simulation::check(s, {.max_memory = 1'000'000'000}).error().message ==
+        too_large.error().message);
 
   // The surface fits, and so does the factor of a small region; that of a large one does not.
   s = scene({sheet("s", 151)}, {poke("f", {0, 0, 0})}, 3);
@@ -315,4 +318,39 @@ TEST_CASE("a scene is checked without being run", "[simulation][check]") {
   const auto refused = Simulation::check(s);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().others.size() == 1);  // both
+}
+
+TEST_CASE("a simulation takes the place of another", "[simulation]") {
+  const Scene first = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  const Scene second = scene({sheet("t", 9), sheet("u", 11)}, {poke("f", {0, 0, 0})});
+  auto simulation = Simulation::make(first, {.threads = 2}).value();
+  auto other = Simulation::make(second, {.threads = 3}).value();
+  REQUIRE((simulation.at(5) && other.at(3)));
+  const Field expected = other.at(7).value().surface("u").positions();
+  simulation = std::move(other);
+  CHECK(simulation.at(7).value().surface("u").positions() == expected);
+  simulation = Simulation::make(first).value();
+  CHECK(simulation.at(12).value().surface("s").positions() == baked(first, "s").back());
+}
+
+TEST_CASE("make stops when asked to", "[simulation]") {
+  const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  const auto stopped = Simulation::make(s, {.should_stop = [] { return true; }});
+  REQUIRE_FALSE(stopped);
+  CHECK(stopped.error().code == ErrorCode::Interrupted);
+  CHECK(Simulation::check(s, {.should_stop = [] { return true; }}).error().code ==
+        ErrorCode::Interrupted);
+}
+
+TEST_CASE("errors come in the order of files and lines, each once", "[simulation][check]") {
+  Scene s = scene({sheet("a"), sheet("b"), sheet("c")}, {poke("f", {0, 0, 0})});
+  s.surfaces[0].shape = MeshFile{"none.obj", ""};
+  s.surfaces[1].material.density = -1;
+  s.forces[0].force_radius = -1;
+  s.origin = {"s.xml", {{"a", 2}, {"a.file", 3}, {"b", 5}, {"f", 4}}};
+  const auto refused = Simulation::check(s);
+  REQUIRE_FALSE(refused);
+  std::vector<int> lines{refused.error().line};
+  for (const Error& other : refused.error().others) lines.push_back(other.line);
+  CHECK(lines == std::vector<int>{3, 4, 5});
 }

@@ -92,6 +92,16 @@ TEST_CASE("a force box outside the region is a warning, one that reaches out is 
   CHECK(warnings_of(s, 5).empty());
 }
 
+TEST_CASE("a surface that starts behind the end is a warning", "[simulation][warnings]") {
+  Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})}, 5);
+  s.surfaces[1].solver.start_frame = 5;  // the solve at 5 would show at 6
+  const auto late = warnings_of(s, 5);
+  REQUIRE(late.size() == 1);
+  CHECK_THAT(late[0].message(), Contains("surface \"b\" is not solved at frames 1-4"));
+  s.surfaces[1].solver.start_frame = 4;
+  CHECK(warnings_of(s, 5).empty());
+}
+
 TEST_CASE("tangents that no force ever selects are a warning", "[simulation][warnings]") {
   Scene s = scene({sheet("a")}, {}, 5);
   s.surfaces[0].tangents.sv1 = Channel<3>(Value<3>{0, 2, 0});

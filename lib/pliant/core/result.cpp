@@ -10,10 +10,24 @@ std::string to_line(const Error& error) {
     if (error.line > 0) line += std::to_string(error.line) + ':';
     line += ' ';
   }
-  return line + "error: " + error.message;
+  return printable(line + "error: " + error.message);
 }
 
 }  // namespace
+
+std::string printable(std::string_view text) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string line;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code >= 0x20 && code != 0x7f) {
+      line += c;
+    } else {
+      line += {'\\', 'x', digits[code >> 4], digits[code & 15]};
+    }
+  }
+  return line;
+}
 
 std::vector<std::string> to_lines(const Error& error) {
   std::vector<std::string> lines{to_line(error)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,10 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::stri
 
 /// Hands an error on as it is.
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+/// The text with each control character as `\xHH`: what an author or a file wrote must not break a
+/// line or reach a terminal.
+std::string printable(std::string_view text);
 
 /// The first problem and all others, one line each: `FILE:LINE: error: MESSAGE`, without the parts
 /// that are not known.

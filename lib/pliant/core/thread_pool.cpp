@@ -1,5 +1,7 @@
 #include "pliant/core/thread_pool.hpp"
 
+#include <new>
+#include <system_error>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
@@ -8,15 +10,14 @@ namespace pliant {
 
 ThreadPool::ThreadPool(int threads) {
   PLIANT_EXPECTS(threads >= 1);
-  for (int k = 1; k < threads; ++k) threads_.emplace_back([this] { wait_for_work(); });
-}
-
-ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    is_closing_ = true;
+  try {
+    for (int k = 1; k < threads; ++k) {
+      threads_.emplace_back([this](const std::stop_token& stop) { wait_for_work(stop); });
+    }
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that there are will do.
+  } catch (const std::bad_alloc&) {
   }
-  work_is_there_.notify_all();
 }
 
 void ThreadPool::for_each(std::size_t count, const std::function<void(std::size_t)>& work) {
@@ -40,12 +41,11 @@ void ThreadPool::for_each(std::size_t count, const std::function<void(std::size_
   if (failure_.exception) std::rethrow_exception(std::exchange(failure_.exception, nullptr));
 }
 
-void ThreadPool::wait_for_work() {
+void ThreadPool::wait_for_work(const std::stop_token& stop) {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      work_is_there_.wait(lock, [this] { return is_closing_ || next_ < count_; });
-      if (is_closing_) return;
+      if (!work_is_there_.wait(lock, stop, [this] { return next_ < count_; })) return;
     }
     take_part();
   }

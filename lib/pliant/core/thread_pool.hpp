@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -14,12 +15,11 @@ namespace pliant {
 /// which order: then nothing depends on how many there are. SPEC 10.
 class ThreadPool {
  public:
-  /// `threads` in all, the calling one among them; 1 starts none. Requires: threads >= 1.
+  /// `threads` in all, the calling one among them; 1 starts none. Where the system refuses to start
+  /// so many, there are fewer. Requires: threads >= 1.
   explicit ThreadPool(int threads);
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
-  ~ThreadPool();
-
   int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
 
   /// Calls work(0) to work(count - 1), each once, some of them at the same time, and returns when
@@ -33,19 +33,18 @@ class ThreadPool {
     std::exception_ptr exception;
   };
 
-  void wait_for_work();
+  void wait_for_work(const std::stop_token& stop);
   void take_part();
 
   std::mutex mutex_;
-  std::condition_variable work_is_there_;
+  std::condition_variable_any work_is_there_;
   std::condition_variable work_is_done_;
   const std::function<void(std::size_t)>* work_ = nullptr;
   std::size_t count_ = 0;
   std::size_t next_ = 0;  // index that nobody has taken yet
   std::size_t done_ = 0;
   Failure failure_;
-  bool is_closing_ = false;
-  std::vector<std::jthread> threads_;  // last: they use all of the above
+  std::vector<std::jthread> threads_;  // last: they use all of the above, and are stopped first
 };
 
 }  // namespace pliant

@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/file_ending.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/mesh/assimp_files.hpp"
@@ -72,18 +73,11 @@ void keep_readers(Assimp::Importer& importer, std::string_view ending) {
   }
 }
 
-// In lower case, without the dot.
-std::string ending_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return ending.empty() ? ending : ending.substr(1);
-}
-
 // No post-processing: nothing is reordered, joined, split into triangles or dropped.
 // The scene belongs to `importer`.
 Result<const aiScene*> import(Assimp::Importer& importer, const std::filesystem::path& file,
                               std::string bytes) {
-  keep_readers(importer, ending_of(file));
+  keep_readers(importer, ending_of(file).substr(1));
   auto owned_files = std::make_unique<AssimpFiles>(file, std::move(bytes), max_bytes);
   const AssimpFiles& files = *owned_files;
   importer.SetIOHandler(owned_files.release());                                // takes it
@@ -251,7 +245,7 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
 
 Result<Mesh> read_object(const std::filesystem::path& file, std::string bytes,
                          const std::string& name, int uv_set) {
-  if (auto checked = check_for_assimp(bytes, ending_of(file)); !checked)
+  if (auto checked = check_for_assimp(bytes, ending_of(file).substr(1)); !checked)
     return fail(checked.error());
   Assimp::Importer importer;
   const auto scene = import(importer, file, std::move(bytes));

@@ -1,11 +1,11 @@
 #include "pliant/mesh/read_mesh.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/core/file_ending.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/read_assimp.hpp"
 #include "pliant/mesh/read_obj.hpp"
@@ -13,13 +13,6 @@
 
 namespace pliant {
 namespace {
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
 
 // Of a format that has one set of (u,v) at most.
 Result<Mesh> with_only_set(Result<Mesh> mesh, const std::filesystem::path& file, int uv_set) {
@@ -37,7 +30,7 @@ std::vector<std::string> mesh_endings() {
 
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set) {
   const std::vector<std::string> endings = mesh_endings();
-  const std::string ending = lower_case(file.extension().string());
+  const std::string ending = ending_of(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("no mesh file has the ending of {}; allowed: {}", file.string(),

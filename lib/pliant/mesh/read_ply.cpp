@@ -130,6 +130,9 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
                                 in_quotes(words[2]), std::numeric_limits<int>::max()),
                     line);
     }
+    const auto has_name = [&](const Element& element) { return element.name == words[1]; };
+    if (std::any_of(header.elements.begin(), header.elements.end(), has_name))
+      return broken(fmt::format("the element {} stands twice", in_quotes(words[1])), line);
     header.elements.push_back({std::string(words[1]), *count, {}});
     return {};
   }
@@ -141,7 +144,10 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
           "TYPE NAME`",
           line);
     }
-    header.elements.back().properties.push_back(*property);
+    Element& element = header.elements.back();
+    if (element.find({property->name}) >= 0)
+      return broken(fmt::format("the property {} stands twice", in_quotes(property->name)), line);
+    element.properties.push_back(*property);
     return {};
   }
   return broken(fmt::format("the header has the line {}, which is no part of one",

@@ -31,7 +31,7 @@ Field starting_shapes(const Grid& grid) {
 }  // namespace
 
 Result<double> smallest_eigenvalue(LinearSolver& solver, const Grid& grid,
-                                   const Stiffness& stiffness) {
+                                   const Stiffness& stiffness, const StopRequest& should_stop) {
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   if (auto factored = solver.factor({grid, stiffness, 0}); !factored) return fail(factored.error());
 
@@ -42,6 +42,7 @@ Result<double> smallest_eigenvalue(LinearSolver& solver, const Grid& grid,
   double lambda = std::numeric_limits<double>::infinity();
   constexpr int most_passes = 500;
   for (int pass = 0; pass < most_passes; ++pass) {
+    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
     auto solutions = solver.solve(shapes);
     if (!solutions) return fail(solutions.error());
     if (grid.node_count() == 9) return shapes(0, 0) / (*solutions)(0, 0);  // one unknown

@@ -49,8 +49,9 @@ Complaint anything(const Value<D>&) {
 
 class ChannelChecker {
  public:
-  ChannelChecker(const Scene& scene, const ChannelFilter& is_checked)
-      : scene_(scene), is_checked_(is_checked) {}
+  ChannelChecker(const Scene& scene, const ChannelFilter& is_checked,
+                 const StopRequest& should_stop)
+      : scene_(scene), is_checked_(is_checked), should_stop_(should_stop) {}
 
   void check(const Surface& surface) {
     check(surface.name, "translate", surface.transform.translate, anything<3>);
@@ -146,6 +147,7 @@ class ChannelChecker {
   }
 
   bool is_checked(const std::string& name, std::string_view attribute) const {
+    if (should_stop_ && should_stop_()) return false;
     return !is_checked_ || is_checked_(name, attribute);
   }
 
@@ -160,13 +162,15 @@ class ChannelChecker {
 
   const Scene& scene_;
   const ChannelFilter& is_checked_;
+  const StopRequest& should_stop_;
   std::vector<Error> errors_;
 };
 
 }  // namespace
 
-std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked) {
-  ChannelChecker checker(scene, is_checked);
+std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,
+                                  const StopRequest& should_stop) {
+  ChannelChecker checker(scene, is_checked, should_stop);
   for (const Surface& surface : scene.surfaces) checker.check(surface);
   for (const Force& force : scene.forces) checker.check(force);
   return checker.take_errors();

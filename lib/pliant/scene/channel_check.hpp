@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -17,7 +18,9 @@ using ChannelFilter = std::function<bool(const std::string& name, std::string_vi
 /// 7: finite values; density, damping >= 0; b, d > 0; c > -2 sqrt(b d); dt > 0 and at most 10^5
 /// steps a frame; radii >= 0; a transform that can be inverted. One error a channel, at its first
 /// frame at fault, naming channel, frame and value. c is checked where b and d are, and keep their
-/// rules. Requires: fps > 0, start <= end.
-std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked = {});
+/// rules. `should_stop` is asked for each channel; what was not looked at is then not told of.
+/// Requires: fps > 0, start <= end.
+std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked = {},
+                                  const StopRequest& should_stop = {});
 
 }  // namespace pliant

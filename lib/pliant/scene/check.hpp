@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,6 +31,10 @@ bool is_name(std::string_view text);
 /// with positive extents. Channels are checked over the frames by `Simulation::make`. Every problem
 /// found, with its line if known.
 std::vector<Error> check_scene(const Scene& scene);
+
+/// Whether a mesh file is there, may be read, and is a regular file: a pipe or a device might never
+/// end. Errors: Unreadable.
+Result<void> check_mesh_file(const std::filesystem::path& file);
 
 /// A mesh file that cannot be read is the scene's mistake: the reader's error (Unreadable) as that
 /// of the surface, at the line where the file is named.

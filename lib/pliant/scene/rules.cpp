@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/scene/channel_check.hpp"
@@ -95,9 +94,10 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
                    std::span<const Named> named, Findings& findings) {
   std::map<std::string_view, std::string_view> elements;
   for (const Named& one : named) elements.emplace(one.name, one.element);
-  std::vector<std::string_view> surfaces;
-  for (const Surface& surface : scene.surfaces) surfaces.push_back(surface.name);
-  const std::set<std::string_view> names(surfaces.begin(), surfaces.end());
+  std::set<std::string_view> names;
+  std::vector<std::string_view> surfaces;  // each once, in the order of the file
+  for (const Surface& surface : scene.surfaces)
+    if (names.insert(surface.name).second) surfaces.push_back(surface.name);
   if (names.contains("")) return;  // a surface without a readable name may be the one that is meant
 
   for (const Targets& listed : targets)
@@ -138,13 +138,10 @@ void check_further(const Scene& scene, std::span<const Named> named, SceneFile& 
       file.findings.add_problem(error.line, std::move(error.message));
     }
   }
-  for (const Surface& surface : scene.surfaces) {
-    const auto* mesh = std::get_if<MeshFile>(&surface.shape);
-    if (!mesh || !is_sound(surface.name, "file")) continue;
-    if (const auto readable = check_readable(mesh->path); !readable) {
-      const Error error = unreadable_mesh(readable.error(), surface.name, file.origin);
-      file.findings.add_problem(error.line, error.message);
-    }
+  for (const NamedMesh& mesh : file.meshes) {
+    if (const auto readable = check_mesh_file(mesh.path); !readable)
+      file.findings.add_problem(
+          mesh.line, unreadable_mesh(readable.error(), mesh.surface, file.origin).message);
   }
 }
 

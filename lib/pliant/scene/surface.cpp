@@ -120,6 +120,8 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   Table table = attributes_of(mesh, file_.folder);
   read_attributes(element, table, file_.findings);
   read_children(element, {}, file_.findings);
+  if (const Attribute* path = find(table, "file"); path->line != 0 && path->is_sound)
+    file_.meshes.push_back({surface_.name, mesh.path, path->line});
   if (!is_first) return;
   surface_.shape = mesh;
   if (!surface_.name.empty()) record(surface_.name, table, file_);

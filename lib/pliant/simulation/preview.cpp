@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <span>
 
@@ -25,13 +26,22 @@ Ball ball_around(const Field& nodes) {
   return {centre, (nodes.rowwise() - centre.transpose()).rowwise().norm().maxCoeff()};
 }
 
+// All that decides what a force selects on a surface at rest.
+struct Reach {
+  Transform transform;
+  ForceShape shape;
+  double radius = 0;
+
+  friend bool operator==(const Reach&, const Reach&) = default;
+};
+
 class Previewer {
  public:
   Previewer(const Simulation& simulation, const SimulationOptions& options)
       : scene_(simulation.scene()),
         rest_shapes_(simulation.rest_shapes()),
         should_stop_(options.should_stop),
-        memory_(options.max_memory) {}
+        memory_(options.max_memory - std::min(options.max_memory, simulation.surface_memory())) {}
 
   Result<std::vector<ForcePreview>> preview() {
     std::vector<ForcePreview> previews;
@@ -57,6 +67,8 @@ class Previewer {
     result.surface = surface_index;
     result.force = force_index;
     bool is_ever_enabled = false;
+    seen_.clear();
+    distances_left_ = 1'000'000'000;
     const int first = std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
     for (int frame = first; frame <= scene_.end; ++frame) {
       if (!force.enabled.at(frame)) continue;
@@ -71,19 +83,26 @@ class Previewer {
     }
     if (!is_ever_enabled) return std::optional<ForcePreview>();
     result.is_solvable = result.region.columns() >= 3 && result.region.rows() >= 3;
-    if (!result.is_solvable) return result;
+    result.is_solved = result.is_solvable &&
+                       (result.region.columns() - 2) * std::int64_t{result.region.rows() - 2} <=
+                           most_previewed_unknowns;
+    if (!result.is_solved) return result;
     if (auto solved = solve(result); !solved) return fail(solved.error());
     return result;
   }
 
   // Whether the force selects something at this frame.
-  void look(std::size_t surface, const Force& force, int frame, ForcePreview& result) const {
+  void look(std::size_t surface, const Force& force, int frame, ForcePreview& result) {
     const Transform transform = sample_transform(scene_.surfaces[surface].transform, frame);
     const SampledForce sampled = sample_force(force, frame);
+    const Reach reach_now{transform, sampled.shape, sampled.deformation_radius};
+    if (distances_left_ < 0 || (!seen_.empty() && seen_.back() == reach_now)) return;
+    seen_.assign(1, reach_now);
     const Vector3d centre = transform.linear * ball_.centre + transform.translation;
     const double reach = ball_.radius * transform.linear.norm() + sampled.deformation_radius;
     if (distance(sampled.shape, centre) > 1.001 * reach) return;
     const GridMapping& mapping = rest_shapes_[surface].mapping;
+    distances_left_ -= mapping.grid.node_count();
     const Box region =
         select_region(mapping.grid, to_world(transform, mapping.rest), {&sampled, 1}).region;
     if (region.is_empty()) return;
@@ -105,7 +124,7 @@ class Previewer {
         inputs.body.transform, assemble_load(mapping.grid, nodes, {&force, 1}, selection));
 
     const auto solver = make_solver(available_solvers().front(), &memory_);
-    const auto lambda = smallest_eigenvalue(*solver, region, inputs.body.stiffness);
+    const auto lambda = smallest_eigenvalue(*solver, region, inputs.body.stiffness, should_stop_);
     if (!lambda) return fail(lambda.error());
     const auto settled = solver->solve(interior_of(region, load));
     if (!settled) return fail(settled.error());
@@ -125,7 +144,9 @@ class Previewer {
   std::span<const RestShape> rest_shapes_;
   StopRequest should_stop_;
   MemoryBudget memory_;
-  Ball ball_;  // around the surface in hand
+  Ball ball_;                        // around the surface in hand
+  std::vector<Reach> seen_;          // the last that was looked at for the pair in hand, if any
+  std::int64_t distances_left_ = 0;  // that may still be measured for it
 };
 
 }  // namespace

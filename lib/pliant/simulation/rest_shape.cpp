@@ -42,6 +42,20 @@ struct BytesToMake {
 
 }  // namespace
 
+namespace {
+
+// Sizes a surface's share of the memory.
+Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& origin,
+                  MemoryShare& memory) {
+  if (memory.try_resize(bytes)) return {};
+  return fail({.code = ErrorCode::OutOfMemory,
+               .message = fmt::format("surface \"{}\" {}", surface.name, memory.complaint(bytes)),
+               .file = origin.file,
+               .line = origin.line_of(surface.name)});
+}
+
+}  // namespace
+
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                   MemoryShare& memory) {
   const auto at_scene = [&](Error error) {
@@ -54,22 +68,16 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     }
     return fail(std::move(error));
   };
-  const auto take = [&](std::size_t bytes) -> Result<void> {
-    if (memory.try_resize(bytes)) return {};
-    return fail({.code = ErrorCode::OutOfMemory,
-                 .message = fmt::format("surface \"{}\" {}", surface.name, memory.complaint(bytes)),
-                 .file = origin.file,
-                 .line = origin.line_of(surface.name)});
-  };
-  if (auto taken = take(std::visit(BytesToMake{}, surface.shape)); !taken) {
-    return fail(taken.error());
+  if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
+    if (auto readable = check_mesh_file(file->path); !readable) return at_scene(readable.error());
   }
+  const std::size_t ahead = std::visit(BytesToMake{}, surface.shape);
+  if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
   auto mesh = std::visit(MakeMesh{}, surface.shape);
   if (!mesh) return at_scene(mesh.error());
-  const auto vertex_count = static_cast<std::size_t>(mesh->vertex_count());
-  if (auto taken = take(bytes_of(*mesh) + bytes_to_run(vertex_count)); !taken) {
-    return fail(taken.error());
-  }
+  const std::size_t bytes =
+      bytes_of(*mesh) + bytes_to_run(static_cast<std::size_t>(mesh->vertex_count()));
+  if (auto taken = take(bytes, surface, origin, memory); !taken) return fail(taken.error());
   auto mapping = find_grid(*mesh);
   if (!mapping) {
     Error error = mapping.error();
@@ -79,6 +87,15 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     return at_scene(std::move(error));
   }
   return RestShape{surface.name, *std::move(mesh), *std::move(mapping)};
+}
+
+Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                              MemoryShare& memory) {
+  if (const auto* sheet = std::get_if<GridSheet>(&surface.shape)) {
+    return take(BytesToMake{}(*sheet), surface, origin, memory);
+  }
+  const auto made = make_rest_shape(surface, origin, memory);
+  return made ? Result<void>() : fail(made.error());
 }
 
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin) {

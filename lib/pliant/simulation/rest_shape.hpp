@@ -25,7 +25,11 @@ struct RestShape {
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                   MemoryShare& memory);
 
-/// The same without a limit to memory.
+/// Whether `make_rest_shape` would succeed; a sheet is not made for it.
+Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                              MemoryShare& memory);
+
+/// The same as the first without a limit to memory.
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin);
 
 }  // namespace pliant

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <set>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -21,14 +25,26 @@ double peak_displacement(const Transform& transform, const Field& positions, con
   return vectors_to_world(transform, positions - rest).rowwise().norm().maxCoeff();
 }
 
-tl::unexpected<Error> fail_with_all(std::vector<Error> errors) {
-  Error first = std::move(errors.front());
-  for (std::size_t k = 1; k < errors.size(); ++k) {
-    Error& error = errors[k];
+// All as one: those of the scene's file first, each file's in the order of its lines, each once.
+tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin& origin) {
+  std::vector<Error> all;
+  for (Error& error : errors) {
     std::vector<Error> others = std::exchange(error.others, {});
-    first.others.push_back(std::move(error));
-    std::move(others.begin(), others.end(), std::back_inserter(first.others));
+    all.push_back(std::move(error));
+    std::move(others.begin(), others.end(), std::back_inserter(all));
   }
+  const auto place = [&](const Error& error) {
+    return std::tuple(error.file != origin.file, std::string_view(error.file), error.line);
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Error& a, const Error& b) { return place(a) < place(b); });
+  std::set<std::tuple<std::string_view, int, std::string_view>> seen;
+  std::vector<Error> distinct;
+  for (const Error& error : all) {
+    if (seen.emplace(error.file, error.line, error.message).second) distinct.push_back(error);
+  }
+  Error first = distinct.front();
+  first.others.assign(distinct.begin() + 1, distinct.end());
   return fail(std::move(first));
 }
 
@@ -44,9 +60,9 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
                       .message = "the scene has no surface to simulate",
                       .file = scene.origin.file});
   }
-  if (!errors.empty()) return fail_with_all(std::move(errors));
+  if (!errors.empty()) return fail_with_all(std::move(errors), scene.origin);
 
-  errors = check_channels(scene);
+  errors = check_channels(scene, {}, options.should_stop);
   Simulation simulation(std::move(scene), options);
   for (const Surface& surface : simulation.scene_.surfaces) {
     if (options.should_stop && options.should_stop()) return interrupted();
@@ -58,24 +74,26 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
     }
     simulation.add_body(surface, *std::move(rest_shape), std::move(share));
   }
-  if (!errors.empty()) return fail_with_all(std::move(errors));
+  if (options.should_stop && options.should_stop()) return interrupted();
+  if (!errors.empty()) return fail_with_all(std::move(errors), simulation.scene_.origin);
   return simulation;
 }
 
 Result<void> Simulation::check(const Scene& scene, const SimulationOptions& options) {
   std::vector<Error> errors = check_scene(scene);
-  if (!errors.empty()) return fail_with_all(std::move(errors));
+  if (!errors.empty()) return fail_with_all(std::move(errors), scene.origin);
 
-  errors = check_channels(scene);
+  errors = check_channels(scene, {}, options.should_stop);
   MemoryBudget memory(options.max_memory);
+  std::vector<MemoryShare> shares;  // what surfaces would take together
   for (const Surface& surface : scene.surfaces) {
-    if (std::holds_alternative<GridSheet>(surface.shape)) continue;  // `check_scene` looked at it
     if (options.should_stop && options.should_stop()) return interrupted();
-    MemoryShare share(&memory);
-    auto rest_shape = make_rest_shape(surface, scene.origin, share);
-    if (!rest_shape) errors.push_back(std::move(rest_shape.error()));
+    shares.emplace_back(&memory);
+    auto checked = check_rest_shape(surface, scene.origin, shares.back());
+    if (!checked) errors.push_back(std::move(checked.error()));
   }
-  if (!errors.empty()) return fail_with_all(std::move(errors));
+  if (options.should_stop && options.should_stop()) return interrupted();
+  if (!errors.empty()) return fail_with_all(std::move(errors), scene.origin);
   return {};
 }
 
@@ -87,6 +105,15 @@ Simulation::Simulation(Scene scene, const SimulationOptions& options)
       checkpoints_(scene_.start, options.checkpoint_bytes),
       threads_(std::make_unique<ThreadPool>(options.threads)),
       should_stop_(options.should_stop) {}
+
+// Member by member the budget would go ahead of the bodies that give back to it.
+Simulation& Simulation::operator=(Simulation&& other) noexcept {
+  if (this != &other) {
+    std::destroy_at(this);
+    std::construct_at(this, std::move(other));
+  }
+  return *this;
+}
 
 void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemoryShare share) {
   const SolverSettings& solver = surface.solver;
@@ -162,9 +189,11 @@ Result<void> Simulation::step() {
     outcomes[k] = Outcome{std::move(inputs), std::move(report)};
   });
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (!outcomes[k]) continue;
-    const auto& [inputs, report] = *outcomes[k];
     const Surface& surface = scene_.surfaces[k];
+    if (surface.enabled) warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
+    if (!outcomes[k]) continue;
+    warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
+    const auto& [inputs, report] = *outcomes[k];
     if (!report) return fail(located(report.error(), surface, frame_));
     warn(surface, inputs, *report);
   }

@@ -51,6 +51,10 @@ class Simulation {
   /// where a surface is larger than `max_memory`; Interrupted.
   static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
 
+  Simulation(Simulation&&) noexcept = default;
+  Simulation& operator=(Simulation&& other) noexcept;
+  ~Simulation() = default;
+
   /// Whether `make` would succeed, as far as it is known without making the sheets of the scene:
   /// reads its mesh files and looks at all channels. A scene without a surface is all right.
   /// Errors: as `make`.

@@ -26,6 +26,9 @@ std::string Warning::message() const {
       return fmt::format(
           "force \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", force,
           surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+    case Kind::NeverStarts:
+      return fmt::format("surface \"{}\" is not solved {}: its startFrame comes later", surface,
+                         when);
     case Kind::TangentsUnused:
       return fmt::format("the tangents of \"{}\" have no effect {}: no force selects a region",
                          surface, when);

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace pliant {
+
+/// The ending of a file's name with its dot, in lower case: `.obj` of `Head.OBJ`; empty: none.
+std::string ending_of(const std::filesystem::path& file);
+
+}  // namespace pliant
