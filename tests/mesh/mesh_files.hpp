@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <string>
@@ -192,8 +193,23 @@ inline std::vector<int> fbx_polygons(const Mesh& mesh) {
   return polygons;
 }
 
+/// A link to `property` of the parent; without one, to the parent as its child.
+struct FbxLink {
+  int child, parent;
+  std::string property = {};
+};
+
+/// What an FBX file holds besides `cloth` (model 21) below `parent` (20) below the root (0).
+struct FbxMore {
+  std::vector<int> models = {};
+  std::vector<FbxLink> links = {};
+  std::size_t gap = 0;           ///< binary files only: zeros before the links
+  bool has_layer_number = true;  ///< binary files only
+  int version = 7400;            ///< binary files only
+};
+
 /// An FBX file as text: `cloth` below `parent`, which is moved by 1 2 3 and scaled by 2.
-inline std::string fbx_text(const Mesh& mesh) {
+inline std::string fbx_text(const Mesh& mesh, const FbxMore& more = {}) {
   const auto uvs = uv_numbers_of(mesh);
   const auto uv_layer = [&](int index) {
     return fmt::format(
@@ -209,6 +225,13 @@ inline std::string fbx_text(const Mesh& mesh) {
         "{0}\n}}\n}}\n",
         index);
   };
+  std::string models, links;
+  for (const int id : more.models)
+    models += fmt::format("Model: {0}, \"Model::m{0}\", \"Null\" {{\nVersion: 232\n}}\n", id);
+  for (const auto& [child, parent, property] : more.links) {
+    links += property.empty() ? fmt::format("C: \"OO\", {}, {}\n", child, parent)
+                              : fmt::format("C: \"OP\", {}, {}, \"{}\"\n", child, parent, property);
+  }
   const auto polygons = fbx_polygons(mesh);
   return fmt::format(
       "; FBX 7.4.0 project file\nFBXHeaderExtension:  {{\nFBXHeaderVersion: 1003\nFBXVersion: "
@@ -219,28 +242,31 @@ inline std::string fbx_text(const Mesh& mesh) {
       "Model: 20, \"Model::parent\", \"Null\" {{\nVersion: 232\nProperties70:  {{\n"
       "P: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\", 1, 2, 3\n"
       "P: \"Lcl Scaling\", \"Lcl Scaling\", \"\", \"A\", 2, 2, 2\n}}\n}}\n"
-      "Model: 21, \"Model::cloth\", \"Mesh\" {{\nVersion: 232\n}}\n}}\n"
-      "Connections:  {{\nC: \"OO\", 20, 0\nC: \"OO\", 21, 20\nC: \"OO\", 10, 21\n}}\n",
+      "Model: 21, \"Model::cloth\", \"Mesh\" {{\nVersion: 232\n}}\n{}}}\n"
+      "Connections:  {{\nC: \"OO\", 20, 0\nC: \"OO\", 21, 20\nC: \"OO\", 10, 21\n{}}}\n",
       mesh.vertex_count() * 3, fmt::join(numbers_of(mesh), ","), polygons.size(),
-      fmt::join(polygons, ","), uv_layer(0), uv_layer(1), layer(0), layer(1));
+      fmt::join(polygons, ","), uv_layer(0), uv_layer(1), layer(0), layer(1), models, links);
 }
 
-/// One node of a binary FBX file of version 7.4: end, counts, name, properties, nodes within.
+/// One node of a binary FBX file: end, counts, name, properties, nodes within. The numbers have
+/// `width` bytes, 4 up to version 7.4 and 8 from 7.5 on.
 struct FbxNode {
   std::string name;
   std::vector<std::string> properties;
   std::vector<FbxNode> nodes = {};
+  std::size_t gap = 0;  ///< zeros before the nodes
 
-  std::string bytes(std::size_t at) const {
+  std::string bytes(std::size_t at, int width) const {
     std::string values;
     for (const std::string& property : properties) values += property;
-    const std::size_t head = 13 + name.size() + values.size();
-    std::string within;
-    for (const FbxNode& node : nodes) within += node.bytes(at + head + within.size());
-    if (!nodes.empty()) within.append(13, '\0');
-    return little_endian(at + head + within.size(), 4) + little_endian(properties.size(), 4) +
-           little_endian(values.size(), 4) + static_cast<char>(name.size()) + name + values +
-           within;
+    const auto zeros = static_cast<std::size_t>(3 * width + 1);
+    const std::size_t head = zeros + name.size() + values.size();
+    std::string within(gap, '\0');
+    for (const FbxNode& node : nodes) within += node.bytes(at + head + within.size(), width);
+    if (!nodes.empty()) within.append(zeros, '\0');
+    return little_endian(at + head + within.size(), width) +
+           little_endian(properties.size(), width) + little_endian(values.size(), width) +
+           static_cast<char>(name.size()) + name + values + within;
   }
 };
 
@@ -268,8 +294,8 @@ inline std::string fbx_array(const std::vector<int>& numbers) {
   return bytes;
 }
 
-/// The same as `fbx_text`, binary, with one set of (u,v), and if asked for a layer without number.
-inline std::string fbx_binary(const Mesh& mesh, bool has_layer_number = true) {
+/// The same as `fbx_text`, binary, with one set of (u,v).
+inline std::string fbx_binary(const Mesh& mesh, const FbxMore& more = {}) {
   const auto text = fbx_string;
   const auto vector = [&](const std::string& name, double x, double y, double z) {
     return FbxNode{
@@ -286,7 +312,7 @@ inline std::string fbx_binary(const Mesh& mesh, bool has_layer_number = true) {
                           {"UVIndex", {fbx_array(mesh.corner_uvs)}}}};
   const FbxNode layer{
       "Layer",
-      has_layer_number ? std::vector{fbx_int(0)} : std::vector<std::string>{},
+      more.has_layer_number ? std::vector{fbx_int(0)} : std::vector<std::string>{},
       {{"Version", {fbx_int(100)}},
        {"LayerElement", {}, {{"Type", {text("LayerElementUV")}}, {"TypedIndex", {fbx_int(0)}}}}}};
   const FbxNode geometry{"Geometry",
@@ -305,8 +331,20 @@ inline std::string fbx_binary(const Mesh& mesh, bool has_layer_number = true) {
   const auto link = [&](int from, int to) {
     return FbxNode{"C", {text("OO"), fbx_id(from), fbx_id(to)}};
   };
+  FbxNode objects{"Objects", {}, {geometry, parent, cloth}};
+  for (const int id : more.models) {
+    objects.nodes.push_back({"Model",
+                             {fbx_id(id), text(std::string("m\0\x01Model", 8)), text("Null")},
+                             {{"Version", {fbx_int(232)}}}});
+  }
+  FbxNode connections{"Connections", {}, {link(20, 0), link(21, 20), link(10, 21)}, more.gap};
+  for (const auto& [from, to, property] : more.links) {
+    connections.nodes.push_back(link(from, to));
+    if (!property.empty())
+      connections.nodes.back().properties = {text("OP"), fbx_id(from), fbx_id(to), text(property)};
+  }
   const std::vector<FbxNode> nodes = {
-      {"FBXHeaderExtension", {}, {{"FBXVersion", {fbx_int(7400)}}}},
+      {"FBXHeaderExtension", {}, {{"FBXVersion", {fbx_int(more.version)}}}},
       {"GlobalSettings",
        {},
        {{"Version", {fbx_int(1000)}},
@@ -314,11 +352,13 @@ inline std::string fbx_binary(const Mesh& mesh, bool has_layer_number = true) {
          {},
          {{"P",
            {text("UnitScaleFactor"), text("double"), text("Number"), text(""), fbx_double(1)}}}}}},
-      {"Objects", {}, {geometry, parent, cloth}},
-      {"Connections", {}, {link(20, 0), link(21, 20), link(10, 21)}}};
-  std::string bytes = std::string("Kaydara FBX Binary  \0\x1a\0", 23) + little_endian(7400, 4);
-  for (const FbxNode& node : nodes) bytes += node.bytes(bytes.size());
-  return bytes + std::string(13 + 160, '\0');
+      objects,
+      connections};
+  std::string bytes = std::string("Kaydara FBX Binary  \0\x1a\0", 23) +
+                      little_endian(static_cast<std::uint64_t>(more.version), 4);
+  const int width = more.version >= 7500 ? 8 : 4;
+  for (const FbxNode& node : nodes) bytes += node.bytes(bytes.size(), width);
+  return bytes + std::string(25 + 160, '\0');
 }
 
 }  // namespace pliant::testing

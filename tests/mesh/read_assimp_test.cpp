@@ -116,7 +116,10 @@ TEST_CASE("Collada and FBX keep quads, with a vertex for each corner", "[mesh][r
   Mesh moved = by_corner(sheet);
   moved.positions = (2 * moved.positions).rowwise() + Eigen::RowVector3d(1, 2, 3);
   check_equal(read_assimp(folder.write("a.fbx", fbx_text(sheet))).value(), moved);
-  check_equal(read_assimp(folder.write("b.fbx", fbx_binary(sheet))).value(), moved);
+  for (const int version : {7400, 7500}) {
+    const auto file = folder.write("b.fbx", fbx_binary(sheet, {.version = version}));
+    check_equal(read_assimp(file).value(), moved);
+  }
 }
 
 TEST_CASE("(u,v) point the same way in every format", "[mesh][read_assimp]") {
@@ -371,7 +374,10 @@ TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp]") {
        "a.fbx: error: Layer has no number"},
       {"a.fbx", changed(fbx_text(small_sheet(false)), "LayerElementUV: 0 {", "LayerElementUV: {"),
        "a.fbx: error: LayerElementUV has no number"},
-      {"a.fbx", fbx_binary(small_sheet(false), false), "a.fbx: error: Layer has no number"},
+      {"a.fbx", changed(fbx_text(small_sheet(false)), "Layer: 0 {", "Layer:\nx: {"),
+       "a.fbx: error: Layer has no number"},
+      {"a.fbx", fbx_binary(small_sheet(false), {.has_layer_number = false}),
+       "a.fbx: error: Layer has no number"},
       {"a.dae", "", "a.dae: error: the file is no sound XML (XML_ERROR_EMPTY_DOCUMENT)"},
       {"a.dae", "<COLLADA/>", "a.dae: error: the file "},
       {"a.dae", "<scene>", "a.dae:1: error: the file is no sound XML"},
@@ -404,9 +410,17 @@ TEST_CASE("parts within parts without end are refused", "[mesh][read_assimp]") {
   std::string chain, doubling;
   for (int k = 1; k <= 3000; ++k) chain += fmt::format(R"({{"children":[{}]}},)", k);
   for (int k = 1; k <= 40; ++k) doubling += fmt::format(R"({{"children":[{0},{0}]}},)", k);
-  const std::string circle =
-      "<node id=\"q\"><instance_geometry url=\"#g\"/>"
-      "<instance_node url=\"#q\"/></node>";
+  const auto circle = [](const std::string& target) {
+    return sheet_collada(
+        "<node id=\"q\" name=\"n\"><instance_geometry url=\"#g\"/><node>"
+        "<instance_node url=\"#" +
+        target + "\"/></node></node>");
+  };
+  std::string of_library = circle("q");
+  of_library.replace(of_library.rfind("#s"), 2, "#l");
+  of_library.insert(
+      of_library.find("<library_visual"),
+      "<library_nodes><node id=\"l\"><instance_node url=\"#l\"/></node></library_nodes>");
   std::string copies = "<node id=\"q0\"><instance_geometry url=\"#g\"/></node>";
   for (int k = 1; k <= 40; ++k) {
     copies += fmt::format(
@@ -422,12 +436,70 @@ TEST_CASE("parts within parts without end are refused", "[mesh][read_assimp]") {
       {"c.gltf", gltf.text(meshes, doubling + cloth_node), "node 1 of the file is a child twice"},
       {"a.glb", gltf.glb(meshes, doubling + cloth_node), "node 1 of the file is a child twice"},
       {"a.fbx", "; FBX\n" + repeated("a: {\n", 300000), "nests its parts more than 200 deep"},
+      {"b.fbx", "; FBX \"\n" + repeated("a: {\n", 300000), "nests its parts more than 200 deep"},
       {"a.dae", repeated("<node>", 100000), "XML_ELEMENT_DEPTH_EXCEEDED"},
-      {"b.dae", sheet_collada(circle), "nests its parts more than 200 deep"},
+      {"b.dae", circle("q"), "nests its parts more than 200 deep"},
+      {"b.dae", circle("n"), "nests its parts more than 200 deep"},      // by the name
+      {"b.dae", circle(""), "nests its parts more than 200 deep"},       // the nameless node
+      {"b.dae", circle("s"), "nests its parts more than 200 deep"},      // the scene
+      {"b.dae", circle("Scene"), "nests its parts more than 200 deep"},  // the nameless scene
+      {"b.dae", of_library, "nests its parts more than 200 deep"},
       {"c.dae", sheet_collada(copies), "instances make more than 1000000 nodes"}};
   for (const Case& c : cases) {
     CAPTURE(c.name);
     CHECK_THAT(complaint(folder.write(c.name, c.text)), contains_text(c.expected));
+  }
+}
+
+TEST_CASE("FBX models within themselves or without end are refused", "[mesh][read_assimp]") {
+  const ScratchFolder folder;
+  const Mesh sheet = small_sheet(false);
+  const auto texts_of = [&](FbxMore more) {
+    std::vector<std::string> texts = {fbx_text(sheet, more), fbx_binary(sheet, more)};
+    more.version = 7500;
+    texts.push_back(fbx_binary(sheet, more));
+    return texts;
+  };
+  // Each model below the one before, the first below `parent`.
+  const auto chain = [](int length) {
+    FbxMore more;
+    for (int k = 0; k < length; ++k) {
+      more.models.push_back(100 + k);
+      more.links.push_back({100 + k, k == 0 ? 20 : 99 + k});
+    }
+    return more;
+  };
+  FbxMore doubling = chain(40);
+  const auto once = doubling.links;
+  doubling.links.insert(doubling.links.end(), once.begin(), once.end());
+  FbxMore many;
+  many.links.assign(20000, {21, 20});
+  struct Case {
+    FbxMore more;
+    std::string expected;
+  };
+  const std::vector<Case> cases = {
+      {{.links = {{20, 20}}}, "nests its parts more than 200 deep"},
+      {{.links = {{21, 21}}}, "nests its parts more than 200 deep"},
+      {{.links = {{20, 21}}}, "nests its parts more than 200 deep"},
+      {{.models = {30}, .links = {{30, 21}, {20, 30}}}, "nests its parts more than 200 deep"},
+      {{.links = {{21, 21}}, .gap = 8}, "nests its parts more than 200 deep"},
+      {chain(5000), "nests its parts more than 200 deep"},
+      {doubling, "links make more than 10000 copies of its models"},
+      {many, "links make more than 10000 copies of its models"}};
+  for (const Case& c : cases) {
+    for (const std::string& text : texts_of(c.more))
+      CHECK_THAT(complaint(folder.write("a.fbx", text)), contains_text(c.expected));
+  }
+  // Links to a geometry or a property make no child, and a circle may be out of the root's reach.
+  const std::vector<FbxMore> sound = {chain(150),
+                                      {.links = {{21, 10}, {0, 21}}},
+                                      {.links = {{20, 21, "LookAtProperty"}}},
+                                      {.gap = 8},
+                                      {.models = {30, 31}, .links = {{30, 31}, {31, 30}}}};
+  for (const FbxMore& more : sound) {
+    for (const std::string& text : texts_of(more))
+      CHECK(read_assimp(folder.write("a.fbx", text))->face_sizes == sheet.face_sizes);
   }
 }
 

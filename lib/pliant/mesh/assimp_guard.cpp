@@ -5,12 +5,15 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
 #include "pliant/core/number.hpp"
+#include "pliant/mesh/assimp_guard_fbx.hpp"
+#include "pliant/mesh/nesting.hpp"
 
 namespace pliant {
 namespace {
@@ -19,33 +22,6 @@ using tinyxml2::XMLElement;
 
 tl::unexpected<Error> broken(std::string message, int line = 0) {
   return fail(ErrorCode::InvalidInput, std::move(message), {}, line);
-}
-
-// assimp follows what is nested by calling itself, to the end of the stack.
-constexpr std::size_t deepest = 200;
-
-tl::unexpected<Error> too_deep() {
-  return broken(fmt::format("the file nests its parts more than {} deep", deepest));
-}
-
-// How deep the brackets of a text go that has `"` around its strings.
-Result<void> check_depth(std::string_view text, std::string_view opening, std::string_view closing,
-                         bool has_escapes) {
-  std::size_t depth = 0;
-  bool is_quoted = false;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const char c = text[k];
-    if (is_quoted && has_escapes && c == '\\') {
-      ++k;
-    } else if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (!is_quoted && opening.find(c) != std::string_view::npos) {
-      if (++depth > deepest) return too_deep();
-    } else if (!is_quoted && depth > 0 && closing.find(c) != std::string_view::npos) {
-      --depth;
-    }
-  }
-  return {};
 }
 
 // --- Collada ---
@@ -68,15 +44,23 @@ bool is_index_list(std::string_view name) {
 class ColladaCheck {
  public:
   Result<void> run(const XMLElement& root) {
+    std::vector<const XMLElement*> parts;  // that may be the root of the file's scene
+    std::set<std::string_view> roots;      // "#" and id
     for (const XMLElement* at = &root; at; at = after(*at, root)) {
       const std::string_view name = at->Name();
       if (name.ends_with("_array"))
         array_sizes_.emplace(attribute(*at, "id"), count_of(*at, "count", 0));
-      if (name == "node") nodes_.emplace(attribute(*at, "id"), at);
-      if (name == "visual_scene") scenes_.push_back(at);
+      if (name == "visual_scene" || (name == "node" && is_in_library(*at))) {
+        library_.insert_or_assign(attribute(*at, "id"), at);
+        parts.push_back(at);
+      }
+      if (name == "instance_visual_scene") roots.insert(attribute(*at, "url"));
     }
-    for (const XMLElement* scene : scenes_) {
-      if (auto checked = check_nodes(*scene, 0); !checked) return checked;
+    for (const XMLElement* part : parts) {
+      if (!roots.contains(fmt::format("#{}", attribute(*part, "id")))) continue;
+      scene_nodes_.clear();
+      add_names(*part);
+      if (auto checked = check_nodes(*part, 0); !checked) return checked;
     }
     for (const XMLElement* at = &root; at; at = after(*at, root)) {
       if (auto checked = check(*at); !checked) return checked;
@@ -93,20 +77,41 @@ class ColladaCheck {
     return up == &root ? nullptr : up->NextSiblingElement();
   }
 
+  static bool is_in_library(const XMLElement& node) {
+    const XMLElement* parent = node.Parent()->ToElement();
+    return parent && std::string_view(parent->Name()) == "library_nodes";
+  }
+
+  void add_names(const XMLElement& node) {
+    const bool is_scene = std::string_view(node.Name()) == "visual_scene";
+    const bool has_name = node.Attribute("name") != nullptr;
+    scene_nodes_.emplace(is_scene && !has_name ? "Scene" : attribute(node, "name"), &node);
+    scene_nodes_.emplace(attribute(node, "id"), &node);
+    for (const XMLElement* child = node.FirstChildElement("node"); child;
+         child = child->NextSiblingElement("node"))
+      add_names(*child);
+  }
+
+  // What assimp takes an <instance_node> for: the last part of the libraries that has the id, or
+  // the first part of the scene that has the name or id, which may be empty. Null: nothing.
+  const XMLElement* target_of(const XMLElement& instance) const {
+    std::string_view url = attribute(instance, "url");
+    if (!url.starts_with('#')) return nullptr;
+    url.remove_prefix(1);
+    if (const auto part = library_.find(url); part != library_.end()) return part->second;
+    const auto part = scene_nodes_.find(url);
+    return part == scene_nodes_.end() ? nullptr : part->second;
+  }
+
   // Walks the nodes below as assimp does, which puts a copy in place of each <instance_node>.
   Result<void> check_nodes(const XMLElement& node, std::size_t depth) {
-    if (depth > deepest) return too_deep();
+    if (depth > deepest_nesting) return too_deep();
     if (--nodes_left_ < 0)
       return broken(fmt::format("the file's instances make more than {} nodes", most_nodes));
     for (const XMLElement* child = node.FirstChildElement(); child;
          child = child->NextSiblingElement()) {
       const XMLElement* next = std::string_view(child->Name()) == "node" ? child : nullptr;
-      if (std::string_view(child->Name()) == "instance_node") {
-        std::string_view url = attribute(*child, "url");
-        if (url.starts_with('#')) url.remove_prefix(1);
-        const auto target = nodes_.find(url);
-        if (target != nodes_.end()) next = target->second;
-      }
+      if (std::string_view(child->Name()) == "instance_node") next = target_of(*child);
       if (!next) continue;
       if (auto checked = check_nodes(*next, depth + 1); !checked) return checked;
     }
@@ -157,8 +162,8 @@ class ColladaCheck {
   static constexpr std::int64_t most_nodes = 1'000'000;
 
   std::map<std::string, std::int64_t, std::less<>> array_sizes_;  // by id
-  std::map<std::string, const XMLElement*, std::less<>> nodes_;   // by id
-  std::vector<const XMLElement*> scenes_;
+  std::map<std::string_view, const XMLElement*> library_;         // by id
+  std::map<std::string_view, const XMLElement*> scene_nodes_;     // by name and id
   std::int64_t nodes_left_ = most_nodes;
 };
 
@@ -182,10 +187,28 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at) {
   return number;
 }
 
+Result<void> check_brackets(std::string_view text) {
+  std::size_t depth = 0;
+  bool is_quoted = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (is_quoted && c == '\\') {
+      ++k;
+    } else if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (!is_quoted && (c == '[' || c == '{')) {
+      if (++depth > deepest_nesting) return too_deep();
+    } else if (!is_quoted && (c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return {};
+}
+
 // Brackets within brackets, and nodes within nodes. A node stands in one list of children at most:
 // assimp, which copies a node into each list, would need time without end.
 Result<void> check_json(std::string_view text) {
-  if (auto checked = check_depth(text, "[{", "]}", true); !checked) return checked;
+  if (auto checked = check_brackets(text); !checked) return checked;
   constexpr std::size_t most_lists = 2000;  // each may lie within the one before
   constexpr std::string_view key = "\"children\"", digits = "0123456789";
   std::set<int> children;
@@ -226,61 +249,6 @@ Result<void> check_glb(std::string_view bytes) {
     at += chunk_header + number_at(bytes, at);
   }
   return {};
-}
-
-// --- FBX ---
-
-// `Layer` and `LayerElementUV` carry a number; the plain `LayerElement` within a layer does not.
-bool needs_number(std::string_view name) {
-  return name.starts_with("Layer") && name != "LayerElement";
-}
-
-tl::unexpected<Error> without_number(std::string_view name) {
-  return broken(fmt::format("{} has no number", name.substr(0, 40)));
-}
-
-// An FBX file as text: a name, a colon, values, and then maybe a brace.
-Result<void> check_fbx_text(std::string_view bytes) {
-  if (auto checked = check_depth(bytes, "{", "}", false); !checked) return checked;
-  const std::string_view key = "Layer";
-  for (std::size_t at = bytes.find(key); at != std::string_view::npos; at = bytes.find(key, at)) {
-    const std::size_t end = std::min(bytes.find_first_of(": \t\r\n\",{}", at), bytes.size());
-    const std::string_view name = bytes.substr(at, end - at);
-    at = end;
-    const std::size_t colon = bytes.find_first_not_of(" \t\r\n", end);
-    if (!needs_number(name) || colon == std::string_view::npos || bytes[colon] != ':') continue;
-    const std::size_t value = bytes.find_first_not_of(" \t\r\n", colon + 1);
-    if (value != std::string_view::npos && bytes[value] == '{') return without_number(name);
-  }
-  return {};
-}
-
-// The nodes of a binary FBX file: where the node ends, count and size of its values, in 4 bytes
-// each (8 from version 7.5 on), length of its name in 1; name, values, nodes within. The heads are
-// taken one after the other, whichever node they are in. What does not fit, assimp finds.
-Result<void> check_fbx_binary(std::string_view bytes) {
-  constexpr std::size_t header = 27, version_at = 23;
-  if (bytes.size() < header) return {};
-  const std::size_t width = number_at(bytes, version_at) >= 7500 ? 8 : 4;
-  std::vector<std::uint64_t> ends;  // of the nodes that we are within
-  for (std::size_t at = header; bytes.size() - at > 3 * width;) {
-    while (!ends.empty() && ends.back() <= at) ends.pop_back();
-    if (const std::uint64_t end = number_at(bytes, at); end > at) ends.push_back(end);
-    if (ends.size() > deepest) return too_deep();
-    const std::uint64_t value_count = number_at(bytes, at + width);
-    const std::uint64_t value_size = number_at(bytes, at + 2 * width);
-    const std::size_t name_size = static_cast<unsigned char>(bytes[at + 3 * width]);
-    at += 3 * width + 1;
-    if (name_size > bytes.size() - at || value_size > bytes.size() - at - name_size) return {};
-    const std::string_view name = bytes.substr(at, name_size);
-    if (value_count == 0 && needs_number(name)) return without_number(name);
-    at += name_size + value_size;
-  }
-  return {};
-}
-
-Result<void> check_fbx(std::string_view bytes) {
-  return bytes.starts_with("Kaydara FBX Binary") ? check_fbx_binary(bytes) : check_fbx_text(bytes);
 }
 
 }  // namespace

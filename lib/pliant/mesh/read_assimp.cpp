@@ -245,8 +245,10 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
 
 Result<Mesh> read_object(const std::filesystem::path& file, std::string bytes,
                          const std::string& name, int uv_set) {
-  if (auto checked = check_for_assimp(bytes, ending_of(file).substr(1)); !checked)
+  if (auto checked = check_for_assimp(bytes, ending_of(file).substr(1)); !checked) {
+    checked.error().message = in_one_line(checked.error().message);
     return fail(checked.error());
+  }
   Assimp::Importer importer;
   const auto scene = import(importer, file, std::move(bytes));
   if (!scene) return fail(scene.error());
