@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant {
+
+// Edits of curves: values in, values out. What each one guarantees is told in docs/timeline.md,
+// section "Editing". Besides the errors named here each may end with one of `Curve::make`, as when
+// rounding puts two keys on one frame or a number exceeds 1e150.
+//
+// An edit must often write an automatic tangent as a number, because it would follow its new
+// neighbours; those that stay the same keep their kind.
+
+/// The same curve with a key more, at `frame`; the same keys when there is one already. Bézier and
+/// cubicBezier segments are split, quad, cubic, back and bounce become Bézier segments with a key
+/// at each of their joints. An inner loop with copies is written out.
+/// Errors: a frame that is not finite; a segment of another easing, naming its left key; a frame
+/// before or after the keys when one side shows copies of them.
+template <int D>
+tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame);
+
+/// The curve without one of its keys: the segment before it goes on to the next key, and automatic
+/// tangents follow their new neighbours. Where two Bézier segments with written tangents of general
+/// length are the halves of one, as `insert_key` leaves them, the tangents beside them are
+/// lengthened again and the curve stays the same.
+/// Errors: no such key; the only key; the key that an inner loop starts from.
+template <int D>
+tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key);
+
+/// How much higher, for each component [unit]. Left out of the deduction of D.
+template <int D>
+using Rise = std::type_identity_t<Value<D>>;
+
+/// The curve with one key moved by `frames`, its value and `left` raised by `rise`; the rest is
+/// what the rules make of it. An inner loop that starts from the key follows; its end stays.
+/// Errors: no such key; a number that is not finite; a frame not between those of its neighbours.
+template <int D>
+tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key, double frames,
+                                            const Rise<D>& rise);
+
+/// The curve later by `frames` and higher by `rise`: g(t) = f(t - frames) + rise.
+/// Errors: a number that is not finite.
+template <int D>
+tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frames,
+                                             const Rise<D>& rise);
+
+/// How to stretch a curve, in time about `frame` and in value about `value`.
+template <int D>
+struct Scaling {
+  double frame = 0;
+  double time_factor = 1;  ///< [1]; negative: time runs backwards as well
+  Value<D> value = {};
+  Value<D> value_factor = filled(1);  ///< [1], for each component
+
+  static Value<D> filled(double number) {
+    Value<D> value;
+    value.fill(number);
+    return value;
+  }
+};
+
+/// g(frame + time_factor·s) = value + value_factor·(f(frame + s) - value).
+/// Errors: a factor of 0; a number that is not finite; an elastic with an amplitude, which all
+/// components share, and value factors of different size; those of `reverse` when time_factor < 0.
+template <int D>
+tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>& scaling);
+
+/// The curve run backwards: g(t) = f(2·pivot - t), and the values on both sides of a jump change
+/// places. On the frame of a jump itself a curve has the value that it goes on with, so there alone
+/// g has what f arrives with.
+/// Errors: a pivot that is not finite; a side that repeats for a number of copies and then holds
+/// the value of an end key that jumps, which no key of the reversed curve can hold.
+template <int D>
+tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot);
+
+extern template tl::expected<Curve<1>, CurveError> insert_key(const Curve<1>&, double);
+extern template tl::expected<Curve<3>, CurveError> insert_key(const Curve<3>&, double);
+extern template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);
+extern template tl::expected<Curve<3>, CurveError> delete_key(const Curve<3>&, std::size_t);
+extern template tl::expected<Curve<1>, CurveError> move_key(const Curve<1>&, std::size_t, double,
+                                                            const Value<1>&);
+extern template tl::expected<Curve<3>, CurveError> move_key(const Curve<3>&, std::size_t, double,
+                                                            const Value<3>&);
+extern template tl::expected<Curve<1>, CurveError> move_keys(const Curve<1>&, double,
+                                                             const Value<1>&);
+extern template tl::expected<Curve<3>, CurveError> move_keys(const Curve<3>&, double,
+                                                             const Value<3>&);
+extern template tl::expected<Curve<1>, CurveError> scale(const Curve<1>&, const Scaling<1>&);
+extern template tl::expected<Curve<3>, CurveError> scale(const Curve<3>&, const Scaling<3>&);
+extern template tl::expected<Curve<1>, CurveError> reverse(const Curve<1>&, double);
+extern template tl::expected<Curve<3>, CurveError> reverse(const Curve<3>&, double);
+
+}  // namespace pliant

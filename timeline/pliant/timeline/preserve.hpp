@@ -1,0 +1,83 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant::timeline {
+
+/// The slopes with which the tangents of a key shape the curve, where something reads them
+/// [unit/frame].
+template <int D>
+struct KeySlopes {
+  std::optional<Value<D>> in = {};
+  std::optional<Value<D>> out = {};
+};
+
+/// What automatic tangents and linear extrapolation make of keys: what an edit must not change.
+template <int D>
+struct Shape {
+  std::vector<KeySlopes<D>> keys;
+  Value<D> before = {};  ///< slope before the first key, read by `linear` [unit/frame]
+  Value<D> after = {};
+};
+
+/// How much rounding may change: values [unit] and frames. By default nothing.
+struct Slack {
+  double value = 0;
+  double frame = 0;
+};
+
+/// The same curve with the inner loop's copies written out as keys.
+/// Errors: those of `written_out`. Requires: broken_rule(keys) finds nothing.
+template <int D>
+tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys);
+
+/// The shape of keys. Errors: those of `Curve::make`. Requires: no loop with copies.
+template <int D>
+tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys);
+
+/// The curve of keys that were edited, with the shape they had: a tangent that would follow its new
+/// neighbours is written as a number, with the length it has, and so is a linear extrapolation
+/// whose slope would change. Whatever stays the same keeps its kind.
+/// Errors: those of `Curve::make`. Requires: no loop with copies; a shape of as many keys.
+template <int D>
+tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
+                                             const Slack& slack = {});
+
+/// How far rounding may carry the numbers of keys that are moved as a whole: 64 units in the last
+/// place of the largest value and of the largest frame.
+template <int D>
+Slack rounding_of(const CurveKeys<D>& keys);
+
+/// Whether an author's keys, once their loop is written out, are `written` ones with their shape.
+template <int D>
+bool stands_for(const CurveKeys<D>& author, const CurveKeys<D>& written, const Shape<D>& shape,
+                const Slack& slack);
+
+/// Writes the lengths that `policy` makes of Bézier tangents into the keys, as far as it changes
+/// any. Requires: no loop with copies.
+template <int D>
+void write_corrections(CurveKeys<D>& keys, Overshoot policy);
+
+extern template tl::expected<CurveKeys<1>, CurveError> without_loop(const CurveKeys<1>&);
+extern template tl::expected<CurveKeys<3>, CurveError> without_loop(const CurveKeys<3>&);
+extern template tl::expected<Shape<1>, CurveError> shape_of(const CurveKeys<1>&);
+extern template tl::expected<Shape<3>, CurveError> shape_of(const CurveKeys<3>&);
+extern template tl::expected<Curve<1>, CurveError> preserved(CurveKeys<1>, const Shape<1>&,
+                                                             const Slack&);
+extern template tl::expected<Curve<3>, CurveError> preserved(CurveKeys<3>, const Shape<3>&,
+                                                             const Slack&);
+extern template Slack rounding_of(const CurveKeys<1>&);
+extern template Slack rounding_of(const CurveKeys<3>&);
+extern template bool stands_for(const CurveKeys<1>&, const CurveKeys<1>&, const Shape<1>&,
+                                const Slack&);
+extern template bool stands_for(const CurveKeys<3>&, const CurveKeys<3>&, const Shape<3>&,
+                                const Slack&);
+extern template void write_corrections(CurveKeys<1>&, Overshoot);
+extern template void write_corrections(CurveKeys<3>&, Overshoot);
+
+}  // namespace pliant::timeline
