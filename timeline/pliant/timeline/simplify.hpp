@@ -1,0 +1,34 @@
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/curve.hpp"
+
+namespace pliant {
+
+/// Fewer keys for nearly the same curve.
+template <int D>
+struct Simplified {
+  CurveKeys<D> keys;
+  double error = 0;  ///< no component deviates more, at any frame [unit]
+};
+
+/// Replaces rows of segments between keys in [first, last] by cubics in time with the curve's own
+/// slopes at their ends, each as long as it can be with a deviation of at most `max_error` [unit].
+/// The outermost keys there, jumps, infinite slopes and easings (one segment each already) stay,
+/// and so does the curve outside, copies apart. The deviation is not sampled: it is a polynomial
+/// of the segment's parameter, bounded by its Bernstein coefficients to a thousandth, but for
+/// roundings of the values. When max_error is 0 the keys stay as they are. An inner loop with
+/// copies is written out.
+/// Errors: a frame that is not finite; last < first; max_error not finite or negative.
+/// Cost: O(keys · log keys) polynomials.
+template <int D>
+tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first, double last,
+                                                 double max_error);
+
+extern template tl::expected<Simplified<1>, CurveError> simplify(const Curve<1>&, double, double,
+                                                                 double);
+extern template tl::expected<Simplified<3>, CurveError> simplify(const Curve<3>&, double, double,
+                                                                 double);
+
+}  // namespace pliant
