@@ -16,15 +16,11 @@ namespace pliant {
 struct PointForce {
   Vector3d center = Vector3d::Zero();      ///< world [length]
   Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
-
-  friend bool operator==(const PointForce&, const PointForce&) = default;
 };
 
 /// Pushes away from `center`.
 struct RadialForce {
   Vector3d center = Vector3d::Zero();  ///< world [length]
-
-  friend bool operator==(const RadialForce&, const RadialForce&) = default;
 };
 
 /// Acts around the segment from..to, along `direction` or, without one, away from the segment.
@@ -32,8 +28,6 @@ struct LineForce {
   Vector3d from = Vector3d::Zero();        ///< world [length]
   Vector3d to = Vector3d::UnitX();         ///< world [length]; may equal `from`
   std::optional<Vector3d> direction = {};  ///< any length; zero: no force
-
-  friend bool operator==(const LineForce&, const LineForce&) = default;
 };
 
 using ForceShape = std::variant<PointForce, RadialForce, LineForce>;

@@ -14,8 +14,6 @@ struct Transform {
 
   /// Whether every direction survives: the inverse exists.
   bool is_invertible() const;
-
-  friend bool operator==(const Transform&, const Transform&) = default;
 };
 
 /// T + R S p, right-handed. SPEC 7. `rotate_degrees` [degrees], `scale` [1].

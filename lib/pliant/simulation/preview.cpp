@@ -26,14 +26,19 @@ Ball ball_around(const Field& nodes) {
   return {centre, (nodes.rowwise() - centre.transpose()).rowwise().norm().maxCoeff()};
 }
 
-// All that decides what a force selects on a surface at rest.
-struct Reach {
-  Transform transform;
-  ForceShape shape;
-  double radius = 0;
-
-  friend bool operator==(const Reach&, const Reach&) = default;
-};
+// Whether what a force selects on a surface at rest is the same at all frames.
+bool is_still(const Force& force, const Surface& surface) {
+  struct IsAnimated {
+    bool operator()(const PointChannels& point) const { return point.center.is_animated(); }
+    bool operator()(const RadialChannels& radial) const { return radial.center.is_animated(); }
+    bool operator()(const LineChannels& line) const {
+      return line.from.is_animated() || line.to.is_animated();
+    }
+  };
+  const auto& [translate, rotate, scale, order] = surface.transform;
+  return !translate.is_animated() && !rotate.is_animated() && !scale.is_animated() &&
+         !force.deformation_radius.is_animated() && !std::visit(IsAnimated{}, force.shape);
+}
 
 class Previewer {
  public:
@@ -67,7 +72,6 @@ class Previewer {
     result.surface = surface_index;
     result.force = force_index;
     bool is_ever_enabled = false;
-    seen_.clear();
     distances_left_ = 1'000'000'000;
     const int first = std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
     for (int frame = first; frame <= scene_.end; ++frame) {
@@ -95,9 +99,9 @@ class Previewer {
   void look(std::size_t surface, const Force& force, int frame, ForcePreview& result) {
     const Transform transform = sample_transform(scene_.surfaces[surface].transform, frame);
     const SampledForce sampled = sample_force(force, frame);
-    const Reach reach_now{transform, sampled.shape, sampled.deformation_radius};
-    if (distances_left_ < 0 || (!seen_.empty() && seen_.back() == reach_now)) return;
-    seen_.assign(1, reach_now);
+    if (distances_left_ < 0) return;
+    // Where nothing moves, one look tells of all frames.
+    if (is_still(force, scene_.surfaces[surface])) distances_left_ = 0;
     const Vector3d centre = transform.linear * ball_.centre + transform.translation;
     const double reach = ball_.radius * transform.linear.norm() + sampled.deformation_radius;
     if (distance(sampled.shape, centre) > 1.001 * reach) return;
@@ -145,8 +149,7 @@ class Previewer {
   StopRequest should_stop_;
   MemoryBudget memory_;
   Ball ball_;                        // around the surface in hand
-  std::vector<Reach> seen_;          // the last that was looked at for the pair in hand, if any
-  std::int64_t distances_left_ = 0;  // that may still be measured for it
+  std::int64_t distances_left_ = 0;  // that may be measured for a pair
 };
 
 }  // namespace
