@@ -16,14 +16,6 @@ namespace timeline {
 
 namespace {
 
-template <int D>
-Tangent<D> tangent_of(const Value<D>& slope) {
-  Tangent<D> tangent;
-  tangent.kind = Tangent<D>::Kind::Slope;
-  tangent.slope = slope;
-  return tangent;
-}
-
 std::string name_of(const Interpolation& easing) {
   constexpr const char* names[] = {"sine", "quad", "cubic", "quart",  "quint",
                                    "expo", "circ", "back",  "bounce", "elastic"};
@@ -112,7 +104,7 @@ class Insertion {
     (is_before ? shape_.keys[old_end].in : shape_.keys[old_end].out).reset();
     if (!is_before) keys()[old_end].next = {.kind = Interpolation::Kind::Linear};
     Key<D>& key = add(is_before ? 0 : keys().size(), frame_, Interpolation::Kind::Linear);
-    (is_before ? key.in : key.out) = tangent_of<D>(slope);
+    (is_before ? key.in : key.out) = slope_tangent<D>(slope);
     if (side.kind == Outer::Linear) {
       side.kind = Outer::Slope;  // the slope to the bit, not what the new segment rounds it to
       side.slope = slope;
@@ -156,14 +148,14 @@ class Insertion {
     set_even(keys()[k + 1].in, keys()[k].next, end);
     keys()[k].next = {};
     Key<D>& key = add(k + 1, frame_, Interpolation::Kind::Bezier);
-    key.in = key.out = tangent_of<D>(curve_.velocity(frame_));
+    key.in = key.out = slope_tangent<D>(curve_.velocity(frame_));
   }
 
   /// A tangent with the default length may stay as it is: `preserved` looks after its slope.
   static void set_even(Tangent<D>& tangent, const Interpolation& next, const Value<D>& slope) {
     const bool is_read = next.kind == Interpolation::Kind::Bezier;
     if (is_read && tangent.kind != Tangent<D>::Kind::Handle && !tangent.length) return;
-    tangent = tangent_of<D>(slope);
+    tangent = slope_tangent<D>(slope);
   }
 
   void split_general(std::size_t k) {
@@ -236,8 +228,8 @@ class Insertion {
       start[c] = 3 * (first[c] - middle[c]) + last[c];
       end[c] = first[c] + 3 * (last[c] - middle[c]);
     }
-    left.out = tangent_of<D>(start);
-    right.in = tangent_of<D>(end);
+    left.out = slope_tangent<D>(start);
+    right.in = slope_tangent<D>(end);
   }
 
   const Curve<D>& curve_;

@@ -9,6 +9,15 @@
 
 namespace pliant::timeline {
 
+/// A tangent with a written slope [unit/frame].
+template <int D>
+Tangent<D> slope_tangent(const Value<D>& slope) {
+  Tangent<D> tangent;
+  tangent.kind = Tangent<D>::Kind::Slope;
+  tangent.slope = slope;
+  return tangent;
+}
+
 /// The slopes with which the tangents of a key shape the curve, where something reads them
 /// [unit/frame].
 template <int D>

@@ -149,14 +149,6 @@ std::optional<CurveError> fault_of(double first, double last, double max_error) 
   return std::nullopt;
 }
 
-template <int D>
-Tangent<D> tangent_of(const Value<D>& slope) {
-  Tangent<D> tangent;
-  tangent.kind = Tangent<D>::Kind::Slope;
-  tangent.slope = slope;
-  return tangent;
-}
-
 /// Keys without a loop, with fits in place of the rows of segments that allow one in [from, to].
 template <int D>
 tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, const Shape<D>& shape,
@@ -180,10 +172,10 @@ tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, con
       continue;
     }
     fewer.keys.back().next = {};
-    fewer.keys.back().out = tangent_of<D>(fit->start_slope);
+    fewer.keys.back().out = slope_tangent<D>(fit->start_slope);
     take(fit->end);
     Key<D>& end = fewer.keys.back();
-    end.in = tangent_of<D>(fit->end_slope);
+    end.in = slope_tangent<D>(fit->end_slope);
     // A step may have stood there, after which no `left` counts.
     end.left.reset();
     if (track.arrivals[fit->end] != end.value) end.left = track.arrivals[fit->end];
