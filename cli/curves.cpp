@@ -20,6 +20,7 @@
 #include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/trim.hpp"
 #include "pliant/io/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
@@ -40,13 +41,6 @@ struct Frames {
   }
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
 // One number a line; empty lines are passed over.
 Result<Frames> read_frames(const std::string& file) {
   const auto text = read_file(file);
@@ -55,7 +49,7 @@ Result<Frames> read_frames(const std::string& file) {
   std::string_view rest = *text;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view word = trimmed(rest.substr(0, end));
+    const std::string_view word = trim(rest.substr(0, end), " \t\r");
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (word.empty()) continue;
     const auto frame = to_number(word);

@@ -9,6 +9,7 @@
 
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/trim.hpp"
 #include "pliant/mesh/file_object.hpp"
 
 namespace pliant {
@@ -25,12 +26,6 @@ std::string_view next_word(std::string_view& text) {
   const std::string_view word = text.substr(begin, end - begin);
   text.remove_prefix(end);
   return word;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
 // The faces that follow one `o` statement.
@@ -50,7 +45,7 @@ class ObjReader {
     int first_line = 1;
     while (!text.empty() && errors_.size() < max_errors) {
       const std::size_t end = std::min(text.find('\n'), text.size());
-      std::string_view statement = trimmed(text.substr(0, end));
+      std::string_view statement = trim(text.substr(0, end), blanks);
       text.remove_prefix(std::min(end + 1, text.size()));
       ++line;
       if (joined.empty()) first_line = line;
@@ -94,7 +89,7 @@ class ObjReader {
     } else if (keyword == "f") {
       read_face(statement);
     } else if (keyword == "o") {
-      objects_.push_back({std::string(trimmed(statement)), mesh_.face_sizes.size()});
+      objects_.push_back({std::string(trim(statement, blanks)), mesh_.face_sizes.size()});
     }
   }
 

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/trim.hpp"
+
 namespace pliant::xml {
 namespace {
 
@@ -54,11 +56,7 @@ Reading<double> parse_finite(std::string_view word) {
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
+std::string_view trimmed(std::string_view text) { return trim(text, blanks); }
 
 std::vector<std::string_view> words_of(std::string_view text) {
   std::vector<std::string_view> words;
