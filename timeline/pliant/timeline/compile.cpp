@@ -187,7 +187,7 @@ class Compiler {
         (in.is_third || std::fabs(in.length - span / 3) <= 1e-15 * span);
     if (is_linear_in_time) return;
     const Pair exact_span = exact_difference(segment.end, segment.start);
-    add_time(segment, exact_span, out.frame_rate(exact_span), in.frame_rate(exact_span));
+    add_time(segment, out.frame_rate(exact_span), in.frame_rate(exact_span));
   }
 
   /// `reach` is the length, negative for an `in`; `rate` is three times the rise over it.
@@ -216,10 +216,10 @@ class Compiler {
     }
   }
 
-  void add_time(Segment<D>& segment, Pair span, Pair start_rate, Pair end_rate) {
+  void add_time(Segment<D>& segment, Pair start_rate, Pair end_rate) {
     segment.kind = Kind::Bezier;
     segment.extra = static_cast<std::uint32_t>(track().times.size());
-    track().times.emplace_back(span, start_rate, end_rate);
+    track().times.emplace_back(segment.start, segment.end, start_rate, end_rate);
   }
 
   /// A CSS timing function is a Bézier segment whose handles are shares of time and of change.
@@ -235,7 +235,7 @@ class Compiler {
     segment.ends = value_cubics<D>(start, end, start_rate, end_rate);
     if (std::fabs(x1 - 1.0 / 3) <= 1e-15 && std::fabs(x2 - 2.0 / 3) <= 1e-15) return;
     const Pair span = exact_difference(segment.end, segment.start);
-    add_time(segment, span, 3.0 * (x1 * span), 3.0 * (span + -1.0 * (x2 * span)));
+    add_time(segment, 3.0 * (x1 * span), 3.0 * (span + -1.0 * (x2 * span)));
   }
 
   void ease(const Interpolation& next, const Value<D>& start, const Value<D>& end,

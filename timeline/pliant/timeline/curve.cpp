@@ -2,6 +2,7 @@
 
 #include "pliant/timeline/compile.hpp"
 #include "pliant/timeline/extrapolated_evaluation.hpp"
+#include "pliant/timeline/track_evaluation.hpp"
 
 namespace pliant {
 
@@ -30,6 +31,12 @@ Curve<D>::Curve(CurveKeys<D> keys, timeline::Compiled<D> compiled)
 
 template <int D>
 Value<D> Curve<D>::value(double frame) const {
+  // Between two keys nothing else has a say.
+  const timeline::Track<D>& track = compiled_.track;
+  if (frame > track.first() && frame < track.last()) {
+    const timeline::Segment<D>& here = track.segments[track.segment_at(frame)];
+    if (frame != here.start) return track.value_in(here, frame);
+  }
   return compiled_.value(frame, timeline::Limit::At, search(compiled_.track));
 }
 

@@ -1,24 +1,43 @@
 #include "pliant/timeline/sampler.hpp"
 
 #include "pliant/timeline/extrapolated_evaluation.hpp"
+#include "pliant/timeline/track_evaluation.hpp"
 
 namespace pliant {
 
 template <int D>
+Sampler<D>::Sampler(const Curve<D>& curve) : curve_(&curve) {
+  const auto& segments = curve.compiled_.track.segments;
+  if (segments.empty()) return;
+  here_ = segments.data();
+  last_ = here_ + (segments.size() - 1);
+}
+
+template <int D>
 std::size_t Sampler<D>::locate(double frame) {
-  // A segment holds its start but not its end: what the search would find.
   const auto& track = curve_->compiled_.track;
-  const auto& segments = track.segments;
-  if (segment_ < segments.size() && frame >= segments[segment_].start) {
-    if (frame < segments[segment_].end) return segment_;
-    const std::size_t next = segment_ + 1;
-    if (next < segments.size() && frame < segments[next].end) return segment_ = next;
-  }
-  return segment_ = track.segment_at(frame);
+  if (here_ == nullptr) return 0;
+  // A segment holds its start but not its end: what the search would find.
+  if (frame >= here_->end && here_ != last_) ++here_;
+  const bool is_here = frame >= here_->start && frame < here_->end;
+  if (!is_here) here_ = track.segments.data() + track.segment_at(frame);
+  return static_cast<std::size_t>(here_ - track.segments.data());
 }
 
 template <int D>
 Value<D> Sampler<D>::value(double frame) {
+  // Playback: between the same two keys as before, or the next two.
+  if (here_ != nullptr) {
+    if (frame >= here_->end && here_ != last_) ++here_;
+    if (frame > here_->start && frame < here_->end) {
+      return curve_->compiled_.track.value_in(*here_, frame);
+    }
+  }
+  return value_anywhere(frame);
+}
+
+template <int D>
+Value<D> Sampler<D>::value_anywhere(double frame) {
   return curve_->compiled_.value(frame, timeline::Limit::At,
                                  [this](double inner) { return locate(inner); });
 }

@@ -12,7 +12,7 @@ template <int D>
 class Sampler {
  public:
   /// Requires: the curve outlives the sampler and stays in its place.
-  explicit Sampler(const Curve<D>& curve) : curve_(&curve) {}
+  explicit Sampler(const Curve<D>& curve);
   explicit Sampler(Curve<D>&&) = delete;
 
   Value<D> value(double frame);          ///< see Curve. Amortised O(1) from frame to frame
@@ -22,9 +22,11 @@ class Sampler {
 
  private:
   std::size_t locate(double frame);
+  [[gnu::noinline]] Value<D> value_anywhere(double frame);  // keeps value() short
 
   const Curve<D>* curve_;
-  std::size_t segment_ = 0;  // of the last frame
+  const timeline::Segment<D>* here_ = nullptr;  // of the last frame; none with a single key
+  const timeline::Segment<D>* last_ = nullptr;  // of the curve
 };
 
 extern template class Sampler<1>;

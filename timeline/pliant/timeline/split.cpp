@@ -98,8 +98,7 @@ Split<D> split(const Track<D>& track, std::size_t k, double frame) {
   int near = 0;
   double q = (frame - segment.start) / segment.length;
   if (segment.kind == Segment<D>::Kind::Bezier) {
-    const TimeCubic::Place place =
-        track.times[segment.extra].place_of(frame, segment.start, segment.end);
+    const TimeCubic::Place place = track.times[segment.extra].place_of(frame);
     near = place.end;
     q = place.q + place.correction;
   } else if (q > 0.5) {

@@ -5,23 +5,79 @@
 
 namespace pliant::timeline {
 
-namespace {
-
-// The middle of a segment belongs to either end; rounding may put the root a little beyond 1/2.
-constexpr double largest_place = 0.5 + 0x1p-10;
-
-}  // namespace
-
-TimeCubic::TimeCubic(Pair length, Pair start_rate, Pair end_rate) {
+TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
   // docs/timeline.md, eq. 4, in twice the digits: the error of x is then that of the frame alone.
+  const Pair length = exact_difference(end, start);
   const Pair rates = start_rate + end_rate;
   c3_ = rates + -2.0 * length;
+  ends_[0].frame = start;
   ends_[0].c1 = start_rate;
   ends_[0].c2 = 3.0 * length + -1.0 * (rates + start_rate);
+  ends_[1].frame = end;
   ends_[1].c1 = end_rate;
   ends_[1].c2 = 3.0 * length + -1.0 * (rates + end_rate);
-  for (End& end : ends_) end.chord = end.c2.high + c3_.high / 2;
-  middle_ = from_end(0).value(0.5);
+  per_length_ = 1 / length.high;
+  // An ulp of a frame is at least 2^-53 of it. Half of the promised 4 ulp stay in hand.
+  const double least_frame = start < 0 && end > 0 ? 0 : std::fmin(std::fabs(start), std::fabs(end));
+  has_small_frames_ = !(std::fmax(roundings(0), roundings(1)) <= 2 * least_frame);
+  for (int piece = 0; piece < piece_count; ++piece) {
+    // The second half is known from the end.
+    const double q = static_cast<double>(piece) / piece_count;
+    joints_[piece] = q <= 0.5 ? from_end(0).value(q) : length.high - from_end(1).value(1 - q);
+    pieces_[piece] = piece_of(piece, length.high);
+  }
+}
+
+double TimeCubic::roundings(int end) const {
+  // All that place_of rounds without pairs, in multiples of 2^-53 at q = 1/2, where it is most:
+  // distance, coefficients, products, sums, and q itself.
+  const Cubic x = from_end(end);
+  const double q = 0.5;
+  const double inner = q * q * std::fabs(x.c2 + q * x.c3);
+  return 3 * x.value(q) + 2 * inner + 2 * q * q * q * std::fabs(x.c3) + q * q * std::fabs(x.c2) +
+         q * x.c1 + q * x.slope(q);
+}
+
+TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
+  // The inverse through degree + 1 points of the piece, by divided differences; the points are
+  // Chebyshev's, which keeps the error even.
+  constexpr int points = degree + 1;
+  constexpr double width = 1.0 / piece_count;
+  const int end = piece / (piece_count / 2);
+  const Cubic x = from_end(end);
+  // In the second half q falls from piece to piece.
+  const double direction = end == 0 ? 1 : -1;
+  const double first_q = end == 0 ? piece * width : 1 - piece * width;
+  const double first_share = x.value(first_q) / length;
+  std::array<double, points> shares;
+  std::array<double, points> differences;
+  for (int i = 0; i < points; ++i) {
+    // (1 - cos((2 i + 1) pi / 14)) / 2
+    constexpr std::array<double, points> places = {
+        0.01253604390908819, 0.10908425876598512, 0.28305813044122096, 0.5,
+        0.71694186955877904, 0.89091574123401488, 0.98746395609091181};
+    differences[i] = direction * places[i] * width;
+    shares[i] = direction * (x.value(first_q + differences[i]) / length - first_share);
+  }
+  for (int order = 1; order < points; ++order) {
+    for (int i = points - 1; i >= order; --i) {
+      differences[i] = (differences[i] - differences[i - 1]) / (shares[i] - shares[i - order]);
+    }
+  }
+  std::array<double, points> c = {differences[degree]};
+  for (int i = degree - 1; i >= 0; --i) {
+    for (int power = degree; power > 0; --power) c[power] = c[power - 1] - shares[i] * c[power];
+    c[0] = differences[i] - shares[i] * c[0];
+  }
+  Piece result;
+  result.first_q = static_cast<float>(first_q + c[0]);
+  for (int power = 1; power < points; ++power) {
+    // Beside a vertical tangent there is no such polynomial; place_of sees that NaN is no guess.
+    const bool is_sound = std::fabs(c[power]) < 1e30;
+    result.c[power - 1] =
+        is_sound ? static_cast<float>(c[power]) : std::numeric_limits<float>::quiet_NaN();
+  }
+  return result;
 }
 
 double TimeCubic::residual(const End& end, double q, Pair distance) const {
@@ -38,50 +94,52 @@ double TimeCubic::residual(const End& end, double q, Pair distance) const {
   return (p1.high - distance.high) + (low - distance.low);
 }
 
-TimeCubic::Place TimeCubic::place_of(double frame, double start, double end) const {
-  const double elapsed = frame - start;
-  const int side = elapsed <= middle_ ? 0 : 1;
-  const Pair distance = side == 0 ? exact_difference(frame, start) : exact_difference(end, frame);
+TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
+  const Guess guess = guess_of(frame);
+  const int side = guess.end;
+  const End& near = ends_[side];
+  const Pair distance =
+      side == 0 ? exact_difference(frame, near.frame) : exact_difference(near.frame, frame);
   if (!(distance.high > 0)) return {side, 0, 0};
 
-  const End& near = ends_[side];
   const Cubic x = from_end(side);
-  // First guess: the parabola that meets x at 0 (with its slope) and at 1/2. It follows the square
-  // root at a handle of length 0, where Newton from afar would crawl.
-  const double discriminant = x.c1 * x.c1 + 4 * near.chord * distance.high;
-  double q = 2 * distance.high / (x.c1 + std::sqrt(discriminant));
+  double q = guess.q;
+  bool is_close = has_small_frames_;
+  if (!is_close || !(q > 0 && q <= largest_place)) {
+    // Where the guess failed: the parabola that meets x at 0 (with its slope) and at 1/2. It
+    // follows the square root at a handle of length 0, where Newton from afar would crawl.
+    const double chord = x.c2 + x.c3 / 2;
+    const double discriminant = x.c1 * x.c1 + 4 * chord * distance.high;
+    q = 2 * distance.high / (x.c1 + std::sqrt(discriminant));
+    is_close = false;
+  }
 
   for (int round = 0; round < 6; ++round) {
     if (!(q > 0 && q <= largest_place)) break;
-    // One division, then the series of the inverse cubic (eq. 5): fourth order.
-    const double inverse = 1 / x.slope(q);
-    const double newton = (distance.high - q * (x.c1 + q * (x.c2 + q * x.c3))) * inverse;
-    const double bend = x.half_curvature(q) * inverse * newton;
-    const double twist = x.c3 * inverse * newton * newton;
-    if (std::fabs(bend) < 0.25 && std::fabs(twist) < 0.25) {
-      q += newton * (1 - bend + (2 * bend * bend - twist));
-    } else {
-      q += newton / (1 + bend);  // Halley: of lower order, but sound far from the root
-      continue;
+    if (!is_close) {
+      // One division, then the series of the inverse cubic (eq. 5): fourth order.
+      const double inverse = 1 / x.slope(q);
+      const double newton = (distance.high - q * (x.c1 + q * (x.c2 + q * x.c3))) * inverse;
+      const double bend = x.half_curvature(q) * inverse * newton;
+      const double twist = x.c3 * inverse * newton * newton;
+      if (std::fabs(bend) < 0.25 && std::fabs(twist) < 0.25) {
+        q += newton * (1 - bend + (2 * bend * bend - twist));
+      } else {
+        q += newton / (1 + bend);  // Halley: of lower order, but sound far from the root
+        continue;
+      }
+      // What is left of the error is about 5 bend³ of the step; the last step's own order does the
+      // rest.
+      is_close = bend * bend <= 1e-3 && std::fabs(twist) <= 1e-3;
+      if (!is_close || !(q > 0 && q <= largest_place)) continue;
     }
-    // What is left of the error is about 5 bend³ of the step; the last step's own order does the
-    // rest.
-    if (bend * bend > 1e-3 || std::fabs(twist) > 1e-3) continue;
-
-    if (!(q > 0 && q <= largest_place)) break;
-    const double last_inverse = 1 / x.slope(q);
-    const double last_newton = -residual(near, q, distance) * last_inverse;
-    const double last_bend = x.half_curvature(q) * last_inverse * last_newton;
-    const double last_twist = x.c3 * last_inverse * last_newton * last_newton;
-    const double correction =
-        last_newton * (1 - last_bend + (2 * last_bend * last_bend - last_twist));
-    const double left_over = (std::fabs(last_bend) + std::fabs(last_twist)) *
-                             (last_bend * last_bend + std::fabs(last_twist)) * last_newton;
-    if (5 * std::fabs(left_over) <= 0x1p-56 * q) {
-      const Pair place = exact_sum(q, correction);
+    const Step last = step_from(q, x, -residual(near, q, distance));
+    if (last.is_last) {
+      const Pair place = exact_sum(q, last.length);
       return {side, place.high, place.low};
     }
-    q += correction;
+    q += last.length;
+    is_close = false;
   }
   return search(side, distance);
 }

@@ -3,27 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pliant/timeline/track_evaluation.hpp"
+
 namespace pliant::timeline {
 
 namespace {
 
-/// Where a frame lies in a segment whose time is linear, counted from the nearer end.
-struct LinearPlace {
-  int end;
-  double q;
-};
-
-template <int D>
-LinearPlace linear_place(const Segment<D>& segment, double frame) {
-  const double passed = frame - segment.start;
-  const double left = segment.end - frame;
-  const bool is_second_half = passed > left;
-  return {is_second_half ? 1 : 0, (is_second_half ? left : passed) / segment.length};
-}
-
 template <int D>
 Progress progress(const Segment<D>& segment, double frame) {
-  const LinearPlace place = linear_place(segment, frame);
+  const LinearPlace place = LinearPlace::of(segment, frame);
   if (place.end == 0) return {place.q, 1 - place.q};
   return {1 - place.q, place.q};
 }
@@ -45,30 +33,24 @@ std::array<double, 2> roots_of_slope(const Cubic& cubic) {
 }  // namespace
 
 template <int D>
-Value<D> Track<D>::value_in(const Segment<D>& segment, double frame) const {
+Value<D> Track<D>::careful_value_in(const Segment<D>& segment, double frame) const {
   Value<D> value;
   if (segment.kind == Segment<D>::Kind::Bezier) {
-    // One solve for all components.
-    const TimeCubic::Place place = times[segment.extra].place_of(frame, segment.start, segment.end);
+    const TimeCubic::Place place = times[segment.extra].place_of(frame);
     const auto& cubics = segment.ends[place.end];
     for (int c = 0; c < D; ++c) {
       value[c] = cubics[c].value(place.q) + cubics[c].slope(place.q) * place.correction;
     }
     return value;
   }
-  if (segment.kind == Segment<D>::Kind::Easing) {
-    const Progress at = progress(segment, frame);
-    const Easings<D>& eased = easings[segment.extra];
-    Easing::Share share = eased[0].share(at);
-    for (int c = 0; c < D; ++c) {
-      if (c > 0 && eased[c].is_elastic()) share = eased[c].share(at);
-      const Cubic& line = segment.ends[share.is_from_start ? 0 : 1][c];
-      value[c] = line.c0 + line.c1 * share.amount;
-    }
-    return value;
+  const Progress at = progress(segment, frame);
+  const Easings<D>& eased = easings[segment.extra];
+  Easing::Share share = eased[0].share(at);
+  for (int c = 0; c < D; ++c) {
+    if (c > 0 && eased[c].is_elastic()) share = eased[c].share(at);
+    const Cubic& line = segment.ends[share.is_from_start ? 0 : 1][c];
+    value[c] = line.c0 + line.c1 * share.amount;
   }
-  const LinearPlace place = linear_place(segment, frame);
-  for (int c = 0; c < D; ++c) value[c] = segment.ends[place.end][c].value(place.q);
   return value;
 }
 
@@ -77,7 +59,7 @@ Value<D> Track<D>::velocity_in(const Segment<D>& segment, double frame) const {
   Value<D> velocity;
   if (segment.kind == Segment<D>::Kind::Bezier) {
     const TimeCubic& time = times[segment.extra];
-    const TimeCubic::Place place = time.place_of(frame, segment.start, segment.end);
+    const TimeCubic::Place place = time.place_of(frame);
     const double q = place.q + place.correction;
     const Cubic run = time.from_end(place.end);
     for (int c = 0; c < D; ++c) {
@@ -97,7 +79,7 @@ Value<D> Track<D>::velocity_in(const Segment<D>& segment, double frame) const {
     }
     return velocity;
   }
-  const LinearPlace place = linear_place(segment, frame);
+  const LinearPlace place = LinearPlace::of(segment, frame);
   const double unit = place.end == 0 ? segment.length : -segment.length;
   for (int c = 0; c < D; ++c) velocity[c] = segment.ends[place.end][c].slope(place.q) / unit;
   return velocity;

@@ -36,6 +36,9 @@ struct Track {
   /// The value, or its limit from one side (Left: not at the first key; Right: not at the last).
   Value<D> value(double frame, Limit limit, std::size_t segment) const;
 
+  /// The value inside a segment, away from its keys. Defined in track_evaluation.hpp.
+  Value<D> value_in(const Segment<D>& segment, double frame) const;
+
   /// The slope just beside a frame (Left: not at the first key; Right: not at the last).
   Value<D> velocity(double frame, Limit limit, std::size_t segment) const;
 
@@ -51,7 +54,7 @@ struct Track {
   void add_bounds(const Interval& interval, Bounds<D>& bounds) const;
 
  private:
-  Value<D> value_in(const Segment<D>& segment, double frame) const;
+  Value<D> careful_value_in(const Segment<D>& segment, double frame) const;
   Value<D> velocity_in(const Segment<D>& segment, double frame) const;
   void add_extrema(const Segment<D>& segment, double from, double to, Bounds<D>& bounds) const;
 };
