@@ -5,7 +5,7 @@
 //   curve      Curve::value, which remembers nothing
 //   sampler    Sampler::value, which remembers the last segment
 //
-//   playback   1000 keys, frame after frame, about six to a segment
+//   playback   1000 keys, frame after frame, about eight to a segment
 //   random     the same frames in random order
 //   scene      2000 curves of 20 keys, all of them at one frame, then at the next
 //
@@ -39,7 +39,7 @@ namespace {
 
 using namespace pliant;
 
-constexpr double frames_per_segment = 6;  // on average
+constexpr double frames_per_segment = 8;  // on average
 
 // Polynomial c[0] + c[1] u + c[2] u² + c[3] u³.
 struct Polynomial {

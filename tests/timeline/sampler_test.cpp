@@ -29,5 +29,31 @@ TEST_CASE("a sampler answers like its curve, bit for bit, in any order", "[timel
   }
 }
 
+TEST_CASE("playback gives the curve's bits forwards, backwards and at every speed",
+          "[timeline][sampler]") {
+  Whim whim(72);
+  for (int round = 0; round < 200; ++round) {
+    const CurveKeys<1> keys = whim.keys(40);
+    const Curve<1> curve = make(keys);
+    const double from = keys.keys.front().frame - 3;
+    const double to = keys.keys.back().frame + 3;
+    const double step = whim.size(-1, 1);
+    Sampler<1> sampler(curve);
+    const auto check = [&](double t) {
+      if (sampler.value(t) == curve.value(t)) return;
+      CAPTURE(round, t);
+      REQUIRE(sampler.value(t) == curve.value(t));
+    };
+    for (double t = from; t < to; t += step) check(t);
+    for (double t = to; t > from; t -= step) check(t);
+    for (const Key<1>& key : keys.keys) {
+      check(key.frame);
+      check(std::nextafter(key.frame, 1e300));
+      check(std::nextafter(key.frame, -1e300));
+    }
+  }
+  SUCCEED("no difference");
+}
+
 }  // namespace
 }  // namespace pliant::testing

@@ -9,17 +9,25 @@ TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
   // docs/timeline.md, eq. 4, in twice the digits: the error of x is then that of the frame alone.
   const Pair length = exact_difference(end, start);
   const Pair rates = start_rate + end_rate;
-  c3_ = rates + -2.0 * length;
-  ends_[0].frame = start;
-  ends_[0].c1 = start_rate;
-  ends_[0].c2 = 3.0 * length + -1.0 * (rates + start_rate);
-  ends_[1].frame = end;
-  ends_[1].c1 = end_rate;
-  ends_[1].c2 = 3.0 * length + -1.0 * (rates + end_rate);
-  per_length_ = 1 / length.high;
-  // An ulp of a frame is at least 2^-53 of it. Half of the promised 4 ulp stay in hand.
+  const Pair c3 = rates + -2.0 * length;
+  const std::array<Pair, 2> c1 = {start_rate, end_rate};
+  frames_ = {start, end};
+  c3_ = c3.high;
+  c3_low_ = c3.low;
+  for (int side = 0; side < 2; ++side) {
+    const Pair c2 = 3.0 * length + -1.0 * (rates + c1[side]);
+    c1_[side] = c1[side].high;
+    c1_low_[side] = c1[side].low;
+    c2_[side] = c2.high;
+    c2_low_[side] = c2.low;
+  }
+  // Without a guess, which floats could not hold, there are other ways.
+  const bool is_usual = length.high > 1e-30 && length.high < 1e30;
+  per_length_ =
+      is_usual ? static_cast<float>(1 / length.high) : std::numeric_limits<float>::quiet_NaN();
+  // An ulp of a frame is at least 2^-53 of it. One of the promised 4 stays in hand.
   const double least_frame = start < 0 && end > 0 ? 0 : std::fmin(std::fabs(start), std::fabs(end));
-  has_small_frames_ = !(std::fmax(roundings(0), roundings(1)) <= 2 * least_frame);
+  has_small_frames_ = !(std::fmax(roundings(0), roundings(1)) <= 3 * least_frame);
   for (int piece = 0; piece < piece_count; ++piece) {
     // The second half is known from the end.
     const double q = static_cast<double>(piece) / piece_count;
@@ -39,10 +47,11 @@ double TimeCubic::roundings(int end) const {
 }
 
 TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
-  // The inverse through degree + 1 points of the piece, by divided differences; the points are
-  // Chebyshev's, which keeps the error even.
+  // The inverse through where the piece begins and `degree` points more, by divided differences.
+  // The points are Chebyshev's for seven, drawn out so that the first is that beginning.
   constexpr int points = degree + 1;
   constexpr double width = 1.0 / piece_count;
+  constexpr std::array<double, points> places = {0, 0.099, 0.277, 0.5, 0.723, 0.901, 1};
   const int end = piece / (piece_count / 2);
   const Cubic x = from_end(end);
   // In the second half q falls from piece to piece.
@@ -52,10 +61,6 @@ TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
   std::array<double, points> shares;
   std::array<double, points> differences;
   for (int i = 0; i < points; ++i) {
-    // (1 - cos((2 i + 1) pi / 14)) / 2
-    constexpr std::array<double, points> places = {
-        0.01253604390908819, 0.10908425876598512, 0.28305813044122096, 0.5,
-        0.71694186955877904, 0.89091574123401488, 0.98746395609091181};
     differences[i] = direction * places[i] * width;
     shares[i] = direction * (x.value(first_q + differences[i]) / length - first_share);
   }
@@ -70,25 +75,24 @@ TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
     c[0] = differences[i] - shares[i] * c[0];
   }
   Piece result;
-  result.first_q = static_cast<float>(first_q + c[0]);
   for (int power = 1; power < points; ++power) {
     // Beside a vertical tangent there is no such polynomial; place_of sees that NaN is no guess.
     const bool is_sound = std::fabs(c[power]) < 1e30;
-    result.c[power - 1] =
+    result[power - 1] =
         is_sound ? static_cast<float>(c[power]) : std::numeric_limits<float>::quiet_NaN();
   }
   return result;
 }
 
-double TimeCubic::residual(const End& end, double q, Pair distance) const {
+double TimeCubic::residual(int end, double q, Pair distance) const {
   // Compensated Horner scheme (Graillat, Langlois, Louvet): as if computed with twice the digits.
   const Pair q_halves = halves(q);
-  const Pair p3 = exact_product(c3_.high, halves(c3_.high), q, q_halves);
-  const Pair s2 = exact_sum(p3.high, end.c2.high);
-  double low = p3.low + s2.low + end.c2.low + c3_.low * q;
+  const Pair p3 = exact_product(c3_, halves(c3_), q, q_halves);
+  const Pair s2 = exact_sum(p3.high, c2_[end]);
+  double low = p3.low + s2.low + c2_low_[end] + c3_low_ * q;
   const Pair p2 = exact_product(s2.high, halves(s2.high), q, q_halves);
-  const Pair s1 = exact_sum(p2.high, end.c1.high);
-  low = low * q + (p2.low + s1.low + end.c1.low);
+  const Pair s1 = exact_sum(p2.high, c1_[end]);
+  low = low * q + (p2.low + s1.low + c1_low_[end]);
   const Pair p1 = exact_product(s1.high, halves(s1.high), q, q_halves);
   low = low * q + p1.low;
   return (p1.high - distance.high) + (low - distance.low);
@@ -97,9 +101,8 @@ double TimeCubic::residual(const End& end, double q, Pair distance) const {
 TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
   const Guess guess = guess_of(frame);
   const int side = guess.end;
-  const End& near = ends_[side];
   const Pair distance =
-      side == 0 ? exact_difference(frame, near.frame) : exact_difference(near.frame, frame);
+      side == 0 ? exact_difference(frame, frames_[side]) : exact_difference(frames_[side], frame);
   if (!(distance.high > 0)) return {side, 0, 0};
 
   const Cubic x = from_end(side);
@@ -133,7 +136,7 @@ TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
       is_close = bend * bend <= 1e-3 && std::fabs(twist) <= 1e-3;
       if (!is_close || !(q > 0 && q <= largest_place)) continue;
     }
-    const Step last = step_from(q, x, -residual(near, q, distance));
+    const Step last = step_from(q, x, -residual(side, q, distance));
     if (last.is_last) {
       const Pair place = exact_sum(q, last.length);
       return {side, place.high, place.low};
@@ -147,7 +150,6 @@ TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
 TimeCubic::Place TimeCubic::search(int side, Pair distance) const {
   // Beside a vertical tangent. The bracket only ever shrinks: a Newton step inside it while that at
   // least halves the bracket every second time, otherwise bisection.
-  const End& near = ends_[side];
   const Cubic x = from_end(side);
   // A quarter of an ulp of the distance is below what the frame itself can tell.
   const double enough = std::numeric_limits<double>::epsilon() / 8 * distance.high;
@@ -156,7 +158,7 @@ TimeCubic::Place TimeCubic::search(int side, Pair distance) const {
   double q = 0.25;
   double width_before = high;
   for (int round = 0; round < 1200; ++round) {  // bisection alone ends within 1100 (subnormal q)
-    const double miss = residual(near, q, distance);
+    const double miss = residual(side, q, distance);
     if (std::fabs(miss) <= enough) break;
     (miss > 0 ? high : low) = q;
     const double width = high - low;
@@ -169,7 +171,7 @@ TimeCubic::Place TimeCubic::search(int side, Pair distance) const {
     q = next;
   }
   // What q cannot hold of the root, unless the tangent is too steep to tell.
-  const double correction = -residual(near, q, distance) / x.slope(q);
+  const double correction = -residual(side, q, distance) / x.slope(q);
   const bool is_rounding = std::fabs(correction) <= std::numeric_limits<double>::epsilon() * q;
   return {side, q, is_rounding ? correction : 0};
 }

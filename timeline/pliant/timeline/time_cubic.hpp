@@ -13,7 +13,7 @@ namespace pliant::timeline {
 ///
 /// The unknown is q, the parameter counted from the nearer end, and the equation is in frames from
 /// that end, so that a frame next to a key loses no digits.
-class TimeCubic {
+class alignas(64) TimeCubic {
  public:
   /// A parameter q + correction, in [0, 1/2] but for rounding, from `end` (0: start, 1: end). The
   /// correction is what rounding took from q.
@@ -35,7 +35,7 @@ class TimeCubic {
   Place quick_place_of(double frame) const;
 
   /// Frames from one end, over q.
-  Cubic from_end(int end) const { return {0, ends_[end].c1.high, ends_[end].c2.high, c3_.high}; }
+  Cubic from_end(int end) const { return {0, c1_[end], c2_[end], c3_}; }
 
  private:
   // Guesses of the inverse: polynomials on eighths of the parameter, four to an end.
@@ -44,18 +44,9 @@ class TimeCubic {
   // The middle of a segment belongs to either end; rounding may put the root a little beyond 1/2.
   static constexpr double largest_place = 0.5 + 0x1p-10;
 
-  /// q = first_q + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from where the
-  /// piece begins. A guess needs few digits: what it misses goes into the fourth power.
-  struct alignas(32) Piece {
-    float first_q = 0;
-    std::array<float, degree> c = {};
-  };
-
-  struct End {
-    double frame = 0;
-    Pair c1;
-    Pair c2;
-  };
+  /// q = q0 + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from where the piece
+  /// begins. A guess needs few digits: what it misses goes into the fourth power.
+  using Piece = std::array<float, degree>;
 
   struct Guess {
     int end = 0;
@@ -73,31 +64,42 @@ class TimeCubic {
   static Step step_from(double q, const Cubic& x, double miss);
   Place careful_place_of(double frame) const;
   Place search(int end, Pair distance) const;
-  double residual(const End& end, double q, Pair distance) const;
+  double residual(int end, double q, Pair distance) const;
   double roundings(int end) const;
   Piece piece_of(int piece, double length) const;
 
+  // In the order of use: two cache lines and half of one of the next two serve a frame.
   std::array<double, piece_count> joints_ = {};  ///< where pieces begin, from the start [frames]
-  double per_length_ = 0;                        ///< 1 / length
-  Pair c3_;
-  std::array<End, 2> ends_;
-  bool has_small_frames_ = false;  ///< plain doubles would miss frames by several ulp
+  float per_length_ = 0;                         ///< 1 / length
+  bool has_small_frames_ = false;                ///< plain doubles would miss frames by several ulp
+  std::array<double, 2> frames_ = {};            ///< of the ends
+  std::array<double, 2> c1_ = {};                ///< of x as seen from the ends (eq. 4) [frames]
+  std::array<double, 2> c2_ = {};
+  double c3_ = 0;
   std::array<Piece, piece_count> pieces_;
+  // What the doubles above could not hold.
+  std::array<double, 2> c1_low_ = {};
+  std::array<double, 2> c2_low_ = {};
+  double c3_low_ = 0;
 };
 
 // Inline, since a curve spends its time here.
 
 inline TimeCubic::Guess TimeCubic::guess_of(double frame) const {
-  const double elapsed = frame - ends_[0].frame;
+  const double elapsed = frame - frames_[0];
   // No branch on what changes from frame to frame.
-  int piece = 0;
-  for (int i = 1; i < piece_count; ++i) piece += elapsed >= joints_[i] ? 1 : 0;
-  const auto& [first_q, c] = pieces_[piece];
+  const auto is_behind = [&](int joint) { return elapsed >= joints_[joint] ? 1 : 0; };
+  const int piece = ((is_behind(1) + is_behind(2)) + (is_behind(3) + is_behind(4))) +
+                    ((is_behind(5) + is_behind(6)) + is_behind(7));
+  const Piece& c = pieces_[piece];
   const auto s = static_cast<float>((elapsed - joints_[piece]) * per_length_);
-  const float s2 = s * s;
+  const float s_2 = s * s;
   const int end = piece / (piece_count / 2);
-  return {end, std::fabs(frame - ends_[end].frame),
-          first_q + s * ((c[0] + c[1] * s) + s2 * ((c[2] + c[3] * s) + s2 * (c[4] + c[5] * s)))};
+  // In the second half q falls from piece to piece.
+  const float first_q =
+      static_cast<float>(end == 0 ? piece : piece_count - piece) * (1.0F / piece_count);
+  return {end, std::fabs(frame - frames_[end]),
+          first_q + s * ((c[0] + c[1] * s) + s_2 * ((c[2] + c[3] * s) + s_2 * (c[4] + c[5] * s)))};
 }
 
 inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double miss) {

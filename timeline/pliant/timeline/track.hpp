@@ -37,7 +37,7 @@ struct Track {
   Value<D> value(double frame, Limit limit, std::size_t segment) const;
 
   /// The value inside a segment, away from its keys. Defined in track_evaluation.hpp.
-  Value<D> value_in(const Segment<D>& segment, double frame) const;
+  inline Value<D> value_in(const Segment<D>& segment, double frame) const;
 
   /// The slope just beside a frame (Left: not at the first key; Right: not at the last).
   Value<D> velocity(double frame, Limit limit, std::size_t segment) const;
