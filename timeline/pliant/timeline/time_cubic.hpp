@@ -31,7 +31,7 @@ class alignas(64) TimeCubic {
   /// small against the segment, within one. Requires: start <= frame <= end.
   Place place_of(double frame) const;
 
-  /// The same for nearly all frames, as fast as can be; q < 0 where that does not suffice.
+  /// The same for nearly all frames, as fast as can be; q <= 0 where that does not suffice.
   Place quick_place_of(double frame) const;
 
   /// Frames from one end, over q.
@@ -44,8 +44,12 @@ class alignas(64) TimeCubic {
   // The middle of a segment belongs to either end; rounding may put the root a little beyond 1/2.
   static constexpr double largest_place = 0.5 + 0x1p-10;
 
-  /// q = q0 + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from where the piece
-  /// begins. A guess needs few digits: what it misses goes into the fourth power.
+  // In the second half q falls from piece to piece.
+  static constexpr std::array<float, piece_count> first_qs = {0,    0.125F, 0.25F, 0.375F,
+                                                              0.5F, 0.375F, 0.25F, 0.125F};
+
+  /// q = first_q + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from where the
+  /// piece begins. A guess needs few digits: what it misses goes into the fourth power.
   using Piece = std::array<float, degree>;
 
   struct Guess {
@@ -95,11 +99,9 @@ inline TimeCubic::Guess TimeCubic::guess_of(double frame) const {
   const auto s = static_cast<float>((elapsed - joints_[piece]) * per_length_);
   const float s_2 = s * s;
   const int end = piece / (piece_count / 2);
-  // In the second half q falls from piece to piece.
-  const float first_q =
-      static_cast<float>(end == 0 ? piece : piece_count - piece) * (1.0F / piece_count);
   return {end, std::fabs(frame - frames_[end]),
-          first_q + s * ((c[0] + c[1] * s) + s_2 * ((c[2] + c[3] * s) + s_2 * (c[4] + c[5] * s)))};
+          first_qs[piece] +
+              s * ((c[0] + c[1] * s) + s_2 * ((c[2] + c[3] * s) + s_2 * (c[4] + c[5] * s)))};
 }
 
 inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double miss) {
@@ -110,19 +112,23 @@ inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double mis
   const double b = x.c3 * inverse;
   const double n_2 = n * n;
   const double a_2 = a * a;
-  // What is left is less than 10 g^(3/2) n for g = (A² + |B|) n².
+  // What is left is less than 10 g^(3/2) n for g = (A² + |B|) n²; asked for are 2^-56 of q.
   const double g = (a_2 + std::fabs(b)) * n_2;
-  return {n - n_2 * (a - n * (2 * a_2 - b)), 100 * (g * g) * (g * n_2) < 0x1p-112 * (q * q)};
+  return {n - n_2 * (a - n * (2 * a_2 - b)), (g * g) * (g * n_2) < 0x1p-119 * (q * q)};
 }
 
 inline TimeCubic::Place TimeCubic::quick_place_of(double frame) const {
   if (has_small_frames_) return {0, -1, 0};
   const Guess guess = guess_of(frame);
-  const double q = guess.q;
   const Cubic x = from_end(guess.end);
-  const Step step = step_from(q, x, guess.distance - q * (x.c1 + q * (x.c2 + q * x.c3)));
-  if (!(q > 0 && q <= largest_place && step.is_last)) return {0, -1, 0};
-  return {guess.end, q + step.length, 0};
+  double q = guess.q;
+  for (int round = 0; round < 2; ++round) {  // the first does nearly always
+    const Step step = step_from(q, x, guess.distance - q * (x.c1 + q * (x.c2 + q * x.c3)));
+    const bool is_last = q <= largest_place && step.is_last;
+    q += step.length;
+    if (is_last) return {guess.end, q, 0};
+  }
+  return {0, -1, 0};
 }
 
 inline TimeCubic::Place TimeCubic::place_of(double frame) const {
