@@ -31,7 +31,9 @@ TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
   for (int piece = 0; piece < piece_count; ++piece) {
     // The second half is known from the end.
     const double q = static_cast<double>(piece) / piece_count;
-    joints_[piece] = q <= 0.5 ? from_end(0).value(q) : length.high - from_end(1).value(1 - q);
+    const double elapsed = q <= 0.5 ? from_end(0).value(q) : length.high - from_end(1).value(1 - q);
+    if (piece > 0) joints_[piece - 1] = elapsed;
+    first_shares_[piece] = static_cast<float>(elapsed * per_length_);
     pieces_[piece] = piece_of(piece, length.high);
   }
 }

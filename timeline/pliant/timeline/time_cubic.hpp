@@ -73,11 +73,12 @@ class alignas(64) TimeCubic {
   Piece piece_of(int piece, double length) const;
 
   // In the order of use: two cache lines and half of one of the next two serve a frame.
-  std::array<double, piece_count> joints_ = {};  ///< where pieces begin, from the start [frames]
-  float per_length_ = 0;                         ///< 1 / length
-  bool has_small_frames_ = false;                ///< plain doubles would miss frames by several ulp
-  std::array<double, 2> frames_ = {};            ///< of the ends
-  std::array<double, 2> c1_ = {};                ///< of x as seen from the ends (eq. 4) [frames]
+  std::array<double, piece_count - 1> joints_ = {};   ///< between pieces, from the start [frames]
+  std::array<float, piece_count> first_shares_ = {};  ///< of the length, where pieces begin
+  float per_length_ = 0;                              ///< 1 / length
+  bool has_small_frames_ = false;      ///< plain doubles would miss frames by several ulp
+  std::array<double, 2> frames_ = {};  ///< of the ends
+  std::array<double, 2> c1_ = {};      ///< of x as seen from the ends (eq. 4) [frames]
   std::array<double, 2> c2_ = {};
   double c3_ = 0;
   std::array<Piece, piece_count> pieces_;
@@ -89,24 +90,27 @@ class alignas(64) TimeCubic {
 
 // Inline, since a curve spends its time here.
 
+// A frame waits for one operation after the other, not for their number; so sums are taken in pairs
+// and not by Horner's rule where their last digits do not count.
+
 inline TimeCubic::Guess TimeCubic::guess_of(double frame) const {
   const double elapsed = frame - frames_[0];
   // No branch on what changes from frame to frame.
-  const auto is_behind = [&](int joint) { return elapsed >= joints_[joint] ? 1 : 0; };
+  const auto is_behind = [&](int joint) { return elapsed >= joints_[joint - 1] ? 1 : 0; };
   const int piece = ((is_behind(1) + is_behind(2)) + (is_behind(3) + is_behind(4))) +
                     ((is_behind(5) + is_behind(6)) + is_behind(7));
   const Piece& c = pieces_[piece];
-  const auto s = static_cast<float>((elapsed - joints_[piece]) * per_length_);
+  const float s = static_cast<float>(elapsed * per_length_) - first_shares_[piece];
   const float s_2 = s * s;
   const int end = piece / (piece_count / 2);
   return {end, std::fabs(frame - frames_[end]),
-          first_qs[piece] +
-              s * ((c[0] + c[1] * s) + s_2 * ((c[2] + c[3] * s) + s_2 * (c[4] + c[5] * s)))};
+          ((first_qs[piece] + c[0] * s) + s_2 * (c[1] + c[2] * s)) +
+              (s_2 * s_2) * ((c[3] + c[4] * s) + s_2 * c[5])};
 }
 
 inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double miss) {
-  // With n = miss/x', A = x"/(2x'), B = x"'/(6x'), written for a short chain of operations.
-  const double inverse = 1 / x.slope(q);
+  // With n = miss/x', A = x"/(2x'), B = x"'/(6x').
+  const double inverse = 1 / ((x.c1 + 2 * x.c2 * q) + 3 * x.c3 * (q * q));
   const double n = miss * inverse;
   const double a = x.half_curvature(q) * inverse;
   const double b = x.c3 * inverse;
@@ -114,7 +118,7 @@ inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double mis
   const double a_2 = a * a;
   // What is left is less than 10 g^(3/2) n for g = (A² + |B|) n²; asked for are 2^-56 of q.
   const double g = (a_2 + std::fabs(b)) * n_2;
-  return {n - n_2 * (a - n * (2 * a_2 - b)), (g * g) * (g * n_2) < 0x1p-119 * (q * q)};
+  return {(n - n_2 * a) + (n_2 * n) * (2 * a_2 - b), (g * g) * (g * n_2) < 0x1p-119 * (q * q)};
 }
 
 inline TimeCubic::Place TimeCubic::quick_place_of(double frame) const {
