@@ -70,4 +70,18 @@ TEST_CASE("quarter turns keep a lattice exact", "[core][transform]") {
 TEST_CASE("a flattening transform is not invertible", "[core][transform]") {
   CHECK_FALSE(make_transform({0, 0, 0}, {30, 0, 0}, {1, 0, 1}, RotateOrder::Xyz).is_invertible());
   CHECK(make_transform({0, 0, 0}, {30, 0, 0}, {1e-30, 1, 1}, RotateOrder::Xyz).is_invertible());
+  // 1 / 1e-320 is beyond double.
+  CHECK_FALSE(
+      make_transform({0, 0, 0}, {0, 0, 0}, {1, 1e-320, 1}, RotateOrder::Xyz).is_invertible());
+}
+
+TEST_CASE("tiny and huge scales are undone, though their volume is no number",
+          "[core][transform]") {
+  const double size = GENERATE(1e-300, 1e-120, 1e120, 1e300);
+  const Transform transform =
+      make_transform({0, 0, 0}, {30, -50, 110}, {size, -2 * size, 0.5 * size}, RotateOrder::Xyz);
+  REQUIRE(transform.is_invertible());
+  const Field vectors = random_points(20);
+  const Field back = vectors_to_object(transform, vectors_to_world(transform, vectors));
+  CHECK((back - vectors).cwiseAbs().maxCoeff() < 1e-14);
 }

@@ -66,7 +66,7 @@ double determinant(const Matrix3d& a) {
          a(0, 2) * (a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0));
 }
 
-Matrix3d inverse(const Matrix3d& a) {
+Matrix3d adjugate_inverse(const Matrix3d& a) {
   const double scale = 1 / determinant(a);
   Matrix3d b;
   for (int row = 0; row < 3; ++row) {
@@ -80,12 +80,27 @@ Matrix3d inverse(const Matrix3d& a) {
   return b;
 }
 
+// Not finite where there is none. Each column is first brought near 1 by a power of two: products
+// of three tiny or huge numbers would be lost otherwise, and no other bit changes.
+Matrix3d inverse(Matrix3d a) {
+  int exponents[3];
+  for (int column = 0; column < 3; ++column) {
+    std::frexp(a.col(column).cwiseAbs().maxCoeff(), &exponents[column]);
+    for (int row = 0; row < 3; ++row)
+      a(row, column) = std::ldexp(a(row, column), -exponents[column]);
+  }
+  Matrix3d b = adjugate_inverse(a);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      b(row, column) = std::ldexp(b(row, column), -exponents[row]);
+    }
+  }
+  return b;
+}
+
 }  // namespace
 
-bool Transform::is_invertible() const {
-  const double volume = determinant(linear);
-  return volume != 0 && std::isfinite(1 / volume);
-}
+bool Transform::is_invertible() const { return inverse(linear).allFinite(); }
 
 Transform make_transform(const Vector3d& translate, const Vector3d& rotate_degrees,
                          const Vector3d& scale, RotateOrder order) {
