@@ -1,7 +1,7 @@
 #include "pliant/plate/backward_euler.hpp"
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/stencil.hpp"
+#include "pliant/plate/domain.hpp"
 
 namespace pliant {
 
@@ -9,6 +9,7 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
                                           const TimeSteps& steps, PlateState state,
                                           const StopRequest& should_stop) {
   const Grid& grid = problem.grid;
+  const InteriorMask& mask = problem.interior;
   PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
   PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
   PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
@@ -16,18 +17,18 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
   const double dt = steps.length;
   const double inertia = problem.dynamics.density / dt;            // on v
   const double shift = (inertia + problem.dynamics.damping) / dt;  // on w
-  if (auto factored = solver.factor({grid, problem.stiffness, shift}); !factored) {
+  if (auto factored = solver.factor({grid, problem.stiffness, shift, mask}); !factored) {
     return fail(factored.error());
   }
 
   // What the rim and the tangents contribute is L of the field that is the rim and 0 inside; it is
   // known, so it joins the load.
-  Field w = interior_of(grid, state.displacement);
-  Field v = interior_of(grid, state.velocity);
+  Field w = interior_of(grid, mask, state.displacement);
+  Field v = interior_of(grid, mask, state.velocity);
   const Field zero = Field::Zero(w.rows(), 3);
-  const Field rim = with_interior(grid, state.displacement, zero);
-  const Field known = interior_of(grid, problem.load) -
-                      apply_stencil(grid, problem.stiffness, problem.tangents, rim);
+  const Field rim = with_interior(grid, mask, state.displacement, zero);
+  const Field known = interior_of(grid, mask, problem.load) -
+                      apply_stencil(grid, mask, problem.stiffness, problem.tangents, rim);
 
   for (int step = 0; step < steps.count; ++step) {
     if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
@@ -37,8 +38,8 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
     w = *std::move(next);
   }
 
-  state.displacement = with_interior(grid, std::move(state.displacement), w);
-  state.velocity = with_interior(grid, Field::Zero(grid.node_count(), 3), v);
+  state.displacement = with_interior(grid, mask, std::move(state.displacement), w);
+  state.velocity = with_interior(grid, mask, Field::Zero(grid.node_count(), 3), v);
   return state;
 }
 

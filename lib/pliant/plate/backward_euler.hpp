@@ -15,6 +15,9 @@ struct PlateProblem {
   Dynamics dynamics;
   EdgeTangents tangents;
   Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
+
+  /// Which nodes move where the plate is no rectangle; empty: all but the outermost.
+  InteriorMask interior = {};
 };
 
 /// Advances a plate by backward Euler: in each step of length dt

@@ -23,10 +23,9 @@ class DirectSolver final : public LinearSolver {
 
   Result<void> factor(const PlateSystem& system) override try {
     if (factored_ == system) return {};
-    const bool same_pattern = factored_ && factored_->grid.columns == system.grid.columns &&
-                              factored_->grid.rows == system.grid.rows;
+    const bool same_pattern = factored_ && have_same_pattern(*factored_, system);
     factored_.reset();
-    const long size = unknown_count(system.grid);
+    const long size = unknown_count(system);
     if (!same_pattern) {
       // The old factor goes first, so that there is room for the new one.
       factorization_ = std::make_unique<Factorization>();
@@ -45,11 +44,11 @@ class DirectSolver final : public LinearSolver {
     refinement_passes_ = passes_for(estimate_condition(system));
     return {};
   } catch (const std::bad_alloc&) {  // the only way in which Eigen says so
-    return fail(no_memory_for_factor(unknown_count(system.grid)));
+    return fail(no_memory_for_factor(unknown_count(system)));
   }
 
   Result<Field> solve(const Field& right_hand_sides) override try {
-    PLIANT_EXPECTS(factored_ && right_hand_sides.rows() == unknown_count(factored_->grid));
+    PLIANT_EXPECTS(factored_ && right_hand_sides.rows() == unknown_count(*factored_));
     ++counts_.solves;
     auto solution = factorization_->solve(right_hand_sides);
     for (int pass = 0; solution && pass < refinement_passes_; ++pass) {

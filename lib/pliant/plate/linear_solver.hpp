@@ -30,10 +30,10 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
 
   /// Makes ready for `system`. Reuse: nothing is done when it equals the last one; the symbolic
-  /// work is kept while the numbers of columns and rows stay. What was kept never changes a
-  /// result's bits. Errors: SolverFailed with size and pivot when the matrix is not positive
-  /// definite or not finite; OutOfMemory when the factor does not fit in the budget, which is
-  /// known before it is computed, or in memory.
+  /// work is kept while the numbers of columns and rows and the mask stay. What was kept never
+  /// changes a result's bits. Errors: SolverFailed with size and pivot when the matrix is not
+  /// positive definite or not finite; OutOfMemory when the factor does not fit in the budget, which
+  /// is known before it is computed, or in memory.
   virtual Result<void> factor(const PlateSystem& system) = 0;
 
   /// Solves for three right-hand sides (#unknowns x 3). Requires: `factor` succeeded.

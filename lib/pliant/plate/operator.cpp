@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/domain_operator.hpp"
 
 namespace pliant {
 
 SparseMatrix assemble_upper(const PlateSystem& system) {
+  if (!system.interior.empty()) return assemble_upper_of_domain(system);
   const Grid& grid = system.grid;
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   const int m = grid.columns - 2;  // unknowns along u
@@ -52,6 +54,7 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
 }
 
 Field residual(const PlateSystem& system, const Field& w, const Field& f) {
+  if (!system.interior.empty()) return residual_of_domain(system, w, f);
   using Real = long double;
   const Grid& grid = system.grid;
   PLIANT_EXPECTS(w.rows() == unknown_count(grid) && f.rows() == unknown_count(grid));

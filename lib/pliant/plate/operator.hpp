@@ -3,11 +3,12 @@
 #include <Eigen/SparseCore>
 
 #include "pliant/core/grid.hpp"
+#include "pliant/plate/domain.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {
 
-/// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped rectangle,
+/// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped plate,
 /// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
 /// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
 struct PlateSystem {
@@ -15,14 +16,26 @@ struct PlateSystem {
   Stiffness stiffness;  ///< elliptic
   double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
 
+  /// Which nodes are unknowns where the plate is no rectangle; empty: all but the outermost.
+  InteriorMask interior = {};
+
   friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
 };
+
+inline int unknown_count(const PlateSystem& system) {
+  return unknown_count(system.grid, system.interior);
+}
+
+/// Whether two systems have matrices of the same pattern.
+inline bool have_same_pattern(const PlateSystem& a, const PlateSystem& b) {
+  return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.interior == b.interior;
+}
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The upper triangle of the system's matrix (#unknowns x #unknowns), by columns, rows ascending.
-/// Its pattern depends on the numbers of columns and rows only: entries that are 0 by chance are
-/// kept.
+/// Its pattern depends on the numbers of columns and rows and on the mask only: entries that are 0
+/// by chance are kept.
 SparseMatrix assemble_upper(const PlateSystem& system);
 
 /// f - (shift I + L) w (#unknowns x 3), its coefficients and sums in extended precision (64 bits of
@@ -31,7 +44,7 @@ SparseMatrix assemble_upper(const PlateSystem& system);
 Field residual(const PlateSystem& system, const Field& w, const Field& f);
 
 /// About the condition number of the system's matrix: an upper bound of its eigenvalues over the
-/// smallest one of the same plate simply supported. At least 1.
+/// smallest one of the whole rectangle simply supported. At least 1.
 double estimate_condition(const PlateSystem& system);
 
 }  // namespace pliant

@@ -1,0 +1,99 @@
+#include "pliant/plate/domain_operator.hpp"
+
+#include <vector>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+// The number of each interior node among the unknowns, -1 for the others.
+std::vector<int> unknown_numbers(const PlateSystem& system) {
+  PLIANT_EXPECTS(system.interior.size() == static_cast<std::size_t>(system.grid.node_count()));
+  std::vector<int> numbers(system.interior.size(), -1);
+  int next = 0;
+  for (std::size_t node = 0; node < numbers.size(); ++node) {
+    if (system.interior[node]) numbers[node] = next++;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
+  const Grid& grid = system.grid;
+  const int M = grid.columns;
+  const double hu = grid.hu;
+  const double hv = grid.hv;
+  const double b = system.stiffness.b / (hu * hu * hu * hu);
+  const double c = system.stiffness.c / (hu * hu * hv * hv);
+  const double d = system.stiffness.d / (hv * hv * hv * hv);
+  const double centre = system.shift + 6 * b + 4 * c + 6 * d;
+  const double beside_u = -4 * b - 2 * c;
+  const double beside_v = -2 * c - 4 * d;
+
+  const std::vector<int> numbers = unknown_numbers(system);
+  const int size = unknown_count(system);
+  SparseMatrix matrix(size, size);
+  matrix.reserve(Eigen::Index{7} * size);
+  for (int node = 0; node < grid.node_count(); ++node) {
+    const int column = numbers[node];
+    if (column < 0) continue;
+    matrix.startVec(column);
+    const auto add = [&](int offset, double weight) {
+      if (numbers[node + offset] >= 0) matrix.insertBack(numbers[node + offset], column) = weight;
+    };
+    // Eq. (13): a node two steps away counts where the one between is no rim.
+    if (numbers[node - M] >= 0) add(-2 * M, d);
+    add(-M - 1, c);
+    add(-M, beside_v);
+    add(-M + 1, c);
+    if (numbers[node - 1] >= 0) add(-2, b);
+    add(-1, beside_u);
+    // Eq. (7): where it is, the ghost behind it adds its weight to the node it mirrors.
+    const int ghosts_u = (numbers[node - 1] < 0) + (numbers[node + 1] < 0);
+    const int ghosts_v = (numbers[node - M] < 0) + (numbers[node + M] < 0);
+    matrix.insertBack(column, column) = centre + ghosts_u * b + ghosts_v * d;
+  }
+  matrix.finalize();
+  return matrix;
+}
+
+Field residual_of_domain(const PlateSystem& system, const Field& w, const Field& f) {
+  using Real = long double;
+  const Grid& grid = system.grid;
+  const int M = grid.columns;
+  const Real hu = grid.hu;
+  const Real hv = grid.hv;
+  const Real b = system.stiffness.b / (hu * hu * hu * hu);
+  const Real c = system.stiffness.c / (hu * hu * hv * hv);
+  const Real d = system.stiffness.d / (hv * hv * hv * hv);
+
+  const std::vector<int> numbers = unknown_numbers(system);
+  PLIANT_EXPECTS(w.rows() == unknown_count(system) && f.rows() == w.rows());
+  Field result(f.rows(), 3);
+  std::vector<Real> nodes(numbers.size());  // the rim stays 0
+  for (int component = 0; component < 3; ++component) {
+    for (std::size_t node = 0; node < numbers.size(); ++node) {
+      if (numbers[node] >= 0) nodes[node] = w(numbers[node], component);
+    }
+    for (int node = 0; node < grid.node_count(); ++node) {
+      const int row = numbers[node];
+      if (row < 0) continue;
+      const Real* const p = &nodes[node];
+      const Real left = numbers[node - 1] < 0 ? p[0] : p[-2];
+      const Real right = numbers[node + 1] < 0 ? p[0] : p[2];
+      const Real below = numbers[node - M] < 0 ? p[0] : p[-2 * M];
+      const Real above = numbers[node + M] < 0 ? p[0] : p[2 * M];
+      const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
+      const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
+      const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
+                        2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
+      result(row, component) = static_cast<double>(
+          f(row, component) - (system.shift * p[0] + b * uuuu + c * uuvv + d * vvvv));
+    }
+  }
+  return result;
+}
+
+}  // namespace pliant

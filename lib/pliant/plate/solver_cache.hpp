@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pliant/plate/linear_solver.hpp"
+
+namespace pliant {
+
+/// The solvers of plates that are solved one after another in each frame: one for each outline, so
+/// that a plate does not drive out what was kept for another. What is kept never changes a result.
+class SolverCache {
+ public:
+  /// What decides which solver a plate has; two plates of the same outline share one.
+  struct Outline {
+    int columns = 0;
+    int rows = 0;
+    InteriorMask interior = {};
+
+    friend bool operator==(const Outline&, const Outline&) = default;
+  };
+
+  /// The solvers take their memory out of `budget`, which outlives them; none: no limit.
+  explicit SolverCache(MemoryBudget* budget) : budget_(budget) {}
+
+  /// Lets go of all solvers but those of `outlines`: ahead of a frame, so that there is room for
+  /// those that it needs anew.
+  void keep_only(std::span<const Outline> outlines);
+
+  /// The solver of an outline, a new one if need be.
+  LinearSolver& solver_of(const Outline& outline);
+
+  /// Of all solvers that ever were, added up.
+  SolverCounts counts() const;
+
+ private:
+  struct Kept {
+    Outline outline;
+    std::unique_ptr<LinearSolver> solver;
+  };
+
+  MemoryBudget* budget_;
+  std::vector<Kept> kept_;
+  SolverCounts gone_;  // what those did that are no longer kept
+};
+
+}  // namespace pliant

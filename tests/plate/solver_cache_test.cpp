@@ -1,0 +1,45 @@
+#include "pliant/plate/solver_cache.hpp"
+
+#include "support/catch.hpp"
+#include "support/plates.hpp"
+
+using namespace pliant;
+using pliant::testing::unit_grid;
+
+TEST_CASE("each outline keeps its solver while it is among those of the frame",
+          "[plate][solver_cache]") {
+  SolverCache cache(nullptr);
+  const SolverCache::Outline large{13, 9}, small{5, 5};
+  const auto solve = [&](const SolverCache::Outline& outline) {
+    const PlateSystem system{unit_grid(outline.columns, outline.rows), {1, 2, 1}, 5};
+    LinearSolver& solver = cache.solver_of(outline);
+    REQUIRE(solver.factor(system));
+    return solver.solve(Field::Ones(unknown_count(system.grid), 3)).value();
+  };
+  const std::vector<SolverCache::Outline> both{large, small, small};
+  Field first;
+  for (int frame = 0; frame < 5; ++frame) {
+    cache.keep_only(both);
+    first = solve(large);
+    solve(small);
+    solve(small);
+  }
+  CHECK(cache.counts().factorizations == 2);
+  CHECK(cache.counts().solves == 15);
+  cache.keep_only({&both[1], 1});
+  solve(small);
+  CHECK(cache.counts().factorizations == 2);
+  CHECK(solve(large) == first);  // anew, with the same bits
+  CHECK(cache.counts().factorizations == 3);
+  CHECK(cache.counts().solves == 17);  // those of the solver that went are counted
+}
+
+TEST_CASE("solvers that are let go give their memory back", "[plate][solver_cache]") {
+  MemoryBudget budget(1'000'000);
+  SolverCache cache(&budget);
+  const SolverCache::Outline outline{21, 21};
+  REQUIRE(cache.solver_of(outline).factor({unit_grid(21, 21), {1, 2, 1}, 0}));
+  CHECK(budget.available() < 900'000);
+  cache.keep_only({});
+  CHECK(budget.available() == 1'000'000);
+}
