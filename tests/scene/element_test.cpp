@@ -59,8 +59,7 @@ TEST_CASE("what a later version brings is not taken for a misspelling", "[scene]
                       {name, later}});
   }
   for (const std::string given :
-       {"combine=\"islands\"", "combine=\"union\"", "release=\"recover\"", "integrator=\"newmark\"",
-        "integrator=\"exact\"", "region=\"all\""})
+       {"integrator=\"newmark\"", "integrator=\"exact\"", "region=\"all\""})
     scenes.push_back({surface_with("<solver " + given + "/>"), 3, {given, later, "allowed:"}});
   for (const std::string given :
        {"uv=\"virtual\"", "wrap=\"u\"", "wrap=\"v\"", "wrap=\"uv\"", "resolution=\"9\""})

@@ -186,7 +186,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
   <surface name="sheet">
     <grid columns="2" rows="61.5" width="1,5"/>
     <material density="-1" damping="nan"/>
-    <solver dt="0.01" combine="islands"/>
+    <solver dt="0.01" integrator="exact"/>
     <solver/>
   </surface>
   <radial name="bulge" falof="smooth" targets="sheat"/>
@@ -207,7 +207,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
       "3: <grid> width=\"1,5\"",
       "4: <material> density=\"-1\"",
       "4: <material> damping=\"nan\"",
-      "5: <solver> combine=\"islands\"",
+      "5: <solver> integrator=\"exact\"",
       "6: <surface> \"sheet\" has a second <solver>",
       "8: <radial> has no attribute \"falof\"",
       "8: <radial> targets: no surface is named \"sheat\"",

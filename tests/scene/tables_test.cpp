@@ -84,7 +84,7 @@ TEST_CASE("each value out of its range is told with the rule", "[scene][tables]"
       {part("solver", "stepping=\"exakt\""), 3, {"did you mean \"exact\"?"}},
       {part("solver", "reference=\"res\""), 3, {"did you mean \"rest\"?"}},
       {part("solver", "measure=\"curent\""), 3, {"did you mean \"current\"?"}},
-      {part("solver", "combine=\"boxes\""), 3, {"unknown word", "allowed: box"}},
+      {part("solver", "combine=\"boxes\""), 3, {"unknown word", "allowed: box, islands, union"}},
       {part("solver", "release=\"freze\""), 3, {"did you mean \"freeze\"?"}},
       {part("solver", "integrator=\"rk4\""), 3, {"allowed: backwardEuler"}},
       {part("solver", "region=\"force\""), 3, {"did you mean \"forces\"?"}},

@@ -227,6 +227,47 @@ TEST_CASE("a frame outside the range and a run that fails are errors, and the ne
   CHECK(simulation.at(5)->surface("s").positions() == fifth);
 }
 
+TEST_CASE("a position beyond double in world space is an error in whatever order", "[simulation]") {
+  // Only at frame 4, where nothing could be selected: at any later frame too, though it is finite.
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  std::get<GridSheet>(s.surfaces[0].shape).width = 1e200;
+  CurveKeys<3> jump;
+  jump.keys = {{.frame = 1, .value = {1, 1, 1}},
+               {.frame = 4, .value = {1e150, 1, 1}},
+               {.frame = 5, .value = {1, 1, 1}}};
+  for (auto& key : jump.keys) key.next.kind = Interpolation::Kind::Step;
+  s.surfaces[0].transform.scale = Curve<3>::make(jump).value();
+  auto simulation = Simulation::make(s).value();
+  const auto later = simulation.at(9);
+  REQUIRE_FALSE(later);
+  CHECK_THAT(later.error().message, Contains("frame 4: a position in world space"));
+  CHECK(simulation.at(4).error().message == later.error().message);
+  CHECK(simulation.at(3));
+}
+
+TEST_CASE("under a scale that is not uniform a force enters through its inverse", "[simulation]") {
+  // Static, in object space: the world's load divided by the scale of each axis.
+  Scene s = scene({sheet("s")}, {}, 2);
+  s.surfaces[0].material.density = s.surfaces[0].material.damping = 0.0;
+  const auto peak_along = [&](const Value<3>& scale, const Value<3>& direction) {
+    s.surfaces[0].transform.scale = scale;
+    Force force = poke("f", {0, 0, 0}, 1000);
+    force.shape = PointChannels{.center = Value<3>{0, 0, 0}, .direction = direction};
+    force.deformation_radius = force.force_radius = 1000.0;  // all of it, whatever the scale
+    s.forces = {force};
+    auto simulation = Simulation::make(s).value();
+    const Field object = simulation.at(2)->surface("s").object_positions();
+    return Eigen::RowVector3d((object - simulation.at(1)->surface("s").object_positions())
+                                  .cwiseAbs()
+                                  .colwise()
+                                  .maxCoeff());
+  };
+  const double plain = peak_along({1, 1, 1}, {0, 1, 0})[1];
+  const Eigen::RowVector3d scaled = peak_along({2, 4, -0.5}, {1, 1, 1});
+  const double share = plain / std::sqrt(3.0);
+  CHECK((scaled - Eigen::RowVector3d(share / 2, share / 4, share / 0.5)).norm() < 1e-12 * plain);
+}
+
 TEST_CASE("a position beyond double in world space is an error", "[simulation]") {
   Scene s = scene({sheet("s")}, {});
   std::get<GridSheet>(s.surfaces[0].shape).width = 1e200;

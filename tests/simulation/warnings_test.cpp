@@ -92,6 +92,58 @@ TEST_CASE("a force box outside the region is a warning, one that reaches out is 
   CHECK(warnings_of(s, 5).empty());
 }
 
+TEST_CASE("a magnitude that pushes nothing in the whole range is a warning, and the only one",
+          "[simulation][warnings]") {
+  Scene s = scene({sheet("a")}, {poke("f", {0.5, 0, 0.5})}, 5);
+  Force& force = s.forces[0];
+  force.targets = {"a"};
+  SECTION("a force radius of 0") { force.force_radius = 0.0; }
+  SECTION("a force radius below the spacing") { force.force_radius = 0.6; }
+  SECTION("no direction") {
+    force.shape = PointChannels{.center = Value<3>{0.5, 0, 0.5}, .direction = Value<3>{0, 0, 0}};
+  }
+  SECTION("only nodes of the rim") {
+    force.shape = PointChannels{.center = Value<3>{6, 0, 0.5}};  // on the sheet's own edge
+    force.force_radius = 0.6;
+  }
+  const auto idle = warnings_of(s, 5);
+  REQUIRE(idle.size() == 1);
+  CHECK(idle[0].kind == Warning::Kind::PushesNothing);
+  CHECK_THAT(idle[0].message(),
+             Contains("magnitude of \"f\" has no effect on \"a\" at frames 1-4:"));
+  CHECK(warnings_of(s, 4).empty());  // it may still push
+  Scene quiet = s;
+  quiet.forces[0].magnitude = 0.0;
+  CHECK(warnings_of(quiet, 5).empty());
+  quiet = s;
+  quiet.forces[0].force_radius = curve({{1, 0}, {3, 0}, {4, 3}});
+  quiet.forces[0].shape = PointChannels{.center = Value<3>{0.5, 0, 0.5}};
+  CHECK(warnings_of(quiet, 5).empty());  // it does in the end
+  quiet = s;
+  quiet.forces[0].deformation_radius = 0.8;  // 2 x 2 nodes: that is what is wrong
+  REQUIRE(warnings_of(quiet, 5).size() == 1);
+  CHECK(warnings_of(quiet, 5)[0].kind == Warning::Kind::RegionTooSmall);
+}
+
+TEST_CASE("warnings tell of islands each by itself", "[simulation][warnings]") {
+  Scene s = scene({sheet("a", 41)}, {poke("f", {-10, 0, 0}), poke("g", {10, 0, 0})}, 4);
+  s.surfaces[0].solver.combine = Combine::Islands;
+  CHECK(warnings_of(s, 4).empty());
+  s.forces[1].deformation_radius = 0.5;  // its island alone is too small
+  const auto small = warnings_of(s, 4);
+  REQUIRE(small.size() == 1);
+  CHECK(small[0].kind == Warning::Kind::RegionTooSmall);
+  CHECK(small[0].force == "g");
+  // In a box the other force's region would hold its nodes; in its own island nothing is there.
+  s.forces[1].deformation_radius = 0.0;
+  s.forces[1].shape = PointChannels{.center = Value<3>{-8, 0, 0}};
+  const auto nothing = warnings_of(s, 4);
+  REQUIRE(nothing.size() == 1);
+  CHECK(nothing[0].kind == Warning::Kind::SelectsNothing);
+  s.surfaces[0].solver.combine = Combine::Box;
+  CHECK(warnings_of(s, 4).empty());
+}
+
 TEST_CASE("a surface that starts behind the end is a warning", "[simulation][warnings]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})}, 5);
   s.surfaces[1].solver.start_frame = 5;  // the solve at 5 would show at 6

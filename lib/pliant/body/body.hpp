@@ -1,7 +1,7 @@
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pliant/body/settings.hpp"
@@ -9,8 +9,8 @@
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/force.hpp"
-#include "pliant/plate/linear_solver.hpp"
 #include "pliant/plate/plate.hpp"
+#include "pliant/plate/solver_cache.hpp"
 #include "pliant/region/region.hpp"
 
 namespace pliant {
@@ -31,51 +31,88 @@ struct BodyState {
   Field positions;   ///< #nodes x 3, object space [length]
   Field velocities;  ///< #nodes x 3: of the last solve, 0 where it did not touch [length/s]
 
+  /// With `Release::Recover`: 1 for each node that the last solve left away from rest (#nodes);
+  /// otherwise empty.
+  std::vector<std::uint8_t> unsettled = {};
+
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 
-/// What happened in a frame.
+/// What happens in a frame.
 struct StepReport {
-  Selection selection;     ///< what the forces selected, in the order of the inputs
-  bool is_solved = false;  ///< false: nothing selected, or a region smaller than 3 x 3
-  TimeSteps steps;         ///< of the solve
-  std::vector<int> lost;   ///< forces that hold nodes of the rest mesh, but none as it stands
+  Selection selection;  ///< what the forces selected, in the order of the inputs, and its regions
+  std::vector<std::vector<Patch>> patches;  ///< what is solved of each region; none: too small
+  bool is_solved = false;                   ///< whether anything is
+  TimeSteps steps;                          ///< of the solve
+  std::vector<int> lost;  ///< forces that hold nodes of the rest mesh, but none as it stands
+  std::vector<bool>
+      pushing;         ///< of each force: whether it moves any node; in the order of the inputs
+  int recovering = 0;  ///< nodes that are solved because they are not back at rest
+  std::vector<int> settling;  ///< nodes that are put at rest ahead of the solve, ascending
+
+  int unknown_count() const;  ///< nodes that move, of all patches
+
+  /// The patches that force k of the inputs acts in.
+  std::span<const Patch> patches_of_force(std::size_t k) const;
 };
 
 /// One elastic surface as a grid of nodes: its state, and one frame's step. Thesis 5.3; SPEC 6.
 class Body {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
-  /// The solver takes its memory out of `budget`, which outlives the body; none: no limit.
+  /// The solvers take their memory out of `budget`, which outlives the body; none: no limit.
   Body(const Grid& grid, Field rest, const BodySettings& settings, MemoryBudget* budget = nullptr);
 
   /// The rest mesh, and no carried velocity.
   void reset();
 
-  /// Solves one frame: selects the region on the mesh as it stands, and moves its interior from
+  /// What `step` would do with these inputs, without doing it. Errors: NotFinite when a node is
+  /// not, in world space.
+  Result<StepReport> look(const BodyInputs& inputs) const;
+
+  /// Solves one frame: selects the regions on the mesh as it stands, and moves their interiors from
   /// here to the next frame. A node that the last solve did not touch starts with velocity 0, any
   /// other with what the last solve left it; a frame without a solve changes neither. Errors:
-  /// NotFinite when the new state is not; Interrupted when `should_stop` says so; those of the
-  /// solver. The state is then as it was.
+  /// NotFinite when a node or the new state is not; Interrupted when `should_stop` says so; those
+  /// of the solver. The state is then as it was.
   Result<StepReport> step(const BodyInputs& inputs, const StopRequest& should_stop = {});
 
   const Grid& grid() const { return grid_; }
   const Field& rest() const { return rest_; }  ///< #nodes x 3, object space [length]
   const BodyState& state() const { return state_; }
-  SolverCounts solver_counts() const { return solver_->counts(); }
+  SolverCounts solver_counts() const { return solvers_.counts(); }
+
+  /// Where the forces' distances are measured (#nodes x 3, world space).
+  Field measured_nodes(const Transform& transform) const;
 
   /// Continues from `state`, which came from `state()` of a body like this one.
   void restore(BodyState state);
 
  private:
-  Result<void> solve(const Box& region, const Field& load, const BodyInputs& inputs,
-                     const TimeSteps& steps, const StopRequest& should_stop);
+  // A patch once its solve is done.
+  struct Moved {
+    const Patch* patch = nullptr;
+    Field positions;   // #interior nodes x 3
+    Field velocities;  // likewise
+    double settling_length = 0;
+  };
+
+  Result<StepReport> plan(const BodyInputs& inputs, const Field& nodes) const;
+  Result<std::vector<Moved>> solve(const BodyInputs& inputs, const Field& nodes,
+                                   const StepReport& report, const StopRequest& should_stop);
+  Result<Moved> solve(const Patch& patch, const Region& region, const Field& load,
+                      const BodyInputs& inputs, const TimeSteps& steps,
+                      const StopRequest& should_stop);
+  void take(const std::vector<Moved>& moved);
+  void mark_unsettled(const std::vector<Moved>& moved);
+  void settle(const std::vector<int>& nodes);
+  bool recovers() const { return settings_.release == Release::Recover; }
 
   Grid grid_;
   Field rest_;
   BodySettings settings_;
   BodyState state_;
-  std::unique_ptr<LinearSolver> solver_;
+  SolverCache solvers_;
 };
 
 }  // namespace pliant

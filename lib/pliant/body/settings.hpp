@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pliant/plate/time_steps.hpp"
+#include "pliant/region/combine.hpp"
 
 namespace pliant {
 
@@ -17,11 +18,19 @@ enum class Measure {
   Rest,     ///< on the rest mesh, for forces that push their own nodes out of reach
 };
 
+/// What happens to nodes that leave the region. SPEC 6.
+enum class Release {
+  Freeze,   ///< they stay where they are: the thesis
+  Recover,  ///< they go on being solved until they are back at rest
+};
+
 /// The choices of a body that do not change over time.
 struct BodySettings {
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   Measure measure = Measure::Current;
+  Combine combine = Combine::Box;
+  Release release = Release::Freeze;
 };
 
 }  // namespace pliant

@@ -6,36 +6,63 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/forces/force.hpp"
+#include "pliant/region/combine.hpp"
 
 namespace pliant {
 
-/// What one force selects.
+/// What one force selects, and where it acts.
 struct ForceSelection {
-  Box deformation;  ///< box of the nodes nearer than the deformation radius; empty: none are
-  Box force;        ///< box of the nodes nearer than the force radius; may reach past the region
+  Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: none are
+  Box force;         ///< box of the nodes nearer than the force radius; may reach past the region
+  int selector = 0;  ///< which force's deformation box is this one's: its own
+  int region = -1;   ///< which of the regions it acts in; -1: in none
 
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
 };
 
-/// The original region selection: thesis 5.3, fig. 5; SPEC 5.
+/// The region selection of thesis 5.3, fig. 5; SPEC 5.
 struct Selection {
-  Box region;                          ///< box of all deformation boxes; empty: nothing is selected
+  Box region;                          ///< around all regions; empty: nothing is selected
   std::vector<ForceSelection> forces;  ///< in the order of the forces
+  std::vector<Region> regions;         ///< as `combine` orders them, also those too small to solve
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };
 
 /// Selects by distance, strictly less than each radius, on nodes (#nodes x 3, world space). A box
 /// over (u,v) is a box of nodes, and it holds also the nodes that lie outside every sphere: that is
-/// what makes the region an M x N grid.
+/// what makes the region an M x N grid. `how` makes regions of the boxes.
 /// Requires: #nodes = grid.node_count().
-Selection select_region(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces);
+Selection select_region(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
+                        Combine how = Combine::Box);
 
-/// The sum of all forces on each node of `selection.region` (#region nodes x 3, row = j * columns +
-/// i counted within the region, world space): force k acts on the nodes inside its force box.
-/// Forces add up in the order given. Requires: `selection` is what `select_region` gave for the
-/// same arguments, its region not empty.
+/// The same selection with `others`, boxes that no force selects, taking part in its regions.
+/// In a box or union every force acts in the one region; of islands in the one that holds the
+/// deformation box of its `selector`, which is empty for a force that acts in none.
+Selection recombined(Selection selection, Combine how, std::span<const Box> others = {});
+
+/// Whether a force box has a node of the region, rim included.
+bool overlaps(const Region& region, const Box& force);
+
+/// The sum of all forces that act in one region, on each node of its box (#nodes x 3, row = j *
+/// columns + i counted within the box, world space): force k acts on the nodes inside its force
+/// box. Forces add up in the order given. Requires: `selection` is what `select_region` gave for
+/// the same arguments, and has that region.
 Field assemble_load(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
-                    const Selection& selection);
+                    const Selection& selection, std::size_t region = 0);
+
+/// What a force gives to the interior nodes of its region, all together. World [length b/uv^4]
+struct Push {
+  Vector3d sum = Vector3d::Zero();  ///< of the loads on nodes
+  int node_count = 0;               ///< nodes whose load is not 0
+};
+
+/// `patches` are those of the region that the force acts in, `box` its force box.
+Push push_of(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
+             std::span<const Patch> patches);
+
+/// Whether a force moves any interior node of the patches: stops at the first.
+bool pushes(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
+            std::span<const Patch> patches);
 
 }  // namespace pliant

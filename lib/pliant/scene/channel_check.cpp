@@ -60,8 +60,9 @@ class ChannelChecker {
       const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
                                                  {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
       if (transform.is_invertible()) return {};
-      return fmt::format("is {}, but a scale of 0 in any direction cannot be undone",
-                         spelled<3>(scale));
+      return fmt::format(
+          "is {}, but a scale of 0, or so near 0 that its inverse is not finite, cannot be undone",
+          spelled<3>(scale));
     });
     const MaterialChannels& material = surface.material;
     check(surface.name, "density", material.density, at_least_zero);
@@ -73,7 +74,7 @@ class ChannelChecker {
          {std::pair{"su0", &surface.tangents.su0}, std::pair{"su1", &surface.tangents.su1},
           std::pair{"sv0", &surface.tangents.sv0}, std::pair{"sv1", &surface.tangents.sv1}}) {
       std::visit(
-          [&, name = attribute](const auto& channel) { check_finite(surface.name, name, channel); },
+          [&, name = attribute](const auto& channel) { check_tangent(surface, name, channel); },
           *tangent);
     }
     check(surface.name, "dt", surface.solver.dt, [&](const Value<1>& dt) -> Complaint {
@@ -105,10 +106,19 @@ class ChannelChecker {
     if (line.direction) check(name, "direction", *line.direction, anything<3>);
   }
 
+  // A body with tangents never comes to rest: SPEC 6.
   template <int D>
-  void check_finite(const std::string& name, std::string_view attribute,
-                    const Channel<D>& channel) {
-    check(name, attribute, channel, anything<D>);
+  void check_tangent(const Surface& surface, std::string_view attribute,
+                     const Channel<D>& channel) {
+    if (surface.solver.release == Release::Freeze) {
+      check(surface.name, attribute, channel, anything<D>);
+      return;
+    }
+    check(surface.name, attribute, channel, [](const Value<D>& value) -> Complaint {
+      if (value == Value<D>{}) return {};
+      return fmt::format("is {}, but release=\"recover\" asks for tangents of 0",
+                         spelled<D>(value));
+    });
   }
 
   // Whether the channel keeps `rule` at every frame; a constant one is looked at once.

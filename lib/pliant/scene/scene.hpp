@@ -62,6 +62,8 @@ struct SolverSettings {
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   Measure measure = Measure::Current;
+  Combine combine = Combine::Box;
+  Release release = Release::Freeze;  ///< Recover only with tangents of 0
 };
 
 /// One elastic surface.

@@ -6,11 +6,12 @@ namespace pliant {
 namespace {
 
 std::size_t bytes_of(const std::vector<BodyState>& states) {
-  std::size_t doubles = 0;
+  std::size_t bytes = 0;
   for (const BodyState& state : states) {
-    doubles += static_cast<std::size_t>(state.positions.size() + state.velocities.size());
+    const auto doubles = static_cast<std::size_t>(state.positions.size() + state.velocities.size());
+    bytes += doubles * sizeof(double) + state.unsettled.size();
   }
-  return doubles * sizeof(double);
+  return bytes;
 }
 
 }  // namespace

@@ -119,7 +119,8 @@ void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemorySh
   const SolverSettings& solver = surface.solver;
   const GridMapping& mapping = rest_shape.mapping;
   bodies_.emplace_back(mapping.grid, mapping.rest,
-                       BodySettings{solver.stepping, solver.reference, solver.measure},
+                       BodySettings{solver.stepping, solver.reference, solver.measure,
+                                    solver.combine, solver.release},
                        memory_.get());
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
@@ -133,7 +134,8 @@ Error Simulation::located(Error error, const Surface& surface, int frame) const 
   return error;
 }
 
-Result<Frame> Simulation::at(int frame) {
+// To a frame of the range, or back to the start where that fails.
+Result<void> Simulation::reach(int frame) {
   if (frame < scene_.start || frame > scene_.end) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("frame {} is outside the scene's frames {} to {}", frame, scene_.start,
@@ -142,8 +144,51 @@ Result<Frame> Simulation::at(int frame) {
   if (auto reached = go_to(frame); !reached) {
     // Some bodies may have stepped and others not: start over, so that the next call is sound.
     rewind(scene_.start);
-    return fail(reached.error());
+    return reached;
   }
+  return {};
+}
+
+Result<FrameReport> Simulation::report(int frame) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
+  FrameReport report{frame, {}};
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    auto surface = report_of(k);
+    if (!surface) return fail(located(surface.error(), scene_.surfaces[k], frame));
+    report.surfaces.push_back(*std::move(surface));
+  }
+  return report;
+}
+
+// Of the frame that the bodies hold.
+Result<SurfaceReport> Simulation::report_of(std::size_t index) const {
+  const Surface& surface = scene_.surfaces[index];
+  SurfaceReport report;
+  if (!surface.enabled || frame_ < start_frame(surface)) return report;
+  const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
+  const Body& body = bodies_[index];
+  const auto step = body.look(inputs.body);
+  if (!step) return fail(step.error());
+  report.is_solved = step->is_solved;
+  report.steps = step->steps;
+  report.unknown_count = step->unknown_count();
+  report.recovering = step->recovering;
+  report.settled = static_cast<int>(step->settling.size());
+  report.regions = step->selection.regions;
+  for (const auto& patches : step->patches) report.region_is_solved.push_back(!patches.empty());
+  const Field nodes = body.measured_nodes(inputs.body.transform);
+  for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
+    const SampledForce& force = inputs.body.forces[k];
+    const ForceSelection& selection = step->selection.forces[k];
+    report.forces.push_back(
+        {inputs.force_indices[k], force, selection,
+         push_of(body.grid(), nodes, force, selection.force, step->patches_of_force(k))});
+  }
+  return report;
+}
+
+Result<Frame> Simulation::at(int frame) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
   std::vector<SurfaceFrame> surfaces;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
@@ -195,29 +240,41 @@ Result<void> Simulation::step() {
     warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
     const auto& [inputs, report] = *outcomes[k];
     if (!report) return fail(located(report.error(), surface, frame_));
-    warn(surface, inputs, *report);
+    warn(k, inputs, *report);
   }
   return {};
 }
 
-void Simulation::warn(const Surface& surface, const SurfaceInputs& inputs,
+void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
                       const StepReport& report) {
   using enum Warning::Kind;
+  const Surface& surface = scene_.surfaces[surface_index];
   for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
     const Force& force = scene_.forces[inputs.force_indices[k]];
-    const auto& [deformation, box] = report.selection.forces[k];
-    const bool acts = report.is_solved && !intersection(box, report.selection.region).is_empty();
-    if (!report.is_solved && !deformation.is_empty()) {
+    const ForceSelection& selected = report.selection.forces[k];
+    const bool is_solved = !report.patches_of_force(k).empty();
+    const bool reaches =
+        is_solved && overlaps(report.selection.regions[selected.region], selected.force);
+    if (!is_solved && !selected.deformation.is_empty()) {
       warnings_.add(RegionTooSmall, surface.name, force.name, frame_);
     }
-    const bool is_outside = report.is_solved && !box.is_empty() && !acts;
-    if (is_outside && inputs.body.forces[k].magnitude != 0) {
+    const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
+    if (is_solved && !selected.force.is_empty() && !reaches && has_magnitude) {
       warnings_.add(OutsideRegion, surface.name, force.name, frame_);
     }
     // A force that names its targets is expected to touch each; one for all surfaces, some of them.
     const std::string place = force.targets.empty() ? std::string() : surface.name;
+    const bool touches = !selected.deformation.is_empty() || reaches;
     warnings_.expect(SelectsNothing, place, force.name, frame_);
-    if (!deformation.is_empty() || acts) warnings_.happened(SelectsNothing, place, force.name);
+    if (touches) warnings_.happened(SelectsNothing, place, force.name);
+    // What another warning tells of this frame is not told twice.
+    const bool is_lost =
+        std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
+    const bool is_here = reaches || (touches && selected.force.is_empty());
+    if (is_solved && has_magnitude && is_here && !is_lost) {
+      warnings_.expect(PushesNothing, place, force.name, frame_);
+      if (report.pushing[k]) warnings_.happened(PushesNothing, place, force.name);
+    }
   }
   for (const int k : report.lost) {
     const Force& force = scene_.forces[inputs.force_indices[static_cast<std::size_t>(k)]];

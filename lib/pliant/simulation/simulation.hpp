@@ -14,6 +14,7 @@
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/checkpoints.hpp"
 #include "pliant/simulation/frame.hpp"
+#include "pliant/simulation/frame_report.hpp"
 #include "pliant/simulation/rest_shape.hpp"
 #include "pliant/simulation/warnings.hpp"
 
@@ -68,6 +69,11 @@ class Simulation {
   /// Interrupted, naming surface and frame.
   Result<Frame> at(int frame);
 
+  /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface
+  /// that is not solved at the frame has an empty report. The last frame's solve is told of like
+  /// any other, though no frame shows it. Cost and errors: as `at`.
+  Result<FrameReport> report(int frame);
+
   const Scene& scene() const { return scene_; }
 
   /// The surfaces at rest, in the order of the scene.
@@ -88,11 +94,13 @@ class Simulation {
   Simulation(Scene scene, const SimulationOptions& options);
 
   void add_body(const Surface& surface, RestShape rest_shape, MemoryShare share);
+  Result<void> reach(int frame);
   Result<void> go_to(int frame);
   Result<void> step();
-  void warn(const Surface& surface, const SurfaceInputs& inputs, const StepReport& report);
+  void warn(std::size_t surface_index, const SurfaceInputs& inputs, const StepReport& report);
   void rewind(int frame);
   std::vector<BodyState> states() const;
+  Result<SurfaceReport> report_of(std::size_t surface) const;
   Error located(Error error, const Surface& surface, int frame) const;
   int start_frame(const Surface& surface) const;
 

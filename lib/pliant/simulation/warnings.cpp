@@ -26,6 +26,12 @@ std::string Warning::message() const {
       return fmt::format(
           "force \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", force,
           surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+    case Kind::PushesNothing:
+      return fmt::format(
+          "the magnitude of \"{}\" has no effect on {} {}: no node that moves is in its force box, "
+          "or "
+          "its direction or falloff is 0 there",
+          force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
     case Kind::NeverStarts:
       return fmt::format("surface \"{}\" is not solved {}: its startFrame comes later", surface,
                          when);

@@ -17,6 +17,7 @@ struct Warning {
     LostNodes,       ///< a force holds nodes of the rest mesh, but none as it stands
     OutsideRegion,   ///< a force with a magnitude has its box outside the solved region
     SelectsNothing,  ///< an enabled force touches no node in the whole range
+    PushesNothing,   ///< a force with a magnitude pushes no node that moves, in the whole range
     NeverStarts,     ///< the surface's start frame is behind the last frame that is solved
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
   };

@@ -1,0 +1,72 @@
+#include "pliant/body/recovery.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+NodeMarks interior_marks(const Grid& grid, std::span<const Patch> patches) {
+  NodeMarks marks(static_cast<std::size_t>(grid.node_count()), 0);
+  for (const Patch& patch : patches) {
+    for (int j = patch.box.j0 + 1; j < patch.box.j1; ++j) {
+      for (int i = patch.box.i0 + 1; i < patch.box.i1; ++i) {
+        if (patch.holds(i, j)) marks[grid.node(i, j)] = 1;
+      }
+    }
+  }
+  return marks;
+}
+
+}  // namespace
+
+Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
+                            std::span<const Patch> held_by_forces) {
+  Recovering recovering;
+  if (std::find(unsettled.begin(), unsettled.end(), 1) == unsettled.end()) return recovering;
+  const NodeMarks held = interior_marks(grid, held_by_forces);
+  std::vector<Box> runs;  // along u, with the neighbours on all sides
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i) {
+      const int node = grid.node(i, j);
+      if (!unsettled[node] || held[node]) continue;
+      ++recovering.node_count;
+      const Box around = intersection({i - 1, i + 1, j - 1, j + 1}, grid.box());
+      const bool goes_on = !runs.empty() && runs.back().j1 == around.j1 && runs.back().i1 == i;
+      goes_on ? runs.back().include(around) : runs.push_back(around);
+    }
+  }
+  recovering.boxes = merged(runs);
+  return recovering;
+}
+
+std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
+                                const Field& velocities, std::span<const Patch> patches) {
+  const NodeMarks moving = interior_marks(grid, patches);
+  std::vector<int> nodes;
+  for (int node = 0; node < grid.node_count(); ++node) {
+    if (moving[node]) continue;
+    const bool is_at_rest = positions.row(node) == rest.row(node) && velocities.row(node).isZero(0);
+    if (!is_at_rest) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+double settling_length(const Grid& grid, const Field& rest, const Region& region) {
+  PLIANT_EXPECTS(!region.parts.empty());
+  Eigen::RowVector3d low = rest.row(grid.node(region.parts[0].i0, region.parts[0].j0));
+  Eigen::RowVector3d high = low;
+  for (const Box& part : region.parts) {
+    for (int j = part.j0; j <= part.j1; ++j) {
+      const auto row = rest.middleRows(grid.node(part.i0, j), part.columns());
+      low = low.cwiseMin(row.colwise().minCoeff());
+      high = high.cwiseMax(row.colwise().maxCoeff());
+    }
+  }
+  const Eigen::RowVector3d extent = high - low;
+  return 1e-6 * std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
+}
+
+}  // namespace pliant

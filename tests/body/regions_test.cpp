@@ -1,0 +1,172 @@
+#include <algorithm>
+
+#include "body/sheets.hpp"
+#include "support/catch.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+
+namespace {
+
+// Boxes are measured at rest, so that they stay where they are whatever the force does.
+Body body_with(const NodeSheet& s, Combine how) {
+  return Body(s.grid, s.rest, {.measure = Measure::Rest, .combine = how});
+}
+
+BodyInputs with_tangents(BodyInputs in) {
+  in.tangents.su0 = {0, 3, 0};
+  in.tangents.su1 = {1, 0, 0};
+  in.tangents.sv1 = {0, 0, -2};
+  return in;
+}
+
+}  // namespace
+
+TEST_CASE("islands that do not meet are as if each were alone, to the bit", "[body][islands]") {
+  const NodeSheet s = hilly_sheet(41, 21);
+  const SampledForce a = press(-10, 0, 3e4), b = press(9, 2, -5e4, 4.5);
+  Body both = body_with(s, Combine::Islands), first = body_with(s, Combine::Box),
+       second = body_with(s, Combine::Box);
+  for (int frame = 0; frame < 12; ++frame) {
+    const auto report = both.step(with_tangents(inputs_of({a, b}))).value();
+    REQUIRE(report.selection.regions.size() == 2);
+    REQUIRE(first.step(with_tangents(inputs_of({a})))->is_solved);
+    REQUIRE(second.step(with_tangents(inputs_of({b})))->is_solved);
+  }
+  const Field moved = first.state().positions - s.rest;
+  for (int node = 0; node < s.grid.node_count(); ++node) {
+    const Body& alone = moved.row(node).isZero(0) ? second : first;
+    REQUIRE(both.state().positions.row(node) == alone.state().positions.row(node));
+    REQUIRE(both.state().velocities.row(node) == alone.state().velocities.row(node));
+  }
+  CHECK(both.solver_counts().factorizations == 2);  // for all frames
+}
+
+TEST_CASE("islands of one size share a factor", "[body][islands]") {
+  const NodeSheet s = flat_sheet(41, 21);
+  Body body = body_with(s, Combine::Islands);
+  for (int frame = 0; frame < 6; ++frame) {
+    const auto report = body.step(inputs_of({press(-10, 0, 3e4), press(10, 0, 3e4)})).value();
+    REQUIRE(report.unknown_count() == 2 * 5 * 5);
+  }
+  CHECK(body.solver_counts().factorizations == 1);
+}
+
+TEST_CASE("boxes that meet are one island, solved as a box", "[body][islands]") {
+  const NodeSheet s = hilly_sheet(31, 31);
+  const std::vector<SampledForce> forces{press(-3, 0, 3e4), press(2, 4, -5e4, 4.5)};
+  Body islands = body_with(s, Combine::Islands), box = body_with(s, Combine::Box);
+  for (int frame = 0; frame < 8; ++frame) {
+    REQUIRE(islands.step(with_tangents(inputs_of(forces)))->is_solved);
+    REQUIRE(box.step(with_tangents(inputs_of(forces)))->is_solved);
+  }
+  CHECK(islands.state() == box.state());
+}
+
+TEST_CASE("an island that is too small is skipped alone", "[body][islands]") {
+  const NodeSheet s = flat_sheet(41, 21);
+  Body both = body_with(s, Combine::Islands), alone = body_with(s, Combine::Islands);
+  const SampledForce large = press(-10, 0, 3e4), small = press(10, 0, 3e4, 1);
+  const auto report = both.step(inputs_of({large, small})).value();
+  CHECK(report.is_solved);
+  CHECK_FALSE(report.patches_of_force(0).empty());
+  CHECK(report.patches_of_force(1).empty());
+  REQUIRE(alone.step(inputs_of({large})));
+  CHECK(both.state() == alone.state());
+}
+
+TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
+  const NodeSheet s = flat_sheet(41, 21);
+  const SampledForce a = press(-10, 0, 3e4), b = press(10, 0, -5e4);
+  Body body = body_with(s, Combine::Islands);
+  REQUIRE(body.step(inputs_of({a, b})));
+  const BodyState after = body.state();
+  // A solve of one island takes what it left there and drops what it left at the other.
+  REQUIRE(body.step(inputs_of({b})));
+  Body expected = body_with(s, Combine::Islands);
+  BodyState start = after;
+  for (int node = 0; node < s.grid.node_count(); ++node) {
+    if (s.rest(node, 0) < 0) start.velocities.row(node).setZero();
+  }
+  CHECK(start.velocities != after.velocities);
+  expected.restore(start);
+  REQUIRE(expected.step(inputs_of({b})));
+  CHECK(body.state() == expected.state());
+  CHECK(body.state().velocities.topRows(20).isZero(0));
+}
+
+TEST_CASE("a union that is a box is solved as that box, to the bit", "[body][union]") {
+  const NodeSheet s = hilly_sheet(31, 21);
+  const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // side by side
+  Body one = body_with(s, Combine::Union), box = body_with(s, Combine::Box);
+  for (int frame = 0; frame < 8; ++frame) {
+    REQUIRE(one.step(with_tangents(inputs_of(forces)))->is_solved);
+    REQUIRE(box.step(with_tangents(inputs_of(forces)))->is_solved);
+  }
+  CHECK(one.state() == box.state());
+}
+
+TEST_CASE("only the interior of a union moves", "[body][union]") {
+  const NodeSheet s = hilly_sheet(31, 31);
+  Body body = body_with(s, Combine::Union);
+  const auto report = body.step(inputs_of({press(-4, -4, 3e4, 5), press(3, 4, 5e4, 6)})).value();
+  REQUIRE(report.patches.size() == 1);
+  REQUIRE(report.patches[0].size() == 1);
+  const Patch& patch = report.patches[0][0];
+  CHECK_FALSE(patch.is_rectangle());
+  for (int j = 0; j < 31; ++j) {
+    for (int i = 0; i < 31; ++i) {
+      const int node = s.grid.node(i, j);
+      CHECK((body.state().positions.row(node) != s.rest.row(node)) == patch.holds(i, j));
+      CHECK((!body.state().velocities.row(node).isZero(0)) == patch.holds(i, j));
+    }
+  }
+}
+
+TEST_CASE("parts of a union that do not touch are solved as boxes, with tangents at the ends only",
+          "[body][union]") {
+  const NodeSheet s = flat_sheet(41, 21);
+  const SampledForce left = press(-10, 0, 3e4), right = press(10, 3, -5e4);
+  BodyInputs in = inputs_of({left, right});
+  in.tangents.su0 = {0, 30, 0};
+  Body both = body_with(s, Combine::Union), first = body_with(s, Combine::Box),
+       second = body_with(s, Combine::Box);
+  REQUIRE(both.step(in));
+  in.forces = {left};
+  REQUIRE(first.step(in));
+  in.tangents = {};
+  in.forces = {right};
+  REQUIRE(second.step(in));
+  for (int node = 0; node < s.grid.node_count(); ++node) {
+    const Body& alone = s.rest(node, 0) < 0 ? first : second;
+    REQUIRE(both.state().positions.row(node) == alone.state().positions.row(node));
+  }
+}
+
+TEST_CASE("the order of forces changes nothing but last bits", "[body]") {
+  const NodeSheet s = hilly_sheet(31, 31);
+  const Combine how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
+  std::vector<SampledForce> forces{press(-4, -4, 3e4, 5), press(3, 4, 5e4, 6), press(11, -9, 2e4),
+                                   press(-3, -5, -2e4, 2)};
+  Body body = body_with(s, how), other = body_with(s, how);
+  for (int frame = 0; frame < 6; ++frame) {
+    REQUIRE(body.step(inputs_of(forces)));
+    auto turned = forces;
+    std::rotate(turned.begin(), turned.begin() + 1 + frame % 3, turned.end());
+    REQUIRE(other.step(inputs_of(turned)));
+  }
+  CHECK((body.state().positions - other.state().positions).cwiseAbs().maxCoeff() <
+        1e-12 * peak_of(body));
+}
+
+TEST_CASE("a node beyond double in world space is an error, not a force that selects nothing",
+          "[body]") {
+  const NodeSheet s = flat_sheet(9, 9);
+  Body body = body_with(s, Combine::Box);
+  BodyInputs in = inputs_of({press(0, 0, 1)});
+  in.transform.linear(0, 0) = 1e308;
+  const auto report = body.step(in);
+  REQUIRE_FALSE(report);
+  CHECK(report.error().code == ErrorCode::NotFinite);
+  CHECK(body.look(in).error().message == report.error().message);
+}
