@@ -14,6 +14,7 @@
 #include "pliant/core/number.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
+#include "regions_file.hpp"
 #include "report.hpp"
 
 namespace pliant::cli {
@@ -108,8 +109,15 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options,
   return {};
 }
 
+Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
+  const auto report = simulation.report(frame);
+  if (!report) return fail(report.error());
+  return regions.write(*report, simulation.scene());
+}
+
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
-                             const FrameRange& frames, std::vector<Output>& outputs) {
+                             const FrameRange& frames, std::vector<Output>& outputs,
+                             std::optional<RegionsFile>& regions) {
   Summary summary;
   for (const Output& output : outputs) {
     summary.vertex_count += simulation.rest_shapes()[output.surface].mesh.vertex_count();
@@ -124,11 +132,21 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
       if (auto written = write_frame(*frame, options, outputs, summary); !written) {
         return fail(written.error());
       }
+      if (regions) {
+        if (auto told = write_regions(simulation, number, *regions); !told) {
+          return fail(told.error());
+        }
+      }
     }
     progress.advance();
   }
   for (const Output& output : outputs) {
     if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
+  }
+  if (regions) {
+    if (auto finished = regions->finish(simulation.solver_counts()); !finished) {
+      return fail(finished.error());
+    }
   }
   return summary;
 }
@@ -174,6 +192,8 @@ void add_bake(CLI::App& app, BakeOptions& options) {
       ->capture_default_str();
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
+  bake->add_option("--regions", options.regions,
+                   "JSON file that tells what is solved in each frame, and under which forces");
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
 }
 
@@ -193,7 +213,14 @@ int run_bake(const BakeOptions& options) {
   auto outputs = open_outputs(*simulation, options, *frames);
   if (!outputs) return report(outputs.error());
 
-  const auto summary = write_frames(*simulation, options, *frames, *outputs);
+  std::optional<RegionsFile> regions;
+  if (options.regions) {
+    auto created = RegionsFile::create(*options.regions, simulation->scene());
+    if (!created) return report(created.error());
+    regions.emplace(*std::move(created));
+  }
+
+  const auto summary = write_frames(*simulation, options, *frames, *outputs, regions);
   print_warnings(*simulation);
   if (!summary) return report(summary.error());
 

@@ -16,6 +16,7 @@ struct BakeOptions {
   std::optional<std::string> frames = {};   ///< A:B; none: all
   std::optional<std::string> surface = {};  ///< none: all
   std::string space = "world";
+  std::optional<std::string> regions = {};  ///< JSON file; none: not written
   bool is_quiet = false;
   ResourceOptions resources;
 };

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "pliant/io/atomic_file.hpp"
+#include "pliant/pliant.hpp"
+
+namespace pliant::cli {
+
+/// What is solved in each frame, and under which forces, as JSON; docs/regions.md. Written frame by
+/// frame, and there under its name once finished.
+class RegionsFile {
+ public:
+  /// Errors: Unwritable.
+  static Result<RegionsFile> create(const std::filesystem::path& file, const Scene& scene);
+
+  /// Appends a frame. Errors: Unwritable.
+  Result<void> write(const FrameReport& report, const Scene& scene);
+
+  /// Ends the file with what the solvers had to do. Errors: Unwritable.
+  Result<void> finish(const SolverCounts& counts);
+
+ private:
+  explicit RegionsFile(AtomicFile file) : file_(std::move(file)) {}
+
+  AtomicFile file_;
+  bool is_first_ = true;
+};
+
+}  // namespace pliant::cli
