@@ -67,6 +67,90 @@ def assemble(m, n, hu, hv, b, c, d):
     return scipy.sparse.csc_matrix(triplets, shape=(size, size))
 
 
+# Regions (SPEC 5, "combine")
+
+
+def do_meet(a, b):
+    """Whether two boxes share a node."""
+    return max(a[0], b[0]) <= min(a[1], b[1]) and max(a[2], b[2]) <= min(a[3], b[3])
+
+
+def common_box(boxes):
+    i0, i1, j0, j1 = zip(*boxes)
+    return min(i0), max(i1), min(j0), max(j1)
+
+
+def islands_of(boxes):
+    """Boxes that meet become their common box, until none do."""
+    boxes = sorted(set(boxes))
+    for box in boxes:
+        meeting = [other for other in boxes if do_meet(box, other)]
+        if len(meeting) > 1:
+            return islands_of([b for b in boxes if b not in meeting] + [common_box(meeting)])
+    return boxes
+
+
+def combined(boxes, how):
+    """The regions: each a list of the boxes whose cells it is made of."""
+    if not boxes:
+        return []
+    if how == "box":
+        return [[common_box(boxes)]]
+    if how == "islands":
+        return [[box] for box in islands_of(boxes)]
+    with_cells = [box for box in boxes if box[1] > box[0] and box[3] > box[2]]
+    return [with_cells] if with_cells else []
+
+
+def interior_of(region, shape):
+    """Nodes all of whose four cells are inside, on the whole grid."""
+    cells = np.zeros((shape[0] + 1, shape[1] + 1), dtype=bool)  # cell k ends at node k
+    for i0, i1, j0, j1 in region:
+        cells[i0 + 1:i1 + 1, j0 + 1:j1 + 1] = True
+    return cells[:-1, :-1] & cells[1:, :-1] & cells[:-1, 1:] & cells[1:, 1:]
+
+
+def advance_union(w, velocity, load, interior, ends, hu, hv, material, tangents, count, dt):
+    """`advance` for a region of any outline, node by node; the arrays are those of the whole grid.
+
+    A neighbour two away across a rim node is the node itself, plus a tangent where that rim node
+    is at one of the ends (i0, i1, j0, j1) of the whole region.
+    """
+    density, damping = material["density"], material["damping"]
+    number = {tuple(node): k for k, node in enumerate(np.argwhere(interior))}
+    mass = density / dt**2 + damping / dt
+    matrix = scipy.sparse.lil_matrix((len(number), len(number)))
+    known = np.zeros((len(number), 3))
+    edges = {(-1, 0): ("su0", ends[0], -2 * hu), (1, 0): ("su1", ends[1], 2 * hu),
+             (0, -1): ("sv0", ends[2], -2 * hv), (0, 1): ("sv1", ends[3], 2 * hv)}
+    weights = stencil(hu, hv, material["b"], material["c"], material["d"])
+    for (i, j), row in number.items():
+        for (di, dj), weight in weights.items():
+            node = i + di, j + dj
+            step = di // 2, dj // 2
+            if max(abs(di), abs(dj)) == 2 and (i + step[0], j + step[1]) not in number:
+                node = i, j
+                name, end, length = edges[step]
+                if (i + di // 2 if di else j + dj // 2) == end:
+                    known[row] += weight * length * tangents[name]
+            if node in number:
+                matrix[row, number[node]] += weight
+            else:
+                known[row] += weight * w[node]
+    matrix = (matrix + mass * scipy.sparse.identity(len(number))).tocsc()
+    factor = scipy.sparse.linalg.splu(matrix)
+    unknown, speed, force = w[interior], velocity[interior], load[interior]
+    for _ in range(count):
+        right = force - known + mass * unknown + density / dt * speed
+        solution = factor.solve(right)
+        solution += factor.solve(right - matrix @ solution)
+        speed = (solution - unknown) / dt
+        unknown = solution
+    w, velocity = w.copy(), np.zeros_like(w)
+    w[interior], velocity[interior] = unknown, speed
+    return w, velocity
+
+
 def check_coefficients(density, damping, b, c, d, dt):
     """Well-posedness (SPEC 2)."""
     assert b > 0 and d > 0 and c > -2 * math.sqrt(b * d), f"b={b} c={c} d={d}"
@@ -260,6 +344,9 @@ class Diagnostics:
         self.tie_margin = math.inf  # smallest |delta - radius| / radius that is not an exact tie
         self.direction_margin = math.inf  # smallest non-exact delta where delta gives a direction
         self.time_margin = math.inf  # smallest |t - T| / T of an overshoot step
+        self.settle_margin = math.inf  # smallest |motion - 1e-6 D| / (1e-6 D) of `recover`
+        self.recovering = 0  # nodes that counted as selected, over all frames
+        self.unions = 0  # solves of regions that are no box
 
     def note_distances(self, force, frame, points, is_untouched, radii):
         """`is_untouched`: nodes at their rest position under an identity transform."""
@@ -303,6 +390,7 @@ class SurfaceRun:
         self.position = self.rest.copy()
         # Zero where the last solve did not reach: such nodes start from velocity 0 (SPEC 6).
         self.velocity = np.zeros_like(self.rest)
+        self.unsettled = np.zeros(self.rest.shape[:2], dtype=bool)
 
     def enabled_forces(self, frame):
         """(force, selects a region) and (group) lists of what acts on this surface."""
@@ -321,17 +409,56 @@ class SurfaceRun:
         return transform.to_world(self.rest if is_rest else self.position)
 
     def select(self, frame, points, forces, groups):
-        """The box of the solved region, or None (SPEC 5, steps 1 and 2)."""
-        selected = np.zeros(points.shape[:2], dtype=bool)
+        """The deformation box of each force, None for none; of a group's forces, the group's."""
+        own = {}
         for force in forces:
             if not force.is_in_group:
                 delta = distances(force, frame, points)
-                selected |= delta < force.sample("deformationRadius", frame)
+                own[force] = bounding_box(delta < force.sample("deformationRadius", frame))
         for group in groups:
             offset = points - group.center(frame)
             delta = np.sqrt((offset**2).sum(axis=-1))
-            selected |= delta < float(group.deformation_radius(frame)[0])
-        return bounding_box(selected)
+            box = bounding_box(delta < float(group.deformation_radius(frame)[0]))
+            own[group] = box
+            own.update((force, box) for force in group.forces)
+        return own
+
+    def regions(self, own):
+        """What is solved, nodes that have not come back to rest included (SPEC 5, 6)."""
+        how = self.surface.choices["combine"]
+        boxes = [box for box in own.values() if box is not None]
+        regions = combined(boxes, how)
+        if self.surface.choices["release"] == "recover":
+            held = np.zeros(self.rest.shape[:2], dtype=bool)
+            for region in regions:
+                held |= interior_of(region, held.shape)
+            columns, rows = held.shape
+            around = [(max(i - 1, 0), min(i + 1, columns - 1), max(j - 1, 0), min(j + 1, rows - 1))
+                      for i, j in np.argwhere(self.unsettled & ~held)]
+            self.diagnostics.recovering += len(around)
+            if around:
+                regions = combined(boxes + islands_of(around), how)
+        return regions
+
+    def settle(self, regions):
+        """Puts what is not interior to a region at rest."""
+        moving = np.zeros(self.rest.shape[:2], dtype=bool)
+        for region in regions:
+            moving |= interior_of(region, moving.shape)
+        self.position[~moving] = self.rest[~moving]
+        self.velocity[~moving] = 0
+
+    def note_settling(self, before, interior, region):
+        """Which of the nodes that were solved are not at rest yet."""
+        rest = np.concatenate([self.rest[i0:i1 + 1, j0:j1 + 1].reshape(-1, 3)
+                               for i0, i1, j0, j1 in region])
+        length = 1e-6 * float(np.linalg.norm(rest.ptp(axis=0)))
+        moved = np.maximum(np.linalg.norm(self.position - self.rest, axis=-1),
+                           np.linalg.norm(self.position - before, axis=-1))[interior]
+        self.unsettled[interior] = moved >= length
+        if moved.size:
+            margin = float(np.abs(moved / length - 1).min())
+            self.diagnostics.settle_margin = min(self.diagnostics.settle_margin, margin)
 
     def load(self, frame, points, forces, transform):
         """The load at every node of the surface, in object space (SPEC 5, step 3; SPEC 7)."""
@@ -356,13 +483,16 @@ class SurfaceRun:
         transform = Transform(surface, frame)
         points = self.measured_points(transform)
         self.diagnose(frame, points, forces, groups, transform)
-        box = self.select(frame, points, forces, groups)
-        if box is None or min(box[1] - box[0], box[3] - box[2]) < 2:
-            self.diagnostics.skips.append((frame, surface.name, "no node" if box is None else
-                                           "below 3x3"))
+        own = self.select(frame, points, forces, groups)
+        regions = self.regions(own)
+        recovers = surface.choices["release"] == "recover"
+        if recovers:
+            self.settle(regions)
+        interiors = [interior_of(region, points.shape[:2]) for region in regions]
+        if not any(interior.any() for interior in interiors):
+            self.diagnostics.skips.append((frame, surface.name, "below 3x3" if regions or any(
+                own.values()) else "no node"))
             return
-        self.diagnostics.solves.append((frame, surface.name, box))
-        region = np.s_[box[0]:box[1] + 1, box[2]:box[3] + 1]
         is_displacement = surface.choices["reference"] == "rest"
         origin = self.rest if is_displacement else np.zeros_like(self.rest)
         material = {name: surface.sample(name, frame)
@@ -370,18 +500,38 @@ class SurfaceRun:
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
         count, dt = steps_of_frame(self.scene.frame_length, surface.sample("dt", frame),
                                    surface.choices["stepping"])
-        w, velocity = advance(
-            (self.position - origin)[region], self.velocity[region],
-            self.load(frame, points, forces, transform)[region],
-            surface.grid.hu, surface.grid.hv, material, tangents, count, dt)
-        interior = np.s_[box[0] + 1:box[1], box[2] + 1:box[3]]
-        self.position[interior] = (origin[region] + w)[1:-1, 1:-1]
-        if self.noise is not None:  # a stand-in for another implementation's rounding
-            shift = (self.position - self.rest)[interior]
-            shift *= 1 + 1e-12 * self.noise.standard_normal(shift.shape)
-            self.position[interior] = self.rest[interior] + shift
-        self.velocity = np.zeros_like(self.rest)
-        self.velocity[region] = velocity
+        before, velocities = self.position.copy(), np.zeros_like(self.rest)
+        self.unsettled[:] = False
+        for region, interior in zip(regions, interiors):
+            if not interior.any():
+                self.diagnostics.skips.append((frame, surface.name, "below 3x3"))
+                continue
+            ends = common_box(region)
+            self.diagnostics.solves.append((frame, surface.name, ends))
+            acting = forces if surface.choices["combine"] != "islands" else [
+                force for force in forces if own[force] is not None and do_meet(own[force], ends)]
+            load = self.load(frame, points, acting, transform)
+            start, speed = before - origin, self.velocity
+            if len(region) == 1:
+                box = np.s_[ends[0]:ends[1] + 1, ends[2]:ends[3] + 1]
+                w, velocity = np.zeros_like(start), np.zeros_like(start)
+                w[box], velocity[box] = advance(
+                    start[box], speed[box], load[box], surface.grid.hu, surface.grid.hv, material,
+                    tangents, count, dt)
+            else:
+                self.diagnostics.unions += 1
+                w, velocity = advance_union(
+                    start, speed, load, interior, ends, surface.grid.hu, surface.grid.hv, material,
+                    tangents, count, dt)
+            self.position[interior] = (origin + w)[interior]
+            velocities[interior] = velocity[interior]
+            if self.noise is not None:  # a stand-in for another implementation's rounding
+                shift = (self.position - self.rest)[interior]
+                shift *= 1 + 1e-12 * self.noise.standard_normal(shift.shape)
+                self.position[interior] = self.rest[interior] + shift
+            if recovers:
+                self.note_settling(before, interior, region)
+        self.velocity = velocities
         assert np.isfinite(self.position).all(), f"not finite after frame {frame}"
 
     def diagnose(self, frame, points, forces, groups, transform):

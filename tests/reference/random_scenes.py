@@ -240,7 +240,8 @@ class SceneMaker:
         for choice, values, probability in (
                 ("stepping", ("overshoot", "overshoot", "exact"), 0.4),
                 ("reference", ("none", "none", "rest"), 0.3),
-                ("measure", ("rest", "rest", "current"), 0.4), ("combine", ("box",), 0.2)):
+                ("measure", ("rest", "rest", "current"), 0.4), ("combine", ("box", "islands", "union"), 0.4),
+                ("release", ("freeze", "recover", "recover"), 0.2)):
             if self.chance(probability):
                 value = self.pick(*values)
                 solver.append((choice, value))
@@ -462,7 +463,7 @@ class SceneMaker:
                                   0.15 if damping else 0)]
         write_element(out, 2, "material", [], channels)
         size = float(grid.rest.reshape(-1, 3).ptp(axis=0).max())
-        if self.chance(0.3):
+        if self.chance(0.3) and ("release", "recover") not in solver:
             self.tags.add("tangents")
             channels = []
             for edge, length in (("su0", length_u), ("su1", length_u), ("sv0", length_v),
@@ -531,6 +532,10 @@ def make_scene(seed, index, folder, is_plain, rejections):
 
 def note_run(tags, diagnostics):
     """Tags that only a run can tell."""
+    if diagnostics.recovering:
+        tags.add("ran: recovering nodes")
+    if diagnostics.unions:
+        tags.add("ran: a union that is no box")
     if diagnostics.exact_ties:
         tags.add("ran: exact ties")
     for _, _, reason in diagnostics.skips:

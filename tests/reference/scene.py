@@ -16,8 +16,8 @@ MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1}
 TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
 SOLVER_CHANNELS = {"dt": 0.01}
 SOLVER_CHOICES = {
-    "stepping": ("exact", "overshoot"), "reference": ("rest", "none"), "combine": ("box",),
-    "release": ("freeze",), "measure": ("current", "rest"), "integrator": ("backwardEuler",),
+    "stepping": ("exact", "overshoot"), "reference": ("rest", "none"),
+    "combine": ("box", "islands", "union"), "release": ("freeze", "recover"), "measure": ("current", "rest"), "integrator": ("backwardEuler",),
     "region": ("forces",)}
 FORCE_CHANNELS = {"magnitude": 0, "deformationRadius": 1, "forceRadius": 1}
 KIND_CHANNELS = {

@@ -35,6 +35,8 @@ def trouble_of(path):
         return "a radius within rounding of a distance", relative, diagnostics
     if diagnostics.direction_margin < 1e-6:
         return "a direction from a point at the node itself", relative, diagnostics
+    if diagnostics.settle_margin < 1e-5:
+        return "a node that settles within rounding", relative, diagnostics
     if diagnostics.time_margin < 1e-9:
         return "a step that ends with the frame", relative, diagnostics
     for curve in curves_of(scene):
