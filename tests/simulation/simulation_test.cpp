@@ -128,6 +128,9 @@ TEST_CASE("a rigid motion of surface and forces together moves the result", "[si
   Force line = poke("line", {}, -3000);
   line.shape = LineChannels{.from = Value<3>{-4.1, 0.3, -3}, .to = Value<3>{3.3, 0.2, -2.1}};
   Scene original = scene({sheet("s")}, {point, radial, line});
+  original.surfaces[0].solver.combine = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
+  original.surfaces[0].solver.release = GENERATE(Release::Freeze, Release::Recover);
+  original.forces[0].enabled = switch_at({{1, true}, {7, false}});
 
   Scene image = original;
   image.surfaces[0].transform.translate = translate;
@@ -142,6 +145,41 @@ TEST_CASE("a rigid motion of surface and forces together moves the result", "[si
   for (std::size_t k = 0; k < frames.size(); ++k) {
     CHECK(largest_difference(to_world(move, frames[k]), image_frames[k]) < 1e-11 * peak(frames));
   }
+}
+
+TEST_CASE("forces that ride on a moving surface act as if nothing moved", "[simulation]") {
+  // A key at every frame takes the force along with the surface's transform.
+  Scene original = scene({sheet("s", 21)}, {poke("f", {-2.3, 0, 1.2}), poke("g", {4, 0, -3})});
+  original.surfaces[0].solver.combine = Combine::Islands;
+  original.surfaces[0].solver.release = Release::Recover;
+  original.forces[1].enabled = switch_at({{1, true}, {5, false}});
+  Scene moving = original;
+  std::vector<std::pair<double, Value<3>>> translate, rotate, center[2], direction;
+  for (int frame = 1; frame <= 12; ++frame) {
+    const Vector3d degrees(3.0 * frame, -11.0 * frame, 40), place(0.7 * frame, 5, -0.2 * frame);
+    const Transform move = make_transform(place, degrees, {1, 1, 1}, RotateOrder::Xyz);
+    const auto key = [&](const Vector3d& p) {
+      return std::pair{double(frame), Value<3>{p[0], p[1], p[2]}};
+    };
+    translate.push_back(key(place));
+    rotate.push_back(key(degrees));
+    direction.push_back(key(move.linear * Vector3d(0, 1, 0)));
+    center[0].push_back(key(move.linear * Vector3d(-2.3, 0, 1.2) + move.translation));
+    center[1].push_back(key(move.linear * Vector3d(4, 0, -3) + move.translation));
+  }
+  moving.surfaces[0].transform.translate = vector_curve(translate);
+  moving.surfaces[0].transform.rotate = vector_curve(rotate);
+  for (int k = 0; k < 2; ++k) {
+    moving.forces[k].shape =
+        PointChannels{.center = vector_curve(center[k]), .direction = vector_curve(direction)};
+  }
+  auto still = Simulation::make(original).value(), carried = Simulation::make(moving).value();
+  for (int frame = 1; frame <= 12; ++frame) {
+    const Frame a = still.at(frame).value(), b = carried.at(frame).value();
+    CHECK(largest_difference(a.surface("s").object_positions(), b.surface("s").object_positions()) <
+          1e-11);
+  }
+  CHECK(still.at(12)->surface("s").peak_displacement() > 0.1);
 }
 
 TEST_CASE("a scaled surface feels world-space radii and forces", "[simulation]") {

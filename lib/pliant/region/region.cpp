@@ -108,6 +108,7 @@ Push push_of(const Grid& grid, const Field& nodes, const SampledForce& force, co
 
 bool pushes(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
             std::span<const Patch> patches) {
+  if (force.magnitude == 0) return false;
   bool is_felt = false;
   visit_loads(grid, nodes, force, box, patches, [&](const Vector3d& load) {
     is_felt = !load.isZero(0);
