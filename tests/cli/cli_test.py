@@ -277,6 +277,22 @@ class Regions(Command):
             self.assertEqual(bool(late["forces"]), frame["frame"] >= 6)
         self.assertGreater(told["solver"]["factorizations"], 0)
 
+    def test_the_page_shows_what_is_written(self):
+        def keys(value):
+            """Keys in their order, of all that is inside; of a list, those of its first element."""
+            if isinstance(value, list):
+                return [keys(value[0])] if value and isinstance(value[0], dict) else []
+            return {key: keys(inner) for key, inner in value.items()} if isinstance(value, dict) else None
+        with open(os.path.join(SOURCE, "docs", "regions.md"), encoding="utf-8") as file:
+            page = file.read()
+        shown = json.loads(re.search(r"```json\n(.*?)```", page, re.DOTALL).group(1))
+        told = self.told()
+        self.assertEqual(json.dumps(keys(shown)), json.dumps(keys(told)))
+        described = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", page, re.MULTILINE))))
+        surface = told["frames"][0]["surfaces"][0]
+        force_keys = set().union(*(force.keys() for force in surface["forces"]))
+        self.assertEqual(described, surface.keys() | force_keys | surface["regions"][0].keys())
+
     def test_it_tells_of_the_frames_that_are_written(self):
         whole, part = self.told(), self.told("--frames", "5:7")
         self.assertEqual(part["frames"], whole["frames"][2:5])
