@@ -1,6 +1,8 @@
 #include "pliant/plate/domain.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/stencil.hpp"
@@ -46,6 +48,7 @@ Field apply_stencil(const Grid& grid, const InteriorMask& interior, const Stiffn
   if (interior.empty()) return apply_stencil(grid, stiffness, tangents, w);
   PLIANT_EXPECTS(w.rows() == grid.node_count());
   const int M = grid.columns;
+  const std::ptrdiff_t two_rows = std::ptrdiff_t{2} * M;
   const double hu = grid.hu;
   const double hv = grid.hv;
   const double b = stiffness.b / (hu * hu * hu * hu);
@@ -66,8 +69,8 @@ Field apply_stencil(const Grid& grid, const InteriorMask& interior, const Stiffn
       const double ghost_v1 = j == grid.rows - 2 ? 2 * hv * tangents.sv1[component] : 0;
       const double left = is_rim(node - 1) ? p[0] + ghost_u0 : p[-2];
       const double right = is_rim(node + 1) ? p[0] + ghost_u1 : p[2];
-      const double below = is_rim(node - M) ? p[0] + ghost_v0 : p[-2 * M];
-      const double above = is_rim(node + M) ? p[0] + ghost_v1 : p[2 * M];
+      const double below = is_rim(node - M) ? p[0] + ghost_v0 : p[-two_rows];
+      const double above = is_rim(node + M) ? p[0] + ghost_v1 : p[two_rows];
       const double uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
       const double vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
       const double uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -

@@ -1,5 +1,6 @@
 #include "pliant/plate/domain_operator.hpp"
 
+#include <cstddef>
 #include <vector>
 
 #include "pliant/core/expects.hpp"
@@ -63,6 +64,7 @@ Field residual_of_domain(const PlateSystem& system, const Field& w, const Field&
   using Real = long double;
   const Grid& grid = system.grid;
   const int M = grid.columns;
+  const std::ptrdiff_t two_rows = std::ptrdiff_t{2} * M;
   const Real hu = grid.hu;
   const Real hv = grid.hv;
   const Real b = system.stiffness.b / (hu * hu * hu * hu);
@@ -83,8 +85,8 @@ Field residual_of_domain(const PlateSystem& system, const Field& w, const Field&
       const Real* const p = &nodes[node];
       const Real left = numbers[node - 1] < 0 ? p[0] : p[-2];
       const Real right = numbers[node + 1] < 0 ? p[0] : p[2];
-      const Real below = numbers[node - M] < 0 ? p[0] : p[-2 * M];
-      const Real above = numbers[node + M] < 0 ? p[0] : p[2 * M];
+      const Real below = numbers[node - M] < 0 ? p[0] : p[-two_rows];
+      const Real above = numbers[node + M] < 0 ? p[0] : p[two_rows];
       const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
       const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
       const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
