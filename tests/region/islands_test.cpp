@@ -57,9 +57,11 @@ TEST_CASE("in a box and a union a force acts wherever its box reaches", "[region
 
 TEST_CASE("a force without a box of its own acts in the island of its selector",
           "[region][islands]") {
-  Selection selection;
-  selection.forces = {{{2, 6, 2, 6}, {}, 0}, {{12, 16, 2, 6}, {}, 1}, {{}, {1, 3, 1, 3}, 1}};
-  selection = recombined(std::move(selection), Combine::Islands);
+  const std::vector<SampledForce> forces{at(5, 5, 3, 0), at(22, 12, 3, 0), at(20, 11, 0, 2)};
+  const std::vector<int> selectors{0, 1, 1};
+  const Selection selection =
+      select_region(grid, lattice(grid), forces, Combine::Islands, selectors);
+  CHECK(select_region(grid, lattice(grid), forces, Combine::Islands).forces[2].region == -1);
   CHECK(selection.forces[2].region == selection.forces[1].region);
   CHECK(selection.forces[2].region != selection.forces[0].region);
 }

@@ -138,7 +138,8 @@ Result<StepReport> Body::plan(const BodyInputs& inputs, const Field& nodes) cons
   }
   StepReport report;
   report.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
-  report.selection = select_region(grid_, nodes, inputs.forces, settings_.combine);
+  report.selection =
+      select_region(grid_, nodes, inputs.forces, settings_.combine, inputs.selectors);
   if (settings_.measure == Measure::Current) {
     report.lost = lost_forces(grid_, inputs.transform, rest_, inputs.forces, report.selection);
   }

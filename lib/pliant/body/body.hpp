@@ -24,6 +24,10 @@ struct BodyInputs {
   double frame_length = 0;           ///< [s], > 0
   double dt = 0;                     ///< [s], as `check_time_step` allows
   std::vector<SampledForce> forces;  ///< the enabled ones that target the body, world space
+
+  /// For each force the one whose deformation box is its own, which says in which island it acts;
+  /// empty: each has its own.
+  std::vector<int> selectors = {};
 };
 
 /// The state that one frame hands to the next.

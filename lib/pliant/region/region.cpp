@@ -52,13 +52,15 @@ Selection recombined(Selection selection, Combine how, std::span<const Box> othe
 }
 
 Selection select_region(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
-                        Combine how) {
+                        Combine how, std::span<const int> selectors) {
   PLIANT_EXPECTS(nodes.rows() == grid.node_count());
+  PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
   Selection selection;
   selection.forces.reserve(forces.size());
   for (const SampledForce& force : forces) {
     ForceSelection selected;
-    selected.selector = static_cast<int>(selection.forces.size());
+    const std::size_t k = selection.forces.size();
+    selected.selector = selectors.empty() ? static_cast<int>(k) : selectors[k];
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
         const double delta = distance(force.shape, nodes.row(grid.node(i, j)).transpose());

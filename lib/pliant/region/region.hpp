@@ -14,7 +14,7 @@ namespace pliant {
 struct ForceSelection {
   Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: none are
   Box force;         ///< box of the nodes nearer than the force radius; may reach past the region
-  int selector = 0;  ///< which force's deformation box is this one's: its own
+  int selector = 0;  ///< the force whose deformation box is this one's, for most the force itself
   int region = -1;   ///< which of the regions it acts in; -1: in none
 
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
@@ -31,10 +31,11 @@ struct Selection {
 
 /// Selects by distance, strictly less than each radius, on nodes (#nodes x 3, world space). A box
 /// over (u,v) is a box of nodes, and it holds also the nodes that lie outside every sphere: that is
-/// what makes the region an M x N grid. `how` makes regions of the boxes.
-/// Requires: #nodes = grid.node_count().
+/// what makes the region an M x N grid. `how` makes regions of the boxes. `selectors` names for
+/// each force the one whose deformation box is its own; empty: each has its own. Requires: #nodes =
+/// grid.node_count().
 Selection select_region(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
-                        Combine how = Combine::Box);
+                        Combine how = Combine::Box, std::span<const int> selectors = {});
 
 /// The same selection with `others`, boxes that no force selects, taking part in its regions.
 /// In a box or union every force acts in the one region; of islands in the one that holds the
