@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "pliant/timeline/cubic.hpp"
+#include "pliant/timeline/key.hpp"
+
+namespace pliant {
+
+/// Why waypoints make no path.
+struct PathError {
+  std::size_t waypoint = 0;  ///< index of the one at fault; their number: too few or too many
+  std::string message;       ///< one line: the value, the rule
+};
+
+/// A smooth way through points in space, walked by arc length: whatever the timing, what follows it
+/// stays on it. An immutable value, safe to share between threads.
+///
+/// Between two waypoints it is a piece of the centripetal Catmull-Rom spline (docs/timeline.md, eq.
+/// 24): through every waypoint, continuous in direction, never with a loop or cusp between two of
+/// them, and moving one waypoint leaves all but the four pieces around it alone. An open path
+/// starts and ends along its first and last chord.
+class Path {
+ public:
+  static constexpr std::size_t least_waypoints = 3;
+  static constexpr std::size_t most_waypoints = 100'000;
+
+  /// Errors, naming the waypoint: fewer than three or more than 10^5; a number that is not finite
+  /// or beyond 1e150; one in the same place as the one before, which for the first of a closed path
+  /// is the last.
+  static tl::expected<Path, PathError> make(std::vector<Value<3>> waypoints,
+                                            bool is_closed = false);
+
+  /// Where the share `progress` of the way has been walked: 0 is the first waypoint, 1 the last, or
+  /// the first again when closed; what lies outside counts as the nearer of the two. The share is
+  /// right to 1e-12 [length].
+  Value<3> at(double progress) const;
+
+  double length() const { return length_; }  ///< > 0 [length]
+  const std::vector<Value<3>>& waypoints() const { return waypoints_; }
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  /// Half of the way between two waypoints, counted from one of them: q in [0, 1/2].
+  using Half = std::array<timeline::Cubic, 3>;
+
+  /// A part of the way so short that one quadrature gives the length of any part of it.
+  struct Stretch {
+    std::size_t half = 0;
+    double from = 0;   ///< q where it is entered
+    double to = 0.5;   ///< q where it is left, which is less in the second half of a piece
+    double start = 0;  ///< of the way up to here [length]
+  };
+
+  Path() = default;
+  void add_piece(std::size_t from, std::size_t to, const Value<3>& rate_from,
+                 const Value<3>& rate_to);
+  void measure(std::size_t half, double from, double to, int depth);
+  double length_between(std::size_t half, double from, double to) const;
+  double q_at(const Stretch& stretch, double walked, double whole) const;
+
+  std::vector<Value<3>> waypoints_;
+  bool is_closed_ = false;
+  std::vector<Half> halves_;
+  std::vector<Stretch> stretches_;
+  double length_ = 0;
+};
+
+}  // namespace pliant
