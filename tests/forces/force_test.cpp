@@ -37,8 +37,12 @@ double searched_distance(const LineForce& line, const Vector3d& p) {
 }
 
 std::vector<ForceShape> shapes(RandomVectors& vector) {
-  return {PointForce{vector(), vector()}, RadialForce{vector()}, LineForce{vector(), vector(), {}},
-          LineForce{vector(), vector(), vector()}};
+  return {PointForce{vector(), vector()},
+          RadialForce{vector()},
+          LineForce{vector(), vector(), {}},
+          LineForce{vector(), vector(), vector()},
+          UniformForce{vector()},
+          VortexForce{vector(), vector(), 0}};
 }
 
 // The same shape moved by a rotation and a translation.
@@ -55,7 +59,32 @@ struct Move {
     if (f.direction) moved.direction = rotation * *f.direction;
     return moved;
   }
+  ForceShape operator()(const UniformForce& f) const {
+    return UniformForce{rotation * f.direction};
+  }
+  ForceShape operator()(const VortexForce& f) const {
+    return VortexForce{point(f.center), rotation * f.axis, f.pull};
+  }
+  ForceShape operator()(const NoiseForce& f) const {  // its lattice keeps the world's directions
+    return NoiseForce{point(f.center), f.frequency, f.time, f.seed};
+  }
+  ForceShape operator()(const InertiaForce& f) const {
+    return InertiaForce{rotation * f.linear * rotation.transpose(), point(f.origin),
+                        rotation * f.offset};
+  }
+  ForceShape operator()(const FunctionForce& f) const {
+    const auto back = [*this](const Vector3d& p) -> Vector3d {
+      return rotation.transpose() * (p - translation);
+    };
+    return FunctionForce{
+        [=](const Vector3d& p) { return f.distance(back(p)); },
+        [=, *this](const Vector3d& p) -> Vector3d { return rotation * f.unit_force(back(p)); }};
+  }
 };
+
+Eigen::Matrix3d random_rotation(RandomVectors& vector) {
+  return Eigen::AngleAxisd(vector().x(), vector().normalized()).toRotationMatrix();
+}
 
 }  // namespace
 
@@ -74,7 +103,7 @@ TEST_CASE("distances are those to the centre or to the segment", "[forces]") {
 TEST_CASE("a segment of no length is a point", "[forces]") {
   const Vector3d a(1, 2, 3), p(4, 6, 3);
   CHECK(distance(LineForce{a, a, {}}, p) == 5);
-  CHECK((direction(LineForce{a, a, {}}, p) - Vector3d(0.6, 0.8, 0)).norm() < 1e-15);
+  CHECK((unit_force(LineForce{a, a, {}}, p) - Vector3d(0.6, 0.8, 0)).norm() < 1e-15);
 }
 
 TEST_CASE("directions are unit vectors or zero", "[forces]") {
@@ -82,18 +111,18 @@ TEST_CASE("directions are unit vectors or zero", "[forces]") {
   for (int trial = 0; trial < 100; ++trial) {
     const Vector3d p = vector();
     for (const ForceShape& shape : shapes(vector)) {
-      CHECK_THAT(direction(shape, p).norm(), WithinAbs(1, 1e-15));
+      CHECK_THAT(unit_force(shape, p).norm(), WithinAbs(1, 1e-15));
     }
   }
-  CHECK(direction(PointForce{{0, 0, 0}, {0, 0, 0}}, {1, 0, 0}) == Vector3d::Zero());
-  CHECK(direction(RadialForce{{1, 2, 3}}, {1, 2, 3}) == Vector3d::Zero());
+  CHECK(unit_force(PointForce{{0, 0, 0}, {0, 0, 0}}, {1, 0, 0}) == Vector3d::Zero());
+  CHECK(unit_force(RadialForce{{1, 2, 3}}, {1, 2, 3}) == Vector3d::Zero());
 }
 
 TEST_CASE("a direction along one axis is an ordinary direction", "[forces]") {
   // The listing of thesis 5.3 zeroes the force when any component of the direction is 0.
-  CHECK(direction(PointForce{{0, 0, 0}, {0, 7, 0}}, {1, 1, 1}) == Vector3d(0, 1, 0));
-  CHECK(direction(PointForce{{0, 0, 0}, {0, 0, -1e-300}}, {1, 1, 1}) == Vector3d(0, 0, -1));
-  CHECK(direction(PointForce{{0, 0, 0}, {1e300, 0, 0}}, {1, 1, 1}) == Vector3d(1, 0, 0));
+  CHECK(unit_force(PointForce{{0, 0, 0}, {0, 7, 0}}, {1, 1, 1}) == Vector3d(0, 1, 0));
+  CHECK(unit_force(PointForce{{0, 0, 0}, {0, 0, -1e-300}}, {1, 1, 1}) == Vector3d(0, 0, -1));
+  CHECK(unit_force(PointForce{{0, 0, 0}, {1e300, 0, 0}}, {1, 1, 1}) == Vector3d(1, 0, 0));
 }
 
 TEST_CASE("a radial force is odd about its centre", "[forces]") {
@@ -101,8 +130,8 @@ TEST_CASE("a radial force is odd about its centre", "[forces]") {
   for (int trial = 0; trial < 50; ++trial) {
     const RadialForce radial{Vector3d::Zero()};
     const Vector3d p = vector();
-    CHECK(direction(radial, p) == -direction(radial, -p));
-    CHECK(p.dot(direction(radial, p)) > 0);
+    CHECK(unit_force(radial, p) == -unit_force(radial, -p));
+    CHECK(p.dot(unit_force(radial, p)) > 0);
   }
 }
 
@@ -112,7 +141,7 @@ TEST_CASE("a line force without direction pushes away from the segment", "[force
     const LineForce line{vector(), vector(), {}};
     const Vector3d p = vector();
     // Its direction is the gradient of the distance.
-    const Vector3d n = direction(line, p);
+    const Vector3d n = unit_force(line, p);
     const double h = 1e-6;
     for (int k = 0; k < 3; ++k) {
       const Vector3d e = h * Vector3d::Unit(k);
@@ -128,21 +157,26 @@ TEST_CASE("a line force without direction is 0 on the segment itself", "[forces]
     const LineForce line{vector(), vector(), {}};
     const double t = trial / 199.0;
     // t from + ... is rounded, so the point lies beside the segment by some ulps.
-    CHECK(direction(line, line.from + t * (line.to - line.from)) == Vector3d::Zero());
+    CHECK(unit_force(line, line.from + t * (line.to - line.from)) == Vector3d::Zero());
   }
 }
 
 TEST_CASE("forces move with everything else", "[forces]") {
   RandomVectors vector;
   for (int trial = 0; trial < 50; ++trial) {
-    const Eigen::Matrix3d rotation =
-        Eigen::AngleAxisd(vector().x(), vector().normalized()).toRotationMatrix();
+    const Eigen::Matrix3d rotation = random_rotation(vector);
     const Move move{rotation, vector()};
     const Vector3d p = vector();
-    for (const ForceShape& shape : shapes(vector)) {
+    std::vector<ForceShape> all = shapes(vector);
+    all.push_back(VortexForce{vector(), vector(), vector().x()});
+    all.push_back(InertiaForce{Matrix3d::Random(), vector(), vector()});
+    all.push_back(
+        FunctionForce{[](const Vector3d& q) { return std::abs(q.x()); },
+                      [](const Vector3d& q) { return Vector3d(q.y() * q.y(), 1, q.x() * q.z()); }});
+    for (const ForceShape& shape : all) {
       const ForceShape moved = std::visit(move, shape);
       CHECK_THAT(distance(moved, move.point(p)), WithinAbs(distance(shape, p), 1e-14));
-      CHECK((direction(moved, move.point(p)) - rotation * direction(shape, p)).norm() < 1e-13);
+      CHECK((unit_force(moved, move.point(p)) - rotation * unit_force(shape, p)).norm() < 1e-12);
     }
   }
 }
@@ -153,7 +187,117 @@ TEST_CASE("a force is magnitude times falloff times direction", "[forces]") {
     const SampledForce force{shape, -3, 1, 2, Falloff::Gaussian};
     const Vector3d p = vector();
     const double s = distance(shape, p) / 2;
-    const Vector3d expected = -3 * std::exp(-4.5 * s * s) * direction(shape, p);
+    const Vector3d expected = -3 * std::exp(-4.5 * s * s) * unit_force(shape, p);
     CHECK((force_at(force, p) - expected).norm() < 1e-14);
   }
+}
+
+TEST_CASE("a uniform force is at distance 0 and the same everywhere", "[forces]") {
+  RandomVectors vector;
+  const UniformForce uniform{vector()};
+  for (int trial = 0; trial < 50; ++trial) {
+    const Vector3d p = vector(1e6);
+    CHECK(distance(uniform, p) == 0);
+    CHECK(unit_force(uniform, p) == unit_force(uniform, Vector3d::Zero()));
+  }
+  CHECK(unit_force(UniformForce{{0, -3, 0}}, {1, 2, 3}) == Vector3d(0, -1, 0));
+  CHECK(unit_force(UniformForce{Vector3d::Zero()}, {1, 2, 3}) == Vector3d::Zero());
+}
+
+TEST_CASE("a vortex turns about its axis by the right hand", "[forces][vortex]") {
+  // About +y through (2, 0, 0): from the far side of +x it pushes towards -z.
+  const VortexForce vortex{{2, 0, 0}, {0, 5, 0}, 0};
+  CHECK(distance(vortex, {5, 7, 4}) == 5);
+  CHECK(unit_force(vortex, {6, -1, 0}) == Vector3d(0, 0, -1));
+  CHECK(unit_force(vortex, {2, 3, 1}) == Vector3d(1, 0, 0));
+  const VortexForce sink{{2, 0, 0}, {0, 5, 0}, 0.5};
+  CHECK(unit_force(sink, {6, -1, 0}) == Vector3d(-0.5, 0, -1));
+}
+
+TEST_CASE("a vortex goes along circles, and pull goes straight in", "[forces][vortex]") {
+  RandomVectors vector;
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vector3d center = vector(), axis = vector(), p = vector();
+    const double pull = vector().x();
+    const VortexForce turning{center, axis, 0}, both{center, axis, pull};
+    const Vector3d along = axis.normalized();
+    const Vector3d outward = (p - center) - along.dot(p - center) * along;
+    const Vector3d circle = along.cross(outward).normalized();
+    CHECK_THAT(distance(both, p), WithinAbs(outward.norm(), 1e-14));
+    CHECK((unit_force(turning, p) - circle).norm() < 1e-14);
+    CHECK((unit_force(both, p) - (circle - pull * outward.normalized())).norm() < 1e-13);
+    // Odd about the axis: half a turn turns the force round.
+    const Vector3d opposite = p - 2 * outward;
+    CHECK((unit_force(both, p) + unit_force(both, opposite)).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("a vortex is 0 on its axis, and none without one", "[forces][vortex]") {
+  RandomVectors vector;
+  for (int trial = 0; trial < 100; ++trial) {
+    const VortexForce vortex{vector(), vector(), 0.7};
+    const Vector3d on_axis = vortex.center + vector().x() * vortex.axis;
+    CHECK(unit_force(vortex, on_axis) == Vector3d::Zero());
+  }
+  const VortexForce none{{1, 2, 3}, Vector3d::Zero(), 2};
+  CHECK(unit_force(none, {4, 6, 3}) == Vector3d::Zero());
+  CHECK(distance(none, {4, 6, 3}) == 5);  // as a segment of no length is a point
+}
+
+TEST_CASE("inertia is an affine load", "[forces][inertia]") {
+  RandomVectors vector;
+  const InertiaForce inertia{Matrix3d::Random(), vector(), vector()};
+  for (int trial = 0; trial < 20; ++trial) {
+    const Vector3d p = vector();
+    CHECK(distance(inertia, p) == 0);
+    CHECK(
+        (unit_force(inertia, p) - (inertia.offset + inertia.linear * (p - inertia.origin))).norm() <
+        1e-14);
+  }
+}
+
+TEST_CASE("a program's own force answers as the built-in ones do", "[forces]") {
+  RandomVectors vector;
+  const PointForce point{vector(), vector()};
+  const FunctionForce mine{[&](const Vector3d& p) { return point.distance(p); },
+                           [&](const Vector3d& p) { return point.unit_force(p); }};
+  for (const Falloff kind : {Falloff::Linear, Falloff::Gaussian}) {
+    const SampledForce built_in{point, 3, 1, 2, kind}, own{mine, 3, 1, 2, kind};
+    const Vector3d p = vector();
+    CHECK(distance(own.shape, p) == distance(built_in.shape, p));
+    CHECK(force_at(own, p) == force_at(built_in, p));
+  }
+}
+
+TEST_CASE("a falloff drawn as a line is the linear one", "[forces][falloff]") {
+  CurveKeys<1> keys;
+  keys.keys = {{.frame = 0, .value = {1}}, {.frame = 1, .value = {0}}};
+  keys.keys.front().next.kind = Interpolation::Kind::Linear;
+  const Curve<1> line = Curve<1>::make(keys).value();
+  RandomVectors vector;
+  for (int trial = 0; trial < 100; ++trial) {
+    const PointForce point{vector(), vector()};
+    const SampledForce drawn{point, 5, 1, 3, Falloff::Gaussian, &line};
+    const SampledForce linear{point, 5, 1, 3, Falloff::Linear};
+    const Vector3d p = vector();
+    CHECK((force_at(drawn, p) - force_at(linear, p)).norm() < 1e-14);
+  }
+}
+
+TEST_CASE("a drawn falloff is held beyond s = 1", "[forces][falloff]") {
+  CurveKeys<1> keys;
+  keys.keys = {{.frame = 0.2, .value = {3}}, {.frame = 0.9, .value = {-2}}};
+  keys.after.kind = Extrapolation<1>::Kind::Linear;
+  const Curve<1> curve = Curve<1>::make(keys).value();
+  const SampledForce force{RadialForce{}, 1, 1, 2, Falloff::Constant, &curve};
+  CHECK(force_at(force, {0.1, 0, 0}).x() == 3);
+  CHECK(force_at(force, {2, 0, 0}).x() == force_at(force, {200, 0, 0}).x());
+}
+
+TEST_CASE("the region of a group selects and pushes nothing", "[forces][group]") {
+  const SampledForce region = region_sphere({1, 2, 3}, 4);
+  CHECK(distance(region.shape, {1, 5, 3}) == 3);
+  CHECK(region.deformation_radius == 4);
+  CHECK(region.force_radius == 0);
+  CHECK(region.magnitude == 0);
 }

@@ -44,38 +44,43 @@ struct Situation {
   std::vector<SampledForce> forces;
 };
 
+int pick(std::mt19937& random, int low, int high) {
+  return std::uniform_int_distribution<int>(low, high)(random);
+}
+
+Vector3d lattice_point(std::mt19937& random) {
+  const int x = pick(random, -3, 16);
+  const int y = pick(random, -2, 2);
+  return {double(x), double(y), double(pick(random, -3, 16))};
+}
+
+ForceShape lattice_shape(std::mt19937& random) {
+  const int kind = pick(random, 0, 2);
+  const Vector3d from = lattice_point(random);
+  if (kind == 0) return PointForce{from, {0, 1, 0}};
+  if (kind == 1) return RadialForce{from};
+  // Along an axis, so that the closest point is exact too.
+  const int axis = pick(random, 0, 1) * 2;
+  return LineForce{from, from + pick(random, 0, 8) * Vector3d::Unit(axis), {}};
+}
+
 // Integer coordinates and radii, so that distances are often exactly a radius: ties.
 Situation random_lattice(std::mt19937& random) {
-  const auto pick = [&](int low, int high) {
-    return std::uniform_int_distribution<int>(low, high)(random);
-  };
   Situation s;
-  s.grid = {pick(3, 14), pick(3, 14), 0.25, 0.5};
+  const int columns = pick(random, 3, 14);
+  s.grid = {columns, pick(random, 3, 14), 0.25, 0.5};
   s.nodes.resize(s.grid.node_count(), 3);
   for (int j = 0; j < s.grid.rows; ++j) {
-    for (int i = 0; i < s.grid.columns; ++i) s.nodes.row(s.grid.node(i, j)) << i, pick(0, 1), j;
+    for (int i = 0; i < s.grid.columns; ++i)
+      s.nodes.row(s.grid.node(i, j)) << i, pick(random, 0, 1), j;
   }
-  const auto vector = [&] { return Vector3d(pick(-3, 16), pick(-2, 2), pick(-3, 16)); };
-  for (int k = pick(0, 4); k > 0; --k) {
-    SampledForce force;
-    switch (pick(0, 2)) {
-      case 0:
-        force.shape = PointForce{vector(), {0, 1, 0}};
-        break;
-      case 1:
-        force.shape = RadialForce{vector()};
-        break;
-      default: {
-        // Along an axis, so that the closest point is exact too.
-        const Vector3d from = vector();
-        force.shape = LineForce{from, from + pick(0, 8) * Vector3d::Unit(pick(0, 1) * 2), {}};
-      }
-    }
-    force.deformation_radius = pick(0, 6);
-    force.force_radius = pick(0, 8);
-    force.magnitude = pick(-5, 5);
-    force.falloff = static_cast<Falloff>(pick(0, 3));
-    s.forces.push_back(force);
+  for (int k = pick(random, 0, 4); k > 0; --k) {
+    // Braces evaluate from the left.
+    s.forces.push_back({.shape = lattice_shape(random),
+                        .magnitude = double(pick(random, -5, 5)),
+                        .deformation_radius = double(pick(random, 0, 6)),
+                        .force_radius = double(pick(random, 0, 8)),
+                        .falloff = static_cast<Falloff>(pick(random, 0, 3))});
   }
   return s;
 }

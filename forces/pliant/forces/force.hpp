@@ -1,52 +1,121 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <variant>
 
 #include "pliant/core/field.hpp"
 #include "pliant/forces/falloff.hpp"
+#include "pliant/timeline/curve.hpp"
 
 namespace pliant {
 
 // A force at one frame: its parameters sampled, in world space. Pure functions of a position.
-// SPEC 7. For a kind of force, `distance` is what selects and `direction` the unit vector along
-// which it pushes; the force on a node is magnitude x falloff(distance / force radius) x direction.
+// SPEC 7. Every kind answers the same two questions about a position p [length]:
+//   distance(p)    what selects, >= 0 [length]
+//   unit_force(p)  the force per unit of magnitude and falloff; for most kinds a unit vector or 0
+// The force on a node is magnitude x falloff(distance / force radius) x unit_force.
 
 /// The thesis's force (5.2.2): a sphere around `center` that pushes along one direction.
 struct PointForce {
   Vector3d center = Vector3d::Zero();      ///< world [length]
   Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
+
+  double distance(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// Pushes away from `center`.
+/// Pushes away from `center`, where it is 0.
 struct RadialForce {
   Vector3d center = Vector3d::Zero();  ///< world [length]
+
+  double distance(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// Acts around the segment from..to, along `direction` or, without one, away from the segment.
+/// Acts around the segment from..to, along `direction` or, without one, away from the segment, on
+/// which it is 0.
 struct LineForce {
   Vector3d from = Vector3d::Zero();        ///< world [length]
   Vector3d to = Vector3d::UnitX();         ///< world [length]; may equal `from`
   std::optional<Vector3d> direction = {};  ///< any length; zero: no force
+
+  double distance(const Vector3d& p) const;  ///< to the closest point of the segment
+  Vector3d unit_force(const Vector3d& p) const;
 };
 
-using ForceShape = std::variant<PointForce, RadialForce, LineForce>;
+/// The same everywhere, like gravity: at distance 0 from everything.
+struct UniformForce {
+  Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
+
+  double distance(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;
+};
+
+/// Turns about the line through `center` along `axis`, by the right hand, and draws towards it; 0
+/// on the line itself. With an `axis` of length 0 it is no force, and distances are to `center`.
+struct VortexForce {
+  Vector3d center = Vector3d::Zero();  ///< world [length]
+  Vector3d axis = Vector3d::UnitY();   ///< any length
+  double pull = 0;                     ///< inward share, the turning one being 1; < 0: outward
+
+  double distance(const Vector3d& p) const;      ///< to the line
+  Vector3d unit_force(const Vector3d& p) const;  ///< of length sqrt(1 + pull^2)
+};
+
+/// Wavers in space and time: `smooth_noise` on a lattice that has a corner at `center`.
+struct NoiseForce {
+  Vector3d center = Vector3d::Zero();  ///< world [length]
+  double frequency = 1;                ///< [cells/length]
+  double time = 0;                     ///< [cells]
+  std::uint64_t seed = 0;
+
+  double distance(const Vector3d& p) const;      ///< to the centre
+  Vector3d unit_force(const Vector3d& p) const;  ///< components in [-1, 1]
+};
+
+/// What a surface's own motion does to it, at distance 0 from everything: an affine load,
+/// offset + linear (p - origin).
+struct InertiaForce {
+  Matrix3d linear = Matrix3d::Zero();
+  Vector3d origin = Vector3d::Zero();  ///< world [length]
+  Vector3d offset = Vector3d::Zero();
+
+  double distance(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;
+};
+
+/// An embedding program's own kind, at one frame. Requires: both functions are there.
+struct FunctionForce {
+  std::function<double(const Vector3d& p)> distance;
+  std::function<Vector3d(const Vector3d& p)> unit_force;
+};
+
+using ForceShape = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
+                                NoiseForce, InertiaForce, FunctionForce>;
 
 /// A force at one frame.
 struct SampledForce {
   ForceShape shape;
   double magnitude = 0;           ///< [length b/uv^4]
-  double deformation_radius = 1;  ///< [length], >= 0
-  double force_radius = 1;        ///< [length], >= 0
+  double deformation_radius = 1;  ///< [length], >= 0; 0: selects no region
+  double force_radius = 1;        ///< [length], >= 0; 0: pushes nothing
   Falloff falloff = Falloff::Constant;
+  /// Drawn by hand over s = distance / force radius, in place of `falloff`; what lies beyond s = 1
+  /// is as at 1. It belongs to the scene.
+  const Curve<1>* falloff_curve = nullptr;
 };
 
-/// Distance from p that selects: to the centre, or to the closest point of the segment. [length]
+/// A sphere that selects a region and pushes nothing: what a group is. The forces in the group have
+/// a deformation radius of 0, so that "strictly less" selects nothing for them. SPEC 7.
+SampledForce region_sphere(const Vector3d& center, double deformation_radius);
+
+/// Distance from p that selects. [length]
 double distance(const ForceShape& shape, const Vector3d& p);
 
-/// Unit vector along which the force pushes at p, or zero: for a direction of length 0, at the
-/// centre of a radial force, and on the segment of a line force without direction.
-Vector3d direction(const ForceShape& shape, const Vector3d& p);
+/// The force at p per unit of magnitude and falloff.
+Vector3d unit_force(const ForceShape& shape, const Vector3d& p);
 
 /// The force on a node at p, wherever p lies: the force box is the caller's concern.
 /// Requires: force_radius > 0. [length b/uv^4]

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "pliant/core/field.hpp"
+
+namespace pliant {
+
+/// A vector that wavers smoothly in space and time, each component in [-1, 1] and 0 on average.
+///
+/// Every corner of the space-time lattice has a vector drawn from (seed, corner) alone, and the
+/// sixteen corners around a place are blended by weights whose first and second derivatives vanish
+/// at the corners: twice continuously differentiable, with hardly anything beyond one wave a cell.
+/// docs/model.md, eq. (14) to (16), has the definition. `place` and `time` are counted in cells;
+/// where one is so large that it is no longer finite it counts as 0.
+Vector3d smooth_noise(std::uint64_t seed, const Vector3d& place, double time);
+
+/// The vector of one corner of the lattice, each component one of 2^21 evenly spaced values.
+Vector3d lattice_vector(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t z,
+                        std::int64_t t);
+
+}  // namespace pliant
