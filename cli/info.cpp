@@ -14,9 +14,10 @@
 namespace pliant::cli {
 namespace {
 
-std::string_view kind_of(const Force& force) {
-  constexpr std::string_view kinds[] = {"point", "radial", "line"};
-  return kinds[force.shape.index()];
+// `palm (point in hand)`.
+std::string title(const Force& force) {
+  return fmt::format("{} ({}{})", force.name, kind_of(force),
+                     force.group.empty() ? "" : " in " + force.group);
 }
 
 std::string shape_text(const SurfaceShape& shape) {
@@ -36,8 +37,8 @@ void print_surface(const Surface& surface, const RestShape& shape) {
 void print_preview(const ForcePreview& preview, const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   const Force& force = scene.forces[preview.force];
-  std::string text = fmt::format("  {} ({}) on {}: ", force.name, kind_of(force),
-                                 scene.surfaces[preview.surface].name);
+  std::string text =
+      fmt::format("  {} on {}: ", title(force), scene.surfaces[preview.surface].name);
   if (!preview.frame) {
     text += fmt::format("selects nothing at rest; its largest magnitude is {:g} (frame {})\n",
                         preview.magnitude, preview.magnitude_frame);
@@ -64,12 +65,15 @@ void print_preview(const ForcePreview& preview, const Simulation& simulation) {
 
 // A force without a preview, and why it has none.
 std::string idle_text(const Force& force, const Scene& scene) {
+  const auto group = std::find_if(scene.groups.begin(), scene.groups.end(),
+                                  [&](const Group& one) { return one.name == force.group; });
   bool is_enabled = false;
   for (int frame = scene.start; frame <= scene.end && !is_enabled; ++frame) {
-    is_enabled = force.enabled.at(frame);
+    is_enabled =
+        force.enabled.at(frame) && (group == scene.groups.end() || group->enabled.at(frame));
   }
   return fmt::format(
-      "  {} ({}): {}\n", force.name, kind_of(force),
+      "  {}: {}\n", title(force),
       is_enabled ? "no surface that is solved while it is enabled" : "never enabled");
 }
 
@@ -160,7 +164,13 @@ int run_info(const InfoOptions& options) {
                     [&](const ForcePreview& preview) { return preview.force == k; });
     if (!is_previewed) print(stdout, idle_text(made.forces[k], made));
   }
-  if (made.forces.empty()) print(stdout, "  none\n");
+  for (const Group& group : made.groups) {
+    const bool is_empty =
+        std::none_of(made.forces.begin(), made.forces.end(),
+                     [&](const Force& force) { return force.group == group.name; });
+    if (is_empty) print(stdout, fmt::format("  {} (group): no force in it\n", group.name));
+  }
+  if (made.forces.empty() && made.groups.empty()) print(stdout, "  none\n");
   print_channels(made);
   print(stdout,
         fmt::format("memory\n  {} for the surfaces, {} for the solver of the largest region "

@@ -18,26 +18,43 @@ Json to_json(const Box& box) {
 Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
 // Where the force is and where it points, as its kind has it.
-void add_shape(const ForceShape& shape, Json& force) {
-  if (const auto* point = std::get_if<PointForce>(&shape)) {
-    force["center"] = to_json(point->center);
-    force["direction"] = to_json(point->direction);
-  } else if (const auto* radial = std::get_if<RadialForce>(&shape)) {
-    force["center"] = to_json(radial->center);
-  } else if (const auto* line = std::get_if<LineForce>(&shape)) {
-    force["from"] = to_json(line->from);
-    force["to"] = to_json(line->to);
-    if (line->direction) force["direction"] = to_json(*line->direction);
-  }
-}
+struct AddShape {
+  Json& force;
 
-Json to_json(const ForceReport& report, const Scene& scene) {
-  const auto& [force, sampled, selection, push] = report;
-  Json json = {{"name", scene.forces[force].name},
+  void operator()(const PointForce& point) const {
+    force["center"] = to_json(point.center);
+    if (force["kind"] != "group") force["direction"] = to_json(point.direction);
+  }
+  void operator()(const RadialForce& radial) const { force["center"] = to_json(radial.center); }
+  void operator()(const LineForce& line) const {
+    force["from"] = to_json(line.from);
+    force["to"] = to_json(line.to);
+    if (line.direction) force["direction"] = to_json(*line.direction);
+  }
+  void operator()(const UniformForce& uniform) const {
+    force["direction"] = to_json(uniform.direction);
+  }
+  void operator()(const VortexForce& vortex) const {
+    force["center"] = to_json(vortex.center);
+    force["axis"] = to_json(vortex.axis);
+    force["pull"] = vortex.pull;
+  }
+  void operator()(const NoiseForce& noise) const {
+    force["center"] = to_json(noise.center);
+    force["frequency"] = noise.frequency;
+  }
+  void operator()(const InertiaForce&) const {}
+  void operator()(const FunctionForce&) const {}
+};
+
+Json to_json(const ForceReport& report) {
+  const auto& [name, kind, sampled, selection, push] = report;
+  Json json = {{"name", name},
+               {"kind", kind},
                {"magnitude", sampled.magnitude},
                {"deformationRadius", sampled.deformation_radius},
                {"forceRadius", sampled.force_radius}};
-  add_shape(sampled.shape, json);
+  std::visit(AddShape{json}, sampled.shape);
   json["deformationBox"] = to_json(selection.deformation);
   json["forceBox"] = to_json(selection.force);
   json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);
@@ -46,7 +63,7 @@ Json to_json(const ForceReport& report, const Scene& scene) {
   return json;
 }
 
-Json to_json(const SurfaceReport& report, const std::string& name, const Scene& scene) {
+Json to_json(const SurfaceReport& report, const std::string& name) {
   Box selected;
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -58,7 +75,7 @@ Json to_json(const SurfaceReport& report, const std::string& name, const Scene& 
     regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
   }
   Json forces = Json::array();
-  for (const ForceReport& force : report.forces) forces.push_back(to_json(force, scene));
+  for (const ForceReport& force : report.forces) forces.push_back(to_json(force));
   return {{"name", name},
           {"solved", report.is_solved},
           {"selected", to_json(selected)},
@@ -86,7 +103,7 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
 Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
-    surfaces.push_back(to_json(report.surfaces[k], scene.surfaces[k].name, scene));
+    surfaces.push_back(to_json(report.surfaces[k], scene.surfaces[k].name));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

@@ -286,9 +286,14 @@ class Regions(Command):
         with open(os.path.join(SOURCE, "docs", "regions.md"), encoding="utf-8") as file:
             page = file.read()
         shown = json.loads(re.search(r"```json\n(.*?)```", page, re.DOTALL).group(1))
-        told = self.told()
-        self.assertEqual(json.dumps(keys(shown)), json.dumps(keys(told)))
+        self.assertEqual(json.dumps(keys(shown)), json.dumps(keys(self.told())))
         described = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", page, re.MULTILINE))))
+        others = """<uniform name="u" targets="sheet"/> <inertia name="i" targets="sheet"/>
+          <vortex name="v" targets="sheet"/> <noise name="n" targets="sheet"/>
+          <group name="g" targets="sheet"><point name="m"/></group></scene>"""
+        told = self.told(scene=self.SCENE.replace("</scene>", others))
+        kinds = [force["kind"] for force in told["frames"][0]["surfaces"][0]["forces"]]
+        self.assertEqual(kinds[-6:], ["uniform", "inertia", "vortex", "noise", "point", "group"])
         surface = told["frames"][0]["surfaces"][0]
         force_keys = set().union(*(force.keys() for force in surface["forces"]))
         self.assertEqual(described, surface.keys() | force_keys | surface["regions"][0].keys())
@@ -404,6 +409,26 @@ class Info(Command):
             '"13"', '"201"').replace('"11"', '"201"').replace('magnitude="3000"/>', """>
     <animate attribute="magnitude"><key frame="1" value="0"/><key frame="9" value="9"/></animate></point>"""))
         self.assertIn("selects nothing at rest", self.run_pliant("info", scene).stdout)
+
+    def test_groups_and_paths(self):
+        scene = self.write("g.xml", SCENE.format(end=9).replace(
+            POINT, '<group name="hand" deformationRadius="4.5">' +
+            PATH.replace("</path>", animated("progress", (1, 0), (9, 0.25)) + "</path>") +
+            '<point name="palm" magnitude="3000"/><uniform name="weight"/></group>' +
+            '<group name="empty"/><inertia name="jiggle"/>'))
+        told = self.run_pliant("info", scene).stdout
+        for words in ("palm (point in hand) on sheet: from frame 1 it selects 9 x 9 nodes",
+                      "weight (uniform in hand) on sheet: from frame 1 it selects 9 x 9 nodes",
+                      "jiggle (inertia) on sheet: from frame 1 it selects 13 x 11 nodes",
+                      "empty (group): no force in it",
+                      "hand.center.progress  2 keys: 1 = 0, 9 = 0.25"):
+            self.assertIn(words, told)
+        rows = self.run_pliant("curves", scene, "--channel", "hand.center.progress", "palm.magnitude",
+                               "weight.direction", "--frames", "9").stdout.splitlines()
+        self.assertEqual(rows[1:], ["hand.center.progress,9,0.25", "palm.magnitude,9,3000",
+                                    "weight.direction,9,0,1,0"])
+        self.assertIn("it has hand.enabled, hand.center.progress, hand.deformationRadius", self.run_pliant(
+            "curves", scene, "--channel", "hand.center", code=2).stderr)
 
     def test_a_force_out_of_reach(self):
         scene = self.write("far.xml", SCENE.format(end=9).replace('"0 0 0"', '"0 90 0"'))
@@ -532,6 +557,9 @@ def animated(attribute, *keys):
         f'<key frame="{frame}" value="{value}"/>' for frame, value in keys) + "</animate>"
 
 
+PATH = ('<path attribute="center"><waypoint at="0 0 0"/><waypoint at="1 0 0"/>'
+        '<waypoint at="1 1 0"/></path>')
+
 # name: what is replaced in the scene, by what, the line of the error, words of its message
 BAD_SCENES = {
     "a misspelt element": ("<grid", "<gird", 3, 'did you mean "grid"'),
@@ -557,6 +585,41 @@ BAD_SCENES = {
     "c too small at a frame in the middle": (
         GRID, GRID + "<material>" + animated("c", (1, 0), (5, -3), (9, 0)) + "</material>", 3,
         "sheet.c at frame 4 is -2."),
+    "a deformationRadius in a group": (POINT, f'<group name="g">{POINT}</group>', 4,
+                                       "a force in a <group> selects no region"),
+    "a group in a group": (POINT, '<group name="g"><group name="h"/></group>', 4,
+                           'it belongs in <scene>'),
+    "a group for a target": (POINT, '<group name="g"/><uniform name="u" targets="g"/>', 4,
+                             '"g" is a <group>, not a surface'),
+    "a name twice, once in a group": (POINT, '<group name="g"><noise name="sheet"/></group>', 4,
+                                      "the name is taken at line 3"),
+    "a group's radius below 0 at a frame": (
+        POINT, '<group name="g">' + animated("deformationRadius", (1, 1), (9, -1)) + "</group>", 4,
+        "g.deformationRadius at frame 6 is -"),
+    "two falloffs": (POINT, '<point name="p" falloff="linear"><falloff><key at="0" value="1"/>'
+                            "</falloff></point>", 4, "one of both must go"),
+    "a falloff's key beyond 1": (POINT, '<point name="p"><falloff><key at="2" value="1"/></falloff>'
+                                        "</point>", 4, 'at="2": must be at most 1'),
+    "a misspelt kind of force": (POINT, '<vortx name="v"/>', 4, 'did you mean "vortex"'),
+    "another kind's attribute": (POINT, '<vortex name="v" direction="0 1 0"/>', 4,
+                                 'no attribute "direction"'),
+    "a negative frequency": (POINT, '<noise name="n" frequency="-1"/>', 4, "must be at least 0"),
+    "a rate below 0 at a frame": (
+        POINT, '<noise name="n">' + animated("rate", (1, 1), (9, -1)) + "</noise>", 4,
+        "n.rate at frame 6 is -"),
+    "a seed below 0": (POINT, '<noise name="n" seed="-1"/>', 4, "must be at least 0"),
+    "a position given and on a path": (
+        POINT, f'<point name="p" center="0 0 0">{PATH}</point>', 4, "one of both must go"),
+    "a path of two waypoints": (
+        POINT, '<point name="p">' + PATH.replace('<waypoint at="1 1 0"/>', "") + "</point>", 4,
+        "three waypoints or more"),
+    "a path for a direction": (
+        POINT, '<point name="p">' + PATH.replace('"center"', '"direction"') + "</point>", 4,
+        "is no position; the positions of <point> are: center"),
+    "progress beyond the end at a frame": (
+        POINT, '<point name="p">' + PATH.replace("</path>", animated("progress", (1, 0), (5, 2)) +
+                                                 "</path>") + "</point>", 4,
+        "p.center.progress at frame 4 is 1."),
     "a NUL byte": ("poke", "po\0ke", 4, "a NUL byte"),
     "a grid of 200000 x 200000": (GRID, '<grid columns="200000" rows="200000"/>', 3, "at most 100000000"),
     "10^5 nested elements": (GRID, "<a>" * 100000 + "</a>" * 100000, 3, "nested deeper"),

@@ -1,5 +1,7 @@
-// A scene built in code: a mesh as arrays, a curve as an object; no file is read.
+// A scene built in code: a mesh as arrays, a curve as an object, a force of the program's own kind;
+// no file is read.
 
+#include <cmath>
 #include <cstdio>
 
 #include <pliant/pliant.hpp>
@@ -19,10 +21,26 @@ int main() {
   poke.deformation_radius = 4;
   poke.force_radius = 2;
 
+  // A wave that runs along x. Pure functions of place and time: any thread may call them.
+  pliant::Force wave;
+  wave.name = "wave";
+  wave.magnitude = 300;
+  wave.deformation_radius = 100;
+  wave.force_radius = 3;
+  wave.falloff = pliant::Falloff::Smooth;
+  wave.shape = pliant::CustomForce{
+      .distance =
+          [](const pliant::Vector3d& p, const pliant::ForceTime& time) {
+            return std::abs(p.x() + 5 - 20 * time.seconds);  // to its crest
+          },
+      .unit_force = [](const pliant::Vector3d&,
+                       const pliant::ForceTime&) { return pliant::Vector3d(0, 1, 0); }};
+
   pliant::Scene scene;
   scene.end = 12;
   scene.surfaces.push_back(sheet);
   scene.forces.push_back(poke);
+  scene.forces.push_back(wave);
 
   auto simulation = pliant::Simulation::make(scene);
   if (!simulation) {

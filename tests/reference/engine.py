@@ -4,6 +4,7 @@ Nothing is shared with the library under test; a sparse matrix is assembled from
 stencil for every solve and factored anew.
 """
 
+import itertools
 import math
 from fractions import Fraction
 
@@ -245,8 +246,15 @@ class Transform:
 
 def closest_point(force, frame, points):
     """The point of the force's centre or segment that is closest to each of `points`."""
-    if force.kind in ("point", "radial"):
+    if force.kind in ("point", "radial", "noise"):
         return np.broadcast_to(force.sample("center", frame), points.shape)
+    if force.kind in ("uniform", "inertia"):
+        return points
+    if force.kind == "vortex":
+        center, axis = force.sample("center", frame), force.sample("axis", frame)
+        squared_length = axis @ axis
+        t = (points - center) @ axis / squared_length if squared_length else np.zeros(())
+        return center + t[..., None] * axis
     start, end = force.sample("from", frame), force.sample("to", frame)
     along = end - start
     squared_length = along @ along
@@ -277,7 +285,61 @@ def falloff(force, s):
 
 
 def has_direction(force):
-    return force.kind == "point" or (force.kind == "line" and force.channels["direction"])
+    """Whether no direction is taken from a node to the force."""
+    return (force.kind in ("point", "uniform", "noise", "inertia") or
+            (force.kind == "line" and force.channels["direction"]))
+
+
+def mixed(bits):
+    """Eq. (14) of docs/model.md, for an array of unsigned 64-bit integers."""
+    bits = bits + np.uint64(0x9e3779b97f4a7c15)
+    bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xbf58476d1ce4e5b9)
+    bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94d049bb133111eb)
+    return bits ^ (bits >> np.uint64(31))
+
+
+def noise(seed, places):
+    """Eq. (15) and (16) of docs/model.md; `places` are ... x 4, in cells of x, y, z and time."""
+    cell = np.floor(places)
+    f = places - cell
+    weight = f**3 * (6 * f**2 - 15 * f + 10)
+    total = np.zeros(places.shape[:-1] + (3,))
+    with np.errstate(over="ignore"):
+        for corner in itertools.product((0, 1), repeat=4):
+            bits = mixed(np.full(places.shape[:-1], seed, dtype=np.uint64))
+            share = np.ones(places.shape[:-1])
+            for axis, step in enumerate(corner):
+                index = (cell[..., axis] + step).astype(np.int64).astype(np.uint64)
+                bits = mixed(bits ^ index)
+                share = share * (weight[..., axis] if step else 1 - weight[..., axis])
+            for k in range(3):
+                part = (bits >> np.uint64(21 * k)) & np.uint64(2**21 - 1)
+                total[..., k] += share * (2 * part.astype(float) / (2**21 - 1) - 1)
+    return total
+
+
+def unit_forces(force, frame, points, run):
+    """The force per magnitude and falloff at each point, in world space; `run` is the surface's."""
+    if force.kind == "noise":
+        place = force.sample("frequency", frame) * (points - force.sample("center", frame))
+        time = force.sample("rate", frame) * frame / float(run.scene.fps)
+        time = np.broadcast_to(time, points.shape[:-1] + (1,))
+        return noise(force.seed, np.concatenate([place, time], axis=-1))
+    if force.kind == "inertia":
+        before, now, after = (Transform(run.surface, frame + step) for step in (-1, 0, 1))
+        p = np.linalg.solve(now.linear, (points - now.translate).reshape(-1, 3).T).T
+        p = p.reshape(points.shape)
+        acceleration = sum(weight * (transform.translate + p @ transform.linear.T)
+                           for weight, transform in ((1, before), (-2, now), (1, after)))
+        return -run.surface.sample("density", frame) * acceleration * float(run.scene.fps)**2
+    if force.kind == "vortex":
+        axis = force.sample("axis", frame)
+        length = math.sqrt(axis @ axis)
+        if length == 0:
+            return np.zeros_like(points)
+        outward = unit_directions(force, frame, points)
+        return np.cross(axis / length, outward) - force.sample("pull", frame) * outward
+    return unit_directions(force, frame, points)
 
 
 def unit_directions(force, frame, points):
@@ -312,8 +374,12 @@ def is_exact_distance(force, frame, point, radius):
     def exact(vector):
         return [Fraction(float(x)) for x in vector]
 
+    if force.kind in ("uniform", "inertia"):
+        return True  # the distance is 0
+    if force.kind == "vortex":
+        return False
     p, used = exact(point), []
-    if force.kind in ("point", "radial"):
+    if force.kind in ("point", "radial", "noise"):
         nearest = exact(force.sample("center", frame))
     else:
         start, end = exact(force.sample("from", frame)), exact(force.sample("to", frame))
@@ -472,8 +538,8 @@ class SurfaceRun:
             i0, i1, j0, j1 = box
             inside = np.s_[i0:i1 + 1, j0:j1 + 1]
             strength = force.sample("magnitude", frame) * falloff(force, delta[inside] / radius)
-            direction = unit_directions(force, frame, points[inside])
-            total[inside] += strength[..., None] * direction
+            push = unit_forces(force, frame, points[inside], self)
+            total[inside] += strength[..., None] * push
         return transform.vector_to_object(total)
 
     def solve(self, frame):

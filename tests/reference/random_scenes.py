@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Generates random, well-posed scenes that exercise every rule of SPEC 1-7.
 
-    python3 random_scenes.py --seed N --count K -o DIR [--plain]
+    python3 random_scenes.py --seed N --count K -o DIR
 
-writes DIR/random-N-000.xml ... with their meshes; `--plain` leaves out groups and authored
-falloffs. Scene k of a seed does not depend on the count. A scene is kept when it is well posed
-(well_posed.py) and its peak displacement is 0.03 to 1 of the sheet's size.
+writes DIR/random-N-000.xml ... with their meshes. Scene k of a seed does not depend on the count.
+A scene is kept when it is well posed (well_posed.py) and its peak displacement is 0.03 to 1 of the
+sheet's size.
 """
 
 import argparse
@@ -64,8 +64,8 @@ def write_element(out, depth, tag, attributes, channels, closing_lines=()):
 class SceneMaker:
     """Draws one scene; `tags` says what it exercises."""
 
-    def __init__(self, rng, folder, name, is_plain):
-        self.rng, self.folder, self.name, self.is_plain = rng, folder, name, is_plain
+    def __init__(self, rng, folder, name):
+        self.rng, self.folder, self.name = rng, folder, name
         self.tags = set()
         self.is_lattice = rng.random() < 0.25
         self.fps_text = str(rng.choice(["24", "24", "25", "30", "12.5", "24000/1001",
@@ -310,7 +310,8 @@ class SceneMaker:
     def force(self, index, world, spacing, load_scale, targets, in_group=None):
         """One force near `world`; `in_group` is the group's radius for a child."""
         rng, out = self.rng, Writer()
-        kind = self.pick("point", "point", "radial", "line")
+        kind = self.pick("point", "point", "radial", "line", "point", "radial", "line", "uniform",
+                         "vortex", "noise", "inertia")
         self.tags.add(kind)
         size = self.size_of(world)
         attributes = [("name", f"{kind}{index}")]
@@ -325,8 +326,18 @@ class SceneMaker:
             self.tags.add("disabled force")
         if kind == "line":
             channels += [self.path("from", world), self.path("to", world)]
-        else:
+        elif kind in ("point", "radial", "vortex", "noise"):
             channels.append(self.path("center", world))
+        if kind == "vortex":
+            channels += [self.channel("axis", self.direction, 0.15, False),
+                         self.channel("pull", lambda: rng.uniform(-1, 1), 0.2, False)]
+        elif kind == "noise":
+            channels += [self.channel("frequency", lambda: rng.uniform(0.5, 4) / size, 0.15),
+                         self.channel("rate", lambda: rng.uniform(0, 5), 0.15)]
+            if self.chance(0.5):
+                attributes.append(("seed", int(rng.integers(2**62))))
+        elif kind == "uniform":
+            channels.append(self.channel("direction", self.direction, 0.15, False))
         if kind == "point" or (kind == "line" and self.chance(0.5)):
             if kind == "line":
                 self.tags.add("line with direction")
@@ -351,12 +362,12 @@ class SceneMaker:
             channels.append(Channel("magnitude", "0.0"))
             self.tags.add("magnitude 0")
         else:
-            sign = 1.0 if kind == "point" else self.pick(-1.0, 1.0)
+            sign = 1.0 if kind in ("point", "uniform") else self.pick(-1.0, 1.0)
             channels.append(self.channel(
                 "magnitude", lambda: self.magnitude_factor * load_scale * sign *
                 rng.uniform(-0.2, 1.0), 0.5, False))
         closing = []
-        if not self.is_plain and self.chance(0.1):
+        if self.chance(0.1):
             self.tags.add("authored falloff")
             keys = sorted(rng.uniform(0, 1, 2))
             closing = ["<falloff>", f'  <key at="0" value="{rng.uniform(0.5, 1)!r}"/>',
@@ -423,7 +434,7 @@ class SceneMaker:
                 if len(names) > 1 and self.chance(0.5):
                     targets = [name for j, name in enumerate(names) if j == aim or
                                self.chance(0.3)]
-                maker = self.group if not self.is_plain and self.chance(0.1) else self.force
+                maker = self.group if self.chance(0.1) else self.force
                 lines += maker(k, world, spacing, load_scale, targets)
             return "\n".join(lines + ["</scene>"]) + "\n"
 
@@ -486,14 +497,14 @@ class SceneMaker:
         return lines + out.lines + ["  </surface>"], amplitude * stiffness * stretch
 
 
-def make_scene(seed, index, folder, is_plain, rejections):
+def make_scene(seed, index, folder, rejections):
     """Writes one scene that is kept; returns its tags, its relative peak and its diagnostics."""
     name = f"random-{seed}-{index:03d}"
     path = os.path.join(folder, name + ".xml")
     for attempt in range(1000):
         rng = np.random.default_rng([seed, index, attempt])
         with tempfile.TemporaryDirectory() as scratch:
-            maker = SceneMaker(rng, scratch, name, is_plain)
+            maker = SceneMaker(rng, scratch, name)
             text_of_factor = maker.make()
             factor = 1.0
             trial = os.path.join(scratch, name + ".xml")
@@ -556,13 +567,12 @@ def main():
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--count", type=int, required=True)
     parser.add_argument("-o", "--output", required=True, metavar="DIR")
-    parser.add_argument("--plain", action="store_true", help="no groups, no authored falloffs")
     arguments = parser.parse_args()
     os.makedirs(arguments.output, exist_ok=True)
     coverage, rejections = collections.Counter(), collections.Counter()
     for index in range(arguments.count):
         tags, peak, diagnostics = make_scene(arguments.seed, index, arguments.output,
-                                             arguments.plain, rejections)
+                                             rejections)
         coverage.update(tags)
         print(f"random-{arguments.seed}-{index:03d}: peak {peak:.3g} of the size, "
               f"{len(diagnostics.solves)} solves, {len(diagnostics.skips)} without, "

@@ -3,7 +3,7 @@
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
 execute_process(COMMAND "${PYTHON}" "${REFERENCE}/random_scenes.py"
-  --seed ${SEED} --count ${COUNT} --plain -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
+  --seed ${SEED} --count ${COUNT} -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB scenes "${WORK}/*.xml")
 list(LENGTH scenes count)
 if(NOT count EQUAL COUNT)

@@ -23,7 +23,11 @@ FORCE_CHANNELS = {"magnitude": 0, "deformationRadius": 1, "forceRadius": 1}
 KIND_CHANNELS = {
     "point": {"center": (0, 0, 0), "direction": (0, 1, 0)},
     "radial": {"center": (0, 0, 0)},
-    "line": {"from": (0, 0, 0), "to": (1, 0, 0), "direction": None}}
+    "line": {"from": (0, 0, 0), "to": (1, 0, 0), "direction": None},
+    "uniform": {"direction": (0, 1, 0)},
+    "vortex": {"center": (0, 0, 0), "axis": (0, 1, 0), "pull": 0},
+    "noise": {"center": (0, 0, 0), "frequency": 1, "rate": 1},
+    "inertia": {"magnitude": 1}}
 FALLOFFS = ("constant", "linear", "smooth", "gaussian")
 TANGENT_KINDS = ("auto", "spline", "flat", "linear", "plateau")
 LOOPS = ("repeat", "repeatOffset", "mirror")
@@ -207,13 +211,14 @@ class Surface:
 
 
 class Force:
-    """A <point>, <radial> or <line>; a child of a group has no region of its own."""
+    """A force of any kind; a child of a group has no region of its own."""
 
-    def __init__(self, element, is_in_group):
+    def __init__(self, element, is_in_group, scene_seed):
         self.kind = element.tag
         self.name = element.get("name")
         self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
         self.is_in_group = is_in_group
+        self.seed = int(element.get("seed", scene_seed))
         self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
         self.channels = {
             name: read_channel(element, element, name, default)
@@ -237,13 +242,14 @@ class Force:
 class Group:
     """A <group>: one deformation region, and forces that only add force (SPEC 7)."""
 
-    def __init__(self, element):
+    def __init__(self, element, scene_seed):
         self.name = element.get("name")
         self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
         self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
         self.center = read_channel(element, element, "center", (0, 0, 0))
         self.deformation_radius = read_channel(element, element, "deformationRadius", 1)
-        self.forces = [Force(child, True) for child in element if child.tag in KIND_CHANNELS]
+        self.forces = [Force(child, True, scene_seed) for child in element
+                       if child.tag in KIND_CHANNELS]
 
 
 class Scene:
@@ -256,13 +262,14 @@ class Scene:
         # The frame rate as a double first, then its reciprocal.
         self.frame_length = 1.0 / float(self.fps)
         self.start, self.end = int(root.get("start")), int(root.get("end"))
+        seed = int(root.get("seed", 0))
         folder = os.path.dirname(os.path.abspath(path))
         self.surfaces, self.forces, self.groups = [], [], []
         for element in root:
             if element.tag == "surface":
                 self.surfaces.append(Surface(element, folder, self.start))
             elif element.tag in KIND_CHANNELS:
-                self.forces.append(Force(element, False))
+                self.forces.append(Force(element, False, seed))
             else:
                 assert element.tag == "group", element.tag
-                self.groups.append(Group(element))
+                self.groups.append(Group(element, seed))

@@ -1,7 +1,11 @@
 #include "pliant/scene/channels.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "pliant/scene/format.hpp"
 #include "scene/scene_text.hpp"
@@ -12,7 +16,10 @@ namespace {
 TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
   const Scene scene = scene_of(
       scene_with("<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/></surface>\n"
-                 "<point name=\"p\"/><radial name=\"r\"/><line name=\"l\" direction=\"0 1 0\"/>"));
+                 "<point name=\"point\"/><radial name=\"radial\"/>"
+                 "<line name=\"line\" direction=\"0 1 0\"/><uniform name=\"uniform\"/>"
+                 "<vortex name=\"vortex\"/><noise name=\"noise\"/><inertia name=\"inertia\"/>"
+                 "<group name=\"group\"/>"));
   std::set<std::string> paths;
   for (const NamedChannel& channel : channels_of(scene)) {
     CHECK(paths.insert(channel.path).second);
@@ -20,10 +27,10 @@ TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
   }
   std::set<std::string> expected;
   for (const ElementFormat& element : scene_format()) {
-    std::string owner = element.name == "point"    ? "p"
-                        : element.name == "radial" ? "r"
-                        : element.name == "line"   ? "l"
-                                                   : "s";
+    if (element.name == "path") continue;  // has a channel of its own, see below
+    const auto& parents = element.parents;
+    const bool is_child = std::find(parents.begin(), parents.end(), "scene") != parents.end();
+    const std::string owner(is_child && element.name != "surface" ? element.name : "s");
     for (const AttributeFormat& attribute : element.attributes) {
       if (attribute.is_keyable && attribute.need != Need::Later) {
         expected.insert(owner + "." + std::string(attribute.name));
@@ -31,6 +38,22 @@ TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
     }
   }
   CHECK(paths == expected);
+}
+
+TEST_CASE("a position on a path has its progress as a channel", "[scene][channels][path]") {
+  const std::string path =
+      "<path attribute=\"{}\"><waypoint at=\"0 0 0\"/><waypoint at=\"1 0 0\"/>"
+      "<waypoint at=\"1 1 0\"/></path>";
+  const Scene scene = scene_of(scene_with(fmt::format(
+      "<line name=\"l\">{}</line><group name=\"g\">{}<point name=\"p\"/></group>",
+      fmt::format(fmt::runtime(path), "to"), fmt::format(fmt::runtime(path), "center"))));
+  std::vector<std::string> paths;
+  for (const NamedChannel& channel : channels_of(scene)) paths.push_back(channel.path);
+  // Of the force in the group, no deformationRadius.
+  CHECK(paths == std::vector<std::string>{"l.enabled", "l.magnitude", "l.deformationRadius",
+                                          "l.forceRadius", "l.from", "l.to.progress", "p.enabled",
+                                          "p.magnitude", "p.forceRadius", "p.center", "p.direction",
+                                          "g.enabled", "g.center.progress", "g.deformationRadius"});
 }
 
 TEST_CASE("channels point at the scene's own values", "[scene][channels]") {

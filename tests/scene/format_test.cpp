@@ -95,6 +95,13 @@ TEST_CASE("the page has one row for each attribute, as the reader knows it", "[s
   for (const auto& [key, row] : rows) FAIL_CHECK("the reader does not know " << key);
 }
 
+/// Whether it stands in a scene, with a name: a force or a group.
+bool is_force(const std::string& element) {
+  const std::set<std::string> forces = {"point",  "radial", "line",    "uniform",
+                                        "vortex", "noise",  "inertia", "group"};
+  return forces.contains(element);
+}
+
 /// A scene that holds `element` with what it needs, and `given` besides, unless that gives it.
 std::string scene_around(const std::string& element, const std::string& attribute,
                          const std::string& value) {
@@ -114,15 +121,22 @@ std::string scene_around(const std::string& element, const std::string& attribut
     }
     return name == element ? fmt::format("{} {}=\"{}\"", text, attribute, value) : text;
   };
-  const std::set<std::string> forces = {"point", "radial", "line"};
   const std::set<std::string> parts = {"transform", "material", "tangents", "solver"};
   const std::set<std::string> key_parts = {"animate", "key", "loop"};
-  const std::string force = forces.contains(element) ? element : "point";
+  const std::string force = is_force(element) ? element : "point";
   const std::string shape = element == "mesh" ? begin("mesh", " file=\"/etc/passwd\"")
                                               : begin("grid", " columns=\"3\" rows=\"3\"");
   const std::string part = parts.contains(element) ? begin(element, "") + "/>" : "";
+  const std::string path =
+      fmt::format("{}>{}/><waypoint at=\"1 0 0\"/><waypoint at=\"1 1 0\"/></path>",
+                  begin("path", " attribute=\"center\""), begin("waypoint", " at=\"0 0 0\""));
+  const std::string falloff = begin("falloff", "") + "><key value=\"1\" at=\"" +
+                              (attribute == "at" && element == "key" ? value : "0") +
+                              "\"/></falloff>";
   const std::string animate =
-      key_parts.contains(element)
+      element == "path" || element == "waypoint"                        ? path
+      : element == "falloff" || (element == "key" && attribute == "at") ? falloff
+      : key_parts.contains(element)
           ? fmt::format("{}>{}/>{}/></animate>", begin("animate", " attribute=\"magnitude\""),
                         begin("key", " frame=\"1\" value=\"0\"" + easing),
                         begin("loop", " from=\"1\" to=\"5\""))
@@ -173,16 +187,21 @@ TEST_CASE("each row refuses what is not of its type", "[scene][format]") {
 TEST_CASE("each row that is keyable can be animated, and no other", "[scene][format]") {
   for (const Row& row : documented()) {
     if (row.element == "animate" || row.element == "key" || row.element == "loop" ||
-        row.element == "scene" || row.element == "grid" || row.element == "mesh")
+        row.element == "scene" || row.element == "grid" || row.element == "mesh" ||
+        row.element == "waypoint" || row.element == "falloff")
       continue;
     const std::string value = row.type == "vector" ? "1 1 1" : row.type == "boolean" ? "true" : "1";
     const std::string animate =
         fmt::format("<animate attribute=\"{}\"><key frame=\"1\" value=\"{}\"/></animate>",
                     row.attribute, value);
-    const bool is_force =
-        row.element == "point" || row.element == "radial" || row.element == "line";
     const std::string text =
-        is_force ? scene_with(fmt::format("<{0} name=\"f\">{1}</{0}>", row.element, animate))
+        row.element == "path"
+            ? force_with(
+                  "<path attribute=\"center\"><waypoint at=\"0 0 0\"/><waypoint at=\"1 0 0\"/>"
+                  "<waypoint at=\"1 1 0\"/>" +
+                  animate + "</path>")
+        : is_force(row.element)
+            ? scene_with(fmt::format("<{0} name=\"f\">{1}</{0}>", row.element, animate))
         : row.element == "surface"
             ? surface_with(animate)
             : surface_with(fmt::format("<{0}>{1}</{0}>", row.element, animate));
@@ -241,7 +260,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 2);
+  CHECK(examples == 3);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
     </animate>
     <animate attribute="centre"/>
   </point>
-  <vortex name="twist"/>
+  <vortex name="twist" pul="1"/>
 </scene>
 )");
   const std::vector<std::string> expected = {
@@ -218,7 +218,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
       "12: <key> frame 1 repeats the key of line 11",
       "14: <animate> attribute=\"centre\"",
       "14: <animate> has no keys",
-      "16: the element <vortex> is not supported",
+      "16: <vortex> has no attribute \"pul\"",
   };
   CAPTURE(problems);
   REQUIRE(problems.size() == expected.size());

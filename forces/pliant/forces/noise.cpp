@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// Eq. (14): a bijection of 64 bits that spreads every bit over all others, the output function of
+// Eq. (18): a bijection of 64 bits that spreads every bit over all others, the output function of
 // SplitMix64. Source: G. L. Steele, D. Lea, C. H. Flood, Fast Splittable Pseudorandom Number
 // Generators (2014), with D. Stafford's thirteenth set of constants.
 constexpr std::uint64_t mixed(std::uint64_t bits) {
@@ -18,7 +18,7 @@ constexpr std::uint64_t mixed(std::uint64_t bits) {
 // A cell of the lattice along one axis, and how far into it.
 struct Place {
   std::int64_t cell = 0;
-  double weight = 0;  // of the cell's far corner, eq. (16)
+  double weight = 0;  // of the cell's far corner, eq. (20)
 };
 
 Place place_at(double coordinate) {
@@ -43,7 +43,7 @@ Vector3d lattice_vector(std::uint64_t seed, std::int64_t x, std::int64_t y, std:
   for (const std::int64_t index : {x, y, z, t}) {
     hash = mixed(hash ^ static_cast<std::uint64_t>(index));
   }
-  // Eq. (15): three times 21 bits, the largest of which is 1.
+  // Eq. (19): three times 21 bits, the largest of which is 1.
   constexpr std::uint64_t largest = (1U << 21U) - 1;
   Vector3d vector;
   for (unsigned k = 0; k < 3; ++k) {

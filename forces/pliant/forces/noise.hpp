@@ -11,7 +11,7 @@ namespace pliant {
 /// Every corner of the space-time lattice has a vector drawn from (seed, corner) alone, and the
 /// sixteen corners around a place are blended by weights whose first and second derivatives vanish
 /// at the corners: twice continuously differentiable, with hardly anything beyond one wave a cell.
-/// docs/model.md, eq. (14) to (16), has the definition. `place` and `time` are counted in cells;
+/// docs/model.md, eq. (18) to (20), has the definition. `place` and `time` are counted in cells;
 /// where one is so large that it is no longer finite it counts as 0.
 Vector3d smooth_noise(std::uint64_t seed, const Vector3d& place, double time);
 

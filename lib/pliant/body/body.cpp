@@ -82,7 +82,9 @@ std::vector<int> lost_forces(const Grid& grid, const Transform& transform, const
   Field nodes;
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const ForceSelection& now = selection.forces[k];
-    if (!now.deformation.is_empty() && !now.force.is_empty()) continue;
+    const bool holds_region = forces[k].deformation_radius == 0 || !now.deformation.is_empty();
+    const bool holds_load = forces[k].force_radius == 0 || !now.force.is_empty();
+    if (holds_region && holds_load) continue;
     if (nodes.size() == 0) nodes = to_world(transform, rest);
     const ForceSelection at_rest = select_region(grid, nodes, {&forces[k], 1}).forces.front();
     if (is_lost(at_rest, now)) lost.push_back(static_cast<int>(k));

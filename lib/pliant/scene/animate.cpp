@@ -57,7 +57,7 @@ bool has_boolean_values(const tinyxml2::XMLElement& animate) {
 template <int D>
 void read_into(const tinyxml2::XMLElement& animate, ValueKind kind, const std::string& path,
                Findings& findings, auto&& store) {
-  if (std::optional<Curve<D>> curve = read_curve<D>(animate, kind, path, findings))
+  if (std::optional<Curve<D>> curve = read_curve<D>(animate, KeyAxis::Frame, kind, path, findings))
     store(std::move(*curve));
 }
 
@@ -86,6 +86,10 @@ struct CurveOfChannel {
   void operator()(std::optional<Channel<3>>* place) const {
     read_into<3>(animate, ValueKind::Vector, path, findings,
                  [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });
+  }
+  void operator()(PositionChannel* place) const {
+    read_into<3>(animate, ValueKind::Vector, path, findings,
+                 [&](Curve<3> curve) { *place = PositionChannel(std::move(curve)); });
   }
   /// One number or three: three as soon as one key has three, then one number stands for all.
   void operator()(TangentChannel* place) const {

@@ -126,6 +126,10 @@ Attribute channel(std::string_view name, std::optional<Channel<3>>& place, std::
   return channel_row<3>(name, place, unit, any_number, place ? constant_text(*place) : "");
 }
 
+Attribute channel(std::string_view name, PositionChannel& place, std::string_view unit) {
+  return channel_row<3>(name, place, unit, any_number, constant_text(*place.channel()));
+}
+
 Attribute channel(std::string_view name, TangentChannel& place, std::string_view unit) {
   std::string standard = std::visit([](const auto& held) { return constant_text(held); }, place);
   return keyable(custom(name, "number or vector", unit, std::move(standard), "",

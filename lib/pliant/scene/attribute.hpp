@@ -34,11 +34,13 @@ struct Range {
 inline constexpr Range any_number{};
 inline constexpr Range positive{.least = 0, .excludes_least = true};
 inline constexpr Range not_negative{.least = 0};
+inline constexpr Range a_share{.least = 0, .most = 1};
 inline constexpr Range not_zero{.excludes_zero = true};
 
 /// Where the value of a channel goes, constant or animated. Empty: the attribute is no channel.
-using ChannelPlace = std::variant<std::monostate, Channel<1>*, Channel<3>*,
-                                  std::optional<Channel<3>>*, TangentChannel*, Switch*>;
+using ChannelPlace =
+    std::variant<std::monostate, Channel<1>*, Channel<3>*, std::optional<Channel<3>>*,
+                 PositionChannel*, TangentChannel*, Switch*>;
 
 /// One attribute of an element while the element is read: what it takes, where its value goes, and
 /// what the file said. A table of these, one row each, is all that the reader knows of an element.
@@ -63,6 +65,7 @@ Attribute channel(std::string_view name, Channel<1>& place, std::string_view uni
 Attribute channel(std::string_view name, Channel<3>& place, std::string_view unit,
                   Range range = {});
 Attribute channel(std::string_view name, std::optional<Channel<3>>& place, std::string_view unit);
+Attribute channel(std::string_view name, PositionChannel& place, std::string_view unit);
 Attribute channel(std::string_view name, TangentChannel& place, std::string_view unit);
 Attribute channel(std::string_view name, Switch& place);
 

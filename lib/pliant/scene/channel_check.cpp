@@ -42,6 +42,11 @@ Complaint greater_than_zero(const Value<1>& value) {
   return fmt::format("is {}, but must be greater than 0", value[0]);
 }
 
+Complaint a_share_of_the_way(const Value<1>& value) {
+  if (value[0] >= 0 && value[0] <= 1) return {};
+  return fmt::format("is {}, but must be within 0 to 1", value[0]);
+}
+
 template <int D>
 Complaint anything(const Value<D>&) {
   return {};
@@ -85,25 +90,56 @@ class ChannelChecker {
 
   void check(const Force& force) {
     check(force.name, "magnitude", force.magnitude, anything<1>);
-    check(force.name, "deformationRadius", force.deformation_radius, at_least_zero);
+    if (force.group.empty()) {
+      check(force.name, "deformationRadius", force.deformation_radius, at_least_zero);
+    }
     check(force.name, "forceRadius", force.force_radius, at_least_zero);
     std::visit([&](const auto& shape) { check_shape(force.name, shape); }, force.shape);
+  }
+
+  void check(const Group& group) {
+    check_position(group.name, "center", group.center);
+    check(group.name, "deformationRadius", group.deformation_radius, at_least_zero);
   }
 
   std::vector<Error> take_errors() { return std::move(errors_); }
 
  private:
   void check_shape(const std::string& name, const PointChannels& point) {
-    check(name, "center", point.center, anything<3>);
+    check_position(name, "center", point.center);
     check(name, "direction", point.direction, anything<3>);
   }
   void check_shape(const std::string& name, const RadialChannels& radial) {
-    check(name, "center", radial.center, anything<3>);
+    check_position(name, "center", radial.center);
   }
   void check_shape(const std::string& name, const LineChannels& line) {
-    check(name, "from", line.from, anything<3>);
-    check(name, "to", line.to, anything<3>);
+    check_position(name, "from", line.from);
+    check_position(name, "to", line.to);
     if (line.direction) check(name, "direction", *line.direction, anything<3>);
+  }
+  void check_shape(const std::string& name, const UniformChannels& uniform) {
+    check(name, "direction", uniform.direction, anything<3>);
+  }
+  void check_shape(const std::string& name, const VortexChannels& vortex) {
+    check_position(name, "center", vortex.center);
+    check(name, "axis", vortex.axis, anything<3>);
+    check(name, "pull", vortex.pull, anything<1>);
+  }
+  void check_shape(const std::string& name, const NoiseChannels& noise) {
+    check_position(name, "center", noise.center);
+    check(name, "frequency", noise.frequency, at_least_zero);
+    check(name, "rate", noise.rate, at_least_zero);
+  }
+  void check_shape(const std::string&, const InertiaChannels&) {}
+  void check_shape(const std::string&, const CustomForce&) {}
+
+  void check_position(const std::string& name, const std::string& attribute,
+                      const PositionChannel& position) {
+    if (const PathMotion* motion = position.path()) {
+      check(name, attribute + ".progress", motion->progress, a_share_of_the_way);
+    } else {
+      check(name, attribute, *position.channel(), anything<3>);
+    }
   }
 
   // A body with tangents never comes to rest: SPEC 6.
@@ -183,6 +219,7 @@ std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_ch
   ChannelChecker checker(scene, is_checked, should_stop);
   for (const Surface& surface : scene.surfaces) checker.check(surface);
   for (const Force& force : scene.forces) checker.check(force);
+  for (const Group& group : scene.groups) checker.check(group);
   return checker.take_errors();
 }
 

@@ -29,9 +29,16 @@ class ChannelList {
     owner_ = &force.name;
     add("enabled", force.enabled);
     add("magnitude", force.magnitude);
-    add("deformationRadius", force.deformation_radius);
+    if (force.group.empty()) add("deformationRadius", force.deformation_radius);
     add("forceRadius", force.force_radius);
     std::visit([&](const auto& shape) { add_shape(shape); }, force.shape);
+  }
+
+  void add(const Group& group) {
+    owner_ = &group.name;
+    add("enabled", group.enabled);
+    add("center", group.center);
+    add("deformationRadius", group.deformation_radius);
   }
 
   std::vector<NamedChannel> take() { return std::move(channels_); }
@@ -48,11 +55,32 @@ class ChannelList {
     if (line.direction) add("direction", *line.direction);
   }
 
-  void add(const char* attribute, const TangentChannel& tangent) {
+  void add_shape(const UniformChannels& uniform) { add("direction", uniform.direction); }
+  void add_shape(const VortexChannels& vortex) {
+    add("center", vortex.center);
+    add("axis", vortex.axis);
+    add("pull", vortex.pull);
+  }
+  void add_shape(const NoiseChannels& noise) {
+    add("center", noise.center);
+    add("frequency", noise.frequency);
+    add("rate", noise.rate);
+  }
+  void add_shape(const InertiaChannels&) {}
+  void add_shape(const CustomForce&) {}
+
+  void add(const std::string& attribute, const PositionChannel& position) {
+    if (const PathMotion* motion = position.path()) {
+      add(attribute + ".progress", motion->progress);
+    } else {
+      add(attribute, *position.channel());
+    }
+  }
+  void add(const std::string& attribute, const TangentChannel& tangent) {
     std::visit([&](const auto& channel) { add(attribute, channel); }, tangent);
   }
   template <class C>
-  void add(const char* attribute, const C& channel) {
+  void add(const std::string& attribute, const C& channel) {
     channels_.push_back({*owner_ + '.' + attribute, &channel});
   }
 
@@ -78,6 +106,7 @@ std::vector<NamedChannel> channels_of(const Scene& scene) {
   ChannelList list;
   for (const Surface& surface : scene.surfaces) list.add(surface);
   for (const Force& force : scene.forces) list.add(force);
+  for (const Group& group : scene.groups) list.add(group);
   return list.take();
 }
 

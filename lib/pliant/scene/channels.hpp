@@ -8,7 +8,8 @@
 
 namespace pliant {
 
-/// A channel of a scene with its path, `NAME.attribute`.
+/// A channel of a scene with its path, `NAME.attribute`; of a position that follows a path it is
+/// `NAME.attribute.progress`.
 struct NamedChannel {
   std::string path;
   std::variant<const Channel<1>*, const Channel<3>*, const Switch*> channel;
@@ -16,8 +17,9 @@ struct NamedChannel {
   bool is_animated() const;
 };
 
-/// All channels, constant ones too, surface by surface and then force by force, each in the order
-/// of docs/scene-format.md. They point into `scene`, which must outlive them unchanged.
+/// All channels, constant ones too, surface by surface, then force by force, then group by group,
+/// each in the order of docs/scene-format.md. They point into `scene`, which must outlive them
+/// unchanged.
 std::vector<NamedChannel> channels_of(const Scene& scene);
 
 }  // namespace pliant

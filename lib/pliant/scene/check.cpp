@@ -44,7 +44,13 @@ class SceneChecker {
     }
     for (const Force& force : scene_.forces) {
       check_name(force.name);
-      check_targets(force);
+      check_targets("force", force.name, force.targets);
+      check_group(force);
+      check_function(force);
+    }
+    for (const Group& group : scene_.groups) {
+      check_name(group.name);
+      check_targets("group", group.name, group.targets);
     }
     return std::move(errors_);
   }
@@ -84,16 +90,35 @@ class SceneChecker {
     }
   }
 
-  void check_targets(const Force& force) {
-    for (const std::string& target : force.targets) {
+  void check_targets(std::string_view what, const std::string& name,
+                     const std::vector<std::string>& targets) {
+    for (const std::string& target : targets) {
       const bool exists =
           std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
                       [&](const Surface& surface) { return surface.name == target; });
       if (!exists) {
-        complain(
-            force.name, "targets",
-            fmt::format("force \"{}\" targets \"{}\", which is no surface", force.name, target));
+        complain(name, "targets",
+                 fmt::format("{} \"{}\" targets \"{}\", which is no surface", what, name, target));
       }
+    }
+  }
+
+  void check_group(const Force& force) {
+    const bool exists = force.group.empty() ||
+                        std::any_of(scene_.groups.begin(), scene_.groups.end(),
+                                    [&](const Group& group) { return group.name == force.group; });
+    if (!exists) {
+      complain(
+          force.name, "group",
+          fmt::format("force \"{}\" is in \"{}\", which is no group", force.name, force.group));
+    }
+  }
+
+  void check_function(const Force& force) {
+    const auto* custom = std::get_if<CustomForce>(&force.shape);
+    if (custom && !custom->unit_force) {
+      complain(force.name, "unit_force",
+               fmt::format("force \"{}\" is custom, but has no unit_force function", force.name));
     }
   }
 

@@ -26,10 +26,10 @@ inline constexpr double largest_extent = 1e300;
 bool is_name(std::string_view text);
 
 /// What must hold of a scene as a whole, read or built in code: fps > 0; start <= end, within
-/// `largest_frame`, at most `max_frames` frames; names well formed and unique over surfaces and
-/// forces; targets that exist; sheets of at least 3 x 3 and at most `max_sheet_vertices` vertices,
-/// with positive extents. Channels are checked over the frames by `Simulation::make`. Every problem
-/// found, with its line if known.
+/// `largest_frame`, at most `max_frames` frames; names well formed and unique over surfaces,
+/// forces and groups; targets and groups that exist; a custom force that has a function; sheets of
+/// at least 3 x 3 and at most `max_sheet_vertices` vertices, with positive extents. Channels are
+/// checked over the frames by `Simulation::make`. Every problem found, with its line if known.
 std::vector<Error> check_scene(const Scene& scene);
 
 /// Whether a mesh file is there, may be read, and is a regular file: a pipe or a device might never

@@ -1,12 +1,19 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "pliant/scene/element.hpp"
 #include "pliant/scene/scene_file.hpp"
 
 namespace pliant::xml {
 
-/// Reads a force, whose kind is the one that `shape` holds.
-Force read_force(const tinyxml2::XMLElement& element, decltype(Force::shape) shape,
+/// A force of each kind that has an element, with its defaults, in the order of the format.
+std::vector<Force> force_kinds();
+
+/// Reads a force into `force`, which has the defaults of its kind. `group` is the group it stands
+/// in, or null: then it has no deformation radius of its own.
+Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
                  SceneFile& file);
 
 }  // namespace pliant::xml

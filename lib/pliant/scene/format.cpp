@@ -1,7 +1,10 @@
 #include "pliant/scene/format.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <variant>
 
+#include "pliant/scene/force.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/tables.hpp"
 
@@ -25,15 +28,25 @@ ElementFormat element(std::string_view name, std::vector<std::string_view> paren
 }
 
 template <class Part>
-ElementFormat key_element(std::string_view name, std::vector<std::string_view> parents, Need need) {
+ElementFormat key_element(std::string_view name, std::vector<std::string_view> parents, Need need,
+                          KeyAxis axis) {
   Part part;
-  return {name, std::move(parents), need, formats_of(attributes_of(part, ValueKind::Number))};
+  return {name, std::move(parents), need, formats_of(attributes_of(part, axis, ValueKind::Number))};
 }
 
-ElementFormat force(std::string_view name, decltype(Force::shape) shape) {
-  Force force;
-  force.shape = std::move(shape);
-  return element(name, {"scene"}, Need::Optional, std::move(force));
+/// <key> of an <animate> and of a <falloff> differ in what places them.
+ElementFormat key() {
+  ElementFormat format =
+      key_element<KeyText<1>>("key", {"animate", "falloff"}, Need::Required, KeyAxis::Frame);
+  KeyText<1> part;
+  const Table table = attributes_of(part, KeyAxis::Falloff, ValueKind::Number);
+  format.attributes.insert(format.attributes.begin() + 1, table.front().format);
+  return format;
+}
+
+std::vector<std::string_view> with_groups(std::vector<std::string_view> parents) {
+  parents.emplace_back("group");
+  return parents;
 }
 
 ElementFormat later_element(std::string_view name, std::vector<std::string_view> parents) {
@@ -44,7 +57,25 @@ ElementFormat later_element(std::string_view name, std::vector<std::string_view>
 
 std::vector<ElementFormat> scene_format() {
   MeshFile mesh;
-  return {
+  Loop<1> loop;
+  std::vector<std::string_view> forces, positioned;
+  std::vector<ElementFormat> force_formats;
+  for (Force& force : force_kinds()) {
+    const std::string_view kind = kind_of(force);
+    const Table table = attributes_of(force);
+    forces.push_back(kind);
+    if (std::any_of(table.begin(), table.end(), [](const Attribute& row) {
+          return std::holds_alternative<PositionChannel*>(row.channel);
+        }))
+      positioned.push_back(kind);
+    force_formats.push_back({kind, {"scene", "group"}, Need::Optional, formats_of(table)});
+  }
+  std::vector<std::string_view> animated = {"surface", "transform", "material", "tangents",
+                                            "solver"};
+  animated.insert(animated.end(), forces.begin(), forces.end());
+  animated.emplace_back("path");
+
+  std::vector<ElementFormat> formats = {
       element("scene", {}, Need::Required, Scene{}),
       element("surface", {"scene"}, Need::Optional, Surface{}),
       element("grid", {"surface"}, Need::Optional, GridSheet{}),
@@ -55,22 +86,16 @@ std::vector<ElementFormat> scene_format() {
       element("material", {"surface"}, Need::Optional, MaterialChannels{}),
       element("tangents", {"surface"}, Need::Optional, TangentChannels{}),
       element("solver", {"surface"}, Need::Optional, SolverSettings{}),
-      force("point", PointChannels{}),
-      force("radial", RadialChannels{}),
-      force("line", LineChannels{}),
-      later_element("uniform", {"scene"}),
-      later_element("vortex", {"scene"}),
-      later_element("noise", {"scene"}),
-      later_element("inertia", {"scene"}),
-      later_element("group", {"scene"}),
-      later_element("falloff", {"point", "radial", "line"}),
-      key_element<AnimateText<1>>(
-          "animate",
-          {"surface", "transform", "material", "tangents", "solver", "point", "radial", "line"},
-          Need::Optional),
-      key_element<KeyText<1>>("key", {"animate"}, Need::Required),
-      key_element<Loop<1>>("loop", {"animate"}, Need::Optional),
+      element("group", {"scene"}, Need::Optional, Group{}),
+      element("path", with_groups(positioned), Need::Optional, PathText{}),
+      element("waypoint", {"path"}, Need::Required, Waypoint{}),
+      key_element<AnimateText<1>>("falloff", forces, Need::Optional, KeyAxis::Falloff),
+      key_element<AnimateText<1>>("animate", with_groups(animated), Need::Optional, KeyAxis::Frame),
+      key(),
+      {"loop", {"animate"}, Need::Optional, formats_of(attributes_of(loop, ValueKind::Number))},
   };
+  formats.insert(formats.end(), force_formats.begin(), force_formats.end());
+  return formats;
 }
 
 }  // namespace pliant

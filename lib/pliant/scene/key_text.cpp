@@ -222,7 +222,7 @@ Reading<Value<D>> parse_value(std::string_view text, ValueKind kind) {
 }
 
 template <int D>
-Table attributes_of(KeyText<D>& key, ValueKind kind) {
+Table attributes_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
   const std::string_view inherited = "its animate's";
   const std::string_view third = "a third of the segment";
   const auto interpolation =
@@ -230,7 +230,8 @@ Table attributes_of(KeyText<D>& key, ValueKind kind) {
   const auto control =
       parsed("control", key.control, "four numbers", "1", "", "x1, x2: 0 to 1", parse_control);
   return {
-      required(number("frame", key.frame, "frame")),
+      required(axis == KeyAxis::Frame ? number("frame", key.frame, "frame")
+                                      : number("at", key.frame, "1", a_share)),
       required(value_row<D>("value", key.value, kind, "")),
       if_absent(interpolation, inherited),
       if_absent(number("amplitude", key.amplitude, "channel's", not_negative), "the change"),
@@ -249,12 +250,16 @@ Table attributes_of(KeyText<D>& key, ValueKind kind) {
 }
 
 template <int D>
-Table attributes_of(AnimateText<D>& animate, ValueKind kind) {
-  return {
-      required(custom("attribute", "word", "", "", "a channel of its element",
-                      [](std::string_view) { return Reading<void>(); })),
-      extrapolation_row<D>("before", animate.before, kind),
-      extrapolation_row<D>("after", animate.after, kind),
+Table attributes_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
+  Table table;
+  if (axis == KeyAxis::Frame)  // a <falloff> is held outside its keys
+    table = {
+        required(custom("attribute", "word", "", "", "a channel of its element",
+                        [](std::string_view) { return Reading<void>(); })),
+        extrapolation_row<D>("before", animate.before, kind),
+        extrapolation_row<D>("after", animate.after, kind),
+    };
+  const Table shared = {
       tangent_row<D>("tangent", animate.tangent, kind, "auto"),
       parsed("interpolation", animate.interpolation, "interpolation", "", "bezier", "",
              parse_interpolation),
@@ -264,6 +269,8 @@ Table attributes_of(AnimateText<D>& animate, ValueKind kind) {
               {"contain", Overshoot::Contain},
               {"error", Overshoot::Error}}),
   };
+  table.insert(table.end(), shared.begin(), shared.end());
+  return table;
 }
 
 template <int D>
@@ -280,10 +287,10 @@ Table attributes_of(Loop<D>& loop, ValueKind kind) {
 
 template Reading<Value<1>> parse_value<1>(std::string_view, ValueKind);
 template Reading<Value<3>> parse_value<3>(std::string_view, ValueKind);
-template Table attributes_of<1>(KeyText<1>&, ValueKind);
-template Table attributes_of<3>(KeyText<3>&, ValueKind);
-template Table attributes_of<1>(AnimateText<1>&, ValueKind);
-template Table attributes_of<3>(AnimateText<3>&, ValueKind);
+template Table attributes_of<1>(KeyText<1>&, KeyAxis, ValueKind);
+template Table attributes_of<3>(KeyText<3>&, KeyAxis, ValueKind);
+template Table attributes_of<1>(AnimateText<1>&, KeyAxis, ValueKind);
+template Table attributes_of<3>(AnimateText<3>&, KeyAxis, ValueKind);
 template Table attributes_of<1>(Loop<1>&, ValueKind);
 template Table attributes_of<3>(Loop<3>&, ValueKind);
 

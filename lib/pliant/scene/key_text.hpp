@@ -18,6 +18,17 @@ enum class ValueKind {
   Boolean,  ///< `true` or `false`, kept as 1 and 0
 };
 
+/// What keys are placed along.
+enum class KeyAxis {
+  Frame,    ///< time, of an <animate>
+  Falloff,  ///< s = distance / force radius, 0 to 1, of a <falloff>
+};
+
+/// The attribute that places a key: `frame` or `at`.
+constexpr std::string_view place_name(KeyAxis axis) {
+  return axis == KeyAxis::Frame ? "frame" : "at";
+}
+
 /// One value of a curve with D components.
 template <int D>
 Reading<Value<D>> parse_value(std::string_view text, ValueKind kind);
@@ -49,7 +60,7 @@ struct KeyText {
   std::optional<Value<D>> left = {};
 };
 
-/// What an <animate> says besides its keys.
+/// What an <animate> or a <falloff> says besides its keys.
 template <int D>
 struct AnimateText {
   Extrapolation<D> before = {};
@@ -59,12 +70,12 @@ struct AnimateText {
   Overshoot overshoot = Overshoot::Limit;
 };
 
-// The rows of <key>, <animate> and <loop>.
+// The rows of <key>, <animate> or <falloff>, and <loop>.
 
 template <int D>
-Table attributes_of(KeyText<D>& key, ValueKind kind);
+Table attributes_of(KeyText<D>& key, KeyAxis axis, ValueKind kind);
 template <int D>
-Table attributes_of(AnimateText<D>& animate, ValueKind kind);
+Table attributes_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind);
 template <int D>
 Table attributes_of(Loop<D>& loop, ValueKind kind);
 

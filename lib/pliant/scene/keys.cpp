@@ -20,13 +20,17 @@ bool is_sound(Table& table, std::string_view name) {
   return row != nullptr && row->is_sound;
 }
 
-/// Reads one <animate>: first its attributes, then its children in their order.
+/// Reads one <animate> or <falloff>: first its attributes, then its children in their order.
 template <int D>
 class CurveReader {
  public:
-  CurveReader(const tinyxml2::XMLElement& animate, ValueKind kind, std::string channel,
-              Findings& findings)
-      : animate_(animate), kind_(kind), channel_(std::move(channel)), findings_(findings) {}
+  CurveReader(const tinyxml2::XMLElement& animate, KeyAxis axis, ValueKind kind,
+              std::string channel, Findings& findings)
+      : animate_(animate),
+        axis_(axis),
+        kind_(kind),
+        channel_(std::move(channel)),
+        findings_(findings) {}
 
   std::optional<Curve<D>> read();
 
@@ -44,6 +48,7 @@ class CurveReader {
   void check_loop();
 
   const tinyxml2::XMLElement& animate_;
+  KeyAxis axis_;
   ValueKind kind_;
   std::string channel_;
   Findings& findings_;
@@ -65,11 +70,12 @@ template <int D>
 std::optional<Curve<D>> CurveReader<D>::read() {
   const std::size_t problems_before = findings_.problem_count();
   read_defaults();
-  key_table_ = attributes_of(key_, kind_);
-  const Child children[] = {
+  key_table_ = attributes_of(key_, axis_, kind_);
+  std::vector<Child> children = {
       {"key", [&](const tinyxml2::XMLElement& element) { read_key(element); }},
-      {"loop", [&](const tinyxml2::XMLElement& element) { read_loop(element); }},
   };
+  if (axis_ == KeyAxis::Frame)
+    children.push_back({"loop", [&](const tinyxml2::XMLElement& element) { read_loop(element); }});
   const bool all_known = read_children(animate_, children, findings_);
   if (curve_.keys.empty() && all_known)
     findings_.add_problem(
@@ -98,7 +104,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
 template <int D>
 void CurveReader<D>::read_defaults() {
   if (kind_ == ValueKind::Boolean) defaults_.interpolation.kind = Interpolation::Kind::Step;
-  Table table = attributes_of(defaults_, kind_);
+  Table table = attributes_of(defaults_, axis_, kind_);
   read_attributes(animate_, table, findings_);
   check_stepping(animate_, table, defaults_.interpolation);
   curve_.before = defaults_.before;
@@ -129,19 +135,21 @@ void CurveReader<D>::read_key(const tinyxml2::XMLElement& element) {
 
 template <int D>
 void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
-  if (!is_sound(key_table_, "frame")) {
+  const std::string_view name = place_name(axis_);
+  if (!is_sound(key_table_, name)) {
     previous_.reset();
     return;
   }
   if (previous_ && key_.frame == *previous_)
     findings_.add_problem(element.GetLineNum(),
-                          fmt::format("{} frame {} repeats the key of line {}", tag(element),
+                          fmt::format("{} {} {} repeats the key of line {}", tag(element), name,
                                       key_.frame, previous_line_));
   else if (previous_ && key_.frame < *previous_)
-    findings_.add_problem(element.GetLineNum(),
-                          fmt::format("{} frame {} is not after frame {} of line {}: keys stand in "
-                                      "increasing order",
-                                      tag(element), key_.frame, *previous_, previous_line_));
+    findings_.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} {} {} is not after {} {} of line {}: keys stand in "
+                    "increasing order",
+                    tag(element), name, key_.frame, name, *previous_, previous_line_));
   previous_ = key_.frame;
   previous_line_ = element.GetLineNum();
 }
@@ -283,14 +291,14 @@ void CurveReader<D>::check_loop() {
 }  // namespace
 
 template <int D>
-std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, ValueKind kind,
-                                   const std::string& channel, Findings& findings) {
-  return CurveReader<D>(animate, kind, channel, findings).read();
+std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, KeyAxis axis,
+                                   ValueKind kind, const std::string& channel, Findings& findings) {
+  return CurveReader<D>(animate, axis, kind, channel, findings).read();
 }
 
-template std::optional<Curve<1>> read_curve<1>(const tinyxml2::XMLElement&, ValueKind,
+template std::optional<Curve<1>> read_curve<1>(const tinyxml2::XMLElement&, KeyAxis, ValueKind,
                                                const std::string&, Findings&);
-template std::optional<Curve<3>> read_curve<3>(const tinyxml2::XMLElement&, ValueKind,
+template std::optional<Curve<3>> read_curve<3>(const tinyxml2::XMLElement&, KeyAxis, ValueKind,
                                                const std::string&, Findings&);
 
 }  // namespace pliant::xml

@@ -9,10 +9,11 @@
 
 namespace pliant::xml {
 
-/// Reads the keys, the loop and the outside modes of an <animate> and compiles them. `channel` is
-/// its path, such as `poke.magnitude`, for notes. Nothing if there was a problem.
+/// Reads the keys of an <animate> or a <falloff>, of an <animate> the loop and the outside modes
+/// too, and compiles them. `channel` is the path, such as `poke.magnitude`, for notes. Nothing if
+/// there was a problem.
 template <int D>
-std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, ValueKind kind,
-                                   const std::string& channel, Findings& findings);
+std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, KeyAxis axis,
+                                   ValueKind kind, const std::string& channel, Findings& findings);
 
 }  // namespace pliant::xml

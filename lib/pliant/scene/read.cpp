@@ -10,6 +10,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/force.hpp"
+#include "pliant/scene/group.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/rules.hpp"
@@ -24,13 +25,15 @@ namespace {
 
 constexpr std::size_t largest_file = std::size_t{256} << 20U;  // bytes
 
-/// The children of <scene> that have a name, right or wrong in all else.
-std::vector<Named> named_children(const tinyxml2::XMLElement& root) {
-  std::vector<Named> named;
-  for (const auto* child = root.FirstChildElement(); child; child = child->NextSiblingElement())
+/// Appends the children that have a name, right or wrong in all else, and those of groups.
+void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& named) {
+  for (const auto* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
     if (const auto* name = child->FindAttribute("name"); name && is_name(name->Value()))
       named.push_back({child->Name(), name->Value(), name->GetLineNum()});
-  return named;
+    const bool is_in_scene = parent.Parent() == parent.GetDocument();
+    if (is_in_scene && child->Name() == std::string_view("group"))
+      add_named_children(*child, named);
+  }
 }
 
 Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
@@ -44,26 +47,21 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   const std::optional<double> fps =
       find(table, "fps")->is_sound ? std::optional<double>(scene.fps) : std::nullopt;
   using Element = tinyxml2::XMLElement;
-  const auto force = [&](auto shape) {
-    return [&, shape](const Element& child) {
-      scene.forces.push_back(read_force(child, shape, file));
-    };
-  };
-  const Child children[] = {
+  std::vector<Child> children = {
       {"surface",
        [&](const Element& child) { scene.surfaces.push_back(read_surface(child, fps, file)); }},
-      {"point", force(PointChannels{})},
-      {"radial", force(RadialChannels{})},
-      {"line", force(LineChannels{})},
-      {"uniform", {}},
-      {"vortex", {}},
-      {"noise", {}},
-      {"inertia", {}},
-      {"group", {}},
   };
+  for (const Force& kind : force_kinds())
+    children.push_back({kind_of(kind), [&, kind](const Element& child) {
+                          scene.forces.push_back(read_force(child, kind, nullptr, file));
+                        }});
+  children.push_back({"group", [&](const Element& child) {
+                        scene.groups.push_back(read_group(child, scene.forces, file));
+                      }});
   read_children(root, children, file.findings);
 
-  const std::vector<Named> named = named_children(root);
+  std::vector<Named> named;
+  add_named_children(root, named);
   check_unique(named, file.findings);
   check_targets(scene, file.targets, named, file.findings);
   scene.origin = file.origin;

@@ -11,6 +11,7 @@
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
+#include "pliant/scene/force.hpp"
 #include "pliant/scene/nearest.hpp"
 
 namespace pliant::xml {
@@ -21,6 +22,13 @@ bool are_constant(std::span<Attribute> table, std::initializer_list<std::string_
     const Attribute* row = find(table, name);
     return row != nullptr && row->is_constant();
   });
+}
+
+bool is_force_element(std::string_view element) {
+  const std::vector<Force> kinds = force_kinds();
+  return element == "group" || std::any_of(kinds.begin(), kinds.end(), [&](const Force& kind) {
+           return kind_of(kind) == element;
+         });
 }
 
 /// The line of the last of these attributes that is given, else `line`.
@@ -106,8 +114,7 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
       if (names.contains(target)) continue;
       const auto found = elements.find(target);
       const bool is_named = found != elements.end();
-      const bool is_force = is_named && (found->second == "point" || found->second == "radial" ||
-                                         found->second == "line");
+      const bool is_force = is_named && is_force_element(found->second);
       if (is_named && !is_force) continue;
       findings.add_problem(
           listed.line,

@@ -28,7 +28,7 @@ void check_well_posed(const MaterialChannels& material, std::span<Attribute> tab
 void check_steps(const SolverSettings& solver, std::span<Attribute> table, double fps, int line,
                  Findings& findings);
 
-/// A child of <scene> that has a name.
+/// A surface, a force or a group that has a name.
 struct Named {
   std::string_view element;
   std::string name;

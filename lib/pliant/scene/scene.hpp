@@ -2,18 +2,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "pliant/body/settings.hpp"
+#include "pliant/core/field.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/falloff.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/timeline/channel.hpp"
+#include "pliant/timeline/curve.hpp"
+#include "pliant/timeline/position.hpp"
 
 namespace pliant {
 
@@ -79,20 +84,63 @@ struct Surface {
 
 /// The thesis's force: a sphere that pushes along one direction.
 struct PointChannels {
-  Channel<3> center = Value<3>{0, 0, 0};     ///< world [length]
-  Channel<3> direction = Value<3>{0, 1, 0};  ///< world; normalised
+  PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
+  Channel<3> direction = Value<3>{0, 1, 0};    ///< world; normalised
 };
 
 /// Pushes away from a centre; a negative magnitude attracts.
 struct RadialChannels {
-  Channel<3> center = Value<3>{0, 0, 0};  ///< world [length]
+  PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
 };
 
 /// Acts around a segment, along `direction` or away from the segment when there is none.
 struct LineChannels {
-  Channel<3> from = Value<3>{0, 0, 0};  ///< world [length]
-  Channel<3> to = Value<3>{1, 0, 0};    ///< world [length]
+  PositionChannel from = Value<3>{0, 0, 0};  ///< world [length]
+  PositionChannel to = Value<3>{1, 0, 0};    ///< world [length]
   std::optional<Channel<3>> direction = {};
+};
+
+/// The same everywhere, like gravity.
+struct UniformChannels {
+  Channel<3> direction = Value<3>{0, 1, 0};  ///< world; normalised
+};
+
+/// Turns about a line, by the right hand, and draws towards it.
+struct VortexChannels {
+  PositionChannel center = Value<3>{0, 0, 0};  ///< a point of the line, world [length]
+  Channel<3> axis = Value<3>{0, 1, 0};         ///< the line's direction, world; normalised
+  Channel<1> pull = 0;                         ///< inward share, the turning one being 1
+};
+
+/// Wavers in space and time, on a lattice that has a corner at the centre.
+struct NoiseChannels {
+  PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
+  Channel<1> frequency = 1;                    ///< [cells/length], >= 0
+  Channel<1> rate = 1;                         ///< [cells/s], >= 0; frame 0 is second 0
+  std::optional<std::uint64_t> seed = {};      ///< absent: the scene's
+};
+
+/// What the motion of a surface's transform does to the surface; its magnitude is 1 as a rule.
+struct InertiaChannels {};
+
+/// When a force is asked.
+struct ForceTime {
+  int frame = 0;
+  double seconds = 0;  ///< frame / fps
+};
+
+/// A kind of force of an embedding program's own: it answers what every kind answers (see
+/// forces/force.hpp) about a position in the world, at a time.
+///
+/// The functions must be pure, giving the same bits for the same arguments, or else the run is not
+/// reproducible; and safe to call from several threads at once, when the simulation has several.
+/// They are called for each node, each frame. What they throw goes through `Simulation::at` and
+/// `preview_forces` to the caller, and the simulation starts over from rest when it is next asked.
+struct CustomForce {
+  /// The distance that selects, >= 0, infinite where out of any reach [length]; none: 0 everywhere.
+  std::function<double(const Vector3d& p, const ForceTime& time)> distance = {};
+  /// The force per unit of magnitude and falloff, finite. Must be there.
+  std::function<Vector3d(const Vector3d& p, const ForceTime& time)> unit_force = {};
 };
 
 /// One force of a scene.
@@ -100,11 +148,30 @@ struct Force {
   std::string name;                   ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
   Switch enabled = true;              ///< a disabled force selects nothing
   std::vector<std::string> targets;   ///< names of surfaces; empty: all
+  std::string group = {};             ///< name of the group that it is in; empty: none. The group
+                                      ///< selects in its place: `deformation_radius` is not read
   Channel<1> magnitude = 0;           ///< [length b/uv^4]
   Channel<1> deformation_radius = 1;  ///< selects the region, world [length], >= 0
   Channel<1> force_radius = 1;        ///< selects the nodes that are pushed, world [length], >= 0
   Falloff falloff = Falloff::Constant;
-  std::variant<PointChannels, RadialChannels, LineChannels> shape = PointChannels{};
+  /// Drawn by hand over s = distance / force radius from 0 to 1, in place of `falloff`.
+  std::optional<Curve<1>> falloff_curve = {};
+  std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
+               NoiseChannels, InertiaChannels, CustomForce>
+      shape = PointChannels{};
+};
+
+/// `point`, `radial`, …: the name of its element in a scene file; `custom` has none there.
+std::string_view kind_of(const Force& force);
+
+/// One region for several forces, the thesis's multipleForce (7.). A force in a group acts when and
+/// where both do.
+struct Group {
+  std::string name;                            ///< as of a force, unique among them too
+  Switch enabled = true;                       ///< a disabled group silences its forces
+  std::vector<std::string> targets = {};       ///< names of surfaces; empty: all
+  PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
+  Channel<1> deformation_radius = 1;           ///< selects the region, world [length], >= 0
 };
 
 /// Where a scene's parts were written, for messages. Empty for a scene built in code.
@@ -134,7 +201,8 @@ struct Scene {
   int end = 1;      ///< last frame, >= start, at most 10^6 frames
   std::uint64_t seed = 0;
   std::vector<Surface> surfaces;
-  std::vector<Force> forces;
+  std::vector<Force> forces;  ///< those in groups too; they add up in this order, that of the file
+  std::vector<Group> groups;
   SceneOrigin origin = {};
   std::vector<SceneNote> notes = {};  ///< found while reading, in the order of lines
 };

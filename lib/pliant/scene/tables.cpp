@@ -20,6 +20,37 @@ Table attributes_of(LineChannels& line) {
           if_absent(channel("direction", line.direction, "1"), "away from the segment")};
 }
 
+Table attributes_of(UniformChannels& uniform) {
+  return {channel("direction", uniform.direction, "1")};
+}
+
+Table attributes_of(VortexChannels& vortex) {
+  return {channel("center", vortex.center, "length"), channel("axis", vortex.axis, "1"),
+          channel("pull", vortex.pull, "1")};
+}
+
+template <class Place>
+Attribute seed(Place& place, std::string standard) {
+  return custom("seed", "integer", "", std::move(standard), "0 to 18446744073709551615",
+                [&place](std::string_view text) -> Reading<void> {
+                  const Reading<std::uint64_t> number = parse_natural(text);
+                  if (!number) return tl::unexpected(number.error());
+                  place = *number;
+                  return {};
+                });
+}
+
+Table attributes_of(NoiseChannels& noise) {
+  return {channel("center", noise.center, "length"),
+          channel("frequency", noise.frequency, "cells/length", not_negative),
+          channel("rate", noise.rate, "cells/s", not_negative),
+          if_absent(seed(noise.seed, ""), "the scene's")};
+}
+
+Table attributes_of(InertiaChannels&) { return {}; }
+
+Table attributes_of(CustomForce&) { return {}; }
+
 /// The format has one version so far; another one is not misread as this one.
 Attribute version() {
   return custom("version", "integer", "", "1", "1", [](std::string_view text) -> Reading<void> {
@@ -36,16 +67,6 @@ Attribute frame_rate(double& fps) {
                   const Reading<double> rate = parse_rate(text);
                   if (!rate) return tl::unexpected(rate.error());
                   fps = *rate;
-                  return {};
-                });
-}
-
-Attribute seed(std::uint64_t& place) {
-  return custom("seed", "integer", "", "0", "0 to 18446744073709551615",
-                [&place](std::string_view text) -> Reading<void> {
-                  const Reading<std::uint64_t> number = parse_natural(text);
-                  if (!number) return tl::unexpected(number.error());
-                  place = *number;
                   return {};
                 });
 }
@@ -76,7 +97,7 @@ Table attributes_of(Scene& scene) {
       frame_rate(scene.fps),
       required(integer("start", scene.start, "frame", -largest_frame, largest_frame)),
       required(integer("end", scene.end, "frame", -largest_frame, largest_frame)),
-      seed(scene.seed),
+      seed(scene.seed, "0"),
   };
 }
 
@@ -178,6 +199,31 @@ Table attributes_of(Force& force) {
   table.insert(table.end(), std::make_move_iterator(own.begin()),
                std::make_move_iterator(own.end()));
   return table;
+}
+
+Table attributes_of(Group& group) {
+  return {
+      name_of(group.name),
+      channel("enabled", group.enabled),
+      if_absent(names("targets", group.targets), "all surfaces"),
+      channel("center", group.center, "length"),
+      channel("deformationRadius", group.deformation_radius, "length", not_negative),
+  };
+}
+
+Table attributes_of(PathText& path) {
+  return {
+      required(custom("attribute", "word", "", "", "a position of its element",
+                      [](std::string_view) { return Reading<void>(); })),
+      channel("progress", path.progress, "1", a_share),
+      boolean("closed", path.is_closed),
+  };
+}
+
+Table attributes_of(Waypoint& waypoint) {
+  return {required(custom("at", "vector", "length", "", "", [&waypoint](std::string_view text) {
+    return parse_numbers(text, waypoint.at);
+  }))};
 }
 
 }  // namespace pliant::xml

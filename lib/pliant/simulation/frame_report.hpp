@@ -1,15 +1,17 @@
 #pragma once
 
-#include <cstddef>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/body/body.hpp"
 
 namespace pliant {
 
-/// A force that is enabled at a frame and targets the surface.
+/// A force, or the region of a group, that is enabled at a frame and targets the surface.
 struct ForceReport {
-  std::size_t force = 0;     ///< index in the scene
+  std::string name;          ///< of the force, or of the group whose region it is
+  std::string_view kind;     ///< the scene's word for it: point, ..., group; "custom"
   SampledForce sampled;      ///< centre, radii, direction, magnitude at the frame; world space
   ForceSelection selection;  ///< its boxes in nodes, and which region it acts in
   Push push;                 ///< what it gives to the nodes that move
@@ -24,7 +26,7 @@ struct SurfaceReport {
   int settled = 0;                     ///< nodes put at rest ahead of the solve
   std::vector<Region> regions;         ///< also those too small to solve
   std::vector<bool> region_is_solved;  ///< for each of them
-  std::vector<ForceReport> forces;     ///< in the order of the scene
+  std::vector<ForceReport> forces;     ///< in the order of the scene, then those of groups
 };
 
 /// What the solve at one frame, which makes the next frame's mesh, takes from this frame's.

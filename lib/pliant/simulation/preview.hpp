@@ -10,8 +10,9 @@
 
 namespace pliant {
 
-/// What one force would do to one surface: alone, on the surface at rest, its tangents 0, so that
-/// an author can choose magnitudes and densities without running the scene.
+/// What one force would do to one surface: alone but for the region of the group that it is in, on
+/// the surface at rest, its tangents 0, so that an author can choose magnitudes and densities
+/// without running the scene.
 struct ForcePreview {
   std::size_t surface = 0;   ///< index in the scene
   std::size_t force = 0;     ///< index in the scene
@@ -19,7 +20,7 @@ struct ForcePreview {
   int magnitude_frame = 0;   ///< the first frame that has it
   std::optional<int> frame;  ///< the first at which it is enabled and selects a node of the
                              ///< surface; what follows is as of this frame, and 0 without one
-  Box region;                ///< nodes that it selects
+  Box region;                ///< nodes that it, or the group, selects
   bool is_solvable = false;  ///< at least 3 x 3 nodes
   bool is_solved = false;    ///< and not so many that a preview would take long; else what follows
                              ///< is 0
@@ -34,7 +35,8 @@ inline constexpr int most_previewed_unknowns = 200'000;
 
 /// For every enabled surface, each force that targets it and is enabled at some frame; in the order
 /// of surfaces, then of forces. The search for a frame at which a force selects something ends
-/// after some 10^9 distances, a few seconds. Errors: those of the solvers; Interrupted.
+/// after some 10^9 distances, a few seconds. Errors: those of the solvers; NotFinite where a custom
+/// force gives no sound answer; Interrupted.
 Result<std::vector<ForcePreview>> preview_forces(const Simulation& simulation,
                                                  const SimulationOptions& options = {});
 

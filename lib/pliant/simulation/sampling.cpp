@@ -1,7 +1,10 @@
 #include "pliant/simulation/sampling.hpp"
 
 #include <algorithm>
-#include <type_traits>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace pliant {
 namespace {
@@ -16,8 +19,65 @@ Vector3d sample_tangent(const TangentChannel& channel, int frame) {
   return to_vector(std::get<Channel<3>>(channel).at(frame));
 }
 
+// -rho (X(f+1) - 2 X(f) + X(f-1)) p fps^2 for a surface's transform X, as a function of the point
+// in the world, X(f) p. In differences, so that a surface at rest or in even motion has an exact 0
+// of it as far as its transforms do.
+InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
+  const Transform before = sample_transform(surface.transform, frame - 1);
+  const Transform now = sample_transform(surface.transform, frame);
+  const Transform after = sample_transform(surface.transform, frame + 1);
+  const double scale = -surface.material.density.at(frame)[0] * fps * fps;
+  const Matrix3d turning = (after.linear - now.linear) - (now.linear - before.linear);
+  // Row k: the object-space vector of the world's axis k.
+  const Field axes = vectors_to_object(now, Matrix3d::Identity());
+  InertiaForce inertia;
+  inertia.origin = now.translation;
+  inertia.offset =
+      scale * ((after.translation - now.translation) - (now.translation - before.translation));
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) {
+      inertia.linear(row, k) =
+          scale * (turning(row, 0) * axes(k, 0) + turning(row, 1) * axes(k, 1) +
+                   turning(row, 2) * axes(k, 2));
+    }
+  }
+  return inertia;
+}
+
+std::string place_text(const Vector3d& p) {
+  return fmt::format("({}, {}, {})", p.x(), p.y(), p.z());
+}
+
+// The program's functions at one time, their answers looked at before anything counts on them.
+FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
+                            const ForceTime& time, ForceFaults& faults) {
+  const auto distance = [&custom, &name, time, &faults](const Vector3d& p) {
+    if (!custom.distance) return 0.0;
+    const double delta = custom.distance(p, time);
+    if (delta >= 0) return delta;
+    faults.add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0", name,
+                           place_text(p), delta));
+    return std::numeric_limits<double>::infinity();
+  };
+  const auto unit_force = [&custom, &name, time, &faults](const Vector3d& p) -> Vector3d {
+    const Vector3d force = custom.unit_force(p, time);
+    if (force.allFinite()) return force;
+    faults.add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
+                           place_text(p), place_text(force)));
+    return Vector3d::Zero();
+  };
+  return {distance, unit_force};
+}
+
 struct SampleShape {
+  const Scene& scene;
+  const Force& force;
+  const Surface& surface;
   int frame;
+  ForceFaults& faults;
+
+  double seconds() const { return frame / scene.fps; }
+
   ForceShape operator()(const PointChannels& point) const {
     return PointForce{to_vector(point.center.at(frame)), to_vector(point.direction.at(frame))};
   }
@@ -25,25 +85,72 @@ struct SampleShape {
     return RadialForce{to_vector(radial.center.at(frame))};
   }
   ForceShape operator()(const LineChannels& line) const {
-    LineForce force{to_vector(line.from.at(frame)), to_vector(line.to.at(frame)), {}};
-    if (line.direction) force.direction = to_vector(line.direction->at(frame));
-    return force;
+    LineForce sampled{to_vector(line.from.at(frame)), to_vector(line.to.at(frame)), {}};
+    if (line.direction) sampled.direction = to_vector(line.direction->at(frame));
+    return sampled;
+  }
+  ForceShape operator()(const UniformChannels& uniform) const {
+    return UniformForce{to_vector(uniform.direction.at(frame))};
+  }
+  ForceShape operator()(const VortexChannels& vortex) const {
+    return VortexForce{to_vector(vortex.center.at(frame)), to_vector(vortex.axis.at(frame)),
+                       vortex.pull.at(frame)[0]};
+  }
+  ForceShape operator()(const NoiseChannels& noise) const {
+    return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],
+                      noise.rate.at(frame)[0] * seconds(), noise.seed.value_or(scene.seed)};
+  }
+  ForceShape operator()(const InertiaChannels&) const {
+    return sample_inertia(surface, scene.fps, frame);
+  }
+  ForceShape operator()(const CustomForce& custom) const {
+    return sample_custom(custom, force.name, {frame, seconds()}, faults);
   }
 };
 
-}  // namespace
-
-SampledForce sample_force(const Force& force, int frame) {
-  return {.shape = std::visit(SampleShape{frame}, force.shape),
-          .magnitude = force.magnitude.at(frame)[0],
-          .deformation_radius = force.deformation_radius.at(frame)[0],
-          .force_radius = force.force_radius.at(frame)[0],
-          .falloff = force.falloff};
+bool holds(const std::vector<std::string>& targets, const std::string& surface) {
+  return targets.empty() || std::find(targets.begin(), targets.end(), surface) != targets.end();
 }
 
-bool targets(const Force& force, const std::string& surface) {
-  return force.targets.empty() ||
-         std::find(force.targets.begin(), force.targets.end(), surface) != force.targets.end();
+}  // namespace
+
+void ForceFaults::add(std::string message) {
+  const std::lock_guard lock(mutex_);
+  if (first_.empty()) first_ = std::move(message);
+}
+
+std::string ForceFaults::first() const {
+  const std::lock_guard lock(mutex_);
+  return first_;
+}
+
+SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
+                          ForceFaults& faults) {
+  return {.shape = std::visit(SampleShape{scene, force, surface, frame, faults}, force.shape),
+          .magnitude = force.magnitude.at(frame)[0],
+          .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
+          .force_radius = force.force_radius.at(frame)[0],
+          .falloff = force.falloff,
+          .falloff_curve = force.falloff_curve ? &*force.falloff_curve : nullptr};
+}
+
+SampledForce sample_group(const Group& group, int frame) {
+  return region_sphere(to_vector(group.center.at(frame)), group.deformation_radius.at(frame)[0]);
+}
+
+const Group* group_of(const Scene& scene, const Force& force) {
+  if (force.group.empty()) return nullptr;
+  const auto found = std::find_if(scene.groups.begin(), scene.groups.end(),
+                                  [&](const Group& group) { return group.name == force.group; });
+  return found != scene.groups.end() ? &*found : nullptr;
+}
+
+bool is_enabled(const Force& force, const Group* group, int frame) {
+  return force.enabled.at(frame) && (!group || group->enabled.at(frame));
+}
+
+bool targets(const Force& force, const Group* group, const std::string& surface) {
+  return holds(force.targets, surface) && (!group || holds(group->targets, surface));
 }
 
 Transform sample_transform(const TransformChannels& channels, int frame) {
@@ -65,11 +172,25 @@ SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int fram
       .frame_length = 1 / scene.fps,
       .dt = surface.solver.dt.at(frame)[0],
       .forces = {}};
-  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
-    const Force& force = scene.forces[k];
-    if (!targets(force, surface.name) || !force.enabled.at(frame)) continue;
-    inputs.body.forces.push_back(sample_force(force, frame));
-    inputs.force_indices.push_back(k);
+  inputs.faults = std::make_unique<ForceFaults>();
+  std::vector<const Group*> groups;  // that the sampled forces are in
+  for (const Force& force : scene.forces) {
+    const Group* group = group_of(scene, force);
+    if (!targets(force, group, surface.name) || !is_enabled(force, group, frame)) continue;
+    inputs.body.forces.push_back(sample_force(scene, force, surface, frame, *inputs.faults));
+    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group});
+    inputs.body.selectors.push_back(static_cast<int>(groups.size()));
+    groups.push_back(group);
+  }
+  for (const Group& group : scene.groups) {
+    if (!holds(group.targets, surface.name) || !group.enabled.at(frame)) continue;
+    const auto selector = static_cast<int>(inputs.body.forces.size());
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      if (groups[k] == &group) inputs.body.selectors[k] = selector;
+    }
+    inputs.body.forces.push_back(sample_group(group, frame));
+    inputs.sources.push_back({group.name, "group", group.targets, true});
+    inputs.body.selectors.push_back(selector);
   }
   return inputs;
 }

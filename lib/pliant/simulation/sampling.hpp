@@ -1,6 +1,10 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/body/body.hpp"
@@ -10,18 +14,51 @@ namespace pliant {
 
 // From channels to the values of one frame; not for other rooms.
 
-/// What acts on `surface` at `frame`.
+/// What custom forces answered that is no answer: a distance that is negative or no number, a force
+/// that is not finite. The run goes on with "out of reach" and 0 in its place, to be ended by
+/// whoever asked for the inputs.
+class ForceFaults {
+ public:
+  void add(std::string message);
+  std::string first() const;  ///< naming the force, the place and the answer; empty: none
+
+ private:
+  mutable std::mutex mutex_;
+  std::string first_;
+};
+
+/// Who stands behind a sampled force: a force, or the region of a group.
+struct ForceSource {
+  std::string_view name;
+  std::string_view kind;  ///< the scene's word for it: point, ..., group; "custom"
+  std::span<const std::string> targets;
+  bool selects = true;  ///< false: it is in a group, which selects
+};
+
+/// What acts on `surface` at `frame`. Refers to the scene, which must outlive it unchanged.
 struct SurfaceInputs {
-  BodyInputs body;
-  std::vector<std::size_t> force_indices;  ///< of `body.forces` in `scene.forces`
+  BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups
+  std::vector<ForceSource> sources;  ///< of `body.forces`; the selector of one in a group is that
+                                     ///< of the group
+  std::unique_ptr<ForceFaults> faults;
 };
 SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame);
 
-SampledForce sample_force(const Force& force, int frame);
+/// A force as it acts on `surface`; that of a group selects no region. Custom ones tell `faults`,
+/// which must outlive the result.
+SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
+                          ForceFaults& faults);
+
+/// The region of a group.
+SampledForce sample_group(const Group& group, int frame);
 
 Transform sample_transform(const TransformChannels& channels, int frame);
 
-/// Whether a force acts on a surface at all.
-bool targets(const Force& force, const std::string& surface);
+/// The group that a force is in; null: none.
+const Group* group_of(const Scene& scene, const Force& force);
+
+/// Whether a force, and the group that it is in, if any, acts at a frame, on a surface.
+bool is_enabled(const Force& force, const Group* group, int frame);
+bool targets(const Force& force, const Group* group, const std::string& surface);
 
 }  // namespace pliant

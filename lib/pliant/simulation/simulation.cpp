@@ -141,8 +141,16 @@ Result<void> Simulation::reach(int frame) {
                 fmt::format("frame {} is outside the scene's frames {} to {}", frame, scene_.start,
                             scene_.end));
   }
-  if (auto reached = go_to(frame); !reached) {
-    // Some bodies may have stepped and others not: start over, so that the next call is sound.
+  // When it fails, some bodies may have stepped and others not: start over, so that the next call
+  // is sound. What is thrown is a custom force's.
+  Result<void> reached;
+  try {
+    reached = go_to(frame);
+  } catch (...) {
+    rewind(scene_.start);
+    throw;
+  }
+  if (!reached) {
     rewind(scene_.start);
     return reached;
   }
@@ -181,8 +189,11 @@ Result<SurfaceReport> Simulation::report_of(std::size_t index) const {
     const SampledForce& force = inputs.body.forces[k];
     const ForceSelection& selection = step->selection.forces[k];
     report.forces.push_back(
-        {inputs.force_indices[k], force, selection,
+        {std::string(inputs.sources[k].name), inputs.sources[k].kind, force, selection,
          push_of(body.grid(), nodes, force, selection.force, step->patches_of_force(k))});
+  }
+  if (std::string fault = inputs.faults->first(); !fault.empty()) {
+    return fail(ErrorCode::NotFinite, std::move(fault));
   }
   return report;
 }
@@ -239,6 +250,9 @@ Result<void> Simulation::step() {
     if (!outcomes[k]) continue;
     warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
     const auto& [inputs, report] = *outcomes[k];
+    if (std::string fault = inputs.faults->first(); !fault.empty()) {
+      return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame_));
+    }
     if (!report) return fail(located(report.error(), surface, frame_));
     warn(k, inputs, *report);
   }
@@ -250,35 +264,38 @@ void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
   using enum Warning::Kind;
   const Surface& surface = scene_.surfaces[surface_index];
   for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
-    const Force& force = scene_.forces[inputs.force_indices[k]];
+    const ForceSource& source = inputs.sources[k];
+    const std::string force(source.name);
     const ForceSelection& selected = report.selection.forces[k];
     const bool is_solved = !report.patches_of_force(k).empty();
     const bool reaches =
         is_solved && overlaps(report.selection.regions[selected.region], selected.force);
     if (!is_solved && !selected.deformation.is_empty()) {
-      warnings_.add(RegionTooSmall, surface.name, force.name, frame_);
+      warnings_.add(RegionTooSmall, surface.name, force, frame_);
     }
     const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
     if (is_solved && !selected.force.is_empty() && !reaches && has_magnitude) {
-      warnings_.add(OutsideRegion, surface.name, force.name, frame_);
+      warnings_.add(OutsideRegion, surface.name, force, frame_);
     }
     // A force that names its targets is expected to touch each; one for all surfaces, some of them.
-    const std::string place = force.targets.empty() ? std::string() : surface.name;
-    const bool touches = !selected.deformation.is_empty() || reaches;
-    warnings_.expect(SelectsNothing, place, force.name, frame_);
-    if (touches) warnings_.happened(SelectsNothing, place, force.name);
+    const std::string place = source.targets.empty() ? std::string() : surface.name;
+    const bool touches = !source.selects || !selected.deformation.is_empty() || reaches;
+    if (source.selects) {
+      warnings_.expect(SelectsNothing, place, force, frame_);
+      if (touches) warnings_.happened(SelectsNothing, place, force);
+    }
     // What another warning tells of this frame is not told twice.
     const bool is_lost =
         std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
     const bool is_here = reaches || (touches && selected.force.is_empty());
     if (is_solved && has_magnitude && is_here && !is_lost) {
-      warnings_.expect(PushesNothing, place, force.name, frame_);
-      if (report.pushing[k]) warnings_.happened(PushesNothing, place, force.name);
+      warnings_.expect(PushesNothing, place, force, frame_);
+      if (report.pushing[k]) warnings_.happened(PushesNothing, place, force);
     }
   }
   for (const int k : report.lost) {
-    const Force& force = scene_.forces[inputs.force_indices[static_cast<std::size_t>(k)]];
-    warnings_.add(LostNodes, surface.name, force.name, frame_);
+    const std::string force(inputs.sources[static_cast<std::size_t>(k)].name);
+    warnings_.add(LostNodes, surface.name, force, frame_);
   }
   if (!inputs.body.tangents.are_zero()) {
     warnings_.expect(TangentsUnused, surface.name, {}, frame_);

@@ -66,7 +66,8 @@ class Simulation {
 
   /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
   /// ahead. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed, OutOfMemory,
-  /// Interrupted, naming surface and frame.
+  /// Interrupted, naming surface and frame; NotFinite also where a custom force gives no sound
+  /// answer, naming it too. What a custom force throws goes on to the caller.
   Result<Frame> at(int frame);
 
   /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface

@@ -1,0 +1,114 @@
+#include "pliant/scene/path.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/scene/animate.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/tables.hpp"
+
+namespace pliant::xml {
+namespace {
+
+bool is_position(const Attribute& row) {
+  return std::holds_alternative<PositionChannel*>(row.channel);
+}
+
+/// The waypoints as they stand, with their lines.
+struct Waypoints {
+  std::vector<Value<3>> places;
+  std::vector<int> lines;
+};
+
+void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Findings& findings) {
+  Waypoint waypoint;
+  Table table = attributes_of(waypoint);
+  read_attributes(element, table, findings);
+  read_children(element, {}, findings);
+  waypoints.places.push_back(waypoint.at);
+  waypoints.lines.push_back(element.GetLineNum());
+}
+
+/// The position that is meant, marked as taken; null where there is none, which is a problem.
+Attribute* find_position(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
+                         Findings& findings) {
+  const tinyxml2::XMLAttribute* given = element.FindAttribute("attribute");
+  if (!given) return nullptr;  // told with the other attributes
+  const std::string name(trimmed(given->Value()));
+  Attribute* row = find(rows, name);
+  if (!row || !is_position(*row)) {
+    std::vector<std::string_view> positions;
+    for (const Attribute& candidate : rows)
+      if (is_position(candidate)) positions.push_back(candidate.format.name);
+    const std::string parent = tag(*element.Parent()->ToElement());
+    findings.add_problem(
+        given->GetLineNum(),
+        value_problem(
+            element, "attribute", name,
+            row ? fmt::format("is no position; the positions of {} are: {}", parent,
+                              positions.empty() ? "none" : listed(positions))
+                : fmt::format("{} has no such position{}", parent, hint(name, positions))));
+    return nullptr;
+  }
+  if (row->line != 0)
+    findings.add_problem(
+        element.GetLineNum(),
+        value_problem(element, "attribute", name,
+                      fmt::format("is {} already (line {}); one of both must go",
+                                  row->is_animated ? "animated" : "given", row->line)));
+  else
+    row->line = element.GetLineNum();
+  row->is_animated = true;
+  return row;
+}
+
+std::optional<Path> make_path(const tinyxml2::XMLElement& element, Waypoints waypoints,
+                              bool is_closed, Findings& findings) {
+  auto path = Path::make(std::move(waypoints.places), is_closed);
+  if (path) return std::move(*path);
+  const PathError& error = path.error();
+  if (error.waypoint < waypoints.lines.size())
+    findings.add_problem(waypoints.lines[error.waypoint],
+                         fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
+  else
+    findings.add_problem(element.GetLineNum(), fmt::format("{} has {} waypoints; {}", tag(element),
+                                                           error.waypoint, error.message));
+  return std::nullopt;
+}
+
+}  // namespace
+
+void read_path(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
+               const std::string& owner, SceneFile& file) {
+  const std::size_t problems = file.findings.problem_count();
+  PathText text;
+  Table table = attributes_of(text);
+  read_attributes(element, table, file.findings);
+  Attribute* position = find_position(element, rows, file.findings);
+  const std::string path_name =
+      fmt::format("{}.{}", owner, position ? position->format.name : std::string_view("path"));
+  Waypoints waypoints;
+  using Element = tinyxml2::XMLElement;
+  const Child children[] = {
+      {"waypoint", [&](const Element& child) { read_waypoint(child, waypoints, file.findings); }},
+      {"animate",
+       [&](const Element& child) { read_animate(child, table, path_name, file.findings); }},
+  };
+  read_children(element, children, file.findings);
+  std::optional<Path> path;
+  if (file.findings.problem_count() == problems)
+    path = make_path(element, std::move(waypoints), text.is_closed, file.findings);
+  if (!position) return;
+  position->is_sound = position->is_sound && path.has_value();
+  if (path)
+    *std::get<PositionChannel*>(position->channel) =
+        PathMotion{std::move(*path), std::move(text.progress)};
+  if (!owner.empty()) record(path_name, table, file);
+}
+
+}  // namespace pliant::xml
