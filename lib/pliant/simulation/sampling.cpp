@@ -60,7 +60,7 @@ FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
     return std::numeric_limits<double>::infinity();
   };
   const auto unit_force = [&custom, &name, time, &faults](const Vector3d& p) -> Vector3d {
-    const Vector3d force = custom.unit_force(p, time);
+    Vector3d force = custom.unit_force(p, time);
     if (force.allFinite()) return force;
     faults.add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
                            place_text(p), place_text(force)));
