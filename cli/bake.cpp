@@ -5,13 +5,18 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <system_error>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "interrupt.hpp"
+#include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
+#include "pliant/io/sequence.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
@@ -105,6 +110,66 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options,
                        ? output.writer->write(frame.number(), surface.positions())
                        : output.writer->write(frame.number(), surface.object_positions());
     if (!written) return written;
+  }
+  return {};
+}
+
+bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  // Absolute first: of a relative name that is not there nothing would be resolved.
+  const auto place = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  };
+  return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
+}
+
+// The files that writing `out` makes, for every chosen surface.
+std::vector<std::filesystem::path> output_files(const BakeOptions& options, const Scene& scene,
+                                                const FrameRange& frames) {
+  std::vector<std::string> names;
+  for (const Surface& surface : scene.surfaces) {
+    if (!options.surface || *options.surface == surface.name) names.push_back(surface.name);
+  }
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names) {
+    const std::filesystem::path file = file_for(options.out, name, names.size() == 1);
+    if (ending_of(file) == ".npy") {
+      files.push_back(file);
+      continue;
+    }
+    for (int frame = frames.first; frame <= frames.last; ++frame) {
+      files.push_back(sequence_file(file, frame));
+    }
+  }
+  return files;
+}
+
+// The file for the regions must be none that the bake reads or writes, nor a device or a pipe,
+// which the new file would replace.
+Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
+                                const FrameRange& frames) {
+  if (!options.regions) return {};
+  const std::filesystem::path regions = *options.regions;
+  const auto refuse = [&](std::string_view reason) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--regions {}: {}", printable(regions.string()), reason));
+  };
+  std::error_code ignored;
+  if (regions.empty()) return refuse("names no file");
+  if (std::filesystem::exists(regions, ignored) &&
+      !std::filesystem::is_regular_file(regions, ignored)) {
+    return refuse("it is there, and no regular file");
+  }
+  if (name_one_file(regions, options.scene)) return refuse("it is the scene");
+  for (const Surface& surface : scene.surfaces) {
+    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
+    if (mesh && name_one_file(regions, mesh->path)) return refuse("it is a mesh of the scene");
+  }
+  for (const std::filesystem::path& file : output_files(options, scene, frames)) {
+    // Looking at the disk for each of a million frames would take long.
+    if (file.filename() == regions.filename() && name_one_file(regions, file)) {
+      return refuse("it is a file that -o writes");
+    }
   }
   return {};
 }
@@ -207,6 +272,8 @@ int run_bake(const BakeOptions& options) {
   if (!scene) return report(scene.error());
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
+
+  if (auto free = check_regions_file(options, *scene, *frames); !free) return report(free.error());
 
   auto simulation = Simulation::make(*std::move(scene), simulation_options(options.resources));
   if (!simulation) return report(simulation.error());
