@@ -312,6 +312,15 @@ class Regions(Command):
         self.assertEqual(frames[0]["surfaces"][0]["recovering"], 0)
         self.assertGreater(frames[-1]["surfaces"][0]["recovering"], 0)
 
+    def test_it_replaces_nothing_else(self):
+        scene = self.write("r.xml", self.SCENE)
+        os.mkfifo(self.path("pipe"))
+        for out, regions in (("o.npy", "r.xml"), ("o.npy", "./o-sheet.npy"), ("o.obj", "o-late.0004.obj"),
+                             ("o.npy", "pipe"), ("o.npy", "."), ("o.npy", "")):
+            result = self.run_pliant("bake", scene, "-o", out, "--regions", regions, code=2)
+            self.assertRegex(result.stderr, r"error: --regions \S*: ")
+            self.assertEqual(self.files(), ["pipe", "r.xml"])
+
     def test_it_is_there_whole_or_not_at_all(self):
         scene = self.write("r.xml", self.SCENE)
         self.run_pliant("bake", scene, "-o", "o.npy", "--regions", "none/r.json", code=1)
@@ -603,10 +612,6 @@ BAD_SCENES = {
     "a misspelt kind of force": (POINT, '<vortx name="v"/>', 4, 'did you mean "vortex"'),
     "another kind's attribute": (POINT, '<vortex name="v" direction="0 1 0"/>', 4,
                                  'no attribute "direction"'),
-    "a negative frequency": (POINT, '<noise name="n" frequency="-1"/>', 4, "must be at least 0"),
-    "a rate below 0 at a frame": (
-        POINT, '<noise name="n">' + animated("rate", (1, 1), (9, -1)) + "</noise>", 4,
-        "n.rate at frame 6 is -"),
     "a seed below 0": (POINT, '<noise name="n" seed="-1"/>', 4, "must be at least 0"),
     "a position given and on a path": (
         POINT, f'<point name="p" center="0 0 0">{PATH}</point>', 4, "one of both must go"),

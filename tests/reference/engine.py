@@ -322,7 +322,9 @@ def unit_forces(force, frame, points, run):
     """The force per magnitude and falloff at each point, in world space; `run` is the surface's."""
     if force.kind == "noise":
         place = force.sample("frequency", frame) * (points - force.sample("center", frame))
-        time = force.sample("rate", frame) * frame / float(run.scene.fps)
+        # Each frame since the start at its own rate.
+        rates = [force.sample("rate", before) for before in range(run.scene.start, frame)]
+        time = (force.sample("rate", run.scene.start) * run.scene.start + sum(rates)) / float(run.scene.fps)
         time = np.broadcast_to(time, points.shape[:-1] + (1,))
         return noise(force.seed, np.concatenate([place, time], axis=-1))
     if force.kind == "inertia":

@@ -229,8 +229,6 @@ TEST_CASE("scenes built in code are held to the rules of groups and custom force
   s.groups[0].deformation_radius = 1;
   s.forces[0].shape = CustomForce{};
   CHECK_THAT(message(s), contains_text("custom, but has no unit_force"));
-  s.forces[0].shape = NoiseChannels{.frequency = -1};
-  CHECK(message(s) == "f.frequency at frame 1 is -1, but must be at least 0");
   s.forces[0].shape = PointChannels{
       .center = PathMotion{Path::make({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}).value(), 1.25}};
   CHECK(message(s) == "f.center.progress at frame 1 is 1.25, but must be within 0 to 1");

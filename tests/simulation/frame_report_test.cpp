@@ -1,5 +1,7 @@
 #include "pliant/simulation/frame_report.hpp"
 
+#include <cmath>
+
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 
@@ -115,4 +117,20 @@ TEST_CASE("the load told of is the load in world space", "[simulation][report]")
   const ForceReport force = simulation.report(1)->surfaces[0].forces.at(0);
   REQUIRE(force.push.node_count > 0);
   CHECK((force.push.sum - force.push.node_count * 700 * Vector3d(0, 0.6, 0.8)).norm() < 1e-9);
+}
+
+TEST_CASE("a report may outlive the simulation, custom forces included", "[simulation][report]") {
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})}, 3);
+  s.forces[0].shape = CustomForce{
+      .distance = {}, .unit_force = [](const Vector3d& p, const ForceTime&) -> Vector3d {
+        return p.x() > 100 ? Vector3d::Constant(std::nan("")) : Vector3d(0, 1, 0);
+      }};
+  const FrameReport report = [&] {
+    auto simulation = Simulation::make(s).value();
+    s = {};
+    return simulation.report(2).value();
+  }();
+  const ForceShape& shape = report.surfaces[0].forces.at(0).sampled.shape;
+  CHECK(unit_force(shape, {1, 2, 3}) == Vector3d(0, 1, 0));
+  CHECK(unit_force(shape, {101, 0, 0}) == Vector3d::Zero());
 }

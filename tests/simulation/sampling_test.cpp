@@ -25,6 +25,25 @@ Names names(const Scene& scene, int surface, int frame) {
 
 }  // namespace
 
+TEST_CASE("a keyed rate of a noise never makes it jump", "[simulation][sampling]") {
+  Scene s = scene({sheet("a")}, {});
+  s.start = -3;
+  s.end = 40;
+  const auto time_at = [&](const Channel<1>& rate, int frame) {
+    s.forces = {poke("n", {0, 0, 0})};
+    s.forces[0].shape = NoiseChannels{.rate = rate};
+    return std::get<NoiseForce>(sample_inputs(s, s.surfaces[0], frame).body.forces[0].shape).time;
+  };
+  // A curve that stands still is a constant.
+  const Channel<1> steady = testing::curve({{0, 2.5}, {10, 2.5}});
+  const Channel<1> slowing = testing::curve({{0, 2.5}, {20, 0}});
+  for (int frame = s.start; frame < s.end; ++frame) {
+    CHECK(time_at(steady, frame) == Approx(time_at(2.5, frame)).margin(1e-12));
+    const double passed = time_at(slowing, frame + 1) - time_at(slowing, frame);
+    CHECK(passed == Approx(slowing.at(frame)[0] / s.fps).margin(1e-12));
+  }
+}
+
 TEST_CASE("only enabled forces that target a surface act on it", "[simulation][sampling]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("everywhere", {0, 0, 0}), poke("on_b", {1, 0, 0}),
                                              poke("switched", {2, 0, 0})});

@@ -144,6 +144,22 @@ TEST_CASE("warnings tell of islands each by itself", "[simulation][warnings]") {
   CHECK(warnings_of(s, 4).empty());
 }
 
+TEST_CASE("a union tells of what is too small in it", "[simulation][warnings]") {
+  Scene s = scene({sheet("a", 41)}, {poke("f", {-10, 0, 0}), poke("g", {10.5, 0, 0.5})}, 4);
+  s.surfaces[0].solver.combine = Combine::Union;
+  CHECK(warnings_of(s, 4).empty());
+  s.forces[1].deformation_radius = 0.8;  // 2 x 2 nodes, far from those of the other force
+  for (const double magnitude : {0.0, 5000.0}) {
+    s.forces[1].magnitude = magnitude;
+    const auto small = warnings_of(s, 4);
+    REQUIRE(small.size() == 1);
+    CHECK(small[0].kind == Warning::Kind::RegionTooSmall);
+    CHECK(small[0].force == "g");
+  }
+  s.forces[1].shape = PointChannels{.center = Value<3>{-8.5, 0, 0.5}};  // among them
+  CHECK(warnings_of(s, 4).empty());
+}
+
 TEST_CASE("a surface that starts behind the end is a warning", "[simulation][warnings]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})}, 5);
   s.surfaces[1].solver.start_frame = 5;  // the solve at 5 would show at 6

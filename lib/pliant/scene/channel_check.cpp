@@ -127,8 +127,8 @@ class ChannelChecker {
   }
   void check_shape(const std::string& name, const NoiseChannels& noise) {
     check_position(name, "center", noise.center);
-    check(name, "frequency", noise.frequency, at_least_zero);
-    check(name, "rate", noise.rate, at_least_zero);
+    check(name, "frequency", noise.frequency, anything<1>);
+    check(name, "rate", noise.rate, anything<1>);
   }
   void check_shape(const std::string&, const InertiaChannels&) {}
   void check_shape(const std::string&, const CustomForce&) {}

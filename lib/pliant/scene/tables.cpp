@@ -42,9 +42,8 @@ Attribute seed(Place& place, std::string standard) {
 
 Table attributes_of(NoiseChannels& noise) {
   return {channel("center", noise.center, "length"),
-          channel("frequency", noise.frequency, "cells/length", not_negative),
-          channel("rate", noise.rate, "cells/s", not_negative),
-          if_absent(seed(noise.seed, ""), "the scene's")};
+          channel("frequency", noise.frequency, "cells/length"),
+          channel("rate", noise.rate, "cells/s"), if_absent(seed(noise.seed, ""), "the scene's")};
 }
 
 Table attributes_of(InertiaChannels&) { return {}; }

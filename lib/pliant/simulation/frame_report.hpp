@@ -10,9 +10,11 @@ namespace pliant {
 
 /// A force, or the region of a group, that is enabled at a frame and targets the surface.
 struct ForceReport {
-  std::string name;          ///< of the force, or of the group whose region it is
-  std::string_view kind;     ///< the scene's word for it: point, ..., group; "custom"
-  SampledForce sampled;      ///< centre, radii, direction, magnitude at the frame; world space
+  std::string name;       ///< of the force, or of the group whose region it is
+  std::string_view kind;  ///< the scene's word for it: point, ..., group; "custom"
+  /// Centre, radii, direction, magnitude at the frame; world space. A drawn falloff belongs to the
+  /// simulation's scene.
+  SampledForce sampled;
   ForceSelection selection;  ///< its boxes in nodes, and which region it acts in
   Push push;                 ///< what it gives to the nodes that move
 };

@@ -137,7 +137,7 @@ class Previewer {
 
   Result<void> solve(ForcePreview& result) {
     const Surface& surface = scene_.surfaces[result.surface];
-    const SurfaceInputs inputs = sample_inputs(scene_, surface, *result.frame);
+    const BodyInputs body = sample_body(scene_, surface, *result.frame);
     const GridMapping& mapping = rest_shapes_[result.surface].mapping;
     const Grid region{result.region.columns(), result.region.rows(), mapping.grid.hu,
                       mapping.grid.hv};
@@ -148,20 +148,19 @@ class Previewer {
     if (const Group* group = group_of(scene_, force)) {
       acting.push_back(sample_group(*group, *result.frame));
     }
-    const Field nodes = to_world(inputs.body.transform, mapping.rest);
+    const Field nodes = to_world(body.transform, mapping.rest);
     const Selection selection = select_region(mapping.grid, nodes, acting);
-    const Field load = vectors_to_object(inputs.body.transform,
-                                         assemble_load(mapping.grid, nodes, acting, selection));
+    const Field load =
+        vectors_to_object(body.transform, assemble_load(mapping.grid, nodes, acting, selection));
     if (auto sound = check_faults(surface, *result.frame); !sound) return sound;
 
     const auto solver = make_solver(available_solvers().front(), &memory_);
-    const auto lambda = smallest_eigenvalue(*solver, region, inputs.body.stiffness, should_stop_);
+    const auto lambda = smallest_eigenvalue(*solver, region, body.stiffness, should_stop_);
     if (!lambda) return fail(lambda.error());
     const auto settled = solver->solve(interior_of(region, load));
     if (!settled) return fail(settled.error());
-    result.static_peak =
-        vectors_to_world(inputs.body.transform, *settled).rowwise().norm().maxCoeff();
-    const auto& [density, damping] = inputs.body.dynamics;
+    result.static_peak = vectors_to_world(body.transform, *settled).rowwise().norm().maxCoeff();
+    const auto& [density, damping] = body.dynamics;
     if (density > 0) {
       // rho q'' + eta q' + lambda q = 0 for the slowest vibration.
       result.frequency = std::sqrt(*lambda / density) / (2 * std::numbers::pi);
@@ -172,7 +171,7 @@ class Previewer {
   }
 
   Result<void> check_faults(const Surface& surface, int frame) const {
-    const std::string fault = faults_.first();
+    const std::string fault = faults_->first();
     if (fault.empty()) return {};
     return fail(ErrorCode::NotFinite,
                 fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, fault),
@@ -185,7 +184,7 @@ class Previewer {
   MemoryBudget memory_;
   Ball ball_;                        // around the surface in hand
   std::int64_t distances_left_ = 0;  // that may be measured for a pair
-  ForceFaults faults_;
+  std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
 };
 
 }  // namespace

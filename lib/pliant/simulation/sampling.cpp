@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -50,20 +51,22 @@ std::string place_text(const Vector3d& p) {
 
 // The program's functions at one time, their answers looked at before anything counts on them.
 FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
-                            const ForceTime& time, ForceFaults& faults) {
-  const auto distance = [&custom, &name, time, &faults](const Vector3d& p) {
-    if (!custom.distance) return 0.0;
-    const double delta = custom.distance(p, time);
+                            const ForceTime& time, const std::shared_ptr<ForceFaults>& faults) {
+  // By value: a report of a frame may outlive the scene.
+  const auto distance = [function = custom.distance, name, time, faults](const Vector3d& p) {
+    if (!function) return 0.0;
+    const double delta = function(p, time);
     if (delta >= 0) return delta;
-    faults.add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0", name,
-                           place_text(p), delta));
+    faults->add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0", name,
+                            place_text(p), delta));
     return std::numeric_limits<double>::infinity();
   };
-  const auto unit_force = [&custom, &name, time, &faults](const Vector3d& p) -> Vector3d {
-    Vector3d force = custom.unit_force(p, time);
+  const auto unit_force = [function = custom.unit_force, name, time,
+                           faults](const Vector3d& p) -> Vector3d {
+    Vector3d force = function(p, time);
     if (force.allFinite()) return force;
-    faults.add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
-                           place_text(p), place_text(force)));
+    faults->add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
+                            place_text(p), place_text(force)));
     return Vector3d::Zero();
   };
   return {distance, unit_force};
@@ -74,9 +77,18 @@ struct SampleShape {
   const Force& force;
   const Surface& surface;
   int frame;
-  ForceFaults& faults;
+  const std::shared_ptr<ForceFaults>& faults;
 
   double seconds() const { return frame / scene.fps; }
+
+  // The cells of time that have passed by the frame, each frame at its own rate, so that the
+  // pattern never jumps. docs/model.md, "Forces".
+  double noise_cells(const Channel<1>& rate) const {
+    if (!rate.is_animated() || frame <= scene.start) return rate.at(frame)[0] * seconds();
+    double cells = rate.at(scene.start)[0] * scene.start;
+    for (int before = scene.start; before < frame; ++before) cells += rate.at(before)[0];
+    return cells / scene.fps;
+  }
 
   ForceShape operator()(const PointChannels& point) const {
     return PointForce{to_vector(point.center.at(frame)), to_vector(point.direction.at(frame))};
@@ -98,7 +110,7 @@ struct SampleShape {
   }
   ForceShape operator()(const NoiseChannels& noise) const {
     return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],
-                      noise.rate.at(frame)[0] * seconds(), noise.seed.value_or(scene.seed)};
+                      noise_cells(noise.rate), noise.seed.value_or(scene.seed)};
   }
   ForceShape operator()(const InertiaChannels&) const {
     return sample_inertia(surface, scene.fps, frame);
@@ -125,7 +137,7 @@ std::string ForceFaults::first() const {
 }
 
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          ForceFaults& faults) {
+                          const std::shared_ptr<ForceFaults>& faults) {
   return {.shape = std::visit(SampleShape{scene, force, surface, frame, faults}, force.shape),
           .magnitude = force.magnitude.at(frame)[0],
           .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
@@ -159,35 +171,39 @@ Transform sample_transform(const TransformChannels& channels, int frame) {
                         channels.rotate_order);
 }
 
-SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame) {
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
   const MaterialChannels& material = surface.material;
   const TangentChannels& tangents = surface.tangents;
+  return {.transform = sample_transform(surface.transform, frame),
+          .stiffness = {material.b.at(frame)[0], material.c.at(frame)[0], material.d.at(frame)[0]},
+          .dynamics = {material.density.at(frame)[0], material.damping.at(frame)[0]},
+          .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
+                       sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
+          .frame_length = 1 / scene.fps,
+          .dt = surface.solver.dt.at(frame)[0],
+          .forces = {}};
+}
+
+SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame) {
   SurfaceInputs inputs;
-  inputs.body = {
-      .transform = sample_transform(surface.transform, frame),
-      .stiffness = {material.b.at(frame)[0], material.c.at(frame)[0], material.d.at(frame)[0]},
-      .dynamics = {material.density.at(frame)[0], material.damping.at(frame)[0]},
-      .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
-                   sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
-      .frame_length = 1 / scene.fps,
-      .dt = surface.solver.dt.at(frame)[0],
-      .forces = {}};
-  inputs.faults = std::make_unique<ForceFaults>();
-  std::vector<const Group*> groups;  // that the sampled forces are in
+  inputs.body = sample_body(scene, surface, frame);
+  inputs.faults = std::make_shared<ForceFaults>();
+  std::map<std::string_view, const Group*> group_named;
+  for (const Group& group : scene.groups) group_named.emplace(group.name, &group);
+  std::map<const Group*, std::vector<std::size_t>> members;  // looked up only, never walked through
   for (const Force& force : scene.forces) {
-    const Group* group = group_of(scene, force);
+    const auto found = group_named.find(force.group);
+    const Group* const group = found != group_named.end() ? found->second : nullptr;
     if (!targets(force, group, surface.name) || !is_enabled(force, group, frame)) continue;
-    inputs.body.forces.push_back(sample_force(scene, force, surface, frame, *inputs.faults));
+    inputs.body.forces.push_back(sample_force(scene, force, surface, frame, inputs.faults));
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group});
-    inputs.body.selectors.push_back(static_cast<int>(groups.size()));
-    groups.push_back(group);
+    if (group) members[group].push_back(inputs.body.selectors.size());
+    inputs.body.selectors.push_back(static_cast<int>(inputs.body.selectors.size()));
   }
   for (const Group& group : scene.groups) {
     if (!holds(group.targets, surface.name) || !group.enabled.at(frame)) continue;
     const auto selector = static_cast<int>(inputs.body.forces.size());
-    for (std::size_t k = 0; k < groups.size(); ++k) {
-      if (groups[k] == &group) inputs.body.selectors[k] = selector;
-    }
+    for (const std::size_t member : members[&group]) inputs.body.selectors[member] = selector;
     inputs.body.forces.push_back(sample_group(group, frame));
     inputs.sources.push_back({group.name, "group", group.targets, true});
     inputs.body.selectors.push_back(selector);

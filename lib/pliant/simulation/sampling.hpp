@@ -40,14 +40,15 @@ struct SurfaceInputs {
   BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups
   std::vector<ForceSource> sources;  ///< of `body.forces`; the selector of one in a group is that
                                      ///< of the group
-  std::unique_ptr<ForceFaults> faults;
+  std::shared_ptr<ForceFaults> faults;  ///< shared by the custom ones among the forces
 };
+/// The same without the forces.
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);
 SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame);
 
-/// A force as it acts on `surface`; that of a group selects no region. Custom ones tell `faults`,
-/// which must outlive the result.
+/// A force as it acts on `surface`; that of a group selects no region. Custom ones tell `faults`.
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          ForceFaults& faults);
+                          const std::shared_ptr<ForceFaults>& faults);
 
 /// The region of a group.
 SampledForce sample_group(const Group& group, int frame);

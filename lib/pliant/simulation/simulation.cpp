@@ -48,6 +48,19 @@ tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin
   return fail(std::move(first));
 }
 
+// Whether any node in the box moves.
+bool moves_any(std::span<const Patch> patches, const Box& box) {
+  for (const Patch& patch : patches) {
+    const Box inside = intersection(patch.box, box);
+    for (int j = inside.j0; j <= inside.j1; ++j) {
+      for (int i = inside.i0; i <= inside.i1; ++i) {
+        if (patch.holds(i, j)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
 
 }  // namespace
@@ -270,7 +283,10 @@ void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
     const bool is_solved = !report.patches_of_force(k).empty();
     const bool reaches =
         is_solved && overlaps(report.selection.regions[selected.region], selected.force);
-    if (!is_solved && !selected.deformation.is_empty()) {
+    // What a union solves may lie elsewhere altogether.
+    const bool is_elsewhere = surface.solver.combine == Combine::Union &&
+                              !moves_any(report.patches_of_force(k), selected.deformation);
+    if ((!is_solved || is_elsewhere) && !selected.deformation.is_empty()) {
       warnings_.add(RegionTooSmall, surface.name, force, frame_);
     }
     const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
@@ -288,7 +304,8 @@ void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
     const bool is_lost =
         std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
     const bool is_here = reaches || (touches && selected.force.is_empty());
-    if (is_solved && has_magnitude && is_here && !is_lost) {
+    const bool is_told = is_lost || (is_elsewhere && !selected.deformation.is_empty());
+    if (is_solved && has_magnitude && is_here && !is_told) {
       warnings_.expect(PushesNothing, place, force, frame_);
       if (report.pushing[k]) warnings_.happened(PushesNothing, place, force);
     }
