@@ -61,15 +61,11 @@ SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
 }
 
 Field residual_of_domain(const PlateSystem& system, const Field& w, const Field& f) {
-  using Real = long double;
+  using Real = ExtendedStencil::Real;
   const Grid& grid = system.grid;
   const int M = grid.columns;
   const std::ptrdiff_t two_rows = std::ptrdiff_t{2} * M;
-  const Real hu = grid.hu;
-  const Real hv = grid.hv;
-  const Real b = system.stiffness.b / (hu * hu * hu * hu);
-  const Real c = system.stiffness.c / (hu * hu * hv * hv);
-  const Real d = system.stiffness.d / (hv * hv * hv * hv);
+  const ExtendedStencil stencil(system);
 
   const std::vector<int> numbers = unknown_numbers(system);
   PLIANT_EXPECTS(w.rows() == unknown_count(system) && f.rows() == w.rows());
@@ -87,12 +83,8 @@ Field residual_of_domain(const PlateSystem& system, const Field& w, const Field&
       const Real right = numbers[node + 1] < 0 ? p[0] : p[2];
       const Real below = numbers[node - M] < 0 ? p[0] : p[-two_rows];
       const Real above = numbers[node + M] < 0 ? p[0] : p[two_rows];
-      const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
-      const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
-      const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
-                        2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
-      result(row, component) = static_cast<double>(
-          f(row, component) - (system.shift * p[0] + b * uuuu + c * uuvv + d * vvvv));
+      result(row, component) =
+          static_cast<double>(f(row, component) - stencil.at(p, left, right, below, above));
     }
   }
   return result;

@@ -55,15 +55,11 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
 
 Field residual(const PlateSystem& system, const Field& w, const Field& f) {
   if (!system.interior.empty()) return residual_of_domain(system, w, f);
-  using Real = long double;
+  using Real = ExtendedStencil::Real;
   const Grid& grid = system.grid;
   PLIANT_EXPECTS(w.rows() == unknown_count(grid) && f.rows() == unknown_count(grid));
   const int M = grid.columns;
-  const Real hu = grid.hu;
-  const Real hv = grid.hv;
-  const Real b = system.stiffness.b / (hu * hu * hu * hu);
-  const Real c = system.stiffness.c / (hu * hu * hv * hv);
-  const Real d = system.stiffness.d / (hv * hv * hv * hv);
+  const ExtendedStencil stencil(system);
 
   Field result(f.rows(), 3);
   std::vector<Real> nodes(static_cast<std::size_t>(grid.node_count()));  // the rim stays 0
@@ -81,12 +77,8 @@ Field residual(const PlateSystem& system, const Field& w, const Field& f) {
         const Real right = i == M - 2 ? p[0] : p[2];
         const Real below = j == 1 ? p[0] : p[-2 * M];
         const Real above = j == grid.rows - 2 ? p[0] : p[2 * M];
-        const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
-        const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
-        const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
-                          2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
-        result(row, component) = static_cast<double>(
-            f(row, component) - (system.shift * p[0] + b * uuuu + c * uuvv + d * vvvv));
+        result(row, component) =
+            static_cast<double>(f(row, component) - stencil.at(p, left, right, below, above));
       }
     }
   }

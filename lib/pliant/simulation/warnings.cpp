@@ -29,8 +29,7 @@ std::string Warning::message() const {
     case Kind::PushesNothing:
       return fmt::format(
           "the magnitude of \"{}\" has no effect on {} {}: no node that moves is in its force box, "
-          "or "
-          "its direction or falloff is 0 there",
+          "or its direction or falloff is 0 there",
           force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
     case Kind::NeverStarts:
       return fmt::format("surface \"{}\" is not solved {}: its startFrame comes later", surface,
