@@ -140,4 +140,13 @@ void record(const std::string& name, std::span<const Attribute> table, SceneFile
   }
 }
 
+void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
+                   const std::vector<std::string>& targets, Table& table, SceneFile& file) {
+  if (!targets.empty())
+    file.targets.push_back({element.Name(), targets, find(table, "targets")->line});
+  if (name.empty()) return;
+  file.origin.lines[name] = element.GetLineNum();
+  record(name, table, file);
+}
+
 }  // namespace pliant::xml

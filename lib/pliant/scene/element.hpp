@@ -46,4 +46,9 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
 /// Writes down where what an element's table holds stands in the file, and what is not sound.
 void record(const std::string& name, std::span<const Attribute> table, SceneFile& file);
 
+/// The same for what may have targets, a force or a group, once it is read: also where it stands
+/// and which surfaces it names. Requires: the table has "targets".
+void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
+                   const std::vector<std::string>& targets, Table& table, SceneFile& file);
+
 }  // namespace pliant::xml

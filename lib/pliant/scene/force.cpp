@@ -60,12 +60,7 @@ Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* 
     force.group = group->name;
     check_radius(element, table, file.findings);
   }
-  if (!force.targets.empty())
-    file.targets.push_back({element.Name(), force.targets, find(table, "targets")->line});
-  if (!force.name.empty()) {
-    file.origin.lines[force.name] = element.GetLineNum();
-    record(force.name, table, file);
-  }
+  record_acting(element, force.name, force.targets, table, file);
   return force;
 }
 

@@ -45,12 +45,7 @@ Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces
                           forces.push_back(read_force(child, kind, &group, file));
                         }});
   read_children(element, children, file.findings);
-  if (!group.targets.empty())
-    file.targets.push_back({element.Name(), group.targets, find(table, "targets")->line});
-  if (!group.name.empty()) {
-    file.origin.lines[group.name] = element.GetLineNum();
-    record(group.name, table, file);
-  }
+  record_acting(element, group.name, group.targets, table, file);
   note_idle_targets(group, std::span(forces).subspan(first), file);
   return group;
 }
