@@ -28,11 +28,13 @@ TEST_CASE("solvers agree with dense Cholesky", "[plate][solver]") {
     const Field w = solver->solve(f).value();
     const Eigen::MatrixXd dense = dense_operator(system);
     const Field expected = dense.llt().solve(f);
-    // Backward stable both: the forward error is the condition number times a few eps.
-    const double condition = dense.norm() * dense.inverse().norm();
+    // Backward stable both: the forward error is the condition number times a few eps. In sine
+    // space the diagonal comes close to 0 with c close to its bound, which no edge makes up for.
+    const double near_bound = stiffness.c < 0 ? 2 / (2 + stiffness.c) : 1;
+    const double condition = near_bound * dense.norm() * dense.inverse().norm();
     CHECK((w - expected).norm() <= 50 * condition * 1.1e-16 * expected.norm());
     // And the residual is small whatever the condition.
-    CHECK((dense * w - f).norm() <= 1e-14 * (dense.norm() * w.norm() + f.norm()));
+    CHECK((dense * w - f).norm() <= 1e-14 * near_bound * (dense.norm() * w.norm() + f.norm()));
   }
 }
 
@@ -102,5 +104,6 @@ TEST_CASE("ill-conditioned plates are solved to the last digits", "[plate][solve
 TEST_CASE("every solver has a name and the default one comes first", "[plate][solver]") {
   CHECK(name_of(SolverKind::Cholmod) == "cholmod");
   CHECK(name_of(SolverKind::Eigen) == "eigen");
-  CHECK(available_solvers().back() == SolverKind::Eigen);
+  CHECK(name_of(SolverKind::Spectral) == "spectral");
+  CHECK(available_solvers().back() == SolverKind::Spectral);
 }

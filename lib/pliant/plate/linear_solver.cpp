@@ -9,20 +9,28 @@ namespace pliant {
 
 std::vector<SolverKind> available_solvers() {
 #ifdef PLIANT_WITH_CHOLMOD
-  return {SolverKind::Cholmod, SolverKind::Eigen};
+  return {SolverKind::Cholmod, SolverKind::Eigen, SolverKind::Spectral};
 #else
-  return {SolverKind::Eigen};
+  return {SolverKind::Eigen, SolverKind::Spectral};
 #endif
 }
 
 std::string_view name_of(SolverKind kind) {
-  return kind == SolverKind::Cholmod ? "cholmod" : "eigen";
+  switch (kind) {
+    case SolverKind::Cholmod:
+      return "cholmod";
+    case SolverKind::Eigen:
+      return "eigen";
+    default:
+      return "spectral";
+  }
 }
 
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind, MemoryBudget* budget) {
 #ifdef PLIANT_WITH_CHOLMOD
   if (kind == SolverKind::Cholmod) return make_cholmod_solver(budget);
 #endif
+  if (kind == SolverKind::Spectral) return make_spectral_solver(budget);
   PLIANT_EXPECTS(kind == SolverKind::Eigen);
   return make_eigen_solver(budget);
 }

@@ -48,8 +48,9 @@ class LinearSolver {
 
 /// The implementations that exist.
 enum class SolverKind {
-  Cholmod,  ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
-  Eigen,    ///< SimplicialLDLT, AMD order
+  Cholmod,   ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
+  Eigen,     ///< SimplicialLDLT, AMD order
+  Spectral,  ///< sine transforms and small dense factors: `SpectralPlate`
 };
 
 /// Those in this build, the default one first.

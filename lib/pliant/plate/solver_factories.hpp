@@ -3,7 +3,9 @@
 #include <memory>
 #include <string>
 
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
 
@@ -11,6 +13,11 @@ namespace pliant {
 
 std::unique_ptr<LinearSolver> make_cholmod_solver(MemoryBudget* budget);
 std::unique_ptr<LinearSolver> make_eigen_solver(MemoryBudget* budget);
+std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget);
+
+// And to `make_plate_solver`.
+
+std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads);
 
 /// The error that all implementations report for a matrix they cannot factor.
 Error not_positive_definite(long size, long pivot);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+
+namespace pliant {
+
+/// One block of numbers on a cache line's boundary; from some megabytes on in large pages where the
+/// system has them, since the table of small ones does not hold a page for each row of a plate. Not
+/// for other rooms.
+class NumberBlock {
+ public:
+  NumberBlock() = default;
+  /// Not initialised. Throws std::bad_alloc.
+  explicit NumberBlock(std::size_t count);
+  NumberBlock(const NumberBlock&) = delete;
+  NumberBlock(NumberBlock&& other) noexcept;
+  NumberBlock& operator=(NumberBlock&& other) noexcept;
+  ~NumberBlock();
+
+  double* begin() const { return begin_; }
+  std::size_t count() const { return count_; }
+
+  static constexpr std::size_t line = 64;  ///< bytes of a cache line, and of the widest vector
+
+ private:
+  double* begin_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,105 @@
+#include "pliant/plate/plate_solver.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+namespace {
+
+// Steps with a factored matrix.
+class DirectPlateSolver final : public PlateSolver {
+ public:
+  explicit DirectPlateSolver(std::unique_ptr<LinearSolver> solver) : solver_(std::move(solver)) {}
+
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
+                             const StopRequest& should_stop) override {
+    return advance_backward_euler(*solver_, problem, steps, std::move(state), should_stop);
+  }
+
+  SolverCounts counts() const override { return solver_->counts(); }
+  std::size_t memory() const override { return solver_->memory(); }
+
+ private:
+  std::unique_ptr<LinearSolver> solver_;
+};
+
+// Takes the solver that suits each problem, and lets the other one go.
+class AutomaticPlateSolver final : public PlateSolver {
+ public:
+  AutomaticPlateSolver(MemoryBudget* budget, ThreadPool* threads)
+      : budget_(budget), threads_(threads) {}
+
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
+                             const StopRequest& should_stop) override {
+    const bool is_spectral = worth_transforming(problem.grid, problem.stiffness);
+    if (!solver_ || is_spectral != is_spectral_) {
+      past_counts_ = counts();
+      solver_.reset();
+      is_spectral_ = is_spectral;
+      solver_ = is_spectral ? make_spectral_plate_solver(budget_, threads_)
+                            : std::make_unique<DirectPlateSolver>(
+                                  make_solver(available_solvers().front(), budget_));
+    }
+    return solver_->advance(problem, steps, std::move(state), should_stop);
+  }
+
+  SolverCounts counts() const override {
+    if (!solver_) return past_counts_;
+    const SolverCounts now = solver_->counts();
+    return {past_counts_.analyses + now.analyses, past_counts_.factorizations + now.factorizations,
+            past_counts_.solves + now.solves};
+  }
+
+  std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
+
+ private:
+  MemoryBudget* budget_;
+  ThreadPool* threads_;
+  std::unique_ptr<PlateSolver> solver_;
+  bool is_spectral_ = false;
+  SolverCounts past_counts_;  // of solvers that were let go
+};
+
+SolverKind kind_of(SolverChoice choice) {
+  return choice == SolverChoice::Cholmod ? SolverKind::Cholmod : SolverKind::Eigen;
+}
+
+}  // namespace
+
+std::optional<SolverChoice> solver_choice(std::string_view name) {
+  if (name == "auto") return SolverChoice::Auto;
+  if (name == "spectral") return SolverChoice::Spectral;
+  if (name == "cholmod") return SolverChoice::Cholmod;
+  if (name == "eigen") return SolverChoice::Eigen;
+  return {};
+}
+
+bool is_available(SolverChoice choice) {
+  const auto kinds = available_solvers();
+  return choice != SolverChoice::Cholmod ||
+         std::find(kinds.begin(), kinds.end(), SolverKind::Cholmod) != kinds.end();
+}
+
+bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
+  // Measured with bench/plate: below, a sparse factor in the nearest cache is as quick.
+  constexpr int fewest_unknowns = 150;
+  // By so much c may come closer to its bound than to 0, and the solution loses as many digits.
+  constexpr double closest = 1e-3;
+  return unknown_count(grid) >= fewest_unknowns &&
+         stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
+}
+
+std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, MemoryBudget* budget,
+                                               ThreadPool* threads) {
+  PLIANT_EXPECTS(is_available(choice));
+  if (choice == SolverChoice::Auto) {
+    return std::make_unique<AutomaticPlateSolver>(budget, threads);
+  }
+  if (choice == SolverChoice::Spectral) return make_spectral_plate_solver(budget, threads);
+  return std::make_unique<DirectPlateSolver>(make_solver(kind_of(choice), budget));
+}
+
+}  // namespace pliant

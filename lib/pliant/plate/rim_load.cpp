@@ -1,0 +1,54 @@
+#include "pliant/plate/rim_load.hpp"
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+
+void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangents& tangents,
+                  const Field& w, Field& load) {
+  const int M = grid.columns;
+  const int N = grid.rows;
+  PLIANT_EXPECTS(M >= 3 && N >= 3);
+  PLIANT_EXPECTS(w.rows() == grid.node_count() && load.rows() == grid.node_count());
+  const double hu = grid.hu;
+  const double hv = grid.hv;
+  const double b = stiffness.b / (hu * hu * hu * hu);
+  const double c = stiffness.c / (hu * hu * hv * hv);
+  const double d = stiffness.d / (hv * hv * hv * hv);
+  for (int component = 0; component < 3; ++component) {
+    const double* const x = w.col(component).data();
+    double* const f = load.col(component).data();
+    const double ghost_u0 = -2 * hu * tangents.su0[component];
+    const double ghost_u1 = 2 * hu * tangents.su1[component];
+    const double ghost_v0 = -2 * hv * tangents.sv0[component];
+    const double ghost_v1 = 2 * hv * tangents.sv1[component];
+    const auto rim = [&](int i, int j) {
+      return i == 0 || i == M - 1 || j == 0 || j == N - 1 ? x[grid.node(i, j)] : 0;
+    };
+    const auto subtract = [&](int i, int j) {
+      // Eq. (4) to (6), term by term as in `apply_stencil`, with 0 inside.
+      const double left = i == 1 ? ghost_u0 : rim(i - 2, j);
+      const double right = i == M - 2 ? ghost_u1 : rim(i + 2, j);
+      const double below = j == 1 ? ghost_v0 : rim(i, j - 2);
+      const double above = j == N - 2 ? ghost_v1 : rim(i, j + 2);
+      const double beside_u = rim(i - 1, j) + rim(i + 1, j);
+      const double uuuu = (left + right) - 4 * beside_u;
+      const double vvvv = (below + above) - 4 * (rim(i, j - 1) + rim(i, j + 1));
+      const double corners =
+          rim(i - 1, j - 1) + rim(i + 1, j - 1) + rim(i - 1, j + 1) + rim(i + 1, j + 1);
+      const double uuvv =
+          corners - 2 * (rim(i - 1, j) + rim(i + 1, j) + rim(i, j - 1) + rim(i, j + 1));
+      f[grid.node(i, j)] -= b * uuuu + c * uuvv + d * vvvv;
+    };
+    for (int j = 1; j <= N - 2; ++j) {
+      const bool is_outer_row = j <= 2 || j >= N - 3;
+      for (int i = 1; i <= M - 2; ++i) {
+        // Of a row between, the two nodes at each end.
+        if (!is_outer_row && i == 3 && M - 3 > i) i = M - 3;
+        subtract(i, j);
+      }
+    }
+  }
+}
+
+}  // namespace pliant

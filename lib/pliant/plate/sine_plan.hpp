@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "pliant/plate/spectral_kernels.hpp"
+
+namespace pliant {
+
+/// The tables of a sine transform of one length. Not for other rooms.
+class SinePlan {
+ public:
+  SinePlan() = default;
+  /// Requires: length >= 2.
+  explicit SinePlan(int length);
+
+  int length() const { return length_; }
+
+  /// Valid as long as the plan is where it is.
+  SineView view() const;
+
+  /// Doubles that the tables of such a plan take at most.
+  static std::size_t table_size(int length);
+
+ private:
+  void make_chirp();
+
+  int length_ = 0;
+  int fourier_length_ = 0;
+  std::vector<double> fold_;
+  std::vector<int> radices_;
+  std::vector<double> tables_;
+  std::vector<double> chirp_;
+  std::vector<double> kernel_;
+};
+
+/// Cosine and sine of 2 pi numerator/denominator, the angle reduced to an eighth of a turn without
+/// rounding. Requires: 0 <= numerator, 0 < denominator < 2^40.
+struct TurnPoint {
+  double cosine = 1;
+  double sine = 0;
+};
+TurnPoint turn_point(long numerator, long denominator);
+
+}  // namespace pliant

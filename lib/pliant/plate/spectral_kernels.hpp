@@ -1,0 +1,145 @@
+#pragma once
+
+namespace pliant {
+
+// What the spectral solver does with every node, compiled several times: for the vectors that every
+// machine of the architecture has, and for wider ones. Each number goes through the same operations
+// in the same order whatever the width, without fused multiply-add, so all give the same bits. The
+// kernels include no other header: an inline function compiled here for a newer CPU could replace
+// the one that the rest of the program uses. Not for other rooms.
+
+/// A Fourier transform of a length that is a product of small primes.
+struct FourierView {
+  int length = 1;
+  int stage_count = 0;
+  const int* radices = nullptr;  ///< of the stages, each 2, 3, 4, 5, 7, 11 or 13
+  /// A stage of radix r on n points, m = n/r: cos and sin of 2 pi j/r for j = 1 ... (r-1)/2 if r is
+  /// odd, then for p = 1 ... m-1 and j = 1 ... r-1 those of 2 pi p j/n.
+  const double* tables = nullptr;
+};
+
+/// The sine transform S_k = sum over j of x_j sin(pi j k/L), j and k from 1 to L-1. docs/model.md.
+struct SineView {
+  int length = 2;                  ///< L >= 2
+  const double* fold = nullptr;    ///< cos and sin of pi j/L for j = 0 ... L/2
+  FourierView fourier;             ///< of L points, or of the convolution
+  const double* chirp = nullptr;   ///< where L has a large prime: cos and sin of pi j^2/L, j < L
+  const double* kernel = nullptr;  ///< and the convolution's transformed kernel, complex
+};
+
+/// Numbers that a sine transform needs room for, per lane: the points, and the work.
+constexpr long sine_points(const SineView& view) { return view.length - 1; }
+constexpr long sine_work(const SineView& view) { return 4L * view.fourier.length; }
+
+/// Columns that the transforms of a field bring in together. Room for them comes after the work.
+constexpr int group_columns = 32;
+
+/// The modes of one direction are kept by parity: 1, 3, 5 ... and then 2, 4, 6 ...
+constexpr int odd_modes(int length) { return length / 2; }
+constexpr int even_modes(int length) { return (length - 1) / 2; }
+
+/// Rows are filled up with zeros to whole vectors.
+constexpr int row_unit = 8;
+
+/// How a field on the nodes becomes four fields of sine coefficients, one for each pair of
+/// parities. The shorter direction goes first; afterwards its modes lie next to each other.
+struct TransformView {
+  SineView across;         ///< the shorter direction
+  SineView along;          ///< the longer one
+  long across_stride = 0;  ///< from node to node of the field
+  long along_stride = 0;
+  int between_pitch = 0;  ///< of the rows of (length along - 1) x between_pitch numbers between
+  int even_column = 0;    ///< of the row between: where the even modes begin
+  int pitch[2] = {0, 0};  ///< of the rows of coefficients with odd, even modes across
+  const double* across_in = nullptr;  ///< factor of each mode on the way in, by mode - 1
+  const double* along_in = nullptr;
+  const double* across_out = nullptr;  ///< and on the way out
+  const double* along_out = nullptr;
+};
+
+/// Coefficients of one field by parity: [2 * (is mode along even) + (is mode across even)].
+struct CoefficientsView {
+  double* of[4] = {nullptr, nullptr, nullptr, nullptr};
+};
+
+/// One pair of parities: a diagonal matrix and what couples its rows and columns. docs/model.md.
+struct ParityView {
+  int rows = 0;     ///< modes along
+  int columns = 0;  ///< modes across, filled up
+  int pitch = 0;
+  const double* reciprocal = nullptr;      ///< rows x pitch: 1/D
+  const double* row_weight = nullptr;      ///< p_k^2
+  const double* column_weight = nullptr;   ///< q_l^2, 0 where filled up
+  const double* row_pivot = nullptr;       ///< 1/(1/delta + sum over l of q_l^2/D_kl)
+  const double* column_scale = nullptr;    ///< q_l, 0 where filled up
+  const double* column_unscale = nullptr;  ///< 1/q_l, 0 where filled up
+  const double* inverse = nullptr;         ///< columns x inverse_pitch: of S
+  int inverse_pitch = 0;
+};
+
+/// What one component of the state has in one pair of parities, each scaled by 1/(p_k q_l).
+struct ComponentView {
+  double* displacement = nullptr;  ///< rows x pitch
+  double* pending = nullptr;       ///< (load + shift w + inertia v)/D of the step to come
+  double* load = nullptr;          ///< load/D
+  double* row_sums = nullptr;      ///< of `pending`, weighted by q_l^2
+  double* column_sums = nullptr;   ///< of `pending`, with what the rows leave
+  double* edge = nullptr;          ///< 2 x columns: xi, and xi weighted by q_l^2
+};
+
+constexpr long panel_size(int rows, int columns) {
+  const long depth = rows > 64 ? rows : 64;
+  return (depth > columns + 8 ? depth : columns + 8) * columns;
+}
+
+/// One step: w' = pending - (xi + upsilon)/D, then the next pending = load/D + (grow w' - keep
+/// w)/D.
+struct StepFactors {
+  double grow = 0;
+  double keep = 0;
+};
+
+/// The kernels for one width of vectors.
+struct SpectralKernels {
+  const char* name;
+  int lanes;  ///< doubles in a vector
+
+  /// Transforms `lanes` columns at once: `points` is (length - 1) x lanes, `work` as `sine_work`.
+  void (*sine_transform)(const SineView& view, double* points, double* work);
+
+  /// One chunk of the transforms across: lanes [first, last) of the nodes along.
+  void (*in_across)(const TransformView& view, const double* field, int first, int last,
+                    double* between, double* work);
+  /// One chunk of the transforms along: columns [first, last) between.
+  void (*in_along)(const TransformView& view, const double* between, int first, int last,
+                   const CoefficientsView& coefficients, double* work);
+  void (*out_along)(const TransformView& view, const CoefficientsView& coefficients, int first,
+                    int last, double* between, double* work);
+  void (*out_across)(const TransformView& view, const double* between, int first, int last,
+                     double* field, double* work);
+
+  /// `load`, w and v (in `pending`) as transformed become load/D and the first step's pending.
+  void (*start)(const ParityView& parity, const ComponentView& component, double shift,
+                double inertia);
+  /// Solves for the edge and takes one step of one component.
+  void (*step)(const ParityView& parity, const ComponentView& component, StepFactors factors);
+  /// The last step, which leaves the velocity, (w' - w) times `rate`, in `pending`.
+  void (*last_step)(const ParityView& parity, const ComponentView& component, double rate);
+
+  /// Makes `row_pivot`, and S and its inverse in `inverse`. `panels` has room for what
+  /// `panel_size` says. Gives the first column whose pivot is not positive, or -1.
+  int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
+                     double* inverse, double* panels);
+};
+
+/// The kernels that this machine can run, the widest first, the last one everywhere; nullptr from
+/// where there are no more. Requires: k >= 0.
+const SpectralKernels* runnable_kernels(int k);
+
+extern const SpectralKernels baseline_kernels;
+#ifdef PLIANT_WIDE_KERNELS
+extern const SpectralKernels avx2_kernels;
+extern const SpectralKernels avx512_kernels;
+#endif
+
+}  // namespace pliant

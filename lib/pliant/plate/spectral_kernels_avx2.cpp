@@ -1,0 +1,6 @@
+#include "pliant/plate/spectral_kernels.hpp"
+
+#define PLIANT_LANES 4
+#define PLIANT_KERNELS avx2
+#define PLIANT_KERNELS_NAME "avx2"
+#include "pliant/plate/spectral_kernels_body.hpp"

@@ -1,0 +1,6 @@
+#include "pliant/plate/spectral_kernels.hpp"
+
+#define PLIANT_LANES 8
+#define PLIANT_KERNELS avx512
+#define PLIANT_KERNELS_NAME "avx512"
+#include "pliant/plate/spectral_kernels_body.hpp"

@@ -1,0 +1,6 @@
+#include "pliant/plate/spectral_kernels.hpp"
+
+#define PLIANT_LANES 2
+#define PLIANT_KERNELS baseline
+#define PLIANT_KERNELS_NAME "baseline"
+#include "pliant/plate/spectral_kernels_body.hpp"

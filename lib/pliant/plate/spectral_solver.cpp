@@ -1,0 +1,117 @@
+#include <optional>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/rim_load.hpp"
+#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/spectral_plate.hpp"
+
+namespace pliant {
+namespace {
+
+// Solves one right-hand side after the other: into sine space and back for each.
+class SpectralLinearSolver final : public LinearSolver {
+ public:
+  explicit SpectralLinearSolver(MemoryBudget* budget) : plate_(budget) {}
+
+  Result<void> factor(const PlateSystem& system) override {
+    auto prepared = plate_.prepare(system);
+    system_.reset();
+    if (prepared) system_ = system;
+    return prepared;
+  }
+
+  Result<Field> solve(const Field& right_hand_sides) override {
+    PLIANT_EXPECTS(system_ && right_hand_sides.rows() == unknown_count(system_->grid));
+    Field solution(right_hand_sides.rows(), 3);
+    const long width = system_->grid.columns - 2;
+    plate_.solve({right_hand_sides.data(), width, right_hand_sides.rows()},
+                 {solution.data(), width, solution.rows()});
+    return solution;
+  }
+
+  SolverCounts counts() const override { return plate_.counts(); }
+  std::size_t memory() const override { return plate_.memory(); }
+
+ private:
+  SpectralPlate plate_;
+  std::optional<PlateSystem> system_;
+};
+
+// Keeps the state in sine space for all steps of an interval.
+class SpectralPlateSolver final : public PlateSolver {
+ public:
+  SpectralPlateSolver(MemoryBudget* budget, ThreadPool* threads)
+      : plate_(budget, threads), load_memory_(budget) {}
+
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
+                             const StopRequest& should_stop) override try {
+    const Grid& grid = problem.grid;
+    PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
+    PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
+    PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+    const double inertia = problem.dynamics.density / steps.length;
+    const double shift = (inertia + problem.dynamics.damping) / steps.length;
+    if (auto prepared = plate_.prepare({grid, problem.stiffness, shift}); !prepared) {
+      return fail(prepared.error());
+    }
+    if (auto taken = take_load(problem); !taken) return fail(taken.error());
+    subtract_rim(grid, problem.stiffness, problem.tangents, state.displacement, load_);
+
+    const long first = grid.node(1, 1);
+    const long count = grid.node_count();
+    const bool is_done =
+        plate_.advance({load_.data() + first, grid.columns, count}, inertia, steps,
+                       {state.displacement.data() + first, grid.columns, count},
+                       {state.velocity.data() + first, grid.columns, count}, should_stop);
+    if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
+    clear_rim(grid, state.velocity);
+    return state;
+  } catch (const std::bad_alloc&) {
+    return fail(no_memory_for_factor(unknown_count(problem.grid)));
+  }
+
+  SolverCounts counts() const override { return plate_.counts(); }
+  std::size_t memory() const override { return plate_.memory() + load_memory_.bytes(); }
+
+ private:
+  // The load, to be changed at the rim.
+  Result<void> take_load(const PlateProblem& problem) {
+    if (load_.rows() != problem.load.rows()) {
+      const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
+      load_.resize(0, 3);
+      if (!load_memory_.try_resize(bytes)) {
+        return fail(factor_too_large(unknown_count(problem.grid), load_memory_.complaint(bytes)));
+      }
+    }
+    load_ = problem.load;
+    return {};
+  }
+
+  static void clear_rim(const Grid& grid, Field& velocity) {
+    for (int component = 0; component < 3; ++component) {
+      auto column = velocity.col(component);
+      column.head(grid.columns).setZero();
+      column.tail(grid.columns).setZero();
+      for (int j = 1; j + 1 < grid.rows; ++j) {
+        column[grid.node(0, j)] = column[grid.node(grid.columns - 1, j)] = 0;
+      }
+    }
+  }
+
+  SpectralPlate plate_;
+  MemoryShare load_memory_;
+  Field load_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget) {
+  return std::make_unique<SpectralLinearSolver>(budget);
+}
+
+std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads) {
+  return std::make_unique<SpectralPlateSolver>(budget, threads);
+}
+
+}  // namespace pliant

@@ -1,0 +1,36 @@
+#include "pliant/plate/rim_load.hpp"
+
+#include "pliant/plate/stencil.hpp"
+#include "support/catch.hpp"
+
+using namespace pliant;
+
+TEST_CASE("the rim's part of a load is that of the stencil", "[plate][spectral]") {
+  for (const auto& [columns, rows] : {std::pair{3, 3},
+                                      {3, 4},
+                                      {4, 3},
+                                      {3, 9},
+                                      {5, 5},
+                                      {6, 7},
+                                      {7, 6},
+                                      {12, 5},
+                                      {5, 12},
+                                      {13, 17}}) {
+    CAPTURE(columns, rows);
+    const Grid grid{columns, rows, 0.25, 0.125};
+    const Stiffness stiffness{1.5, 0.75, 3};
+    EdgeTangents tangents;
+    tangents.su0 = Vector3d(1, -2, 3);
+    tangents.su1 = Vector3d(-4, 5, 0.5);
+    tangents.sv0 = Vector3d(0.25, 7, -1);
+    tangents.sv1 = Vector3d(2, 0, 11);
+    const Field w = Field::Random(grid.node_count(), 3);
+    const Field load = Field::Random(grid.node_count(), 3);
+    Field changed = load;
+    subtract_rim(grid, stiffness, tangents, w, changed);
+
+    const Field rim = with_interior(grid, w, Field::Zero(unknown_count(grid), 3));
+    const Field expected = interior_of(grid, load) - apply_stencil(grid, stiffness, tangents, rim);
+    CHECK(interior_of(grid, changed) == expected);
+  }
+}

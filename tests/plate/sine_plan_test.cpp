@@ -1,0 +1,134 @@
+#include "pliant/plate/sine_plan.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace pliant;
+
+namespace {
+
+// `lanes` columns through a sine transform.
+std::vector<double> transformed(const SinePlan& plan, const SpectralKernels& kernels,
+                                std::vector<double> points) {
+  std::vector<double> work(static_cast<std::size_t>(sine_work(plan.view()) * kernels.lanes));
+  kernels.sine_transform(plan.view(), points.data(), work.data());
+  return points;
+}
+
+std::vector<double> random_points(int count) {
+  std::vector<double> points;
+  unsigned state = 7;
+  for (int k = 0; k < count; ++k) {
+    state = state * 1664525 + 1013904223;
+    points.push_back(state / 2147483648.0 - 1);
+  }
+  return points;
+}
+
+// By the definition, in extended precision, the angle reduced in whole numbers.
+std::vector<long double> defined(int length, const std::vector<double>& x) {
+  const long double pi = std::acos(-1.0L);
+  std::vector<long double> sums;
+  for (long k = 1; k < length; ++k) {
+    long double sum = 0;
+    for (long j = 1; j < length; ++j) {
+      sum += x[static_cast<std::size_t>(j - 1)] *
+             std::sin(pi * static_cast<long double>(j * k % (2L * length)) / length);
+    }
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
+double norm(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double number : x) sum += number * number;
+  return std::sqrt(sum);
+}
+
+// Smooth, odd and even, with each radix; primes, a prime squared, twice a prime.
+const std::vector<int> lengths{2,   3,   4,   5,   6,   7,   8,   9,   10,  11,  12, 13, 14,
+                               16,  17,  18,  19,  20,  21,  22,  25,  26,  30,  34, 60, 97,
+                               100, 128, 143, 211, 243, 289, 360, 394, 400, 401, 499};
+
+}  // namespace
+
+TEST_CASE("a point of a turn is right to an ulp or two", "[plate][spectral]") {
+  const long double pi = std::acos(-1.0L);
+  for (const long n : {1L, 2L, 3L, 8L, 12L, 360L, 1001L}) {
+    for (long k = 0; k < 2 * n; ++k) {
+      const TurnPoint point = turn_point(k, n);
+      const long double angle = 2 * pi * static_cast<long double>(k % n) / n;
+      CHECK(std::abs(static_cast<double>(std::cos(angle) - point.cosine)) <= 2.3e-16);
+      CHECK(std::abs(static_cast<double>(std::sin(angle) - point.sine)) <= 2.3e-16);
+    }
+  }
+  CHECK(turn_point(1, 4).cosine == 0);  // exact where the value is
+  CHECK(turn_point(1, 2).sine == 0);
+}
+
+TEST_CASE("the sine transform is what its definition says", "[plate][spectral]") {
+  const SpectralKernels& kernels = *runnable_kernels(0);
+  for (const int length : lengths) {
+    CAPTURE(length);
+    const SinePlan plan(length);
+    const int points = length - 1;
+    const std::vector<double> x = random_points(points * kernels.lanes);
+    const std::vector<double> y = transformed(plan, kernels, x);
+    for (const int lane : {0, kernels.lanes - 1}) {
+      std::vector<double> column, difference;
+      for (int j = 0; j < points; ++j) column.push_back(x[j * kernels.lanes + lane]);
+      const std::vector<long double> expected = defined(length, column);
+      for (int k = 0; k < points; ++k) {
+        difference.push_back(static_cast<double>(expected[k] - y[k * kernels.lanes + lane]));
+      }
+      // The transform is sqrt(L/2) times an orthogonal one; a few roundings a stage. A convolution
+      // has two transforms of twice the length.
+      const double stages = plan.view().chirp ? 8 : 2;
+      CHECK(norm(difference) <= stages * 2.2e-16 * std::sqrt(length / 2.0) * norm(column));
+    }
+  }
+}
+
+TEST_CASE("the sine transform is its own inverse", "[plate][spectral]") {
+  const SpectralKernels& kernels = *runnable_kernels(0);
+  for (const int length : {400, 401, 1000, 2000, 2003}) {
+    const SinePlan plan(length);
+    const std::vector<double> x = random_points((length - 1) * kernels.lanes);
+    std::vector<double> y = transformed(plan, kernels, transformed(plan, kernels, x));
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] = y[k] * (2.0 / length) - x[k];
+    CHECK(norm(y) <= (plan.view().chirp ? 3e-15 : 1e-15) * norm(x));
+  }
+}
+
+TEST_CASE("every width of vectors transforms to the same bits", "[plate][spectral]") {
+  for (const int length : lengths) {
+    CAPTURE(length);
+    const SinePlan plan(length);
+    const int points = length - 1;
+    const std::vector<double> columns = random_points(points * 8);  // point by point
+    std::vector<double> first;
+    for (int which = 0; runnable_kernels(which); ++which) {
+      const SpectralKernels& kernels = *runnable_kernels(which);
+      std::vector<double> result(columns.size());
+      for (int begin = 0; begin < 8; begin += kernels.lanes) {
+        std::vector<double> tile;
+        for (int j = 0; j < points; ++j) {
+          for (int lane = 0; lane < kernels.lanes; ++lane) {
+            tile.push_back(columns[j * 8 + begin + lane]);
+          }
+        }
+        tile = transformed(plan, kernels, tile);
+        for (int j = 0; j < points; ++j) {
+          for (int lane = 0; lane < kernels.lanes; ++lane) {
+            result[j * 8 + begin + lane] = tile[j * kernels.lanes + lane];
+          }
+        }
+      }
+      if (which == 0) first = result;
+      CHECK((result == first));
+    }
+  }
+}
