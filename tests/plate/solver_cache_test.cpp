@@ -8,13 +8,13 @@ using pliant::testing::unit_grid;
 
 TEST_CASE("each outline keeps its solver while it is among those of the frame",
           "[plate][solver_cache]") {
-  SolverCache cache(nullptr);
+  SolverCache cache(SolverChoice::Eigen);
   const SolverCache::Outline large{13, 9}, small{5, 5};
   const auto solve = [&](const SolverCache::Outline& outline) {
-    const PlateSystem system{unit_grid(outline.columns, outline.rows), {1, 2, 1}, 5};
-    LinearSolver& solver = cache.solver_of(outline);
-    REQUIRE(solver.factor(system));
-    return solver.solve(Field::Ones(unknown_count(system.grid), 3)).value();
+    const Grid grid = unit_grid(outline.columns, outline.rows);
+    const Field zero = Field::Zero(grid.node_count(), 3);
+    const PlateProblem problem{grid, {1, 2, 1}, {}, {}, Field::Ones(grid.node_count(), 3)};
+    return cache.solver_of(outline).advance(problem, {1, 0.1}, {zero, zero})->displacement;
   };
   const std::vector<SolverCache::Outline> both{large, small, small};
   Field first;
@@ -36,9 +36,11 @@ TEST_CASE("each outline keeps its solver while it is among those of the frame",
 
 TEST_CASE("solvers that are let go give their memory back", "[plate][solver_cache]") {
   MemoryBudget budget(1'000'000);
-  SolverCache cache(&budget);
+  SolverCache cache(SolverChoice::Auto, &budget);
   const SolverCache::Outline outline{21, 21};
-  REQUIRE(cache.solver_of(outline).factor({unit_grid(21, 21), {1, 2, 1}, 0}));
+  const Field zero = Field::Zero(21 * 21, 3);
+  const PlateProblem problem{unit_grid(21, 21), {1, 2, 1}, {}, {}, zero};
+  REQUIRE(cache.solver_of(outline).advance(problem, {1, 0.1}, {zero, zero}));
   CHECK(budget.available() < 900'000);
   cache.keep_only({});
   CHECK(budget.available() == 1'000'000);

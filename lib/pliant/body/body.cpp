@@ -7,7 +7,6 @@
 
 #include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/backward_euler.hpp"
 
 namespace pliant {
 namespace {
@@ -108,8 +107,8 @@ std::span<const Patch> StepReport::patches_of_force(std::size_t k) const {
   return patches[static_cast<std::size_t>(region)];
 }
 
-Body::Body(const Grid& grid, Field rest, const BodySettings& settings, MemoryBudget* budget)
-    : grid_(grid), rest_(std::move(rest)), settings_(settings), solvers_(budget) {
+Body::Body(const Grid& grid, Field rest, const BodySettings& settings, SolverCache solvers)
+    : grid_(grid), rest_(std::move(rest)), settings_(settings), solvers_(std::move(solvers)) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
   reset();
 }
@@ -240,8 +239,8 @@ Result<Body::Moved> Body::solve(const Patch& patch, const Region& region, const 
                              tangents_of(patch, region, inputs.tangents),
                              rows_of(load_grid, place, load),
                              patch.interior};
-  LinearSolver& solver = solvers_.solver_of({box.columns(), box.rows(), patch.interior});
-  auto next = advance_backward_euler(solver, problem, steps, std::move(plate), should_stop);
+  PlateSolver& solver = solvers_.solver_of({box.columns(), box.rows(), patch.interior});
+  auto next = solver.advance(problem, steps, std::move(plate), should_stop);
   if (!next) return fail(next.error());
 
   // The rim stays as it was: rest + (position - rest) may round.

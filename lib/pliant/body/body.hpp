@@ -64,8 +64,7 @@ struct StepReport {
 class Body {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
-  /// The solvers take their memory out of `budget`, which outlives the body; none: no limit.
-  Body(const Grid& grid, Field rest, const BodySettings& settings, MemoryBudget* budget = nullptr);
+  Body(const Grid& grid, Field rest, const BodySettings& settings, SolverCache solvers = SolverCache());
 
   /// The rest mesh, and no carried velocity.
   void reset();

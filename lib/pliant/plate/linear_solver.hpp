@@ -50,7 +50,7 @@ class LinearSolver {
 enum class SolverKind {
   Cholmod,   ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
   Eigen,     ///< SimplicialLDLT, AMD order
-  Spectral,  ///< sine transforms and small dense factors: `SpectralPlate`
+  Spectral,  ///< sine transforms and small dense factors: `SpectralPlate`; rectangles only
 };
 
 /// Those in this build, the default one first.

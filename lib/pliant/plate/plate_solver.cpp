@@ -29,12 +29,14 @@ class DirectPlateSolver final : public PlateSolver {
 // Takes the solver that suits each problem, and lets the other one go.
 class AutomaticPlateSolver final : public PlateSolver {
  public:
-  AutomaticPlateSolver(MemoryBudget* budget, ThreadPool* threads)
-      : budget_(budget), threads_(threads) {}
+  AutomaticPlateSolver(bool prefers_spectral, MemoryBudget* budget, ThreadPool* threads)
+      : prefers_spectral_(prefers_spectral), budget_(budget), threads_(threads) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override {
-    const bool is_spectral = worth_transforming(problem.grid, problem.stiffness);
+    const bool is_rectangle = problem.interior.empty();
+    const bool is_spectral = is_rectangle && (prefers_spectral_ ||
+                                              worth_transforming(problem.grid, problem.stiffness));
     if (!solver_ || is_spectral != is_spectral_) {
       past_counts_ = counts();
       solver_.reset();
@@ -56,6 +58,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
 
  private:
+  bool prefers_spectral_;
   MemoryBudget* budget_;
   ThreadPool* threads_;
   std::unique_ptr<PlateSolver> solver_;
@@ -95,10 +98,9 @@ bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, MemoryBudget* budget,
                                                ThreadPool* threads) {
   PLIANT_EXPECTS(is_available(choice));
-  if (choice == SolverChoice::Auto) {
-    return std::make_unique<AutomaticPlateSolver>(budget, threads);
+  if (choice == SolverChoice::Auto || choice == SolverChoice::Spectral) {
+    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, budget, threads);
   }
-  if (choice == SolverChoice::Spectral) return make_spectral_plate_solver(budget, threads);
   return std::make_unique<DirectPlateSolver>(make_solver(kind_of(choice), budget));
 }
 

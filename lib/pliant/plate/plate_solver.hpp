@@ -40,7 +40,7 @@ class PlateSolver {
 /// Who steps the plates of a run. The choice may change the last digits of a result.
 enum class SolverChoice {
   Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
-  Spectral,  ///< sine transforms: `SolverKind::Spectral`
+  Spectral,  ///< sine transforms; other outlines than rectangles as `Auto` does
   Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
   Eigen,
 };

@@ -22,11 +22,11 @@ void SolverCache::keep_only(std::span<const Outline> outlines) {
   });
 }
 
-LinearSolver& SolverCache::solver_of(const Outline& outline) {
+PlateSolver& SolverCache::solver_of(const Outline& outline) {
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Kept& kept) { return kept.outline == outline; });
   if (found != kept_.end()) return *found->solver;
-  kept_.push_back({outline, make_solver(available_solvers().front(), budget_)});
+  kept_.push_back({outline, make_plate_solver(choice_, budget_, threads_)});
   return *kept_.back().solver;
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
 
@@ -21,15 +21,17 @@ class SolverCache {
     friend bool operator==(const Outline&, const Outline&) = default;
   };
 
-  /// The solvers take their memory out of `budget`, which outlives them; none: no limit.
-  explicit SolverCache(MemoryBudget* budget) : budget_(budget) {}
+  /// Of solvers as `make_plate_solver` makes them with these arguments.
+  explicit SolverCache(SolverChoice choice = SolverChoice::Auto, MemoryBudget* budget = nullptr,
+                       ThreadPool* threads = nullptr)
+      : choice_(choice), budget_(budget), threads_(threads) {}
 
   /// Lets go of all solvers but those of `outlines`: ahead of a frame, so that there is room for
   /// those that it needs anew.
   void keep_only(std::span<const Outline> outlines);
 
   /// The solver of an outline, a new one if need be.
-  LinearSolver& solver_of(const Outline& outline);
+  PlateSolver& solver_of(const Outline& outline);
 
   /// Of all solvers that ever were, added up.
   SolverCounts counts() const;
@@ -37,10 +39,12 @@ class SolverCache {
  private:
   struct Kept {
     Outline outline;
-    std::unique_ptr<LinearSolver> solver;
+    std::unique_ptr<PlateSolver> solver;
   };
 
+  SolverChoice choice_;
   MemoryBudget* budget_;
+  ThreadPool* threads_;
   std::vector<Kept> kept_;
   SolverCounts gone_;  // what those did that are no longer kept
 };

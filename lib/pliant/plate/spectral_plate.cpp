@@ -178,6 +178,7 @@ void SpectralPlate::fill_modes() {
 }
 
 Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
+  PLIANT_EXPECTS(system.interior.empty());
   if (prepared_ == system) return {};
   PLIANT_EXPECTS(system.grid.columns >= 3 && system.grid.rows >= 3);
   prepared_.reset();

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/region/region.hpp"
 #include "pliant/simulation/sampling.hpp"
@@ -154,7 +155,10 @@ class Previewer {
         vectors_to_object(body.transform, assemble_load(mapping.grid, nodes, acting, selection));
     if (auto sound = check_faults(surface, *result.frame); !sound) return sound;
 
-    const auto solver = make_solver(available_solvers().front(), &memory_);
+    // The one that a run takes for such a region.
+    const bool is_spectral = worth_transforming(region, body.stiffness);
+    const auto solver =
+        make_solver(is_spectral ? SolverKind::Spectral : available_solvers().front(), &memory_);
     const auto lambda = smallest_eigenvalue(*solver, region, body.stiffness, should_stop_);
     if (!lambda) return fail(lambda.error());
     const auto settled = solver->solve(interior_of(region, load));

@@ -66,7 +66,7 @@ tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "inter
 }  // namespace
 
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
-  PLIANT_EXPECTS(options.threads >= 1);
+  PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
   std::vector<Error> errors = check_scene(scene);
   if (scene.surfaces.empty()) {
     errors.push_back({.code = ErrorCode::InvalidInput,
@@ -117,6 +117,7 @@ Simulation::Simulation(Scene scene, const SimulationOptions& options)
       furthest_frame_(scene_.start),
       checkpoints_(scene_.start, options.checkpoint_bytes),
       threads_(std::make_unique<ThreadPool>(options.threads)),
+      solver_(options.solver),
       should_stop_(options.should_stop) {}
 
 // Member by member the budget would go ahead of the bodies that give back to it.
@@ -131,10 +132,12 @@ Simulation& Simulation::operator=(Simulation&& other) noexcept {
 void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemoryShare share) {
   const SolverSettings& solver = surface.solver;
   const GridMapping& mapping = rest_shape.mapping;
+  // Surfaces go at the same time; a single one has the threads to itself.
+  ThreadPool* const threads = scene_.surfaces.size() == 1 ? threads_.get() : nullptr;
   bodies_.emplace_back(mapping.grid, mapping.rest,
                        BodySettings{solver.stepping, solver.reference, solver.measure,
                                     solver.combine, solver.release},
-                       memory_.get());
+                       SolverCache(solver_, memory_.get(), threads));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
 }

@@ -22,7 +22,7 @@ namespace pliant {
 
 struct SurfaceInputs;
 
-/// How a simulation runs; none of it changes a result.
+/// How a simulation runs; none of it but the solver changes a result, and that the last digits.
 struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick. [bytes]
   std::size_t checkpoint_bytes = std::size_t{256} << 20;
@@ -31,8 +31,12 @@ struct SimulationOptions {
   /// allocated. Checkpoints come on top. [bytes]
   std::size_t max_memory = std::numeric_limits<std::size_t>::max();
 
-  /// Threads that work on several surfaces at the same time, the caller's among them. >= 1
+  /// Threads that work on several surfaces at the same time, or on the parts of a single one, the
+  /// caller's among them. >= 1
   int threads = 1;
+
+  /// Who solves. Requires: available in this build.
+  SolverChoice solver = SolverChoice::Auto;
 
   /// Asked ahead of every surface that is read and of every time step, by any of the threads;
   /// `make` and `at` then fail with Interrupted.
@@ -114,6 +118,7 @@ class Simulation {
   int furthest_frame_;        // that was ever computed
   Checkpoints checkpoints_;
   std::unique_ptr<ThreadPool> threads_;
+  SolverChoice solver_;
   StopRequest should_stop_;
   WarningLog warnings_;
 };
