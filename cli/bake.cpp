@@ -49,6 +49,16 @@ Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const S
   return FrameRange{*first, *last};
 }
 
+// The solver of that name, if this build has it.
+Result<SolverChoice> parse_solver(const std::string& name) {
+  const auto choice = solver_choice(name);
+  if (choice && is_available(*choice)) return *choice;
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--solver {}: this build has none; it was made without "
+                          "PLIANT_WITH_CHOLMOD. Use auto or spectral",
+                          name));
+}
+
 // One surface on its way to a file.
 struct Output {
   std::size_t surface = 0;  // index in the scene
@@ -255,6 +265,11 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   bake->add_option("--space", options.space, "Space of the positions")
       ->check(CLI::IsMember({"world", "object"}))
       ->capture_default_str();
+  bake->add_option("--solver", options.solver,
+                   "Who solves the plates: in sine space, by CHOLMOD's factors, or whichever suits "
+                   "each region; the last digits differ")
+      ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
+      ->capture_default_str();
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
@@ -267,6 +282,8 @@ int run_bake(const BakeOptions& options) {
   catch_interrupts();
   outlive_readers();
 
+  const auto solver = parse_solver(options.solver);
+  if (!solver) return report(solver.error());
   if (auto known = check_ending(options.out); !known) return report(known.error());
   auto scene = load_scene(options.scene);
   if (!scene) return report(scene.error());
@@ -275,7 +292,9 @@ int run_bake(const BakeOptions& options) {
 
   if (auto free = check_regions_file(options, *scene, *frames); !free) return report(free.error());
 
-  auto simulation = Simulation::make(*std::move(scene), simulation_options(options.resources));
+  SimulationOptions run = simulation_options(options.resources);
+  run.solver = *solver;
+  auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
   auto outputs = open_outputs(*simulation, options, *frames);
   if (!outputs) return report(outputs.error());

@@ -17,6 +17,7 @@ struct BakeOptions {
   std::optional<std::string> surface = {};  ///< none: all
   std::string space = "world";
   std::optional<std::string> regions = {};  ///< JSON file; none: not written
+  std::string solver = "auto";
   bool is_quiet = false;
   ResourceOptions resources;
 };
