@@ -24,7 +24,7 @@ class ThreadPool {
 
   /// Calls work(0) to work(count - 1), each once, some of them at the same time, and returns when
   /// all are done. An exception of theirs goes on from here, the one of the smallest index. One
-  /// call at a time, and none from within the work.
+  /// call at a time, and none from within the work, unless that is alone (count 1).
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
  private:

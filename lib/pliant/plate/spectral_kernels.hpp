@@ -73,7 +73,7 @@ struct ParityView {
   const double* row_pivot = nullptr;       ///< 1/(1/delta + sum over l of q_l^2/D_kl)
   const double* column_scale = nullptr;    ///< q_l, 0 where filled up
   const double* column_unscale = nullptr;  ///< 1/q_l, 0 where filled up
-  const double* inverse = nullptr;         ///< columns x inverse_pitch: of S
+  const double* inverse = nullptr;         ///< columns x inverse_pitch: of C
   int inverse_pitch = 0;
 };
 
@@ -126,7 +126,7 @@ struct SpectralKernels {
   /// The last step, which leaves the velocity, (w' - w) times `rate`, in `pending`.
   void (*last_step)(const ParityView& parity, const ComponentView& component, double rate);
 
-  /// Makes `row_pivot`, and S and its inverse in `inverse`. `panels` has room for what
+  /// Makes `row_pivot`, and C's inverse in `inverse`. `panels` has room for what
   /// `panel_size` says. Gives the first column whose pivot is not positive, or -1.
   int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
                      double* inverse, double* panels);

@@ -211,7 +211,7 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   return fail(no_memory_for_factor(unknown_count(system.grid)));
 }
 
-// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Whether all are positive.
+// 1/D with D the eigenvalues of the simply supported plate. Eq. (13). Whether all are positive.
 bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const Parity& parity = parities_[k];
   const Grid& grid = system.grid;
@@ -275,6 +275,7 @@ void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[
   for_each(tasks, [&](std::size_t task) {
     const auto [first, last] = chunk(task, plans_[1].length() - 1);
     for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
       kernels_.in_across(view, field.first + component * field.component_stride, first, last,
                          between_[component], work_ + task * work_size_);
     }
@@ -282,6 +283,7 @@ void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[
   for_each(tasks, [&](std::size_t task) {
     const auto [first, last] = chunk(task, between_width());
     for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
       CoefficientsView coefficients;
       for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*to)[component];
       kernels_.in_along(view, between_[component], first, last, coefficients,
@@ -298,6 +300,7 @@ void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& fiel
   for_each(tasks, [&](std::size_t task) {
     const auto [first, last] = chunk(task, between_width());
     for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
       CoefficientsView coefficients;
       for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*from)[component];
       kernels_.out_along(view, coefficients, first, last, between_[component],
@@ -307,11 +310,32 @@ void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& fiel
   for_each(tasks, [&](std::size_t task) {
     const auto [first, last] = chunk(task, plans_[1].length() - 1);
     for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
       kernels_.out_across(view, between_[component], first, last,
                           field.first + component * field.component_stride,
                           work_ + task * work_size_);
     }
   });
+}
+
+// Forces along one axis leave two components of a displacement at 0, where nothing is to be done.
+void SpectralPlate::find_still(const ConstNodesView& load, const ConstNodesView& displacement,
+                               const ConstNodesView& velocity) {
+  for (int component = 0; component < 3; ++component) {
+    is_still_[component] = is_zero(displacement, component) && is_zero(velocity, component) &&
+                           is_zero(load, component);
+  }
+}
+
+bool SpectralPlate::is_zero(const ConstNodesView& field, int component) const {
+  for (int j = 0; j < rows_ - 2; ++j) {
+    const double* const row =
+        field.first + component * field.component_stride + j * field.row_stride;
+    if (!std::all_of(row, row + columns_ - 2, [](double number) { return number == 0; })) {
+      return false;
+    }
+  }
+  return true;
 }
 
 // How many parts the transforms of a field are done in. Columns do not know each other, so that no
@@ -335,10 +359,12 @@ int SpectralPlate::between_width() const {
 void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution) {
   PLIANT_EXPECTS(prepared_.has_value());
   ++counts_.solves;
+  std::fill_n(is_still_, 3, false);
   to_sines(load, &Parity::load);
   for_each(12, [&](std::size_t task) {
     const int k = static_cast<int>(task) / 3;
     if (parities_[k].rows == 0 || parities_[k].columns == 0) return;
+    if (is_still_[task % 3]) return;
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, static_cast<int>(task) % 3);
     const long size = long{parity.rows} * parity.pitch;
@@ -357,11 +383,12 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   const auto view = [](const NodesView& nodes) {
     return ConstNodesView{nodes.first, nodes.row_stride, nodes.component_stride};
   };
+  find_still(load, view(displacement), view(velocity));
   to_sines(load, &Parity::load);
   to_sines(view(displacement), &Parity::displacement);
   to_sines(view(velocity), &Parity::pending);
 
-  // v = (w - w of the step before)/dt, so that shift w + inertia v of the next step is
+  // Eq. (19): shift w' + inertia v' with v' = (w' - w)/dt.
   const double shift = prepared_->shift;
   const double keep = inertia / steps.length;
   const StepFactors factors{shift + keep, keep};
@@ -369,6 +396,7 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   for_each(12, [&](std::size_t task) {
     const int k = static_cast<int>(task) / 3;
     if (parities_[k].rows == 0 || parities_[k].columns == 0) return;
+    if (is_still_[task % 3]) return;
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, static_cast<int>(task) % 3);
     kernels_.start(parity, component, shift, inertia);

@@ -96,6 +96,9 @@ class SpectralPlate {
   bool fill_diagonal(const PlateSystem& system, int parity);
   ParityView view_of(int parity) const;
   ComponentView component_of(int parity, int component) const;
+  void find_still(const ConstNodesView& load, const ConstNodesView& displacement,
+                  const ConstNodesView& velocity);
+  bool is_zero(const ConstNodesView& field, int component) const;
   std::size_t chunk_count() const;
   Range chunk(std::size_t task, int count) const;
   int between_width() const;
@@ -119,6 +122,7 @@ class SpectralPlate {
   Modes modes_[2];  // across, along
   Parity parities_[4];
   double* between_[3] = {};
+  bool is_still_[3] = {};  // components where all is 0, and stays so
   double* work_ = nullptr;
   std::size_t work_size_ = 0;  // of one task
 };

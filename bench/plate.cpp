@@ -1,0 +1,276 @@
+// What a plate costs in sine space, beside what it must move and beside sparse factors, in one run.
+// A frame is 20 backward Euler steps of three components from a state at hand to the next one, all
+// transforms in and out included; every time is a median, every ratio the median of ratios taken in
+// turn, since the machine may be noisy.
+//
+//   triad     a[k] = b[k] + 3 c[k] over 15 doubles a node: what a step moves at least
+//   step      one of the steps, the state in sine space
+//   set-up    for new coefficients
+//   frame     20 steps and the transforms; "new" with the set-up, "kept" without
+//   simplicial, supernodal, eigen   the same frame by sparse factors, as multiples of the spectral
+//   one,
+//             with new coefficients and with the factor kept. The fill-reducing order is always
+//             kept
+//
+// Run: build/release/bench/plate [--boxes 51,101x801,...] [--direct SIDE]
+//      [--threads N] [--csv]
+// Sparse factors are measured up to SIDE nodes per side (401), simplicial ones and Eigen's up to
+// half of that. --csv prints the rows for script/performance_plot.
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/spectral_plate.hpp"
+#ifdef PLIANT_BENCH_SUPERNODAL
+#include "supernodal.hpp"
+#endif
+
+namespace {
+
+using namespace pliant;
+
+constexpr int steps_per_frame = 20;
+constexpr double dt = 1.0 / 24 / steps_per_frame;
+constexpr Dynamics dynamics{40, 20};
+
+struct Options {
+  std::vector<std::pair<int, int>> boxes;
+  int direct_side = 401;
+  int threads = 1;
+  bool is_csv = false;
+};
+
+double seconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+double median(std::vector<double> numbers) {
+  const auto middle = numbers.begin() + static_cast<long>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+double shift_of(const Dynamics& d) { return (d.density / dt + d.damping) / dt; }
+
+// A frame of sparse factors. [s]
+struct DirectCost {
+  double factor = 0;
+  double step = 0;
+};
+
+DirectCost cost_of(LinearSolver& solver, const PlateProblem& problem, const PlateState& state) {
+  PlateSystem system{problem.grid, problem.stiffness, shift_of(problem.dynamics)};
+  if (!solver.factor(system)) return {};  // finds the order, which is kept
+  system.stiffness.c += 1e-6;
+  DirectCost cost;
+  cost.factor = seconds([&] { (void)solver.factor(system); });
+  PlateProblem factored = problem;
+  factored.stiffness = system.stiffness;
+  constexpr int count = 2;
+  std::vector<double> times;
+  for (int round = 0; round < 3; ++round) {
+    times.push_back(seconds([&] {
+      (void)advance_backward_euler(solver, factored, {count, dt}, state);
+    }));
+  }
+  cost.step = median(times) / count;
+  return cost;
+}
+
+struct Row {
+  int columns = 0, rows = 0;
+  double triad = 0, step = 0, set_up = 0, frame = 0;  // [s]
+  double step_per_triad = 0;
+  double doubles = 0;  // memory of the solver, a node
+  std::optional<DirectCost> supernodal = {}, simplicial = {}, eigen = {};
+
+  double with_set_up() const { return frame + set_up; }
+};
+
+Row measure(int columns, int rows, const Options& options, ThreadPool& threads) {
+  const Grid grid{columns, rows, 1.0 / (columns - 1), 1.0 / (columns - 1)};
+  const long nodes = grid.node_count();
+  PlateProblem problem{grid, {1, 2, 1}, dynamics, {}, Field::Random(nodes, 3)};
+  problem.tangents.su0.setConstant(0.1);
+  const PlateState state{Field::Random(nodes, 3), Field::Random(nodes, 3)};
+  Row row{.columns = columns, .rows = rows};
+
+  // About half a second for each size, but at least three rounds.
+  const int rounds = static_cast<int>(std::clamp(3e6 / static_cast<double>(nodes), 3.0, 101.0));
+  {
+    const auto solver = make_plate_solver(SolverChoice::Spectral, nullptr, &threads);
+    PlateState now = state;
+    const auto advance = [&](int count) {
+      now = solver->advance(problem, {count, dt}, std::move(now)).value();
+    };
+    SpectralPlate set_up(nullptr, &threads);
+    PlateSystem system{grid, problem.stiffness, shift_of(dynamics)};
+    (void)set_up.prepare(system);
+    std::vector<double> a(static_cast<std::size_t>(5 * nodes), 0.0), b(a.size(), 1.0),
+        c(a.size(), 2.0);
+    advance(2);
+    std::vector<double> triads, steps, ratios, set_ups, frames;
+    for (int round = 0; round < rounds; ++round) {
+      const auto triad = [&] {
+        return seconds([&] {
+          for (std::size_t k = 0; k < a.size(); ++k) a[k] = b[k] + 3 * c[k];
+          asm volatile("" : : "r"(a.data()) : "memory");
+        });
+      };
+      const double once = std::min(triad(), triad());
+      const double one = seconds([&] { advance(1); });
+      const double many = seconds([&] { advance(steps_per_frame + 1); });
+      triads.push_back(once);
+      steps.push_back((many - one) / steps_per_frame);
+      ratios.push_back(steps.back() / once);
+      frames.push_back(seconds([&] { advance(steps_per_frame); }));
+      system.stiffness.c += 1e-6;
+      set_ups.push_back(seconds([&] { (void)set_up.prepare(system); }));
+    }
+    row.triad = median(triads);
+    row.step = median(steps);
+    row.step_per_triad = median(ratios);
+    row.set_up = median(set_ups);
+    row.frame = median(frames);
+    row.doubles =
+        static_cast<double>(solver->memory()) / sizeof(double) / static_cast<double>(nodes);
+  }
+  const long direct = long{options.direct_side} * options.direct_side;
+#ifdef PLIANT_BENCH_SUPERNODAL
+  if (nodes <= direct) {
+    bench::SupernodalSolver solver;
+    row.supernodal = cost_of(solver, problem, state);
+  }
+#endif
+  if (4 * nodes <= direct + 4L * options.direct_side && is_available(SolverChoice::Cholmod)) {
+    row.simplicial = cost_of(*make_solver(SolverKind::Cholmod), problem, state);
+  }
+  if (4 * nodes <= direct + 4L * options.direct_side) {
+    row.eigen = cost_of(*make_solver(SolverKind::Eigen), problem, state);
+  }
+  return row;
+}
+
+std::string times_of(const Row& row, const std::optional<DirectCost>& cost) {
+  if (!cost) return "-";
+  const double kept = steps_per_frame * cost->step;
+  return fmt::format("{:.0f} / {:.0f}", (cost->factor + kept) / row.with_set_up(),
+                     kept / row.frame);
+}
+
+void print(const Row& row, const Options& options) {
+  if (options.is_csv) {
+    const auto frame_of = [](const std::optional<DirectCost>& cost) {
+      return cost ? fmt::format("{:.6g},{:.6g}", cost->factor + steps_per_frame * cost->step,
+                                steps_per_frame * cost->step)
+                  : std::string(",");
+    };
+    fmt::print("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{}\n", row.columns, row.rows, row.triad,
+               row.step, row.set_up, row.frame, frame_of(row.supernodal), frame_of(row.simplicial),
+               frame_of(row.eigen));
+  } else {
+    fmt::print(
+        "| {} x {} | {:.4f} | {:.4f} ({:.2f}) | {:.3f} | {:.2f} | {:.0f} | {} | {} | {} | {:.1f} "
+        "|\n",
+        row.columns, row.rows, row.triad * 1e3, row.step * 1e3, row.step_per_triad,
+        row.set_up * 1e3, row.with_set_up() * 1e3, 1 / row.with_set_up(),
+        times_of(row, row.supernodal), times_of(row, row.simplicial), times_of(row, row.eigen),
+        row.doubles);
+  }
+  std::fflush(stdout);
+}
+
+// "51,101x801": boxes of so many columns and rows.
+std::optional<std::vector<std::pair<int, int>>> parse_boxes(std::string_view text) {
+  std::vector<std::pair<int, int>> boxes;
+  while (!text.empty()) {
+    const std::string_view box = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), box.size() + 1));
+    const auto number = [](std::string_view digits) {
+      int value = 0;
+      const auto end = digits.data() + digits.size();
+      const auto [rest, error] = std::from_chars(digits.data(), end, value);
+      return error == std::errc() && rest == end && value >= 1 && value <= 20'000 ? value : 0;
+    };
+    const auto cross = box.find('x');
+    const int columns = number(box.substr(0, cross));
+    const int rows = cross == std::string_view::npos ? columns : number(box.substr(cross + 1));
+    if (columns == 0 || rows == 0) return {};
+    boxes.emplace_back(columns, rows);
+  }
+  return boxes;
+}
+
+bool are_solvable(const std::vector<std::pair<int, int>>& boxes) {
+  return std::all_of(boxes.begin(), boxes.end(),
+                     [](const auto& box) { return box.first >= 3 && box.second >= 3; });
+}
+
+std::optional<Options> parse(int count, char* arguments[]) {
+  Options options;
+  for (int k = 1; k < count; ++k) {
+    const std::string_view name = arguments[k];
+    if (name == "--csv") {
+      options.is_csv = true;
+      continue;
+    }
+    if (k + 1 == count) return {};
+    const auto boxes = parse_boxes(arguments[++k]);
+    if ((name == "--direct" || name == "--threads") && boxes && boxes->size() == 1) {
+      (name == "--direct" ? options.direct_side : options.threads) = boxes->front().first;
+    } else if (name == "--boxes" && boxes && are_solvable(*boxes)) {
+      options.boxes.insert(options.boxes.end(), boxes->begin(), boxes->end());
+    } else {
+      return {};
+    }
+  }
+  if (options.boxes.empty()) {
+    // Squares whose sides are smooth; then some that come next to them, with a prime or twice one;
+    // then longer boxes.
+    for (const int side : {51, 101, 201, 401, 701, 1001, 2001})
+      options.boxes.emplace_back(side, side);
+    for (const int side : {102, 198, 402, 398, 720}) options.boxes.emplace_back(side, side);
+    options.boxes.insert(options.boxes.end(), {{101, 801}, {801, 101}, {31, 2001}});
+  }
+  return options;
+}
+
+}  // namespace
+
+int main(int count, char* arguments[]) {
+  const auto options = parse(count, arguments);
+  if (!options) {
+    fmt::print(stderr,
+               "usage: plate [--boxes 51,101x801,...] [--direct SIDE] [--threads N] [--csv]\n");
+    return 2;
+  }
+  ThreadPool threads(options->threads);
+  if (options->is_csv) {
+    fmt::print(
+        "columns,rows,triad,step,set_up,frame,supernodal_new,supernodal_kept,"
+        "simplicial_new,simplicial_kept,eigen_new,eigen_kept\n");
+  } else {
+    fmt::print("kernels {}, {} thread(s); times in ms; times as long: new / kept\n\n",
+               runnable_kernels(0)->name, threads.thread_count());
+    fmt::print(
+        "| nodes | triad | step (triads) | set-up | frame, new | frames/s | supernodal | "
+        "simplicial | eigen | doubles a node |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  }
+  for (const auto& [columns, rows] : options->boxes) {
+    print(measure(columns, rows, *options, threads), *options);
+  }
+  return 0;
+}
