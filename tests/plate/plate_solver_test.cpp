@@ -45,4 +45,5 @@ TEST_CASE("the automatic choice looks at the problem alone", "[plate][solver]") 
   // Where the diagonal of the sines would lose digits, the matrix is factored.
   CHECK(worth_transforming(unit_grid(60, 60), {1, -1.9, 1}));
   CHECK_FALSE(worth_transforming(unit_grid(60, 60), {1, -1.99999, 1}));
+  CHECK_FALSE(worth_transforming(unit_grid(300, 3), {1, 2, 1}));  // rows too short
 }

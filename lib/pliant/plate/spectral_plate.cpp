@@ -338,6 +338,18 @@ bool SpectralPlate::is_zero(const ConstNodesView& field, int component) const {
   return true;
 }
 
+// What can be stepped by itself: one component of one pair of parities, if there is anything in it.
+SpectralPlate::Parts SpectralPlate::moving_parts() const {
+  Parts parts;
+  for (int k = 0; k < 4; ++k) {
+    if (parities_[k].rows == 0 || parities_[k].columns == 0) continue;
+    for (int component = 0; component < 3; ++component) {
+      if (!is_still_[component]) parts.part[parts.count++] = {k, component};
+    }
+  }
+  return parts;
+}
+
 // How many parts the transforms of a field are done in. Columns do not know each other, so that no
 // bit depends on it.
 std::size_t SpectralPlate::chunk_count() const {
@@ -361,12 +373,11 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
   ++counts_.solves;
   std::fill_n(is_still_, 3, false);
   to_sines(load, &Parity::load);
-  for_each(12, [&](std::size_t task) {
-    const int k = static_cast<int>(task) / 3;
-    if (parities_[k].rows == 0 || parities_[k].columns == 0) return;
-    if (is_still_[task % 3]) return;
+  const Parts parts = moving_parts();
+  for_each(parts.count, [&](std::size_t task) {
+    const auto [k, index] = parts.part[task];
     const ParityView parity = view_of(k);
-    const ComponentView component = component_of(k, static_cast<int>(task) % 3);
+    const ComponentView component = component_of(k, index);
     const long size = long{parity.rows} * parity.pitch;
     std::fill_n(component.displacement, size, 0.0);
     std::fill_n(component.pending, size, 0.0);
@@ -393,16 +404,17 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   const double keep = inertia / steps.length;
   const StepFactors factors{shift + keep, keep};
   std::atomic<bool> is_stopped = false;
-  for_each(12, [&](std::size_t task) {
-    const int k = static_cast<int>(task) / 3;
-    if (parities_[k].rows == 0 || parities_[k].columns == 0) return;
-    if (is_still_[task % 3]) return;
+  const Parts parts = moving_parts();
+  for_each(parts.count, [&](std::size_t task) {
+    const auto [k, index] = parts.part[task];
     const ParityView parity = view_of(k);
-    const ComponentView component = component_of(k, static_cast<int>(task) % 3);
+    const ComponentView component = component_of(k, index);
     kernels_.start(parity, component, shift, inertia);
     for (int step = 1; step <= steps.count; ++step) {
       if (is_stopped) return;
-      if (should_stop && should_stop()) {
+      // The parts ask in turn, so that each step is asked for once.
+      const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
+      if (asks && should_stop && should_stop()) {
         is_stopped = true;
         return;
       }

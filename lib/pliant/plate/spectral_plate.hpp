@@ -89,6 +89,13 @@ class SpectralPlate {
   struct Range {
     int first, last;
   };
+  struct Part {
+    int parity, component;
+  };
+  struct Parts {
+    std::size_t count = 0;
+    Part part[12] = {};
+  };
 
   Result<void> lay_out(int columns, int rows);
   void carve(Carver& carver);
@@ -99,6 +106,7 @@ class SpectralPlate {
   void find_still(const ConstNodesView& load, const ConstNodesView& displacement,
                   const ConstNodesView& velocity);
   bool is_zero(const ConstNodesView& field, int component) const;
+  Parts moving_parts() const;
   std::size_t chunk_count() const;
   Range chunk(std::size_t task, int count) const;
   int between_width() const;
