@@ -13,13 +13,14 @@
 //             kept
 //
 // Run: build/release/bench/plate [--boxes 51,101x801,...] [--direct SIDE]
-//      [--threads N] [--csv]
+//      [--threads N] [--csv FILE]
 // Sparse factors are measured up to SIDE nodes per side (401), simplicial ones and Eigen's up to
 // half of that. --csv prints the rows for script/performance_plot.
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,7 +49,7 @@ struct Options {
   std::vector<std::pair<int, int>> boxes;
   int direct_side = 401;
   int threads = 1;
-  bool is_csv = false;
+  std::string csv;  // file; empty: none
 };
 
 double seconds(const std::function<void()>& work) {
@@ -171,26 +172,25 @@ std::string times_of(const Row& row, const std::optional<DirectCost>& cost) {
                      kept / row.frame);
 }
 
-void print(const Row& row, const Options& options) {
-  if (options.is_csv) {
-    const auto frame_of = [](const std::optional<DirectCost>& cost) {
-      return cost ? fmt::format("{:.6g},{:.6g}", cost->factor + steps_per_frame * cost->step,
-                                steps_per_frame * cost->step)
-                  : std::string(",");
-    };
-    fmt::print("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{}\n", row.columns, row.rows, row.triad,
-               row.step, row.set_up, row.frame, frame_of(row.supernodal), frame_of(row.simplicial),
-               frame_of(row.eigen));
-  } else {
-    fmt::print(
-        "| {} x {} | {:.4f} | {:.4f} ({:.2f}) | {:.3f} | {:.2f} | {:.0f} | {} | {} | {} | {:.1f} "
-        "|\n",
-        row.columns, row.rows, row.triad * 1e3, row.step * 1e3, row.step_per_triad,
-        row.set_up * 1e3, row.with_set_up() * 1e3, 1 / row.with_set_up(),
-        times_of(row, row.supernodal), times_of(row, row.simplicial), times_of(row, row.eigen),
-        row.doubles);
-  }
+void print_row(const Row& row) {
+  fmt::print(
+      "| {} x {} | {:.4f} | {:.4f} ({:.2f}) | {:.3f} | {:.2f} | {:.0f} | {} | {} | {} | {:.1f} "
+      "|\n",
+      row.columns, row.rows, row.triad * 1e3, row.step * 1e3, row.step_per_triad, row.set_up * 1e3,
+      row.with_set_up() * 1e3, 1 / row.with_set_up(), times_of(row, row.supernodal),
+      times_of(row, row.simplicial), times_of(row, row.eigen), row.doubles);
   std::fflush(stdout);
+}
+
+void print_csv(const Row& row, std::FILE* file) {
+  const auto frame_of = [](const std::optional<DirectCost>& cost) {
+    return cost ? fmt::format("{:.6g},{:.6g}", cost->factor + steps_per_frame * cost->step,
+                              steps_per_frame * cost->step)
+                : std::string(",");
+  };
+  fmt::print(file, "{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{}\n", row.columns, row.rows, row.triad,
+             row.step, row.set_up, row.frame, frame_of(row.supernodal), frame_of(row.simplicial),
+             frame_of(row.eigen));
 }
 
 // "51,101x801": boxes of so many columns and rows.
@@ -223,11 +223,11 @@ std::optional<Options> parse(int count, char* arguments[]) {
   Options options;
   for (int k = 1; k < count; ++k) {
     const std::string_view name = arguments[k];
+    if (k + 1 == count) return {};
     if (name == "--csv") {
-      options.is_csv = true;
+      options.csv = arguments[++k];
       continue;
     }
-    if (k + 1 == count) return {};
     const auto boxes = parse_boxes(arguments[++k]);
     if ((name == "--direct" || name == "--threads") && boxes && boxes->size() == 1) {
       (name == "--direct" ? options.direct_side : options.threads) = boxes->front().first;
@@ -253,24 +253,32 @@ std::optional<Options> parse(int count, char* arguments[]) {
 int main(int count, char* arguments[]) {
   const auto options = parse(count, arguments);
   if (!options) {
-    fmt::print(stderr,
-               "usage: plate [--boxes 51,101x801,...] [--direct SIDE] [--threads N] [--csv]\n");
+    fmt::print(
+        stderr,
+        "usage: plate [--boxes 51,101x801,...] [--direct SIDE] [--threads N] [--csv FILE]\n");
     return 2;
   }
   ThreadPool threads(options->threads);
-  if (options->is_csv) {
-    fmt::print(
-        "columns,rows,triad,step,set_up,frame,supernodal_new,supernodal_kept,"
-        "simplicial_new,simplicial_kept,eigen_new,eigen_kept\n");
-  } else {
-    fmt::print("kernels {}, {} thread(s); times in ms; times as long: new / kept\n\n",
-               runnable_kernels(0)->name, threads.thread_count());
-    fmt::print(
-        "| nodes | triad | step (triads) | set-up | frame, new | frames/s | supernodal | "
-        "simplicial | eigen | doubles a node |\n|---|---|---|---|---|---|---|---|---|---|\n");
-  }
+  fmt::print("kernels {}, {} thread(s); times in ms; times as long: new / kept\n\n",
+             runnable_kernels(0)->name, threads.thread_count());
+  fmt::print(
+      "| nodes | triad | step (triads) | set-up | frame, new | frames/s | supernodal | simplicial "
+      "| "
+      "eigen | doubles a node |\n|---|---|---|---|---|---|---|---|---|---|\n");
+  std::vector<Row> rows_done;
   for (const auto& [columns, rows] : options->boxes) {
-    print(measure(columns, rows, *options, threads), *options);
+    rows_done.push_back(measure(columns, rows, *options, threads));
+    print_row(rows_done.back());
   }
-  return 0;
+  if (options->csv.empty()) return 0;
+  std::FILE* const file = std::fopen(options->csv.c_str(), "w");
+  if (!file) {
+    fmt::print(stderr, "plate: cannot write {}\n", options->csv);
+    return 1;
+  }
+  fmt::print(file,
+             "columns,rows,triad,step,set_up,frame,supernodal_new,supernodal_kept,simplicial_new,"
+             "simplicial_kept,eigen_new,eigen_kept\n");
+  for (const Row& row : rows_done) print_csv(row, file);
+  return std::fclose(file) == 0 ? 0 : 1;
 }

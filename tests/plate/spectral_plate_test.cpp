@@ -135,9 +135,9 @@ TEST_CASE("no bit depends on threads, on the width of vectors or on what was kep
     const double inertia = dynamics.density / dt;
     REQUIRE(plate.prepare({grid, problem.stiffness, (inertia + dynamics.damping) / dt}));
     const long first = grid.node(1, 1), count = grid.node_count();
-    REQUIRE(plate.advance({problem.load.data() + first, columns, count}, inertia, {7, dt},
-                          {next.displacement.data() + first, columns, count},
-                          {next.velocity.data() + first, columns, count}, {}));
+    REQUIRE(plate.advance({problem.load.data() + first, grid.columns, count}, inertia, {7, dt},
+                          {next.displacement.data() + first, grid.columns, count},
+                          {next.velocity.data() + first, grid.columns, count}, {}));
     return next;
   };
   SpectralPlate plain(nullptr);

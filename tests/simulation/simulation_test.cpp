@@ -341,9 +341,12 @@ TEST_CASE("a region too small to solve is told once, with its frames", "[simulat
 }
 
 TEST_CASE("the number of threads changes no bit", "[simulation][threads]") {
-  Scene s = scene({sheet("a", 21), sheet("b", 13), sheet("c", 17), sheet("d", 9)},
-                  {poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)}, 8);
-  s.surfaces[1].enabled = false;
+  // Several surfaces go at the same time, a single one goes in parts.
+  const std::vector<Force> forces{poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)};
+  Scene s = GENERATE_COPY(
+      scene({sheet("a", 21), sheet("b", 13), sheet("c", 17), sheet("d", 9)}, forces, 8),
+      scene({sheet("a", 121), sheet("b", 13)}, forces, 8), scene({sheet("a", 121)}, forces, 8));
+  if (s.surfaces.size() > 1) s.surfaces[1].enabled = false;
   const auto all_frames = [&](int threads) {
     auto simulation = Simulation::make(s, {.threads = threads}).value();
     std::vector<Field> positions;

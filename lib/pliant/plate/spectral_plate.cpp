@@ -125,7 +125,7 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
   const int across = std::min(columns, rows) - 1;
   const int along = std::max(columns, rows) - 1;
   const std::size_t tables = SinePlan::table_size(across) + SinePlan::table_size(along);
-  // Tables first: what the rest takes depends on them a little, and they are small.
+  // Tables first: what the rest takes depends on them, and they are small.
   if (const std::size_t bytes = (tables + numbers_.count()) * sizeof(double);
       !memory_.try_resize(bytes)) {
     return fail(factor_too_large(size, memory_.complaint(bytes)));
@@ -141,12 +141,14 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
     numbers_ = NumberBlock();
     const std::size_t bytes = (tables + count.used()) * sizeof(double);
     if (!memory_.try_resize(bytes)) {
-      return fail(factor_too_large(size, memory_.complaint(bytes)));
+      const Error error = factor_too_large(size, memory_.complaint(bytes));
+      (void)memory_.try_resize(tables * sizeof(double));  // less is always there
+      return fail(error);
     }
     numbers_ = NumberBlock(count.used());
   }
   // What fills rows up stays 0 from here on.
-  std::fill_n(numbers_.begin(), numbers_.count(), 0.0);
+  std::fill_n(numbers_.begin(), count.used(), 0.0);
   Carver carver(numbers_.begin());
   carve(carver);
   columns_ = columns;
