@@ -13,7 +13,7 @@ int main() {
   using namespace pliant;
   ThreadPool threads(2);
   const auto solver = make_plate_solver(SolverChoice::Auto, nullptr, &threads);
-  const Grid grid{90, 70, 0.01, 0.01};
+  const Grid grid{130, 90, 0.01, 0.01};
   PlateProblem problem{grid, {1, 2, 1}, {40, 20}, {}, Field::Ones(grid.node_count(), 3)};
   PlateState state{Field::Zero(grid.node_count(), 3), Field::Zero(grid.node_count(), 3)};
   const auto frame = [&] {

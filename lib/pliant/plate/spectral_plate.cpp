@@ -54,7 +54,7 @@ SpectralPlate::SpectralPlate(MemoryBudget* budget, ThreadPool* threads,
 // Tasks that write different numbers. None of it is worth a thread on a small plate.
 template <class Work>
 void SpectralPlate::for_each(std::size_t count, const Work& work) {
-  constexpr long worth_a_thread = 2500;  // nodes
+  constexpr long worth_a_thread = 10'000;  // nodes
   if (threads_ && long{columns_} * rows_ > worth_a_thread) {
     threads_->for_each(count, std::ref(work));
   } else {
