@@ -223,7 +223,7 @@ double* chirped(const SineView& view, double* points, double* spare) {
   return result;
 }
 
-// docs/model.md, eq. (20): the sums and differences of mirrored points are the real input
+// docs/model.md, eq. (29): the sums and differences of mirrored points are the real input
 // of one complex transform, whose real part has the even modes and whose imaginary part the odd
 // ones.
 void sine_transform(const SineView& view, double* points, double* work) {
@@ -552,7 +552,7 @@ void start(const ParityView& parity, const ComponentView& component, double shif
   for (; k < parity.rows; ++k) start_rows<1>(parity, component, shift, inertia, k);
 }
 
-// Eq. (17): y = C^-1 q sums; xi = y/q. Leaves the sums 0.
+// Eq. (26): y = C^-1 q sums; xi = y/q. Leaves the sums 0.
 void solve_edge(const ParityView& parity, const ComponentView& component) {
   const int n = parity.columns;
   double* const x = component.column_sums;
@@ -775,7 +775,7 @@ void invert_upper(double* c, int order, int pitch, double* panels) {
   }
 }
 
-// Eq. (16) and (18): the pivots 1/h_k, then C = diag(1/beta + sum over k of p_k^2/D_kl) - sum over
+// Eq. (25) and (27): the pivots 1/h_k, then C = diag(1/beta + sum over k of p_k^2/D_kl) - sum over
 // k of z_k z_k^T with z_kl = q_l p_k/D_kl sqrt(1/h_k), and its inverse.
 int invert_edge(const ParityView& parity, double beta, double delta, double* row_pivot, double* c,
                 double* panels) {

@@ -213,7 +213,7 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   return fail(no_memory_for_factor(unknown_count(system.grid)));
 }
 
-// 1/D with D the eigenvalues of the simply supported plate. Eq. (13). Whether all are positive.
+// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Whether all are positive.
 bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const Parity& parity = parities_[k];
   const Grid& grid = system.grid;
@@ -401,7 +401,7 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   to_sines(view(displacement), &Parity::displacement);
   to_sines(view(velocity), &Parity::pending);
 
-  // Eq. (19): shift w' + inertia v' with v' = (w' - w)/dt.
+  // Eq. (28): shift w' + inertia v' with v' = (w' - w)/dt.
   const double shift = prepared_->shift;
   const double keep = inertia / steps.length;
   const StepFactors factors{shift + keep, keep};
