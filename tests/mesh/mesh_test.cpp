@@ -48,6 +48,28 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
     mesh.uvs[2][1] = std::numeric_limits<double>::infinity();
     expected = "uv 3";
   }
+  SECTION("number of normals") {
+    mesh.corner_normals = {0, 1};
+    expected = "16 corners, but there are 2 corner normals";
+  }
+  SECTION("a normal too large") {
+    mesh.corner_normals.assign(16, 0);
+    mesh.corner_normals[3] = 16;
+    expected = "corner 4 has the normal 17 of at most 16";
+  }
+  SECTION("a normal of nobody") {
+    mesh.corner_normals.assign(16, 2);
+    mesh.corner_normals[3] = 0;
+    expected = "no corner has the normal 2 of 3";
+  }
+  SECTION("number of materials") {
+    mesh.materials = {{"a"}, {0, 0}};
+    expected = "2 of the mesh's 4 faces have a material";
+  }
+  SECTION("a group too large") {
+    mesh.groups = {{"a"}, {0, -1, 1, 0}};
+    expected = "face 3 refers to group 2 of 1";
+  }
   const auto checked = check_mesh(mesh);
   REQUIRE_FALSE(checked);
   CHECK_THAT(checked.error().message, Contains(expected));

@@ -158,3 +158,41 @@ TEST_CASE("a missing OBJ file is unreadable", "[mesh][read_obj]") {
   const ScratchFolder folder;
   CHECK(read_obj(folder.file("none.obj")).error().code == ErrorCode::Unreadable);
 }
+
+TEST_CASE("materials and groups of an OBJ file stay with their faces", "[mesh][read_obj]") {
+  const std::string faces =
+      "f 1 2 3\nusemtl Skin red \ng left arm\nf 1 2 4\nusemtl Steel\nf 1 3 4\ng\nusemtl Skin red\n"
+      "f 2 3 4\n";
+  const Mesh mesh = parse_obj("o Body\n" + quad + faces, "m.obj").value();
+  CHECK(mesh.object == "Body");
+  CHECK(mesh.materials == FaceNames{{"Skin red", "Steel"}, {-1, 0, 1, 0}});
+  CHECK(mesh.groups == FaceNames{{"left arm"}, {-1, 0, 0, -1}});
+  CHECK(parse_obj(quad + "f 1 2 3\n", "m.obj")->materials == FaceNames{});
+  const Mesh part =
+      parse_obj(quad + "o a\nusemtl A\nf 1 2 3\no b\nusemtl B\nf 2 3 4\n", "m.obj", "b").value();
+  CHECK(part.materials == FaceNames{{"B"}, {0}});
+  CHECK(part.object == "b");
+}
+
+TEST_CASE("an OBJ file says what is smooth", "[mesh][read_obj]") {
+  const auto normals = [](const std::string& text) {
+    return parse_obj(quad + text, "m.obj").value().corner_normals;
+  };
+  using Numbers = std::vector<int>;
+  const std::string vn = "vn 0 1 0\nvn 1 0 0\nvn 0 1 0\n";
+  CHECK(normals("f 1 2 3\nf 1 3 4\n").empty());
+  CHECK(normals("s 1\nf 1 2 3\nf 1 3 4\n").empty());
+  CHECK(normals("s off\nf 1 2 3\nf 1 3 4\n") == Numbers{0, 0, 0, 1, 1, 1});
+  CHECK(normals("s 0\nf 1 2 3\ns 1\nf 1 3 4\n") == Numbers{0, 0, 0, 1, 2, 3});
+  CHECK(normals("s 1\nf 1 2 3\ns 2\nf 1 3 4\n") == Numbers{0, 1, 2, 3, 4, 5});
+  // By value: the first and the third are one.
+  CHECK(normals(vn + "f 1//1 2//1 3//1\nf 1//3 3//2 4//2\n") == Numbers{0, 1, 2, 0, 3, 4});
+  CHECK(normals(vn + "s off\nf 1//1 2//1 3//1\n") == Numbers{0, 0, 0});
+}
+
+TEST_CASE("normals of an OBJ file that cannot be read are none", "[mesh][read_obj]") {
+  for (const char* text : {"vn nan 0 0\nf 1//1 2//1 3//1\n", "vn 1\nf 1//1 2//1 3//1\n",
+                           "f 1//9 2//9 3//-9\n", "vn 0 1 0\nf 1//0 2//0 3//0\n"}) {
+    CHECK(parse_obj(quad + text, "m.obj"));
+  }
+}

@@ -2,15 +2,58 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace pliant {
+namespace {
+
+tl::unexpected<Error> broken(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* thing) {
+  if (!names.of_faces.empty() && names.of_faces.size() != mesh.face_sizes.size()) {
+    return broken(fmt::format("{} of the mesh's {} faces have a {} or none", names.of_faces.size(),
+                              mesh.face_sizes.size(), thing));
+  }
+  for (std::size_t face = 0; face < names.of_faces.size(); ++face) {
+    const int index = names.of_faces[face];
+    if (index >= -1 && index < static_cast<std::int64_t>(names.names.size())) continue;
+    return broken(fmt::format("face {} refers to {} {} of {}", face + 1, thing,
+                              std::int64_t{index} + 1, names.names.size()));
+  }
+  return {};
+}
+
+Result<void> check_normals(const Mesh& mesh) {
+  if (mesh.corner_normals.empty()) return {};
+  if (mesh.corner_normals.size() != mesh.corner_vertices.size()) {
+    return broken(fmt::format("the faces have {} corners, but there are {} corner normals",
+                              mesh.corner_vertices.size(), mesh.corner_normals.size()));
+  }
+  std::vector<bool> is_used;
+  for (std::size_t corner = 0; corner < mesh.corner_normals.size(); ++corner) {
+    const int normal = mesh.corner_normals[corner];
+    if (normal < 0 || static_cast<std::size_t>(normal) >= mesh.corner_normals.size()) {
+      return broken(fmt::format("corner {} has the normal {} of at most {}", corner + 1,
+                                std::int64_t{normal} + 1, mesh.corner_normals.size()));
+    }
+    if (static_cast<std::size_t>(normal) >= is_used.size())
+      is_used.resize(static_cast<std::size_t>(normal) + 1);
+    is_used[static_cast<std::size_t>(normal)] = true;
+  }
+  for (std::size_t normal = 0; normal < is_used.size(); ++normal) {
+    if (!is_used[normal])
+      return broken(fmt::format("no corner has the normal {} of {}", normal + 1, is_used.size()));
+  }
+  return {};
+}
+
+}  // namespace
 
 Result<void> check_mesh(const Mesh& mesh) {
-  const auto broken = [](std::string message) {
-    return fail(ErrorCode::InvalidInput, std::move(message));
-  };
   if (mesh.face_sizes.empty()) return broken("the mesh has no faces");
   std::int64_t corners = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
@@ -48,7 +91,9 @@ Result<void> check_mesh(const Mesh& mesh) {
       return broken(fmt::format("uv {} is not finite", uv + 1));
     }
   }
-  return {};
+  if (auto checked = check_normals(mesh); !checked) return checked;
+  if (auto checked = check_names(mesh.materials, mesh, "material"); !checked) return checked;
+  return check_names(mesh.groups, mesh, "group");
 }
 
 }  // namespace pliant

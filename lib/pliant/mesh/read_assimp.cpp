@@ -1,12 +1,14 @@
 #include "pliant/mesh/read_assimp.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <exception>
 #include <limits>
 #include <memory>
 #include <new>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,6 +18,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
@@ -26,6 +29,7 @@
 #include "pliant/mesh/assimp_files.hpp"
 #include "pliant/mesh/assimp_guard.hpp"
 #include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
@@ -210,8 +214,46 @@ Result<void> append_faces(const aiMesh& source, int first_vertex, int first_uv, 
   return {};
 }
 
-Result<Mesh> merged(const Object& object, int uv_set) {
+// Appends what a mesh says of the shading of its faces: of `face_count` and of their corners.
+void append_shading(const aiMesh& source, int shading_without, std::size_t face_count,
+                    std::span<const int> corner_vertices, int first_vertex, Shading& shading) {
+  const auto first_normal = static_cast<int>(shading.normals.size());
+  const bool has_normals = source.HasNormals();
+  for (const int vertex : corner_vertices)
+    shading.corner_normals.push_back(has_normals ? first_normal + vertex - first_vertex : -1);
+  shading.smoothing.resize(shading.smoothing.size() + face_count,
+                           has_normals ? Shading::unsaid : shading_without);
+  for (unsigned k = 0; has_normals && k < source.mNumVertices; ++k) {
+    const aiVector3D& normal = source.mNormals[k];
+    const bool is_finite =
+        std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z);
+    shading.normals.push_back(is_finite ? std::array<double, 3>{normal.x, normal.y, normal.z}
+                                        : std::array<double, 3>{});
+  }
+}
+
+std::string material_name(const aiScene& scene, const aiMesh& mesh) {
+  if (mesh.mMaterialIndex >= scene.mNumMaterials || !scene.mMaterials[mesh.mMaterialIndex])
+    return {};
+  aiString name;
+  scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
+  return name.C_Str();
+}
+
+// Appends the material of faces that one mesh has.
+void append_material(const std::string& name, std::size_t face_count, FaceNames& materials) {
+  int index = -1;
+  if (!name.empty()) {
+    const auto found = std::find(materials.names.begin(), materials.names.end(), name);
+    index = static_cast<int>(found - materials.names.begin());
+    if (found == materials.names.end()) materials.names.push_back(name);
+  }
+  materials.of_faces.resize(materials.of_faces.size() + face_count, index);
+}
+
+Result<Mesh> merged(const aiScene& scene, const Object& object, int uv_set, int shading_without) {
   Mesh mesh;
+  Shading shading;
   Eigen::Index vertex_count = 0;
   for (const aiMesh* source : object.meshes) vertex_count += source->mNumVertices;
   mesh.positions.resize(vertex_count, 3);
@@ -219,14 +261,25 @@ Result<Mesh> merged(const Object& object, int uv_set) {
   for (const aiMesh* source : object.meshes) {
     const aiVector3D* uvs = source->mTextureCoords[uv_set];
     const int first_uv = uvs ? static_cast<int>(mesh.uvs.size()) : -1;
-    if (auto added = append_faces(*source, static_cast<int>(row), first_uv, mesh); !added)
+    const auto first_vertex = static_cast<int>(row);
+    const std::size_t first_corner = mesh.corner_vertices.size();
+    const std::size_t first_face = mesh.face_sizes.size();
+    if (auto added = append_faces(*source, first_vertex, first_uv, mesh); !added)
       return fail(added.error());
+    const std::size_t face_count = mesh.face_sizes.size() - first_face;
+    append_shading(*source, shading_without, face_count,
+                   std::span(mesh.corner_vertices).subspan(first_corner), first_vertex, shading);
+    append_material(material_name(scene, *source), face_count, mesh.materials);
     for (unsigned k = 0; k < source->mNumVertices; ++k, ++row) {
       const aiVector3D& position = source->mVertices[k];
       mesh.positions.row(row) << position.x, position.y, position.z;
       if (uvs) mesh.uvs.push_back({uvs[k].x, uvs[k].y});
     }
   }
+  if (mesh.materials.names.empty()) mesh.materials.of_faces.clear();
+  mesh.object = object.node_name.empty() ? object.mesh_name : object.node_name;
+  if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
+  mesh.corner_normals = shared_normals(mesh, shading);
   return mesh;
 }
 
@@ -256,7 +309,9 @@ Result<Mesh> read_object(const std::filesystem::path& file, std::string bytes,
   if (!object) return fail(object.error());
   if (auto checked = check_sets(*object, uv_set); !checked) return fail(checked.error());
   if (auto checked = check_size(*object); !checked) return fail(checked.error());
-  auto mesh = merged(*object, uv_set);
+  const std::string ending = ending_of(file);
+  const bool is_gltf = ending == ".gltf" || ending == ".glb";
+  auto mesh = merged(**scene, *object, uv_set, is_gltf ? Shading::flat : Shading::unsaid);
   if (!mesh) return mesh;
   if (auto applied = apply(object->to_file, mesh->positions); !applied)
     return fail(applied.error());

@@ -26,6 +26,9 @@ inline constexpr int max_uv_sets = 8;
 /// (u,v) are those of the set `uv_set`, one pair a vertex, v upwards as in OBJ: glTF's v runs down
 /// and becomes 1 - v.
 ///
+/// Materials keep their names; corners share a normal where the file's normals and the positions
+/// are equal. glTF without normals is flat, as that format has it; the others are smooth.
+///
 /// `object` names the node, or if no node has that name, a mesh of it. Empty: the file's only one.
 ///
 /// Errors, naming the file: a file that assimp refuses, with its reason; a reference to a file that

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/trim.hpp"
 #include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
@@ -33,6 +35,43 @@ struct Object {
   std::string name;
   std::size_t first_face = 0;
 };
+
+// What `usemtl` or `g` says of the faces that follow.
+class CurrentName {
+ public:
+  void set(std::string_view name) {
+    current_ = -1;
+    if (name.empty()) return;
+    current_ =
+        indices_.try_emplace(std::string(name), static_cast<int>(indices_.size())).first->second;
+    if (static_cast<std::size_t>(current_) == names_.names.size()) names_.names.emplace_back(name);
+  }
+
+  void add_face() { names_.of_faces.push_back(current_); }
+
+  const FaceNames& names() const { return names_; }
+
+ private:
+  FaceNames names_;
+  std::unordered_map<std::string, int> indices_;
+  int current_ = -1;
+};
+
+// Those of the faces first..last; names that none of them carries are left out.
+FaceNames part_of(const FaceNames& all, std::size_t first, std::size_t last) {
+  FaceNames part;
+  std::vector<int> new_index(all.names.size(), -1);
+  for (std::size_t face = first; face < last; ++face) {
+    const int index = all.of_faces[face];
+    if (index >= 0 && new_index[static_cast<std::size_t>(index)] < 0) {
+      new_index[static_cast<std::size_t>(index)] = static_cast<int>(part.names.size());
+      part.names.push_back(all.names[static_cast<std::size_t>(index)]);
+    }
+    part.of_faces.push_back(index < 0 ? -1 : new_index[static_cast<std::size_t>(index)]);
+  }
+  if (part.names.empty()) part.of_faces.clear();
+  return part;
+}
 
 class ObjReader {
  public:
@@ -90,7 +129,28 @@ class ObjReader {
       read_face(statement);
     } else if (keyword == "o") {
       objects_.push_back({std::string(trim(statement, blanks)), mesh_.face_sizes.size()});
+    } else if (keyword == "vn") {
+      shading_.normals.push_back(read_normal(statement));
+    } else if (keyword == "usemtl") {
+      materials_.set(trim(statement, blanks));
+    } else if (keyword == "g") {
+      groups_.set(trim(statement, blanks));
+    } else if (keyword == "s") {
+      const std::string_view word = next_word(statement);
+      const auto group = word == "off" ? Shading::flat : to_integer(word).value_or(-1);
+      smoothing_ = group >= 0 ? group : Shading::unsaid;
     }
+  }
+
+  // Zeros where it cannot be read.
+  static std::array<double, 3> read_normal(std::string_view words) {
+    std::array<double, 3> normal{};
+    for (double& component : normal) {
+      const auto number = to_number(next_word(words));
+      if (!number) return {};
+      component = *number;
+    }
+    return normal;
   }
 
   // `v x y z [w]` or `v x y z r g b`, `vt u [v [w]]`. A line that cannot be read still counts, as
@@ -120,7 +180,8 @@ class ObjReader {
   // What a corner says, as written: from 1, or backwards from the last one read so far.
   struct Corner {
     int vertex = 0;
-    std::optional<int> uv;  // none: the corner has no (u,v)
+    std::optional<int> uv = {};      // none: the corner has no (u,v)
+    std::optional<int> normal = {};  // likewise
   };
 
   // `v`, `v/vt`, `v//vn` or `v/vt/vn`; none for anything else.
@@ -128,14 +189,18 @@ class ObjReader {
     const std::size_t slash = word.find('/');
     const auto vertex = to_integer(word.substr(0, slash));
     if (!vertex) return std::nullopt;
-    if (slash == std::string_view::npos) return Corner{*vertex, {}};
+    if (slash == std::string_view::npos) return Corner{*vertex};
     const std::string_view rest = word.substr(slash + 1);
     const std::string_view texture = rest.substr(0, rest.find('/'));
     const bool has_normal = texture.size() < rest.size();
-    if (has_normal && !to_integer(rest.substr(texture.size() + 1))) return std::nullopt;
-    if (texture.empty()) return has_normal ? std::optional(Corner{*vertex, {}}) : std::nullopt;
-    const auto uv = to_integer(texture);
-    return uv ? std::optional(Corner{*vertex, *uv}) : std::nullopt;
+    Corner corner{*vertex};
+    if (has_normal) {
+      corner.normal = to_integer(rest.substr(texture.size() + 1));
+      if (!corner.normal) return std::nullopt;
+    }
+    if (texture.empty()) return has_normal ? std::optional(corner) : std::nullopt;
+    corner.uv = to_integer(texture);
+    return corner.uv ? std::optional(corner) : std::nullopt;
   }
 
   void read_face(std::string_view words) {
@@ -150,6 +215,8 @@ class ObjReader {
       }
       mesh_.corner_vertices.push_back(to_index(corner->vertex, coordinates_.size() / 3));
       mesh_.corner_uvs.push_back(corner->uv ? to_index(*corner->uv, mesh_.uvs.size()) : -1);
+      shading_.corner_normals.push_back(
+          corner->normal ? to_index(*corner->normal, shading_.normals.size()) : -1);
     }
     const std::size_t size = mesh_.corner_vertices.size() - first_corner;
     if (size < 3) {
@@ -158,11 +225,15 @@ class ObjReader {
     }
     mesh_.face_sizes.push_back(static_cast<int>(size));
     face_lines_.push_back(line_);
+    shading_.smoothing.push_back(smoothing_);
+    materials_.add_face();
+    groups_.add_face();
   }
 
   void drop_corners(std::size_t first) {
     mesh_.corner_vertices.resize(first);
     mesh_.corner_uvs.resize(first);
+    shading_.corner_normals.resize(first);
   }
 
   // From 1, or backwards from the last one read so far. What lies outside stays outside, so that
@@ -225,8 +296,19 @@ class ObjReader {
       add_error(0, chosen.error().message);
       return failure();
     }
-    if (ranges.size() == 1) return std::move(mesh_);
-    return part(ranges[*chosen].first, ranges[*chosen].last);
+    set_normals();
+    const Range& range = ranges[*chosen];
+    Mesh mesh = ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
+    mesh.object = range.name;
+    mesh.materials = part_of(materials_.names(), range.first, range.last);
+    mesh.groups = part_of(groups_.names(), range.first, range.last);
+    return mesh;
+  }
+
+  void set_normals() {
+    for (int& normal : shading_.corner_normals)  // those that are not there count as none
+      if (!is_within(normal, shading_.normals.size())) normal = -1;
+    mesh_.corner_normals = shared_normals(mesh_, shading_);
   }
 
   // The faces first..last with the vertices that they use.
@@ -255,6 +337,13 @@ class ObjReader {
       result.corner_vertices.push_back(new_index[mesh_.corner_vertices[k]]);
       result.corner_uvs.push_back(mesh_.corner_uvs[k]);
     }
+    if (mesh_.corner_normals.empty()) return result;
+    std::unordered_map<int, int> new_normal;  // without those of other objects
+    for (std::size_t k = corner; k < end; ++k) {
+      const int next = static_cast<int>(new_normal.size());
+      result.corner_normals.push_back(
+          new_normal.try_emplace(mesh_.corner_normals[k], next).first->second);
+    }
     return result;
   }
 
@@ -276,6 +365,10 @@ class ObjReader {
   std::vector<double> coordinates_;  // x y z of each vertex
   std::vector<int> face_lines_;
   std::vector<Object> objects_;
+  Shading shading_;
+  int smoothing_ = Shading::unsaid;
+  CurrentName materials_;
+  CurrentName groups_;
   std::vector<Error> errors_;
 };
 

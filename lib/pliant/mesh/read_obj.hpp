@@ -9,8 +9,13 @@
 
 namespace pliant {
 
-/// Reads a Wavefront OBJ file: `v`, `vt`, `f` and `o`; every other statement is passed over. Quads
-/// and larger faces stay what they are, and vertices keep the order of the file.
+/// Reads a Wavefront OBJ file: `v`, `vt`, `vn`, `f`, `o`, `g`, `s` and `usemtl`; every other
+/// statement is passed over. Quads and larger faces stay what they are, and vertices keep the order
+/// of the file.
+///
+/// `s off` makes faces flat; others are as their `vn` say, or smooth within their `s`, or smooth. A
+/// `vn` that cannot be read, and a corner's number of one that is not there, count as none: normals
+/// are computed anew, and only who shares them is taken from the file.
 ///
 /// A reader of our own, because none of the libraries at hand reads numbers exactly: tinyobjloader
 /// (2.0 rc10) changes the last bits of about half of all decimals, 0.375 among them, and takes

@@ -18,6 +18,7 @@
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
@@ -270,6 +271,10 @@ class PlyReader {
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
     if (mesh_.face_sizes.empty()) return broken("the file holds no faces");
+    if (!normals_.empty()) {
+      mesh_.corner_normals =
+          shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}});
+    }
     return std::move(mesh_);
   }
 
@@ -310,10 +315,15 @@ class PlyReader {
       v_ = vertex.find({v});
     }
     if (x_ < 0 || y_ < 0 || z_ < 0) return broken("the vertices have no x, y and z");
-    for (const int property : {x_, y_, z_, u_, v_}) {
-      if (property >= 0 && vertex.properties[static_cast<std::size_t>(property)].count_type)
-        return broken("a coordinate of the vertices is a list");
-    }
+    const auto is_list = [&](int property) {
+      return property >= 0 &&
+             vertex.properties[static_cast<std::size_t>(property)].count_type.has_value();
+    };
+    for (const int property : {x_, y_, z_, u_, v_})
+      if (is_list(property)) return broken("a coordinate of the vertices is a list");
+    normal_ = {vertex.find({"nx"}), vertex.find({"ny"}), vertex.find({"nz"})};
+    has_normals_ = std::all_of(normal_.begin(), normal_.end(),
+                               [&](int property) { return property >= 0 && !is_list(property); });
     return {};
   }
 
@@ -363,6 +373,8 @@ class PlyReader {
     const auto number = [&](int property) { return values[static_cast<std::size_t>(property)][0]; };
     coordinates_.insert(coordinates_.end(), {number(x_), number(y_), number(z_)});
     if (u_ >= 0) mesh_.uvs.push_back({number(u_), number(v_)});
+    if (has_normals_)
+      normals_.push_back({number(normal_[0]), number(normal_[1]), number(normal_[2])});
   }
 
   Result<void> add_face(const Values& values, std::int64_t index) {
@@ -426,10 +438,13 @@ class PlyReader {
   Numbers numbers_;
   Mesh mesh_;
   std::vector<double> coordinates_;                  // x y z of each vertex
+  std::vector<std::array<double, 3>> normals_;       // of each vertex, if it has one
   std::vector<std::array<double, 2>> corner_pairs_;  // (u,v) of corners
   std::vector<std::int64_t> faces_;                  // of each face kept, its place in the file
   int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;   // properties of a vertex
-  int corners_ = -1, corner_uvs_ = -1;               // properties of a face
+  std::array<int, 3> normal_ = {-1, -1, -1};         // likewise
+  bool has_normals_ = false;
+  int corners_ = -1, corner_uvs_ = -1;  // properties of a face
 };
 
 Result<Mesh> parse(std::string_view bytes, const std::string& object) {

@@ -18,9 +18,10 @@ namespace pliant {
 ///
 /// Of the element `vertex` x, y, z are read, and (u,v) under the names in use: `s t`, `u v`,
 /// `texture_u texture_v`, `tx ty`; of `face` the list `vertex_indices` or `vertex_index`, and the
-/// list `texcoord` of u v u v … for its corners, which goes before (u,v) of vertices. Everything
-/// else is passed over. Points without faces and faces of fewer than three corners, which are
-/// points and lines, are passed over too.
+/// list `texcoord` of u v u v … for its corners, which goes before (u,v) of vertices. Normals `nx
+/// ny nz` of vertices say which of those at one place join smoothly. Everything else is passed
+/// over. Points without faces and faces of fewer than three corners, which are points and lines,
+/// are passed over too.
 ///
 /// The file's one object has no name; any `object` but the empty one is an error.
 ///

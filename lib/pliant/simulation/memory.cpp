@@ -14,8 +14,10 @@ std::size_t bytes_of_mesh(std::size_t vertices, std::size_t uvs, std::size_t fac
 }  // namespace
 
 std::size_t bytes_of(const Mesh& mesh) {
+  const std::size_t names = mesh.materials.of_faces.size() + mesh.groups.of_faces.size();
   return bytes_of_mesh(static_cast<std::size_t>(mesh.positions.rows()), mesh.uvs.size(),
-                       mesh.face_sizes.size(), mesh.corner_vertices.size());
+                       mesh.face_sizes.size(), mesh.corner_vertices.size()) +
+         (mesh.corner_normals.size() + names) * sizeof(int);
 }
 
 std::size_t bytes_of(const GridSheet& sheet) {

@@ -1,0 +1,86 @@
+#include "pliant/mesh/triangulate.hpp"
+
+#include <numeric>
+
+#include <Eigen/Geometry>
+
+namespace pliant {
+namespace {
+
+using Vector2d = Eigen::Vector2d;
+
+// Twice the signed area of a triangle.
+double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+}
+
+// The corners of a face in the plane across its mean normal, turning counter-clockwise.
+std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
+  const auto at = [&](int k) -> Vector3d {
+    return mesh.positions.row(mesh.corner_vertices[static_cast<std::size_t>(first + k)]);
+  };
+  Vector3d normal = Vector3d::Zero();
+  for (int k = 1; k + 1 < size; ++k) normal += (at(k) - at(0)).cross(at(k + 1) - at(0));
+  int axis = 0;  // dropped: that which the normal is nearest to
+  normal.cwiseAbs().maxCoeff(&axis);
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  const double sign = normal[axis] < 0 ? -1 : 1;
+  std::vector<Vector2d> points;
+  for (int k = 0; k < size; ++k) {
+    const Vector3d point = at(k) - at(0);
+    points.emplace_back(point[x], sign * point[y]);
+  }
+  return points;
+}
+
+// Whether a triangle can be cut off: it turns the right way and no other corner lies in it.
+bool is_ear(const std::vector<Vector2d>& points, const std::vector<int>& left, std::size_t tip) {
+  const std::size_t n = left.size();
+  const std::size_t before = (tip + n - 1) % n, after = (tip + 1) % n;
+  const auto at = [&](std::size_t k) -> const Vector2d& {
+    return points[static_cast<std::size_t>(left[k])];
+  };
+  const Vector2d &a = at(before), &b = at(tip), &c = at(after);
+  if (!(turn(a, b, c) > 0)) return false;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k == before || k == tip || k == after) continue;
+    const Vector2d& p = at(k);
+    if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+  }
+  return true;
+}
+
+void cut(const Mesh& mesh, int first, int size, std::vector<std::array<int, 3>>& triangles) {
+  std::vector<int> left(static_cast<std::size_t>(size));
+  std::iota(left.begin(), left.end(), 0);
+  const std::vector<Vector2d> points =
+      size > 3 ? flattened(mesh, first, size) : std::vector<Vector2d>();
+  while (left.size() > 3) {
+    const std::size_t n = left.size();
+    std::size_t tip = 1;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!is_ear(points, left, (k + 1) % n)) continue;
+      tip = (k + 1) % n;
+      break;
+    }
+    const std::size_t before = (tip + n - 1) % n, after = (tip + 1) % n;
+    triangles.push_back({first + left[before], first + left[tip], first + left[after]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(tip));
+  }
+  triangles.push_back({first + left[0], first + left[1], first + left[2]});
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> triangulate(const Mesh& mesh) {
+  std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(mesh.corner_vertices.size() - 2 * mesh.face_sizes.size());
+  int first = 0;
+  for (const int size : mesh.face_sizes) {
+    cut(mesh, first, size, triangles);
+    first += size;
+  }
+  return triangles;
+}
+
+}  // namespace pliant

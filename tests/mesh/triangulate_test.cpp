@@ -1,0 +1,83 @@
+#include "pliant/mesh/triangulate.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Geometry>
+
+#include "pliant/mesh/grid_sheet.hpp"
+#include "support/catch.hpp"
+
+using namespace pliant;
+
+namespace {
+
+using Triangles = std::vector<std::array<int, 3>>;
+
+Mesh polygon(const std::vector<std::array<double, 2>>& points) {
+  Mesh mesh;
+  mesh.positions.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    mesh.positions.row(static_cast<Eigen::Index>(k)) << points[k][0], 0.5, -points[k][1];
+    mesh.corner_vertices.push_back(static_cast<int>(k));
+    mesh.corner_uvs.push_back(-1);
+  }
+  mesh.face_sizes = {static_cast<int>(points.size())};
+  return mesh;
+}
+
+double area(const Mesh& mesh, const std::array<int, 3>& corners) {
+  const auto at = [&](int k) -> Vector3d { return mesh.positions.row(mesh.corner_vertices[k]); };
+  return (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).y() / 2;
+}
+
+}  // namespace
+
+TEST_CASE("convex faces become fans around their first corner", "[mesh][triangulate]") {
+  Mesh mesh = make_mesh({.triangles = false});
+  CHECK(triangulate(mesh)[0] == std::array{0, 1, 2});
+  CHECK(triangulate(mesh)[1] == std::array{0, 2, 3});
+  CHECK(triangulate(mesh)[2] == std::array{4, 5, 6});
+  CHECK(triangulate(make_mesh({.triangles = true}))[3] == std::array{9, 10, 11});
+  CHECK(triangulate(polygon({{1, 0}, {2, 1}, {1.5, 2}, {0.5, 2}, {0, 1}})) ==
+        Triangles{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}});
+}
+
+TEST_CASE("faces that are not convex are covered once", "[mesh][triangulate]") {
+  // An arrow head, an L and a comb; none of them is a fan around any first corner.
+  std::vector<std::array<double, 2>> points = GENERATE(
+      std::vector<std::array<double, 2>>{{0, 0}, {2, -2}, {0, 2}, {-2, -2}},
+      std::vector<std::array<double, 2>>{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}},
+      std::vector<std::array<double, 2>>{{0, 0},
+                                         {5, 0},
+                                         {5, 3},
+                                         {4, 3},
+                                         {4, 1},
+                                         {3, 1},
+                                         {3, 3},
+                                         {2, 3},
+                                         {2, 1},
+                                         {1, 1},
+                                         {1, 3},
+                                         {0, 3}});
+  std::rotate(points.begin(), points.begin() + GENERATE(0, 1, 2, 3), points.end());
+  const Mesh mesh = polygon(points);
+  double whole = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [x, y] = points[k];
+    const auto& [x2, y2] = points[(k + 1) % points.size()];
+    whole += (x * y2 - x2 * y) / 2;
+  }
+  double sum = 0;
+  const Triangles triangles = triangulate(mesh);
+  CHECK(triangles.size() == points.size() - 2);
+  for (const auto& triangle : triangles) {
+    CHECK(area(mesh, triangle) > 0);  // none is turned over, so none overlaps another
+    sum += area(mesh, triangle);
+  }
+  CHECK(sum == whole);
+}
+
+TEST_CASE("a face without an area is cut all the same", "[mesh][triangulate]") {
+  CHECK(triangulate(polygon({{0, 0}, {1, 0}, {2, 0}, {3, 0}})).size() == 2);
+  CHECK(triangulate(polygon({{0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}})).size() == 3);
+}
