@@ -14,9 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "interrupt.hpp"
-#include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
-#include "pliant/io/sequence.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
@@ -59,67 +57,68 @@ Result<SolverChoice> parse_solver(const std::string& name) {
                           name));
 }
 
-// One surface on its way to a file.
-struct Output {
-  std::size_t surface = 0;  // index in the scene
-  std::unique_ptr<AnimationWriter> writer;
-};
+bool is_world(const BakeOptions& options) { return options.space == "world"; }
 
-// OUT, or OUT-NAME.ext when there are several surfaces; ahead of the frame's place if OUT says
-// where that is, so that a sequence stays one: x.###.obj goes to x-NAME.###.obj.
-std::filesystem::path file_for(const std::filesystem::path& out, const std::string& surface,
-                               bool is_single) {
-  if (is_single) return out;
-  std::string name = out.filename().string();
-  const std::size_t frame = name.find('#');
-  std::size_t place = frame == std::string::npos ? out.stem().string().size() : frame;
-  if (frame != std::string::npos && place > 0 && name[place - 1] == '.') --place;
-  return out.parent_path() / name.insert(place, '-' + surface);
+Placement placement_at(const TransformChannels& transform, int frame) {
+  const auto vector = [&](const Channel<3>& channel) -> Vector3d {
+    const Value<3> value = channel.at(frame);
+    return {value[0], value[1], value[2]};
+  };
+  return {vector(transform.translate), vector(transform.rotate), vector(transform.scale),
+          transform.rotate_order};
 }
 
-Result<std::vector<Output>> open_outputs(const Simulation& simulation, const BakeOptions& options,
-                                         const FrameRange& frames) {
+// The surfaces to write, by their index in the scene.
+Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
+                                                 const BakeOptions& options) {
   std::vector<std::size_t> chosen;
   std::vector<std::string> names;
   for (std::size_t k = 0; k < simulation.rest_shapes().size(); ++k) {
     names.push_back(simulation.rest_shapes()[k].name);
     if (!options.surface || *options.surface == names.back()) chosen.push_back(k);
   }
-  if (chosen.empty()) {
-    return fail(ErrorCode::InvalidInput, fmt::format("--surface {}: the scene has the surfaces {}",
-                                                     *options.surface, fmt::join(names, ", ")));
-  }
-  std::vector<Output> outputs;
-  for (const std::size_t k : chosen) {
-    const RestShape& shape = simulation.rest_shapes()[k];
-    auto writer = make_writer({.file = file_for(options.out, shape.name, chosen.size() == 1),
-                               .mesh = &shape.mesh,
-                               .first_frame = frames.first,
-                               .last_frame = frames.last});
-    if (!writer) return fail(writer.error());
-    outputs.push_back({k, *std::move(writer)});
-  }
-  return outputs;
+  if (!chosen.empty()) return chosen;
+  return fail(ErrorCode::InvalidInput, fmt::format("--surface {}: the scene has the surfaces {}",
+                                                   *options.surface, fmt::join(names, ", ")));
 }
 
-// What the one-line summary tells.
-struct Summary {
-  int frame_count = 0;
-  long vertex_count = 0;
-  double peak_displacement = 0;
-};
+AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options,
+                        const FrameRange& frames, const std::vector<std::size_t>& chosen) {
+  const Scene& scene = simulation.scene();
+  AnimationPlan plan{.file = options.out,
+                     .first_frame = frames.first,
+                     .last_frame = frames.last,
+                     .fps = scene.fps,
+                     .is_placed = !is_world(options),
+                     .resume = options.resume};
+  for (const std::size_t k : chosen) {
+    const RestShape& shape = simulation.rest_shapes()[k];
+    const Placement first = placement_at(scene.surfaces[k].transform, frames.first);
+    plan.surfaces.push_back({.name = shape.name,
+                             .mesh = &shape.mesh,
+                             .rest = is_world(options)
+                                         ? to_world(make_transform(first), shape.mesh.positions)
+                                         : shape.mesh.positions});
+  }
+  return plan;
+}
 
-// One frame of every chosen surface.
-Result<void> write_frame(const Frame& frame, const BakeOptions& options,
-                         const std::vector<Output>& outputs, Summary& summary) {
-  ++summary.frame_count;
-  for (const Output& output : outputs) {
-    const SurfaceFrame& surface = frame.surfaces()[output.surface];
-    summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
-    auto written = options.space == "world"
-                       ? output.writer->write(frame.number(), surface.positions())
-                       : output.writer->write(frame.number(), surface.object_positions());
-    if (!written) return written;
+// Whether no file to be written is one that the scene is made from.
+Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
+  std::vector<std::filesystem::path> inputs = {scene.origin.file};
+  for (const Surface& surface : scene.surfaces)
+    if (const auto* file = std::get_if<MeshFile>(&surface.shape)) inputs.push_back(file->path);
+  for (const std::filesystem::path& output : files_of(plan)) {
+    for (const std::filesystem::path& input : inputs) {
+      std::error_code unknown;  // of a file that is not there: nothing is overwritten
+      if (output.filename() != input.filename() ||
+          !std::filesystem::equivalent(output, input, unknown))
+        continue;
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
+                              "another name",
+                              printable(plan.file.string()), printable(input.string())));
+    }
   }
   return {};
 }
@@ -133,31 +132,10 @@ bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& 
   return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
 }
 
-// The files that writing `out` makes, for every chosen surface.
-std::vector<std::filesystem::path> output_files(const BakeOptions& options, const Scene& scene,
-                                                const FrameRange& frames) {
-  std::vector<std::string> names;
-  for (const Surface& surface : scene.surfaces) {
-    if (!options.surface || *options.surface == surface.name) names.push_back(surface.name);
-  }
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : names) {
-    const std::filesystem::path file = file_for(options.out, name, names.size() == 1);
-    if (ending_of(file) == ".npy") {
-      files.push_back(file);
-      continue;
-    }
-    for (int frame = frames.first; frame <= frames.last; ++frame) {
-      files.push_back(sequence_file(file, frame));
-    }
-  }
-  return files;
-}
-
 // The file for the regions must be none that the bake reads or writes, nor a device or a pipe,
 // which the new file would replace.
 Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
-                                const FrameRange& frames) {
+                                const AnimationPlan& plan) {
   if (!options.regions) return {};
   const std::filesystem::path regions = *options.regions;
   const auto refuse = [&](std::string_view reason) {
@@ -175,13 +153,58 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
     const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
     if (mesh && name_one_file(regions, mesh->path)) return refuse("it is a mesh of the scene");
   }
-  for (const std::filesystem::path& file : output_files(options, scene, frames)) {
+  for (const std::filesystem::path& file : files_of(plan)) {
     // Looking at the disk for each of a million frames would take long.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
       return refuse("it is a file that -o writes");
     }
   }
   return {};
+}
+
+// The surfaces to write and what writes them.
+struct Output {
+  std::vector<std::size_t> surfaces;  // by their index in the scene
+  std::unique_ptr<AnimationWriter> writer;
+};
+
+Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
+                           const FrameRange& frames) {
+  const auto chosen = chosen_surfaces(simulation, options);
+  if (!chosen) return fail(chosen.error());
+  const AnimationPlan plan = make_plan(simulation, options, frames, *chosen);
+  if (auto checked = check_overwrites(plan, simulation.scene()); !checked)
+    return fail(checked.error());
+  if (auto free = check_regions_file(options, simulation.scene(), plan); !free)
+    return fail(free.error());
+  auto writer = make_writer(plan);
+  if (!writer) return fail(writer.error());
+  return Output{*chosen, *std::move(writer)};
+}
+
+// What the one-line summary tells.
+struct Summary {
+  int frame_count = 0;
+  long vertex_count = 0;
+  double peak_displacement = 0;
+};
+
+// One frame of every chosen surface.
+Result<void> write_frame(const Frame& frame, const BakeOptions& options, const Scene& scene,
+                         Output& output, Summary& summary) {
+  ++summary.frame_count;
+  std::vector<SurfacePose> poses;
+  for (const std::size_t k : output.surfaces) {
+    const SurfaceFrame& surface = frame.surfaces()[k];
+    summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
+    if (is_world(options)) {
+      poses.push_back({surface.positions()});
+    } else {
+      poses.push_back(
+          {surface.object_positions(), placement_at(scene.surfaces[k].transform, frame.number())});
+    }
+  }
+  return output.writer->write(frame.number(), poses);
 }
 
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
@@ -191,12 +214,11 @@ Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regio
 }
 
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
-                             const FrameRange& frames, std::vector<Output>& outputs,
+                             const FrameRange& frames, Output& output,
                              std::optional<RegionsFile>& regions) {
   Summary summary;
-  for (const Output& output : outputs) {
-    summary.vertex_count += simulation.rest_shapes()[output.surface].mesh.vertex_count();
-  }
+  for (const std::size_t k : output.surfaces)
+    summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
   Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
   for (int number = simulation.scene().start; number <= frames.last; ++number) {
     if (was_interrupted())
@@ -204,9 +226,8 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     const auto frame = simulation.at(number);  // from the start, whatever frames are written
     if (!frame) return fail(frame.error());
     if (number >= frames.first) {
-      if (auto written = write_frame(*frame, options, outputs, summary); !written) {
-        return fail(written.error());
-      }
+      auto written = write_frame(*frame, options, simulation.scene(), output, summary);
+      if (!written) return fail(written.error());
       if (regions) {
         if (auto told = write_regions(simulation, number, *regions); !told) {
           return fail(told.error());
@@ -215,9 +236,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     }
     progress.advance();
   }
-  for (const Output& output : outputs) {
-    if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
-  }
+  if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
   if (regions) {
     if (auto finished = regions->finish(simulation.solver_counts()); !finished) {
       return fail(finished.error());
@@ -256,8 +275,8 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   bake->add_option(
           "-o,--out", options.out,
           fmt::format("Output; its ending picks the format: {}. Several surfaces go to "
-                      "OUT-NAME; a sequence has the frame in each name (OUT.0001.obj; a run "
-                      "of # sets the digits)",
+                      "OUT-NAME, but to one .glb, .gltf or .usda; a sequence (.obj, .ply) has the "
+                      "frame in each name (OUT.0001.obj; a run of # sets the digits)",
                       fmt::join(known_endings(), ", ")))
       ->required();
   bake->add_option("--frames", options.frames, "A:B, or one frame; all of them by default");
@@ -270,6 +289,8 @@ void add_bake(CLI::App& app, BakeOptions& options) {
                    "each region; the last digits differ")
       ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
       ->capture_default_str();
+  bake->add_flag("--resume", options.resume,
+                 "Go on after the last whole frame of an interrupted .obj or .ply sequence");
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
@@ -290,14 +311,12 @@ int run_bake(const BakeOptions& options) {
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
 
-  if (auto free = check_regions_file(options, *scene, *frames); !free) return report(free.error());
-
   SimulationOptions run = simulation_options(options.resources);
   run.solver = *solver;
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
-  auto outputs = open_outputs(*simulation, options, *frames);
-  if (!outputs) return report(outputs.error());
+  auto output = open_output(*simulation, options, *frames);
+  if (!output) return report(output.error());
 
   std::optional<RegionsFile> regions;
   if (options.regions) {
@@ -306,7 +325,7 @@ int run_bake(const BakeOptions& options) {
     regions.emplace(*std::move(created));
   }
 
-  const auto summary = write_frames(*simulation, options, *frames, *outputs, regions);
+  const auto summary = write_frames(*simulation, options, *frames, *output, regions);
   print_warnings(*simulation);
   if (!summary) return report(summary.error());
 

@@ -18,6 +18,7 @@ struct BakeOptions {
   std::string space = "world";
   std::optional<std::string> regions = {};  ///< JSON file; none: not written
   std::string solver = "auto";
+  bool resume = false;
   bool is_quiet = false;
   ResourceOptions resources;
 };

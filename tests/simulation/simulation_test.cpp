@@ -39,8 +39,11 @@ TEST_CASE("a sheet and its PLY file move alike, bit for bit", "[simulation]") {
   const ScratchFolder folder;
   Surface from_grid = sheet("s");
   const Mesh mesh = make_mesh(std::get<GridSheet>(from_grid.shape));
-  auto writer = make_writer({folder.file("#.ply"), &mesh, 1, 1}).value();
-  REQUIRE(writer->write(1, mesh.positions));
+  const AnimationPlan plan{.file = folder.file("#.ply"),
+                           .surfaces = {{"s", &mesh, mesh.positions}},
+                           .first_frame = 1,
+                           .last_frame = 1};
+  REQUIRE(make_writer(plan).value()->write(1, std::vector<SurfacePose>{{mesh.positions}}));
   Surface from_file = from_grid;
   from_file.shape = MeshFile{folder.file("1.ply")};
   const std::vector<Force> forces = {poke("p", {1.5, 0, -2})};

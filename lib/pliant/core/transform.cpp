@@ -41,25 +41,6 @@ Matrix3d rotation_about(int axis, double degrees) {
   return rotation;
 }
 
-// First, second and third axis to turn about.
-std::array<int, 3> axes(RotateOrder order) {
-  switch (order) {
-    case RotateOrder::Xyz:
-      return {0, 1, 2};
-    case RotateOrder::Xzy:
-      return {0, 2, 1};
-    case RotateOrder::Yxz:
-      return {1, 0, 2};
-    case RotateOrder::Yzx:
-      return {1, 2, 0};
-    case RotateOrder::Zxy:
-      return {2, 0, 1};
-    case RotateOrder::Zyx:
-      return {2, 1, 0};
-  }
-  return {0, 1, 2};
-}
-
 double determinant(const Matrix3d& a) {
   return a(0, 0) * (a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1)) -
          a(0, 1) * (a(1, 0) * a(2, 2) - a(1, 2) * a(2, 0)) +
@@ -99,6 +80,24 @@ Matrix3d inverse(Matrix3d a) {
 }
 
 }  // namespace
+
+std::array<int, 3> axes(RotateOrder order) {
+  switch (order) {
+    case RotateOrder::Xyz:
+      return {0, 1, 2};
+    case RotateOrder::Xzy:
+      return {0, 2, 1};
+    case RotateOrder::Yxz:
+      return {1, 0, 2};
+    case RotateOrder::Yzx:
+      return {1, 2, 0};
+    case RotateOrder::Zxy:
+      return {2, 0, 1};
+    case RotateOrder::Zyx:
+      return {2, 1, 0};
+  }
+  return {0, 1, 2};
+}
 
 bool Transform::is_invertible() const { return inverse(linear).allFinite(); }
 

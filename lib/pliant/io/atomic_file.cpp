@@ -21,6 +21,12 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& file, const std:
   return fail(ErrorCode::Unwritable, "cannot write the file: " + reason, file.string());
 }
 
+template <class Number>
+std::string_view bytes_of(std::span<const Number> numbers) {
+  const auto bytes = std::as_bytes(numbers);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 // Opens a new file beside `file`, under a name that nobody else uses; -1 with errno otherwise.
 int open_part(const std::filesystem::path& file, std::filesystem::path& part) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -70,10 +76,9 @@ Result<void> AtomicFile::write(std::string_view bytes) {
   return {};
 }
 
-Result<void> AtomicFile::write(std::span<const double> numbers) {
-  const auto bytes = std::as_bytes(numbers);
-  return write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-}
+Result<void> AtomicFile::write(std::span<const double> numbers) { return write(bytes_of(numbers)); }
+
+Result<void> AtomicFile::write(std::span<const float> numbers) { return write(bytes_of(numbers)); }
 
 Result<void> AtomicFile::commit() {
   PLIANT_EXPECTS(stream_);

@@ -24,6 +24,7 @@ class AtomicFile {
   /// Appends. Errors: Unwritable, when the disk is full for one.
   Result<void> write(std::string_view bytes);
   Result<void> write(std::span<const double> numbers);  ///< little endian
+  Result<void> write(std::span<const float> numbers);   ///< little endian
 
   /// Gives the file its name. Errors: Unwritable. Requires: not committed yet.
   Result<void> commit();

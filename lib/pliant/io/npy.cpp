@@ -24,7 +24,7 @@ std::string npy_header(int frames, int vertices) {
   return header + literal;
 }
 
-class NpyWriter final : public AnimationWriter {
+class NpyWriter final : public SurfaceWriter {
  public:
   explicit NpyWriter(AtomicFile file) : file_(std::move(file)) {}
 
@@ -42,13 +42,11 @@ class NpyWriter final : public AnimationWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<AnimationWriter>> make_npy_writer(const AnimationPlan& plan) {
+Result<std::unique_ptr<SurfaceWriter>> make_npy_writer(const SurfacePlan& plan) {
   auto file = AtomicFile::create(plan.file);
   if (!file) return fail(file.error());
-  const int frames = plan.last_frame - plan.first_frame + 1;
-  if (auto written = file->write(npy_header(frames, plan.mesh->vertex_count())); !written) {
-    return fail(written.error());
-  }
+  const std::string header = npy_header(plan.frame_count(), plan.mesh->vertex_count());
+  if (auto written = file->write(header); !written) return fail(written.error());
   return std::make_unique<NpyWriter>(*std::move(file));
 }
 

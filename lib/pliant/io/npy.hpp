@@ -1,11 +1,13 @@
 #pragma once
 
-#include "pliant/io/writer.hpp"
+#include <memory>
+
+#include "pliant/io/surface_writer.hpp"
 
 namespace pliant {
 
 /// A NumPy array of float64, C order, shape (frames, vertices, 3): format version 1.0 of
 /// numpy.lib.format. Streams: one frame is held at a time.
-Result<std::unique_ptr<AnimationWriter>> make_npy_writer(const AnimationPlan& plan);
+Result<std::unique_ptr<SurfaceWriter>> make_npy_writer(const SurfacePlan& plan);
 
 }  // namespace pliant

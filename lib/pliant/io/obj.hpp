@@ -1,11 +1,12 @@
 #pragma once
 
-#include "pliant/io/writer.hpp"
+#include <memory>
+
+#include "pliant/io/surface_writer.hpp"
 
 namespace pliant {
 
-/// One Wavefront OBJ file a frame: positions (shortest text that reads back the same double),
-/// texture coordinates and faces as in the source mesh.
-Result<std::unique_ptr<AnimationWriter>> make_obj_writer(const AnimationPlan& plan);
+/// One Wavefront OBJ file a frame, as `ObjText` has it. Errors: Unwritable.
+Result<std::unique_ptr<SurfaceWriter>> make_obj_writer(const SurfacePlan& plan);
 
 }  // namespace pliant

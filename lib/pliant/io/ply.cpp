@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "pliant/io/atomic_file.hpp"
 #include "pliant/io/sequence.hpp"
+#include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
@@ -34,75 +34,111 @@ std::vector<Uv> vertex_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-// An unsigned integer of so many bytes, little endian.
-void append(std::string& bytes, std::uint32_t number, int size) {
-  for (int k = 0; k < size; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
+// The normal of each vertex, by its number in the mesh; nothing when the mesh says nothing of them,
+// or a vertex has several or none.
+std::vector<int> vertex_normals(const Mesh& mesh) {
+  if (mesh.corner_normals.empty()) return {};
+  std::vector<int> normals(static_cast<std::size_t>(mesh.vertex_count()), -1);
+  for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
+    int& of_vertex = normals[static_cast<std::size_t>(mesh.corner_vertices[corner])];
+    if (of_vertex >= 0 && of_vertex != mesh.corner_normals[corner]) return {};
+    of_vertex = mesh.corner_normals[corner];
+  }
+  return std::find(normals.begin(), normals.end(), -1) == normals.end() ? normals
+                                                                        : std::vector<int>();
 }
 
-bool needs_long_counts(const Mesh& mesh) {
+template <class Number>
+void append(std::string& bytes, Number number) {  // of a little-endian machine
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+
+// Whether a list of a face, with so many numbers for each of its corners, has more than 255.
+bool needs_long_counts(const Mesh& mesh, int numbers) {
   return std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(),
-                     [](int size) { return size > 255; });
+                     [&](int size) { return std::int64_t{size} * numbers > 255; });
 }
 
-std::string ply_header(const Mesh& mesh, bool has_uvs) {
-  return fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment pliant\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\n{}"
-      "element face {}\nproperty list {} int vertex_indices\nend_header\n",
-      mesh.vertex_count(), has_uvs ? "property double s\nproperty double t\n" : "",
-      mesh.face_sizes.size(), needs_long_counts(mesh) ? "uint" : "uchar");
+bool has_uvs(const Mesh& mesh) {
+  return std::any_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(),
+                     [](int uv) { return uv >= 0; });
 }
 
-std::string ply_faces(const Mesh& mesh) {
-  const int count_size = needs_long_counts(mesh) ? 4 : 1;
-  std::string bytes;
-  bytes.reserve(mesh.face_sizes.size() * static_cast<std::size_t>(count_size) +
-                mesh.corner_vertices.size() * 4);
-  std::size_t corner = 0;
-  for (const int size : mesh.face_sizes) {
-    append(bytes, static_cast<std::uint32_t>(size), count_size);
-    for (int k = 0; k < size; ++k, ++corner)
-      append(bytes, static_cast<std::uint32_t>(mesh.corner_vertices[corner]), 4);
-  }
-  return bytes;
-}
-
-class PlyWriter final : public AnimationWriter {
+class PlyWriter final : public SequenceWriter {
  public:
-  explicit PlyWriter(const AnimationPlan& plan)
-      : pattern_(plan.file), faces_(ply_faces(*plan.mesh)) {
-    const std::vector<Uv> uvs = vertex_uvs(*plan.mesh);
-    header_ = ply_header(*plan.mesh, !uvs.empty());
-    vertices_.resize(plan.mesh->vertex_count(), uvs.empty() ? 3 : 5);
-    for (std::size_t k = 0; k < uvs.size(); ++k)
-      vertices_.row(static_cast<Eigen::Index>(k)).tail<2>() << uvs[k][0], uvs[k][1];
+  explicit PlyWriter(const SurfacePlan& plan)
+      : SequenceWriter(plan),
+        mesh_(*plan.mesh),
+        uvs_(vertex_uvs(mesh_)),
+        normals_(vertex_normals(mesh_)) {
+    const bool has_corner_uvs = uvs_.empty() && has_uvs(mesh_);
+    const bool has_long_counts = needs_long_counts(mesh_, has_corner_uvs ? 2 : 1);
+    const std::string_view count = has_long_counts ? "uint" : "uchar";
+    header_ = fmt::format(
+        "ply\nformat binary_little_endian 1.0\ncomment pliant\nelement vertex {}\n"
+        "property double x\nproperty double y\nproperty double z\n{}{}"
+        "element face {}\nproperty list {} int vertex_indices\n{}end_header\n",
+        mesh_.vertex_count(),
+        normals_.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n",
+        uvs_.empty() ? "" : "property double s\nproperty double t\n", mesh_.face_sizes.size(),
+        count, has_corner_uvs ? fmt::format("property list {} float texcoord\n", count) : "");
+    make_faces(has_corner_uvs, has_long_counts);
   }
-
-  Result<void> write(int frame, const Field& positions) override {
-    auto file = AtomicFile::create(sequence_file(pattern_, frame));
-    if (!file) return fail(file.error());
-    vertices_.leftCols<3>() = positions;
-    if (auto written = file->write(header_); !written) return written;
-    const std::span numbers(vertices_.data(), static_cast<std::size_t>(vertices_.size()));
-    if (auto written = file->write(numbers); !written) return written;
-    if (auto written = file->write(faces_); !written) return written;
-    return file->commit();
-  }
-
-  Result<void> finish() override { return {}; }
 
  private:
-  // Everything but the positions is the same in every frame.
-  std::filesystem::path pattern_;
+  Result<void> write_frame(const Field& positions, const ByteSink& sink) override {
+    const Field normals = normals_.empty() ? Field() : unit_normals(mesh_, positions);
+    vertices_.clear();
+    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+      const auto vertex = static_cast<std::size_t>(row);
+      for (int k = 0; k < 3; ++k) append(vertices_, positions(row, k));
+      for (int k = 0; k < 3 && !normals_.empty(); ++k)
+        append(vertices_, static_cast<float>(normals(normals_[vertex], k)));
+      for (int k = 0; k < 2 && !uvs_.empty(); ++k) append(vertices_, uvs_[vertex][k]);
+    }
+    if (auto written = sink(header_); !written) return written;
+    if (auto written = sink(vertices_); !written) return written;
+    return sink(faces_);
+  }
+
+  void make_faces(bool has_corner_uvs, bool has_long_counts) {
+    const auto append_count = [&](int count) {
+      if (has_long_counts) {
+        append(faces_, static_cast<std::uint32_t>(count));
+      } else {
+        append(faces_, static_cast<std::uint8_t>(count));
+      }
+    };
+    std::size_t first = 0;
+    for (const int size : mesh_.face_sizes) {
+      const std::size_t end = first + static_cast<std::size_t>(size);
+      append_count(size);
+      for (std::size_t k = first; k < end; ++k)
+        append(faces_, static_cast<std::int32_t>(mesh_.corner_vertices[k]));
+      if (has_corner_uvs) append_count(2 * size);
+      for (std::size_t k = first; k < end && has_corner_uvs; ++k) {
+        const int uv = mesh_.corner_uvs[k];
+        for (int n = 0; n < 2; ++n) {
+          append(faces_,
+                 uv < 0 ? 0.0f : static_cast<float>(mesh_.uvs[static_cast<std::size_t>(uv)][n]));
+        }
+      }
+      first = end;
+    }
+  }
+
+  const Mesh& mesh_;
+  std::vector<Uv> uvs_;       // of the vertices, if each has one
+  std::vector<int> normals_;  // likewise
+  // Everything but positions and normals is the same in every frame.
   std::string header_;
-  // x y z of each vertex, and s t if it has them: the file's order, kept
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> vertices_;
   std::string faces_;
+  std::string vertices_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<AnimationWriter>> make_ply_writer(const AnimationPlan& plan) {
+Result<std::unique_ptr<SurfaceWriter>> make_ply_writer(const SurfacePlan& plan) {
   if (auto checked = check_sequence(plan); !checked) return fail(checked.error());
   return std::make_unique<PlyWriter>(plan);
 }

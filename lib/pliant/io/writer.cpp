@@ -1,36 +1,157 @@
 #include "pliant/io/writer.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/file_ending.hpp"
+#include "pliant/io/gltf.hpp"
 #include "pliant/io/npy.hpp"
 #include "pliant/io/obj.hpp"
 #include "pliant/io/ply.hpp"
+#include "pliant/io/point_cache.hpp"
+#include "pliant/io/sequence.hpp"
+#include "pliant/io/usda.hpp"
 
 namespace pliant {
+namespace {
 
-std::vector<std::string> known_endings() { return {".npy", ".obj", ".ply"}; }
+using MakeSurfaceWriter = Result<std::unique_ptr<SurfaceWriter>> (*)(const SurfacePlan&);
+using MakeWriter = Result<std::unique_ptr<AnimationWriter>> (*)(const AnimationPlan&);
+
+struct Format {
+  std::string ending;
+  bool is_sequence = false;
+  MakeSurfaceWriter make_surface_writer = nullptr;  // of one that holds one surface
+  MakeWriter make_writer = nullptr;                 // of one that holds all
+  std::string beside = {};  // the ending of what is written next to it, if anything
+};
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all = {
+      {".npy", false, &make_npy_writer, nullptr},
+      {".obj", true, &make_obj_writer, nullptr},
+      {".ply", true, &make_ply_writer, nullptr},
+      {".pc2", false, &make_pc2_writer, nullptr, ".obj"},
+      {".mdd", false, &make_mdd_writer, nullptr, ".obj"},
+      {".glb", false, nullptr, &make_gltf_writer},
+      {".gltf", false, nullptr, &make_gltf_writer, ".bin"},
+      {".usda", false, nullptr, &make_usda_writer},
+  };
+  return all;
+}
+
+const Format* find_format(const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  const auto found = std::find_if(formats().begin(), formats().end(),
+                                  [&](const Format& format) { return format.ending == ending; });
+  return found == formats().end() ? nullptr : &*found;
+}
+
+// OUT, or OUT-NAME.ext when there are several surfaces; ahead of the frame's place if OUT says
+// where that is, so that a sequence stays one: x.###.obj goes to x-NAME.###.obj.
+std::filesystem::path file_for(const AnimationPlan& plan, const std::string& surface) {
+  if (plan.surfaces.size() == 1) return plan.file;
+  std::string name = plan.file.filename().string();
+  const std::size_t frame = name.find('#');
+  std::size_t place = frame == std::string::npos ? plan.file.stem().string().size() : frame;
+  if (frame != std::string::npos && place > 0 && name[place - 1] == '.') --place;
+  return plan.file.parent_path() / name.insert(place, '-' + surface);
+}
+
+// Hands each surface to a writer of its own.
+class SurfaceBySurface final : public AnimationWriter {
+ public:
+  explicit SurfaceBySurface(std::vector<std::unique_ptr<SurfaceWriter>> writers)
+      : writers_(std::move(writers)) {}
+
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
+    PLIANT_EXPECTS(surfaces.size() == writers_.size());
+    for (std::size_t k = 0; k < writers_.size(); ++k) {
+      if (auto written = writers_[k]->write(frame, surfaces[k].positions); !written) return written;
+    }
+    return {};
+  }
+
+  Result<void> finish() override {
+    for (const auto& writer : writers_) {
+      if (auto finished = writer->finish(); !finished) return finished;
+    }
+    return {};
+  }
+
+ private:
+  std::vector<std::unique_ptr<SurfaceWriter>> writers_;
+};
+
+Result<std::unique_ptr<AnimationWriter>> make_surface_by_surface(const AnimationPlan& plan,
+                                                                 const Format& format) {
+  std::vector<std::unique_ptr<SurfaceWriter>> writers;
+  for (const AnimatedSurface& surface : plan.surfaces) {
+    auto writer = format.make_surface_writer({.file = file_for(plan, surface.name),
+                                              .mesh = surface.mesh,
+                                              .first_frame = plan.first_frame,
+                                              .last_frame = plan.last_frame,
+                                              .fps = plan.fps,
+                                              .rest = &surface.rest,
+                                              .resume = plan.resume});
+    if (!writer) return fail(writer.error());
+    writers.push_back(*std::move(writer));
+  }
+  return std::make_unique<SurfaceBySurface>(std::move(writers));
+}
+
+}  // namespace
+
+std::vector<std::string> known_endings() {
+  std::vector<std::string> endings;
+  for (const Format& format : formats()) endings.push_back(format.ending);
+  return endings;
+}
 
 Result<void> check_ending(const std::filesystem::path& file) {
-  const std::vector<std::string> endings = known_endings();
-  const std::string ending = ending_of(file);
-  if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return {};
+  if (find_format(file)) return {};
   return fail(ErrorCode::InvalidInput,
-              fmt::format("{}: no format has the ending \"{}\"; allowed: {}", file.string(), ending,
-                          fmt::join(endings, ", ")));
+              fmt::format("{}: no format has the ending \"{}\"; allowed: {}", file.string(),
+                          ending_of(file), fmt::join(known_endings(), ", ")));
+}
+
+std::vector<std::filesystem::path> files_of(const AnimationPlan& plan) {
+  const Format* const format = find_format(plan.file);
+  PLIANT_EXPECTS(format);
+  std::vector<std::filesystem::path> files;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (format->is_sequence) {
+      for (std::int64_t frame = plan.first_frame; frame <= plan.last_frame; ++frame)
+        files.push_back(sequence_file(file, static_cast<int>(frame)));
+      return;
+    }
+    files.push_back(file);
+    if (!format->beside.empty())
+      files.push_back(std::filesystem::path(file).replace_extension(format->beside));
+  };
+  if (format->make_writer) {
+    add(plan.file);
+  } else {
+    for (const AnimatedSurface& surface : plan.surfaces) add(file_for(plan, surface.name));
+  }
+  return files;
 }
 
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) {
-  PLIANT_EXPECTS(plan.mesh && plan.first_frame <= plan.last_frame);
+  PLIANT_EXPECTS(!plan.surfaces.empty() && plan.first_frame <= plan.last_frame);
   if (auto known = check_ending(plan.file); !known) return fail(known.error());
-  const std::string ending = ending_of(plan.file);
-  if (ending == ".npy") return make_npy_writer(plan);
-  if (ending == ".obj") return make_obj_writer(plan);
-  return make_ply_writer(plan);
+  const Format& format = *find_format(plan.file);
+  if (plan.resume && !format.is_sequence) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{}: a {} is one file, which is whole at its end only; what can be "
+                            "resumed is a sequence of .obj or .ply",
+                            plan.file.string(), format.ending));
+  }
+  return format.make_writer ? format.make_writer(plan) : make_surface_by_surface(plan, format);
 }
 
 }  // namespace pliant

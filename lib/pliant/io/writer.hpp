@@ -2,16 +2,24 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/transform.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
 
-/// Writes the frames of one surface, first to last. What was written is whole or not there: without
+/// One surface at one frame.
+struct SurfacePose {
+  Field positions;  ///< #vertices x 3, in the order of the mesh; object space if it is placed
+  Placement placement = {};  ///< of a placed surface: object to world
+};
+
+/// Writes the frames of a scene, first to last. What was written is whole or not there: without
 /// `finish` a format of one file leaves nothing behind.
 class AnimationWriter {
  public:
@@ -20,19 +28,32 @@ class AnimationWriter {
   AnimationWriter& operator=(const AnimationWriter&) = delete;
   virtual ~AnimationWriter() = default;
 
-  /// Positions (#vertices x 3, in the order of the mesh) of the next frame. Errors: Unwritable.
-  virtual Result<void> write(int frame, const Field& positions) = 0;
+  /// The surfaces at the next frame, in the order of the plan. Errors: Unwritable; NotFinite where
+  /// the format has single precision only and a coordinate is beyond it.
+  virtual Result<void> write(int frame, std::span<const SurfacePose> surfaces) = 0;
 
-  /// Gives the result its name. Errors: Unwritable.
+  /// Gives the result its name. Errors: Unwritable. Requires: every frame has been written.
   virtual Result<void> finish() = 0;
+};
+
+/// One surface as a writer is told of it ahead.
+struct AnimatedSurface {
+  std::string name;            ///< [A-Za-z_][A-Za-z0-9_-]*, unique
+  const Mesh* mesh = nullptr;  ///< outlives the writer
+  Field rest;                  ///< #vertices x 3: at rest, in the space of the poses
 };
 
 /// What a writer needs to know ahead.
 struct AnimationPlan {
   std::filesystem::path file;  ///< its ending picks the format
-  const Mesh* mesh = nullptr;  ///< outlives the writer
+  std::vector<AnimatedSurface> surfaces = {};
   int first_frame = 0;
   int last_frame = 0;
+  double fps = 24;         ///< [1/s]
+  bool is_placed = false;  ///< poses are in object space, with placements
+  bool resume = false;     ///< a sequence goes on after the last whole frame that is there
+
+  int frame_count() const { return last_frame - first_frame + 1; }
 };
 
 /// The endings that `make_writer` knows, with their dots.
@@ -41,9 +62,16 @@ std::vector<std::string> known_endings();
 /// Whether the file's ending names a format. Errors: InvalidInput, listing the endings.
 Result<void> check_ending(const std::filesystem::path& file);
 
-/// A writer for the format that the file's ending names: `.npy`, or an `.obj` or
-/// `.ply` sequence.
-/// Errors: InvalidInput for an unknown ending; Unwritable.
+/// Every file that the plan's writer will write, those of a sequence among them.
+/// Requires: check_ending(plan.file).
+std::vector<std::filesystem::path> files_of(const AnimationPlan& plan);
+
+/// A writer for the format that the file's ending names. `.glb`, `.gltf` and `.usda` hold all
+/// surfaces; of the others each surface has its own, OUT-NAME.ext where there are several.
+/// Errors: InvalidInput for an unknown ending, for more frames than a format can hold, for resuming
+/// a format of one file; Unwritable.
+/// Requires: a surface at least; poses in object space go to any format, placements to `.glb`,
+/// `.gltf` and `.usda` only.
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan);
 
 }  // namespace pliant

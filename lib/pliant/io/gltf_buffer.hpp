@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "pliant/core/result.hpp"
+
+namespace pliant {
+
+// The binary buffer of a glTF file, which is written as it comes, and the JSON that says what is in
+// it. glTF 2.0, 3.6. Not for other rooms.
+class GltfBuffer {
+ public:
+  using Json = nlohmann::ordered_json;
+  using Sink = std::function<Result<void>(std::string_view)>;
+
+  static constexpr std::size_t no_accessor = static_cast<std::size_t>(-1);
+
+  enum class Bounds { None, Written };
+
+  explicit GltfBuffer(Sink sink) : sink_(std::move(sink)) {}
+
+  // Each adds an accessor and gives its number. Errors: those of the sink.
+
+  /// Rows of `width` floats for each vertex; with the least and the largest of each component.
+  Result<std::size_t> add_vertices(std::span<const float> numbers, int width, Bounds bounds);
+
+  /// Rows of three floats for each vertex, most of them 0 perhaps: then only the others, where that
+  /// takes less room. Requires: numbers is not empty.
+  Result<std::size_t> add_offsets(std::span<const float> numbers, Bounds bounds);
+
+  /// Corners of triangles.
+  Result<std::size_t> add_indices(std::span<const std::uint32_t> indices);
+
+  /// Times of keys, and their values in rows of `width`; `numbers` of an animation.
+  Result<std::size_t> add_keys(std::span<const float> numbers, int width, Bounds bounds);
+
+  /// One number a key and target: 1 where the target is the one of that key, otherwise 0.
+  /// `target_of_key` has -1 for keys without. Written row by row.
+  Result<std::size_t> add_weights(std::span<const int> target_of_key, int target_count);
+
+  std::uint64_t size() const { return size_; }  ///< bytes written so far
+
+  const Json& views() const { return views_; }
+  const Json& accessors() const { return accessors_; }
+
+ private:
+  Result<void> write(std::string_view bytes);
+  Result<std::size_t> add_view(std::string_view bytes, int target);
+  std::size_t add_accessor(Json accessor);
+
+  Sink sink_;
+  std::uint64_t size_ = 0;
+  Json views_ = Json::array();
+  Json accessors_ = Json::array();
+};
+
+}  // namespace pliant

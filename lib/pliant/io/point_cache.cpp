@@ -1,0 +1,93 @@
+#include "pliant/io/point_cache.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "pliant/io/atomic_file.hpp"
+#include "pliant/io/obj_text.hpp"
+#include "pliant/io/single_precision.hpp"
+
+namespace pliant {
+namespace {
+
+// Appends the four bytes of a whole number or of a float.
+template <std::endian order, class Number>
+void append(std::string& bytes, Number number) {
+  static_assert(sizeof(Number) == 4);
+  const auto bits = std::bit_cast<std::uint32_t>(number);
+  for (int k = 0; k < 4; ++k)
+    bytes += static_cast<char>(bits >> 8 * (order == std::endian::little ? k : 3 - k) & 0xff);
+}
+
+template <std::endian order>
+class PointCacheWriter final : public SurfaceWriter {
+ public:
+  PointCacheWriter(AtomicFile cache, AtomicFile mesh)
+      : cache_(std::move(cache)), mesh_(std::move(mesh)) {}
+
+  Result<void> write(int frame, const Field& positions) override {
+    const auto numbers = to_single(positions, frame);
+    if (!numbers) return fail(numbers.error());
+    bytes_.clear();
+    for (const float number : *numbers) append<order>(bytes_, number);
+    return cache_.write(bytes_);
+  }
+
+  Result<void> finish() override {
+    if (auto committed = mesh_.commit(); !committed) return committed;
+    return cache_.commit();
+  }
+
+ private:
+  AtomicFile cache_;
+  AtomicFile mesh_;
+  std::string bytes_;
+};
+
+Result<AtomicFile> write_mesh(const SurfacePlan& plan) {
+  auto file = AtomicFile::create(std::filesystem::path(plan.file).replace_extension(".obj"));
+  if (!file) return file;
+  auto written = ObjText(*plan.mesh)
+                     .write(plan.rest ? *plan.rest : plan.mesh->positions,
+                            [&](std::string_view bytes) { return file->write(bytes); });
+  if (!written) return fail(written.error());
+  return file;
+}
+
+template <std::endian order>
+Result<std::unique_ptr<SurfaceWriter>> make_writer(const SurfacePlan& plan,
+                                                   const std::string& header) {
+  auto cache = AtomicFile::create(plan.file);
+  if (!cache) return fail(cache.error());
+  if (auto written = cache->write(header); !written) return fail(written.error());
+  auto mesh = write_mesh(plan);
+  if (!mesh) return fail(mesh.error());
+  return std::make_unique<PointCacheWriter<order>>(*std::move(cache), *std::move(mesh));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SurfaceWriter>> make_pc2_writer(const SurfacePlan& plan) {
+  constexpr std::endian order = std::endian::little;
+  std::string header("POINTCACHE2\0", 12);
+  append<order>(header, std::int32_t{1});
+  append<order>(header, std::int32_t{plan.mesh->vertex_count()});
+  append<order>(header, static_cast<float>(plan.first_frame));
+  append<order>(header, 1.0f);
+  append<order>(header, std::int32_t{plan.frame_count()});
+  return make_writer<order>(plan, header);
+}
+
+Result<std::unique_ptr<SurfaceWriter>> make_mdd_writer(const SurfacePlan& plan) {
+  constexpr std::endian order = std::endian::big;
+  std::string header;
+  append<order>(header, std::int32_t{plan.frame_count()});
+  append<order>(header, std::int32_t{plan.mesh->vertex_count()});
+  for (int k = 0; k < plan.frame_count(); ++k)
+    append<order>(header, static_cast<float>(k / plan.fps));
+  return make_writer<order>(plan, header);
+}
+
+}  // namespace pliant

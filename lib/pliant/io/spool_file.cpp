@@ -1,0 +1,59 @@
+#include "pliant/io/spool_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace pliant {
+
+SpoolFile::SpoolFile(std::filesystem::path file, Stream stream)
+    : file_(std::move(file)), stream_(std::move(stream)) {}
+
+Result<SpoolFile> SpoolFile::create(const std::filesystem::path& file) {
+  const auto cannot_write = [&](int error_number) {
+    return fail(ErrorCode::Unwritable,
+                std::string("cannot write the file: ") + std::strerror(error_number),
+                file.string());
+  };
+  std::string name = (file.parent_path() / ("." + file.filename().string() + ".XXXXXX")).string();
+  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) return cannot_write(errno);
+  unlink(name.c_str());
+  Stream stream(fdopen(descriptor, "w+b"));
+  if (!stream) {
+    const int error_number = errno;
+    close(descriptor);
+    return cannot_write(error_number);
+  }
+  return SpoolFile(file, std::move(stream));
+}
+
+Result<void> SpoolFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size())
+    return unwritable(errno);
+  size_ += bytes.size();
+  return {};
+}
+
+Result<void> SpoolFile::copy_to(AtomicFile& file) {
+  if (std::fflush(stream_.get()) != 0) return unwritable(errno);
+  if (fseeko(stream_.get(), 0, SEEK_SET) != 0) return unwritable(errno);
+  std::vector<char> block(std::size_t{1} << 20);
+  while (const std::size_t count = std::fread(block.data(), 1, block.size(), stream_.get())) {
+    if (auto written = file.write({block.data(), count}); !written) return written;
+  }
+  if (std::ferror(stream_.get())) return unwritable(errno);
+  return {};
+}
+
+tl::unexpected<Error> SpoolFile::unwritable(int error_number) const {
+  return fail(ErrorCode::Unwritable,
+              std::string("cannot write the file: ") + std::strerror(error_number), file_.string());
+}
+
+}  // namespace pliant
