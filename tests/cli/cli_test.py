@@ -357,6 +357,116 @@ class Regions(Command):
                                             r'release="recover" asks for tangents of 0\n$')
 
 
+ONE_FILE = (".npy", ".pc2", ".mdd", ".glb", ".gltf", ".usda")
+
+
+class Outputs(Command):
+    def slow_scene(self):
+        """Some seconds of work, frames that glTF can hold."""
+        return self.write("slow.xml", SCENE.format(end=4000).replace('"13"', '"41"').replace(
+            '"11"', '"41"').replace('"4.5"', '"9"'))
+
+    def test_every_ending_writes_its_files(self):
+        scene = self.write("two.xml", SCENE.format(end=3).replace(
+            "<point", '<surface name="other"><grid columns="3" rows="3"/></surface><point'))
+        for out, files in ((".pc2", ["a-other.obj", "a-other.pc2", "a-sheet.obj", "a-sheet.pc2"]),
+                           (".mdd", ["a-other.mdd", "a-other.obj", "a-sheet.mdd", "a-sheet.obj"]),
+                           (".glb", ["a.glb"]), (".gltf", ["a.bin", "a.gltf"]), (".usda", ["a.usda"])):
+            self.run_pliant("bake", scene, "-o", "a" + out)
+            self.assertEqual(self.files(), files + ["two.xml"])
+            for name in files:
+                os.remove(self.path(name))
+
+    def test_the_same_bytes_twice(self):
+        scene = self.scene()
+        for ending in ONE_FILE:
+            contents = []
+            for _ in range(2):
+                self.run_pliant("bake", scene, "-o", "a" + ending)
+                with open(self.path("a" + ending), "rb") as file:
+                    contents.append(file.read())
+            self.assertEqual(contents[0], contents[1], ending)
+
+    def test_a_file_of_the_scene_is_not_overwritten(self):
+        self.run_pliant("bake", self.scene(end=1), "-o", "head.obj")
+        os.rename(self.path("head.0001.obj"), self.path("head.obj"))
+        scene = self.write("m.xml", SCENE.format(end=2).replace(GRID, '<mesh file="head.obj"/>'))
+        before = self.files()
+        for out in ("head.pc2", "head.mdd", os.path.join("..", os.path.basename(self.folder), "head.pc2")):
+            result = self.run_pliant("bake", scene, "-o", out, code=2)
+            self.assertRegex(result.stderr, r"would overwrite \S*head\.obj, which the scene is made from")
+            self.assertEqual(self.files(), before)
+        os.rename(self.path("head.obj"), self.path("head.02.obj"))
+        scene = self.write("m.xml", SCENE.format(end=2).replace(GRID, '<mesh file="head.02.obj"/>'))
+        self.run_pliant("bake", scene, "-o", "head.##.obj", code=2)
+        self.run_pliant("bake", scene, "-o", "head.##.obj", "--frames", "1")
+
+    def test_an_interrupt_leaves_nothing(self):
+        scene = self.slow_scene()
+        for ending in ONE_FILE:
+            with subprocess.Popen([PLIANT, "bake", scene, "-o", self.path("a" + ending)],
+                                  stderr=subprocess.PIPE, text=True) as process:
+                time.sleep(0.4)
+                process.send_signal(signal.SIGINT)
+                _, errors = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 1, ending + errors)
+            self.assertEqual(self.files(), ["slow.xml"], ending)
+
+    def test_killed_it_leaves_nothing_under_the_name(self):
+        scene = self.slow_scene()
+        for ending in ONE_FILE:
+            self.write("a" + ending, "old")
+            with subprocess.Popen([PLIANT, "bake", scene, "-o", self.path("a" + ending)],
+                                  stderr=subprocess.DEVNULL) as process:
+                time.sleep(0.4)
+                process.kill()
+                process.wait()
+            with open(self.path("a" + ending), encoding="utf-8") as file:
+                self.assertEqual(file.read(), "old")
+            for name in self.files():
+                self.assertRegex(name, r"^(slow\.xml|a\.\w+|\..*\.part)$")
+                if name.startswith("."):
+                    os.remove(self.path(name))
+            os.remove(self.path("a" + ending))
+            self.assertEqual(self.files(), ["slow.xml"], ending)
+
+    def test_a_full_disk_leaves_nothing(self):
+        scene = self.scene(end=1000)
+        for ending in ONE_FILE:
+            result = subprocess.run(["sh", "-c", 'ulimit -f 64; exec "$0" bake "$1" -o "$2"', PLIANT, scene,
+                                     self.path("a" + ending)], capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 1, ending + result.stderr)
+            self.assertRegex(result.stderr, r"^\S+: error: cannot write the file: File too large\n$")
+            self.assertEqual(self.files(), ["scene.xml"], ending)
+
+    def test_what_gltf_cannot_hold_is_told_ahead(self):
+        result = self.run_pliant("bake", self.scene(end=10000), "-o", "a.glb", code=2)
+        self.assertIn(".usda, .pc2, .mdd and .npy hold more", result.stderr)
+        self.run_pliant("bake", self.scene(end=10000), "-o", "a.glb", "--frames", "9990:10000")
+
+    def test_an_interrupted_sequence_is_resumed(self):
+        scene = self.scene(end=40)
+        os.mkdir(self.path("whole"))
+        for ending in (".obj", ".ply"):
+            self.run_pliant("bake", scene, "-o", "whole/a" + ending)
+            self.run_pliant("bake", scene, "-o", "a" + ending, "--frames", "1:15")
+            os.utime(self.path("a.0007" + ending), (0, 0))
+            self.run_pliant("bake", scene, "-o", "a" + ending, "--resume")
+            self.assertEqual(os.stat(self.path("a.0007" + ending)).st_mtime, 0)
+            for frame in range(1, 41):
+                name = f"a.{frame:04}{ending}"
+                with open(self.path(name), "rb") as a, open(self.path("whole/" + name), "rb") as b:
+                    self.assertEqual(a.read(), b.read(), name)
+        other = self.write("other.xml", SCENE.format(end=40).replace("3000", "3001"))
+        os.remove(self.path("a.0040.obj"))
+        result = self.run_pliant("bake", other, "-o", "a.obj", "--resume", code=1)
+        self.assertRegex(result.stderr, r"^a\.0039\.obj: error: cannot be resumed")
+        self.assertNotIn("a.0040.obj", self.files())
+        for ending in ONE_FILE:
+            result = self.run_pliant("bake", scene, "-o", "b" + ending, "--resume", code=2)
+            self.assertIn("whole at its end only", result.stderr)
+
+
 class Validate(Command):
     def test_every_scene_is_told_of(self):
         good = self.scene()
