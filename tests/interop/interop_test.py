@@ -1,0 +1,386 @@
+"""Programs that we did not write open what pliant writes, and must find our vertices at every frame.
+
+usage: interop_test.py PLIANT [PICTURE_FOLDER]
+
+Khronos's glTF validator, three.js and tinyusdz in headless Chromium, Blender. What each finds is
+compared with the float64 of .npy. Pictures of what three.js and Blender draw go to PICTURE_FOLDER.
+Needs what `script/bootstrap --interop` installs. Ends with the line "N passed, N failed".
+"""
+
+import json
+import math
+import os
+import random
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PLIANT = None
+PICTURES = None
+
+FRAMES = 12
+COLUMNS, ROWS = 9, 7
+
+# Two surfaces whose names meet in USD; one moves, turns and is mirrored, and its region passes over a
+# mesh with a seam of shading and two materials.
+SCENE = """<scene version="1" fps="{fps}" start="1" end="{frames}">
+  <surface name="relief-a"><mesh file="relief.obj"/>
+    <transform rotate="20 30 -50" scale="1 1.5 -0.7"><animate attribute="translate">
+      <key frame="1" value="0 0 0"/><key frame="{frames}" value="3 1 2"/></animate></transform></surface>
+  <surface name="relief_a"><grid columns="13" rows="11" width="12" depth="10"/>
+    <transform translate="0 -5 0"><animate attribute="rotate">
+      <key frame="1" value="0 0 0"/><key frame="{frames}" value="300 45 90"/></animate></transform></surface>
+  <point name="poke" center="0 0 0" direction="1 2 0.5" deformationRadius="6" forceRadius="2.5"
+         magnitude="1500" targets="relief-a"/>
+  <point name="press" center="0 -5 0" direction="1 2 0.5" deformationRadius="4.5" forceRadius="2.5"
+         magnitude="3000" targets="relief_a"/>
+</scene>
+"""
+SURFACES = ("relief-a", "relief_a")
+
+# From Blender's axes, +z up, as rows times this.
+TO_Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
+def relief():
+    """OBJ text of a relief whose vertices and (u,v) stand in any order, and its faces."""
+    shuffle = random.Random(3)
+    nodes = [(i, j) for j in range(ROWS) for i in range(COLUMNS)]
+    vertices, uvs = nodes[:], nodes[:]
+    shuffle.shuffle(vertices)
+    shuffle.shuffle(uvs)
+    vertex = {node: k + 1 for k, node in enumerate(vertices)}
+    uv = {node: k + 1 for k, node in enumerate(uvs)}
+    lines = ["o Head"]
+    lines += [f"v {i - 4 + 0.03 * j} {0.3 * math.sin(i) + 0.2 * j} {j - 3}" for i, j in vertices]
+    lines += [f"vt {i / (COLUMNS - 1)} {j / (ROWS - 1)}" for i, j in uvs]
+    lines += ["g left part", "usemtl Skin red", "s 1"]
+    faces = []
+    for j in range(ROWS - 1):
+        for i in range(COLUMNS - 1):
+            if (i, j) == (0, 3):
+                lines += ["usemtl Steel-2", "s off", "g right"]
+            quad = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]
+            for corners in ([quad[:3], [quad[0], quad[2], quad[3]]] if i % 4 == 2 else [quad]):
+                faces.append([vertex[node] - 1 for node in corners])
+                lines.append("f " + " ".join(f"{vertex[node]}/{uv[node]}" for node in corners))
+    return "\n".join(lines) + "\n", faces
+
+
+def run(*command, **options):
+    result = subprocess.run(command, capture_output=True, text=True, check=False, timeout=240, **options)
+    if result.returncode != 0:
+        raise RuntimeError(f"{command[:3]}: {result.stdout[-3000:]}\n{result.stderr[-3000:]}")
+    return result.stdout
+
+
+def fps_of(rate):
+    return {"film": 24000 / 1001, "whole": 25}[rate]
+
+
+class Bakes:
+    """Everything baked once, and what each program says of it."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        text, self.faces = relief()
+        self.write("relief.obj", text)
+        self.expected = {}
+        for rate, fps in (("film", "24000/1001"), ("whole", "25")):
+            self.write(f"{rate}.xml", SCENE.format(fps=fps, frames=FRAMES))
+        for kind, rate, space in (("world", "film", "world"), ("object", "film", "object"), ("whole", "whole", "world")):
+            self.bake(rate, f"{kind}.npy", space)
+            for name in SURFACES:
+                self.expected[kind, name] = np.load(self.path(f"{kind}-{name}.npy"))
+        for ending in ("obj", "ply", "pc2", "mdd", "glb", "gltf", "usda"):
+            self.bake("film", f"world.{ending}", "world")
+        for ending in ("glb", "usda"):
+            self.bake("film", f"object.{ending}", "object")
+        self.bake("whole", "whole.glb", "object")
+        self.bake("film", "part.glb", "world", "--frames", "4:9")
+        self.bake("film", "part.pc2", "world", "--frames", "4:9")
+        self.validated = json.loads(run("node", os.path.join(HERE, "validate_gltf.mjs"), *map(
+            self.path, ("world.glb", "world.gltf", "object.glb", "part.glb"))))
+        self.seen = {}
+        self.ask_blender()
+        self.ask_browser()
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def bake(self, rate, out, space, *more):
+        run(PLIANT, "bake", self.path(f"{rate}.xml"), "-o", self.path(out), "--space", space, "--quiet", *more)
+
+    def times(self, rate="film"):
+        """Times of the frames and half-way between them, as single precision has them."""
+        return [float(np.float32(k / 2 / fps_of(rate))) for k in range(2 * FRAMES - 1)]
+
+    def ask_browser(self):
+        jobs = [{"kind": "gltf", "file": "world.glb", "times": self.times(), "picture_at": 10},
+                {"kind": "gltf", "file": "world.gltf", "times": self.times()},
+                {"kind": "gltf", "file": "object.glb", "times": self.times()},
+                {"kind": "gltf", "file": "part.glb", "times": self.times()[:11]},
+                {"kind": "usd", "file": "world.usda"}, {"kind": "usd", "file": "object.usda"},
+                {"kind": "tinyusdz", "file": "world.usda"}, {"kind": "tinyusdz", "file": "object.usda"}]
+        jobs[0]["picture"] = os.path.join(PICTURES, "three.png")
+        for name in SURFACES:
+            jobs.append({"kind": "mdd", "file": f"world-{name}.mdd"})
+            for frame in range(1, FRAMES + 1):
+                jobs += [{"kind": kind, "file": f"world-{name}.{frame:04}.{kind}"} for kind in ("obj", "ply")]
+        chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+        results = json.loads(run("node", os.path.join(HERE, "browser.mjs"), self.folder, chromium,
+                                 input=json.dumps(jobs)))
+        for job, result in zip(jobs, results):
+            self.seen["browser", job["kind"], job["file"]] = result
+
+    def ask_blender(self):
+        frames = list(range(1, FRAMES + 1))
+        jobs = [{"kind": "gltf", "file": "whole.glb", "fps": [25, 1], "times": [k / 2 for k in range(2 * FRAMES - 1)],
+                 "picture": os.path.join(PICTURES, "blender.png"), "picture_at": 5},
+                # Blender's glTF import counts whole rates only: our frames lie 24 * 1001/24000 apart.
+                {"kind": "gltf", "file": "world.glb", "fps": [24, 1],
+                 "times": [1.001 * k / 2 for k in range(2 * FRAMES - 1)]}]
+        for name in SURFACES:
+            for ending in ("pc2", "mdd"):
+                jobs.append({"kind": "cache", "file": f"world-{name}.{ending}", "mesh": f"world-{name}.obj",
+                             "times": [1 + k / 2 for k in range(2 * FRAMES - 1)]})
+            jobs.append({"kind": "mdd_keys", "file": f"world-{name}.mdd", "mesh": f"world-{name}.obj",
+                         "times": frames})
+            for frame in frames:
+                jobs += [{"kind": kind, "file": f"world-{name}.{frame:04}.{kind}"} for kind in ("obj", "ply")]
+        keys = [(job["kind"], job["file"]) for job in jobs]
+        for job in jobs:
+            for part in ("file", "mesh"):
+                if part in job:
+                    job[part] = self.path(job[part])
+        self.write("jobs.json", json.dumps(jobs))
+        run("blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P",
+            os.path.join(HERE, "blender_look.py"), "--", self.path("jobs.json"), self.path("seen.json"))
+        with open(self.path("seen.json"), encoding="utf-8") as file:
+            for key, result in zip(keys, json.load(file)):
+                self.seen["blender", *key] = result
+
+
+def rows(numbers):
+    return np.array(numbers, dtype=np.float64).reshape(-1, 3)
+
+
+class Interop(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="pliant-interop-")
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.bakes = Bakes(cls.scratch.name)
+
+    def expected(self, name, kind="world"):
+        return self.bakes.expected[kind, name]
+
+    def check(self, found, expected, size_of, roundings=2):
+        """Positions to single precision: so many half units in the last place of the largest."""
+        self.assertEqual(found.shape, expected.shape)
+        size = np.abs(size_of).max()
+        self.assertLessEqual(np.abs(found - expected).max(), roundings * 2.0**-24 * size)
+
+    def halves(self, frames):
+        """The frames, and the means between them: linear in between."""
+        result = [frames[0]]
+        for before, after in zip(frames, frames[1:]):
+            result += [(before + after) / 2, after]
+        return result
+
+    def check_split(self, samples, expected, roundings):
+        """Vertices of a mesh that a program has split or put in another order: each goes the way of
+        the vertex of ours where it begins."""
+        first = rows(samples[0])
+        distance = np.linalg.norm(first[:, None] - expected[0][None], axis=2)
+        source = distance.argmin(axis=1)
+        self.assertEqual(set(source), set(range(len(expected[0]))))
+        for sample, frame in zip(samples, expected):
+            self.check(rows(sample), frame[source], expected, roundings)
+
+    # glTF
+
+    def test_the_khronos_validator_finds_no_error_or_warning(self):
+        self.assertEqual(len(self.bakes.validated), 4)
+        for report in self.bakes.validated:
+            self.assertEqual((report["errors"], report["warnings"], report["messages"]), (0, 0, []), report["file"])
+            self.assertEqual((report["animations"], report["morphs"]), (1, True))
+
+    def test_three_js_plays_gltf_at_frames_and_between(self):
+        for file in ("world.glb", "world.gltf"):
+            seen = self.bakes.seen["browser", "gltf", file]
+            self.assertEqual(seen["complaints"], [])
+            self.assertAlmostEqual(seen["duration"], (FRAMES - 1) / fps_of("film"), places=6)
+            self.assertEqual(sorted(name for name in seen["materials"] if name), ["Skin red", "Steel-2"])
+            for name in SURFACES:
+                expected = self.expected(name)
+                samples = seen["surfaces"][name]
+                self.assertEqual(len(samples), 2 * FRAMES - 1)
+                for sample, frame in zip(samples, self.halves(expected)):
+                    # The weights half-way come from times in single precision.
+                    self.check(rows(sample)[:len(frame)], frame, expected, 40)
+                for sample, frame in zip(samples[::2], expected):
+                    self.check(rows(sample)[:len(frame)], frame, expected, 4)
+                self.check_split(samples[::2], expected, 4)
+
+    def test_three_js_plays_gltf_nodes(self):
+        seen = self.bakes.seen["browser", "gltf", "object.glb"]
+        for name in SURFACES:
+            samples = seen["surfaces"][name][::2]
+            for sample, frame in zip(samples, self.expected(name)):
+                self.check(rows(sample)[:len(frame)], frame, self.expected(name), 16)  # quaternions too
+
+    def test_three_js_plays_a_part_from_its_first_frame(self):
+        seen = self.bakes.seen["browser", "gltf", "part.glb"]
+        for name in SURFACES:
+            for sample, frame in zip(seen["surfaces"][name][::2], self.expected(name)[3:9]):
+                self.check(rows(sample)[:len(frame)], frame, self.expected(name), 4)
+
+    def test_blender_plays_gltf_at_frames_and_between(self):
+        for file, kind in (("whole.glb", "whole"), ("world.glb", "world")):
+            seen = self.bakes.seen["blender", "gltf", file]
+            for name in SURFACES:
+                samples = [rows(sample) @ TO_Y_UP for sample in seen["positions"][name]]
+                if kind == "world":  # placed surfaces turn on a circle between frames
+                    self.check_split(samples, self.halves(self.expected(name)), 40)
+                else:
+                    self.check_split(samples[::2], self.expected(name, kind), 16)
+            self.assertEqual(seen["objects"]["relief-a"]["materials"], ["Skin red", "Steel-2"])
+
+    # Point caches
+
+    def test_headers_and_sizes_of_point_caches(self):
+        for name in SURFACES:
+            frames, vertices, _ = self.expected(name).shape
+            with open(self.bakes.path(f"world-{name}.pc2"), "rb") as file:
+                data = file.read()
+            self.assertEqual(struct.unpack("<12siiffi", data[:32]),
+                             (b"POINTCACHE2\0", 1, vertices, 1.0, 1.0, frames))
+            self.assertEqual(len(data), 32 + 12 * vertices * frames)
+            self.check(np.frombuffer(data, "<f4", offset=32).reshape(frames, vertices, 3).astype(float),
+                       self.expected(name), self.expected(name), 1)
+            with open(self.bakes.path(f"world-{name}.mdd"), "rb") as file:
+                data = file.read()
+            self.assertEqual(struct.unpack(">ii", data[:8]), (frames, vertices))
+            self.assertEqual(len(data), 8 + 4 * frames + 12 * vertices * frames)
+            self.assertTrue((np.frombuffer(data, ">f4", frames, 8) ==
+                             (np.arange(frames) / fps_of("film")).astype(np.float32)).all())
+        with open(self.bakes.path(f"part-{SURFACES[0]}.pc2"), "rb") as file:
+            self.assertEqual(struct.unpack("<12siiffi", file.read(32))[3:], (4.0, 1.0, 6))
+
+    def test_blender_s_mesh_cache_moves_the_mesh_beside_it(self):
+        for name in SURFACES:
+            for ending in ("pc2", "mdd"):
+                seen = self.bakes.seen["blender", "cache", f"world-{name}.{ending}"]
+                (samples,) = seen["positions"].values()
+                for sample, frame in zip(samples, self.halves(self.expected(name))):
+                    # Half-way Blender finds its place in the file through the scene's rate.
+                    self.check(rows(sample) @ TO_Y_UP, frame, self.expected(name), 40)
+
+    def test_blender_s_mdd_import_makes_the_same_shapes(self):
+        for name in SURFACES:
+            seen = self.bakes.seen["blender", "mdd_keys", f"world-{name}.mdd"]
+            (samples,) = seen["positions"].values()
+            for sample, frame in zip(samples, self.expected(name)):
+                self.check(rows(sample) @ TO_Y_UP, frame, self.expected(name), 4)
+
+    def test_three_js_reads_mdd(self):
+        for name in SURFACES:
+            seen = self.bakes.seen["browser", "mdd", f"world-{name}.mdd"]
+            self.check(np.array(seen["frames"]).reshape(self.expected(name).shape), self.expected(name),
+                       self.expected(name), 1)
+
+    # Sequences
+
+    def test_blender_reads_obj_and_ply(self):
+        for name in SURFACES:
+            for frame, expected in enumerate(self.expected(name), 1):
+                for kind in ("obj", "ply"):
+                    seen = self.bakes.seen["blender", kind, f"world-{name}.{frame:04}.{kind}"]
+                    ((sample,),) = seen["positions"].values()
+                    self.check(rows(sample), expected, self.expected(name))
+
+    def test_what_blender_finds_besides_positions(self):
+        (found,) = self.bakes.seen["blender", "obj", "world-relief-a.0003.obj"]["objects"].values()
+        self.assertEqual(found["faces"], self.bakes.faces)
+        self.assertEqual(found["materials"], ["Skin red", "Steel-2"])
+        half = found["material_of_face"].index(1)
+        self.assertEqual(found["material_of_face"], [0] * half + [1] * (len(found["faces"]) - half))
+        self.assertEqual(found["smooth"], [True] * half + [False] * (len(found["faces"]) - half))
+        self.assertEqual(len(found["uvs"]), sum(map(len, self.bakes.faces)))
+
+    def test_three_js_reads_obj_and_ply(self):
+        columns, grid_rows = 13, 11
+        sheet = [[j * columns + i, (j + 1) * columns + i, (j + 1) * columns + i + 1, j * columns + i + 1]
+                 for j in range(grid_rows - 1) for i in range(columns - 1)]
+        for name, faces in zip(SURFACES, (self.bakes.faces, sheet)):
+            corners = [face[k] for face in faces for n in range(1, len(face) - 1) for k in (0, n, n + 1)]
+            for frame, expected in enumerate(self.expected(name), 1):
+                obj = self.bakes.seen["browser", "obj", f"world-{name}.{frame:04}.obj"]
+                found = rows([number for mesh in obj["meshes"] for number in mesh["positions"]])
+                self.check(found, expected[corners], self.expected(name))
+                ply = self.bakes.seen["browser", "ply", f"world-{name}.{frame:04}.ply"]
+                self.check(rows(ply["positions"]), expected, self.expected(name))
+
+    # USD
+
+    def test_three_js_reads_every_sample_of_usd(self):
+        for file, space in (("world.usda", "world"), ("object.usda", "object")):
+            seen = self.bakes.seen["browser", "usd", file]
+            self.assertEqual(seen["complaints"], [])
+            self.assertEqual(len(seen["meshes"]), 2)
+            layer = seen["layer"]
+            self.assertEqual((layer["upAxis"], layer["defaultPrim"]), ("Y", "scene"))
+            for name, prim in zip(SURFACES, ("relief_a", "relief_a_2")):
+                samples = seen["samples"]
+                points = samples[f"/scene/{prim}.points"]
+                self.assertEqual(points["times"], list(range(1, FRAMES + 1)))
+                found = np.array(points["values"]).reshape(FRAMES, -1, 3)
+                expected = self.expected(name, space)
+                self.check(found, expected, expected)  # the text is shortest, so rounded too
+                extent = np.array(samples[f"/scene/{prim}.extent"]["values"]).reshape(FRAMES, 2, 3)
+                self.check(extent, np.stack([expected.min(axis=1), expected.max(axis=1)], axis=1), expected)
+                velocities = np.array(samples[f"/scene/{prim}.velocities"]["values"]).reshape(FRAMES, -1, 3)
+                way = np.diff(expected, axis=0) * fps_of("film")
+                self.check(velocities, np.concatenate([way, way[-1:]]), way)
+
+    def test_tinyusdz_reads_usd(self):
+        for file, space in (("world.usda", "world"), ("object.usda", "object")):
+            seen = self.bakes.seen["browser", "tinyusdz", file]
+            self.assertTrue(seen["is_loaded"], seen["message"])
+            self.assertEqual(len(seen["meshes"]), 2)
+            for name, mesh in zip(SURFACES, seen["meshes"]):
+                first = self.expected(name, space)[0]
+                found = rows(mesh["points"])
+                distance = np.linalg.norm(found[:, None] - first[None], axis=2)
+                size = np.abs(first).max()
+                self.assertLessEqual(distance.min(axis=1).max(), 4 * 2.0**-24 * size)
+                self.assertEqual(set(distance.argmin(axis=1)), set(range(len(first))))
+
+
+def main():
+    global PLIANT, PICTURES
+    PLIANT = os.path.abspath(sys.argv[1])
+    with tempfile.TemporaryDirectory() as pictures:
+        PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else pictures
+        os.makedirs(PICTURES, exist_ok=True)
+        suite = unittest.defaultTestLoader.loadTestsFromTestCase(Interop)
+        result = unittest.TextTestRunner(verbosity=2).run(suite)
+    failed = len(result.failures) + len(result.errors)
+    # A failure of what all tests need counts once, and none of them has run.
+    print(f"{result.testsRun - failed if result.testsRun else 0} passed, {failed} failed")
+    sys.exit(0 if failed == 0 and result.testsRun > 0 else 1)
+
+
+if __name__ == "__main__":
+    main()
