@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "interrupt.hpp"
+#include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
@@ -103,11 +104,23 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
   return plan;
 }
 
-// Whether no file to be written is one that the scene is made from.
-Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
-  std::vector<std::filesystem::path> inputs = {scene.origin.file};
+// Those of the scene's file and its mesh files that a bake could write, by their endings: its own,
+// and those of what stands beside some formats.
+std::vector<std::filesystem::path> inputs_at_risk(const AnimationPlan& plan, const Scene& scene) {
+  std::vector<std::filesystem::path> files = {scene.origin.file};
   for (const Surface& surface : scene.surfaces)
-    if (const auto* file = std::get_if<MeshFile>(&surface.shape)) inputs.push_back(file->path);
+    if (const auto* file = std::get_if<MeshFile>(&surface.shape)) files.push_back(file->path);
+  std::erase_if(files, [&](const std::filesystem::path& file) {
+    const std::string ending = ending_of(file);
+    return ending != ending_of(plan.file) && ending != ".obj" && ending != ".bin";
+  });
+  return files;
+}
+
+// Whether no file to be written is one that the scene is made from: head.obj, baked to head.pc2.
+Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
+  const std::vector<std::filesystem::path> inputs = inputs_at_risk(plan, scene);
+  if (inputs.empty()) return {};
   for (const std::filesystem::path& output : files_of(plan)) {
     for (const std::filesystem::path& input : inputs) {
       std::error_code unknown;  // of a file that is not there: nothing is overwritten

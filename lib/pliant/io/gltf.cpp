@@ -35,6 +35,11 @@ std::string to_uri(const std::string& name) {
   return uri;
 }
 
+// Where the numbers of a .gltf are.
+std::filesystem::path separate_name(const std::filesystem::path& file) {
+  return std::filesystem::path(file).replace_extension(".bin");
+}
+
 void append_number(std::string& bytes, std::uint32_t number) {
   for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
 }
@@ -186,12 +191,6 @@ class GltfWriter final : public AnimationWriter {
     return file->commit();
   }
 
- public:
-  static std::filesystem::path separate_name(const std::filesystem::path& file) {
-    return std::filesystem::path(file).replace_extension(".bin");
-  }
-
- private:
   std::filesystem::path file_;
   bool is_placed_;
   std::optional<AtomicFile> separate_;  // the numbers of a .gltf
@@ -216,7 +215,7 @@ Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& p
   std::optional<AtomicFile> separate;
   std::optional<SpoolFile> spool;
   if (ending_of(plan.file) == ".gltf") {
-    auto file = AtomicFile::create(GltfWriter::separate_name(plan.file));
+    auto file = AtomicFile::create(separate_name(plan.file));
     if (!file) return fail(file.error());
     separate.emplace(*std::move(file));
   } else {
