@@ -90,7 +90,7 @@ std::size_t GltfBuffer::add_accessor(Json accessor) {
 Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int width,
                                              Bounds bounds) {
   const auto view = add_view(bytes_of(numbers), array_buffer);
-  if (!view) return view;
+  if (!view) return fail(view.error());
   Json accessor = {{"bufferView", *view},
                    {"componentType", floating},
                    {"count", numbers.size() / static_cast<std::size_t>(width)},
@@ -117,9 +117,9 @@ Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Boun
   if (bounds == Bounds::Written) set_bounds(accessor, numbers, 3);
   if (!rows.empty()) {
     const auto index_view = add_view(indices.bytes, no_target);
-    if (!index_view) return index_view;
+    if (!index_view) return fail(index_view.error());
     const auto value_view = add_view(bytes_of(std::span<const float>(values)), no_target);
-    if (!value_view) return value_view;
+    if (!value_view) return fail(value_view.error());
     accessor["sparse"] = {
         {"count", rows.size()},
         {"indices", {{"bufferView", *index_view}, {"componentType", indices.component_type}}},
@@ -137,7 +137,7 @@ Result<std::size_t> GltfBuffer::add_indices(std::span<const std::uint32_t> indic
   const auto view =
       add_view(is_short ? bytes_of(std::span<const std::uint16_t>(shorts)) : bytes_of(indices),
                element_array_buffer);
-  if (!view) return view;
+  if (!view) return fail(view.error());
   return add_accessor({{"bufferView", *view},
                        {"componentType", is_short ? unsigned_short : unsigned_int},
                        {"count", indices.size()},
@@ -146,7 +146,7 @@ Result<std::size_t> GltfBuffer::add_indices(std::span<const std::uint32_t> indic
 
 Result<std::size_t> GltfBuffer::add_keys(std::span<const float> numbers, int width, Bounds bounds) {
   const auto view = add_view(bytes_of(numbers), no_target);
-  if (!view) return view;
+  if (!view) return fail(view.error());
   Json accessor = {{"bufferView", *view},
                    {"componentType", floating},
                    {"count", numbers.size() / static_cast<std::size_t>(width)},

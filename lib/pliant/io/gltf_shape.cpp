@@ -84,7 +84,7 @@ GltfShape make_gltf_shape(const Mesh& mesh) {
   std::size_t triangle = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int material = mesh.materials.of_faces.empty() ? none : mesh.materials.of_faces[face];
-    std::size_t& part = part_of[static_cast<std::size_t>(material + 1)];
+    std::size_t& part = part_of[static_cast<std::size_t>(std::int64_t{material} + 1)];
     if (part == 0) {
       shape.parts.push_back({material, {}});
       part = shape.parts.size();

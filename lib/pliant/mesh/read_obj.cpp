@@ -290,6 +290,7 @@ class ObjReader {
         ranges.push_back({objects_[k].name, objects_[k].first_face, last});
     }
     std::vector<std::string> names;
+    names.reserve(ranges.size());
     for (const Range& range : ranges) names.push_back(range.name);
     const auto chosen = choose_object(names, object);
     if (!chosen) {

@@ -17,7 +17,8 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 // The corners of a face in the plane across its mean normal, turning counter-clockwise.
 std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
   const auto at = [&](int k) -> Vector3d {
-    return mesh.positions.row(mesh.corner_vertices[static_cast<std::size_t>(first + k)]);
+    return mesh.positions.row(
+        mesh.corner_vertices[static_cast<std::size_t>(first) + static_cast<std::size_t>(k)]);
   };
   Vector3d normal = Vector3d::Zero();
   for (int k = 1; k + 1 < size; ++k) normal += (at(k) - at(0)).cross(at(k + 1) - at(0));
