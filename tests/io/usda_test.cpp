@@ -100,6 +100,10 @@ TEST_CASE("USD names are plain and taken once", "[io][usda]") {
   CHECK(names.take("") == "_");
   CHECK(names.take("x") == "x");
   CHECK(names.take("x") == "x_2");
+  CHECK(names.take("x_2") == "x_2_2");
+  CHECK(names.take("y_2") == "y_2");
+  CHECK(names.take("y") == "y");
+  CHECK(names.take("y") == "y_3");
   CHECK(usda_string("a\"b\\c\n") == "\"a\\\"b\\\\c_\"");
 }
 

@@ -14,7 +14,8 @@ std::string UsdaNames::take(std::string_view name) {
   }
   if (plain.empty()) plain = "_";
   std::string free = plain;
-  for (int k = 2; !taken_.insert(free).second; ++k) free = fmt::format("{}_{}", plain, k);
+  int& next = next_suffix_.try_emplace(plain, 2).first->second;
+  while (!taken_.insert(free).second) free = fmt::format("{}_{}", plain, next++);
   return free;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@ class UsdaNames {
 
  private:
   std::set<std::string> taken_;
+  std::map<std::string, int> next_suffix_;  // of the names that were asked for, to try next
 };
 
 /// The text in quotes, as a string of USD.

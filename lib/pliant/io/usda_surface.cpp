@@ -51,6 +51,16 @@ void append_extent(std::span<const float> numbers, std::string& text) {
   text += ']';
 }
 
+// The faces that each name stands for, ascending.
+std::vector<std::vector<int>> faces_of_names(const FaceNames& faces) {
+  std::vector<std::vector<int>> members(faces.names.size());
+  for (std::size_t face = 0; face < faces.of_faces.size(); ++face) {
+    const int name = faces.of_faces[face];
+    if (name >= 0) members[static_cast<std::size_t>(name)].push_back(static_cast<int>(face));
+  }
+  return members;
+}
+
 std::string sample_head(int frame) { return fmt::format("{}    {}: ", indent, frame); }
 
 Result<void> append_samples(std::string_view attribute, SpoolFile& samples, AtomicFile& file) {
@@ -234,11 +244,9 @@ std::string UsdaSurface::subsets(
                         family);
   }
   const auto add = [&](const FaceNames& faces, const char* family, bool is_material) {
+    const std::vector<std::vector<int>> members = faces_of_names(faces);
     for (std::size_t k = 0; k < faces.names.size(); ++k) {
       const std::string name = names.take(faces.names[k]);
-      std::vector<int> indices;
-      for (std::size_t face = 0; face < faces.of_faces.size(); ++face)
-        if (faces.of_faces[face] == static_cast<int>(k)) indices.push_back(static_cast<int>(face));
       text += fmt::format("\n{}def GeomSubset \"{}\" (\n", indent, name);
       if (name != faces.names[k])
         text += fmt::format("{}    displayName = {}\n", indent, usda_string(faces.names[k]));
@@ -248,7 +256,7 @@ std::string UsdaSurface::subsets(
           "{0})\n{0}{{\n{0}    uniform token elementType = \"face\"\n"
           "{0}    uniform token familyName = \"{1}\"\n{0}    int[] indices = ",
           indent, family);
-      append_integers(indices, text);
+      append_integers(members[k], text);
       text += '\n';
       if (is_material) {
         text += fmt::format("{}    rel material:binding = <{}>\n", indent,
