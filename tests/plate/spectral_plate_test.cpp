@@ -27,27 +27,51 @@ double loss(const Stiffness& stiffness) {
   return std::max(1.0, stiffness.least_c() / (stiffness.least_c() - stiffness.c));
 }
 
-struct Solved {
-  Field solution;
-  double backward_error;
-};
-
-Solved solved(SolverKind kind, const PlateSystem& system, const Field& f) {
-  const auto solver = make_solver(kind);
-  REQUIRE(solver->factor(system));
-  Field w = solver->solve(f).value();
-  const double error =
-      residual(system, w, f).norm() / (operator_norm(system) * w.norm() + f.norm());
-  return {std::move(w), error};
+double backward_error(const PlateSystem& system, const Field& w, const Field& f) {
+  return residual(system, w, f).norm() / (operator_norm(system) * w.norm() + f.norm());
 }
 
-// A solution right to the last digits: refined with residuals in extended precision.
-Field refined(const PlateSystem& system, const Field& f) {
+// b : c : d; the last ones close to where c may not come.
+constexpr Stiffness ratios[] = {{1, 2, 1},   {1, 0, 1},    {1, 20, 1},     {100, 2, 1},
+                                {1, 2, 100}, {1, -1.9, 1}, {1, -1.999, 1}, {4, -11.9, 9}};
+// A static plate, and steps from huge to tiny ones.
+constexpr double shifts[] = {0, 1e-3, 1e5, 1e14};
+
+// Against a solution that is right to the last digits: refined with residuals in extended
+// precision. Gives the backward error.
+double check_errors(const PlateSystem& system, const Field& f) {
   const auto solver = make_solver(SolverKind::Spectral);
   REQUIRE(solver->factor(system));
-  Field w = solver->solve(f).value();
-  for (int pass = 0; pass < 4; ++pass) w += solver->solve(residual(system, w, f)).value();
-  return w;
+  const Field w = solver->solve(f).value();
+  Field exact = w;
+  for (int pass = 0; pass < 3; ++pass) {
+    exact += solver->solve(residual(system, exact, f)).value();
+  }
+  CHECK((w - exact).norm() <= 1e-14 * loss(system.stiffness) * exact.norm());
+  const double error = backward_error(system, w, f);
+  CHECK(error <= 4e-15 * loss(system.stiffness));
+  return error;
+}
+
+void check_errors(const Grid& grid, const Stiffness& stiffness, double shift) {
+  CAPTURE(grid.columns, grid.rows, stiffness.b, stiffness.c, stiffness.d, shift);
+  check_errors({grid, stiffness, shift}, Field::Random(unknown_count(grid), 3));
+}
+
+// And beside a factored matrix, by backward error.
+void check_beside_direct(const PlateSystem& system) {
+  const auto& [b, c, d] = system.stiffness;
+  CAPTURE(system.grid.columns, system.grid.rows, b, c, d, system.shift);
+  const Field f = Field::Random(unknown_count(system), 3);
+  const double error = check_errors(system, f);
+  const auto direct = make_solver(available_solvers().front());
+  REQUIRE(direct->factor(system));
+  const double direct_error = backward_error(system, direct->solve(f).value(), f);
+  CHECK(error <= 20 * loss(system.stiffness) * std::max(direct_error, 1.1e-16));
+}
+
+void check_exactness(const Grid& grid, const Stiffness& stiffness) {
+  for (const double shift : shifts) check_beside_direct({grid, stiffness, shift});
 }
 
 PlateProblem problem_on(const Grid& grid, const Stiffness& stiffness, const Dynamics& dynamics) {
@@ -65,44 +89,72 @@ PlateState random_state(const Grid& grid) {
 
 }  // namespace
 
-TEST_CASE("the spectral solver is as exact as a double allows", "[plate][spectral]") {
+TEST_CASE("the spectral solver is as exact as a double allows on small plates",
+          "[plate][spectral]") {
   const auto [columns, rows] =
       GENERATE(std::pair{3, 3}, std::pair{3, 4}, std::pair{4, 4}, std::pair{5, 3}, std::pair{9, 8},
-               std::pair{17, 17}, std::pair{20, 31}, std::pair{3, 500}, std::pair{500, 3},
-               std::pair{102, 38}, std::pair{101, 101}, std::pair{150, 200});
-  const Stiffness stiffness = GENERATE(
-      Stiffness{1, 2, 1}, Stiffness{1, 0, 1}, Stiffness{1, 20, 1}, Stiffness{100, 2, 1},
-      Stiffness{1, 2, 100}, Stiffness{1, -1.9, 1}, Stiffness{1, -1.999, 1}, Stiffness{4, -11.9, 9});
-  const Grid grid = unit_grid(columns, rows);
-  for (const double shift : {0.0, 1e-3, 1e5, 1e14}) {
-    CAPTURE(columns, rows, stiffness.b, stiffness.c, stiffness.d, shift);
-    const PlateSystem system{grid, stiffness, shift};
-    const Field f = Field::Random(unknown_count(grid), 3);
-    const Solved spectral = solved(SolverKind::Spectral, system, f);
-    const Field exact = refined(system, f);
-    CHECK((spectral.solution - exact).norm() <= 1e-14 * loss(stiffness) * exact.norm());
-    CHECK(spectral.backward_error <= 4e-15 * loss(stiffness));
-    const Solved direct = solved(available_solvers().front(), system, f);
-    CHECK(spectral.backward_error <=
-          20 * loss(stiffness) * std::max(direct.backward_error, 1.1e-16));
+               std::pair{17, 17}, std::pair{18, 18}, std::pair{20, 31});
+  for (const Stiffness& stiffness : ratios) check_exactness(unit_grid(columns, rows), stiffness);
+}
+
+TEST_CASE("the spectral solver is as exact as a double allows on slivers", "[plate][spectral]") {
+  const auto [columns, rows] =
+      GENERATE(std::pair{3, 500}, std::pair{500, 3}, std::pair{4, 212}, std::pair{257, 5});
+  for (const Stiffness& stiffness : ratios) check_exactness(unit_grid(columns, rows), stiffness);
+}
+
+// 101 and 37 intervals; 149 and 199 below are prime too.
+TEST_CASE("the spectral solver is as exact as a double allows for prime lengths",
+          "[plate][spectral]") {
+  for (const Stiffness& stiffness : ratios) check_exactness(unit_grid(102, 38), stiffness);
+}
+
+TEST_CASE("the spectral solver is as exact as a double allows on squares", "[plate][spectral]") {
+  for (const Stiffness& stiffness : {ratios[0], ratios[1], ratios[2], ratios[3]}) {
+    check_exactness(unit_grid(101, 101), stiffness);
   }
 }
 
+TEST_CASE("the spectral solver is as exact as a double allows on squares, for other ratios",
+          "[plate][spectral]") {
+  for (const Stiffness& stiffness : {ratios[4], ratios[5], ratios[6], ratios[7]}) {
+    check_exactness(unit_grid(101, 101), stiffness);
+  }
+}
+
+// Factors of this size take a while: each ratio at one step, each step at two ratios.
+TEST_CASE("the spectral solver is as exact as a double allows on 150 x 200 nodes",
+          "[plate][spectral]") {
+  for (int k = 0; k < 8; ++k) check_beside_direct({unit_grid(150, 200), ratios[k], shifts[k % 4]});
+}
+
 TEST_CASE("the spectral solver stays exact on large plates", "[plate][spectral]") {
-  const Grid grid = GENERATE(unit_grid(401, 401), unit_grid(402, 390), unit_grid(60, 801));
-  const PlateSystem system{grid, {1, 2, 1}, 0};
-  const Field f = Field::Random(unknown_count(grid), 3);
-  const Field exact = refined(system, f);
-  const Solved spectral = solved(SolverKind::Spectral, system, f);
-  CHECK((spectral.solution - exact).norm() <= 1e-14 * exact.norm());
+  for (const Grid& grid : {unit_grid(402, 390), unit_grid(60, 801)}) {
+    for (const double shift : shifts) check_errors(grid, {1, 2, 1}, shift);
+  }
+}
+
+TEST_CASE("the spectral solver stays exact on 401 x 401 nodes", "[plate][spectral]") {
+  for (const double shift : shifts) check_errors(unit_grid(401, 401), {1, 2, 1}, shift);
+}
+
+// A static plate is the hardest.
+TEST_CASE("the spectral solver stays exact on 401 x 401 nodes at every ratio",
+          "[plate][spectral]") {
+  for (const Stiffness& stiffness : ratios) {
+    check_errors(unit_grid(401, 401), stiffness, 0);
+  }
 }
 
 TEST_CASE("steps in sine space are those of a factored matrix", "[plate][spectral]") {
   const Grid grid =
       GENERATE(unit_grid(3, 3), unit_grid(4, 3), unit_grid(3, 20), unit_grid(20, 3),
                unit_grid(14, 14), unit_grid(23, 12), unit_grid(12, 38), Grid{40, 41, 0.5, 0.125});
-  const Stiffness stiffness = GENERATE(Stiffness{1, 2, 1}, Stiffness{3, -1, 0.5});
-  for (const Dynamics dynamics : {Dynamics{40, 20}, Dynamics{0, 20}, Dynamics{40, 0}}) {
+  const Stiffness stiffness =
+      GENERATE(Stiffness{1, 2, 1}, Stiffness{3, -1, 0.5}, Stiffness{1, 0, 1}, Stiffness{1, 20, 1},
+               Stiffness{100, 2, 1}, Stiffness{1, 2, 100}, Stiffness{1, -1.99, 1});
+  for (const Dynamics dynamics :
+       {Dynamics{40, 20}, Dynamics{0, 20}, Dynamics{40, 0}, Dynamics{0, 0}}) {
     for (const double dt : {1e-6, 1e-3, 1e3}) {
       const PlateProblem problem = problem_on(grid, stiffness, dynamics);
       const PlateState state = random_state(grid);
