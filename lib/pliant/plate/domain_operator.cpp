@@ -24,14 +24,8 @@ std::vector<int> unknown_numbers(const PlateSystem& system) {
 SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
   const Grid& grid = system.grid;
   const int M = grid.columns;
-  const double hu = grid.hu;
-  const double hv = grid.hv;
-  const double b = system.stiffness.b / (hu * hu * hu * hu);
-  const double c = system.stiffness.c / (hu * hu * hv * hv);
-  const double d = system.stiffness.d / (hv * hv * hv * hv);
-  const double centre = system.shift + 6 * b + 4 * c + 6 * d;
-  const double beside_u = -4 * b - 2 * c;
-  const double beside_v = -2 * c - 4 * d;
+  // Eq. (4) and (5) gathered by neighbour; the upper triangle has those ahead in the numbering.
+  const StencilWeights weights(system);
 
   const std::vector<int> numbers = unknown_numbers(system);
   const int size = unknown_count(system);
@@ -45,16 +39,17 @@ SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
       if (numbers[node + offset] >= 0) matrix.insertBack(numbers[node + offset], column) = weight;
     };
     // Eq. (13): a node two steps away counts where the one between is no rim.
-    if (numbers[node - M] >= 0) add(-2 * M, d);
-    add(-M - 1, c);
-    add(-M, beside_v);
-    add(-M + 1, c);
-    if (numbers[node - 1] >= 0) add(-2, b);
-    add(-1, beside_u);
+    if (numbers[node - M] >= 0) add(-2 * M, weights.two_v);
+    add(-M - 1, weights.corner);
+    add(-M, weights.beside_v);
+    add(-M + 1, weights.corner);
+    if (numbers[node - 1] >= 0) add(-2, weights.two_u);
+    add(-1, weights.beside_u);
     // Eq. (7): where it is, the ghost behind it adds its weight to the node it mirrors.
     const int ghosts_u = (numbers[node - 1] < 0) + (numbers[node + 1] < 0);
     const int ghosts_v = (numbers[node - M] < 0) + (numbers[node + M] < 0);
-    matrix.insertBack(column, column) = centre + ghosts_u * b + ghosts_v * d;
+    matrix.insertBack(column, column) =
+        weights.centre + ghosts_u * weights.two_u + ghosts_v * weights.two_v;
   }
   matrix.finalize();
   return matrix;

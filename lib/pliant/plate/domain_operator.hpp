@@ -8,6 +8,26 @@ namespace pliant {
 
 // `assemble_upper` and `residual` of a system that has an interior mask; not for other rooms.
 
+/// The weights of a node and of its neighbours, eq. (4) and (5) gathered, without what the rim
+/// adds.
+struct StencilWeights {
+  explicit StencilWeights(const PlateSystem& system) {
+    const double hu = system.grid.hu;
+    const double hv = system.grid.hv;
+    two_u = system.stiffness.b / (hu * hu * hu * hu);
+    corner = system.stiffness.c / (hu * hu * hv * hv);
+    two_v = system.stiffness.d / (hv * hv * hv * hv);
+    centre = system.shift + 6 * two_u + 4 * corner + 6 * two_v;
+    beside_u = -4 * two_u - 2 * corner;
+    beside_v = -2 * corner - 4 * two_v;
+  }
+
+  double centre, beside_u, beside_v;
+  double corner;  ///< of the four neighbours across
+  double two_u;   ///< of those two steps away; a rim beside the node adds as much to its centre
+  double two_v;
+};
+
 /// (shift + L) w at a node in extended precision, eq. (4) and (5), whatever the outline.
 class ExtendedStencil {
  public:
@@ -22,15 +42,22 @@ class ExtendedStencil {
     d_ = system.stiffness.d / (hv * hv * hv * hv);
   }
 
-  /// `p` is the node among all nodes; the others are the values two steps away, which may be
-  /// ghosts.
-  Real at(const Real* p, Real left, Real right, Real below, Real above) const {
+  Real two_u() const { return b_; }  ///< weight of a node two steps away, and of a rim beside
+  Real two_v() const { return d_; }
+
+  /// `p` is the node among all nodes, in double or in `Real`; the others are the values two steps
+  /// away, which may be ghosts.
+  template <class Number>
+  Real at(const Number* p, Real left, Real right, Real below, Real above) const {
     const std::ptrdiff_t M = row_;
-    const Real uuuu = (left + right) - 4 * (p[-1] + p[1]) + 6 * p[0];
-    const Real vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
-    const Real uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
-                      2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
-    return shift_ * p[0] + b_ * uuuu + c_ * uuvv + d_ * vvvv;
+    const Real here = p[0];
+    const Real beside_u = Real{p[-1]} + p[1];
+    const Real beside_v = Real{p[-M]} + p[M];
+    const Real uuuu = (left + right) - 4 * beside_u + 6 * here;
+    const Real vvvv = (below + above) - 4 * beside_v + 6 * here;
+    const Real corners = Real{p[-M - 1]} + p[-M + 1] + p[M - 1] + p[M + 1];
+    const Real uuvv = corners - 2 * (beside_u + p[-M] + p[M]) + 4 * here;
+    return shift_ * here + b_ * uuuu + c_ * uuvv + d_ * vvvv;
   }
 
  private:

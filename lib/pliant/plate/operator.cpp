@@ -15,16 +15,8 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   const int m = grid.columns - 2;  // unknowns along u
   const int n = grid.rows - 2;     // unknowns along v
-  const double hu = grid.hu;
-  const double hv = grid.hv;
-  const double b = system.stiffness.b / (hu * hu * hu * hu);
-  const double c = system.stiffness.c / (hu * hu * hv * hv);
-  const double d = system.stiffness.d / (hv * hv * hv * hv);
-
   // Eq. (4) and (5) gathered by neighbour; the upper triangle has those ahead in the numbering.
-  const double centre = system.shift + 6 * b + 4 * c + 6 * d;
-  const double beside_u = -4 * b - 2 * c;
-  const double beside_v = -2 * c - 4 * d;
+  const StencilWeights weights(system);
 
   SparseMatrix matrix(m * n, m * n);
   matrix.reserve(Eigen::Index{7} * m * n);
@@ -37,16 +29,17 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
           matrix.insertBack(column + dj * m + di, column) = weight;
         }
       };
-      add(0, -2, d);
-      add(-1, -1, c);
-      add(0, -1, beside_v);
-      add(1, -1, c);
-      add(-2, 0, b);
-      add(-1, 0, beside_u);
+      add(0, -2, weights.two_v);
+      add(-1, -1, weights.corner);
+      add(0, -1, weights.beside_v);
+      add(1, -1, weights.corner);
+      add(-2, 0, weights.two_u);
+      add(-1, 0, weights.beside_u);
       // Eq. (7): a ghost mirrors its node with +, so each edge nearby adds its weight once more.
       const int edges_u = (i == 0) + (i == m - 1);
       const int edges_v = (j == 0) + (j == n - 1);
-      matrix.insertBack(column, column) = centre + edges_u * b + edges_v * d;
+      matrix.insertBack(column, column) =
+          weights.centre + edges_u * weights.two_u + edges_v * weights.two_v;
     }
   }
   matrix.finalize();
