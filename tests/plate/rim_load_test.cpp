@@ -2,6 +2,7 @@
 
 #include "pliant/plate/stencil.hpp"
 #include "support/catch.hpp"
+#include "support/unions.hpp"
 
 using namespace pliant;
 
@@ -32,5 +33,29 @@ TEST_CASE("the rim's part of a load is that of the stencil", "[plate][spectral]"
     const Field rim = with_interior(grid, w, Field::Zero(unknown_count(grid), 3));
     const Field expected = interior_of(grid, load) - apply_stencil(grid, stiffness, tangents, rim);
     CHECK(interior_of(grid, changed) == expected);
+  }
+}
+
+TEST_CASE("the rim's part of a load is that of the stencil on any outline", "[plate][schwarz]") {
+  for (const int side : {10, 13, 34}) {
+    for (const auto& [name, grid, interior] : pliant::testing::union_plates(side)) {
+      CAPTURE(name, side);
+      const Stiffness stiffness{1.5, 0.75, 3};
+      EdgeTangents tangents;
+      tangents.su0 = Vector3d(1, -2, 3);
+      tangents.su1 = Vector3d(-4, 5, 0.5);
+      tangents.sv0 = Vector3d(0.25, 7, -1);
+      tangents.sv1 = Vector3d(2, 0, 11);
+      const Field w = Field::Random(grid.node_count(), 3);
+      const Field load = Field::Random(grid.node_count(), 3);
+      Field changed = load;
+      subtract_rim(grid, interior, stiffness, tangents, w, changed);
+
+      const Field zero = Field::Zero(unknown_count(grid, interior), 3);
+      const Field rim = with_interior(grid, interior, w, zero);
+      const Field expected = interior_of(grid, interior, load) -
+                             apply_stencil(grid, interior, stiffness, tangents, rim);
+      CHECK(interior_of(grid, interior, changed) == expected);
+    }
   }
 }

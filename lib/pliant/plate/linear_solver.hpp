@@ -17,6 +17,10 @@ struct SolverCounts {
   long analyses = 0;        ///< orderings and symbolic factorisations
   long factorizations = 0;  ///< numeric factorisations
   long solves = 0;          ///< right-hand sides of three columns
+
+  friend SolverCounts operator+(const SolverCounts& a, const SolverCounts& b) {
+    return {a.analyses + b.analyses, a.factorizations + b.factorizations, a.solves + b.solves};
+  }
 };
 
 /// Solves plate systems: the one seam between the integrators and whoever solves. Every

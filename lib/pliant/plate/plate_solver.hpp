@@ -40,7 +40,7 @@ class PlateSolver {
 /// Who steps the plates of a run. The choice may change the last digits of a result.
 enum class SolverChoice {
   Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
-  Spectral,  ///< sine transforms; other outlines than rectangles as `Auto` does
+  Spectral,  ///< sine transforms for all rectangles; other outlines as `Auto` does
   Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
   Eigen,
 };
@@ -55,8 +55,14 @@ bool is_available(SolverChoice choice);
 /// its bound that digits would be lost. Depends on nothing else.
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
 
+/// Whether `Auto` and `Spectral` solve a plate of another outline by rectangles in sine space, if
+/// few of them cover it: where it pays, unless c is so close to its bound that they take long; and
+/// where the factor of its matrix is more than `memory` in all [bytes]. Depends on nothing else.
+bool worth_iterating(int unknowns, const Stiffness& stiffness, std::size_t memory);
+
 /// A solver that takes its memory out of `budget` and may work on `threads`, which both outlive it;
-/// none: no limit, one thread. The bits depend on neither. Requires: `choice` is available.
+/// none: no limit, one thread. The bits depend on the threads in no way, and on the budget only as
+/// `worth_iterating` says. Requires: `choice` is available.
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice = SolverChoice::Auto,
                                                MemoryBudget* budget = nullptr,
                                                ThreadPool* threads = nullptr);

@@ -51,4 +51,45 @@ void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangen
   }
 }
 
+void subtract_rim(const Grid& grid, const InteriorMask& interior, const Stiffness& stiffness,
+                  const EdgeTangents& tangents, const Field& w, Field& load) {
+  const int M = grid.columns;
+  PLIANT_EXPECTS(interior.size() == static_cast<std::size_t>(grid.node_count()));
+  PLIANT_EXPECTS(w.rows() == grid.node_count() && load.rows() == grid.node_count());
+  const double hu = grid.hu;
+  const double hv = grid.hv;
+  const double b = stiffness.b / (hu * hu * hu * hu);
+  const double c = stiffness.c / (hu * hu * hv * hv);
+  const double d = stiffness.d / (hv * hv * hv * hv);
+  for (int component = 0; component < 3; ++component) {
+    const double* const x = w.col(component).data();
+    double* const f = load.col(component).data();
+    const auto rim = [&](int node) { return interior[node] ? 0 : x[node]; };
+    for (int j = 1; j < grid.rows - 1; ++j) {
+      for (int i = 1; i < M - 1; ++i) {
+        const int node = grid.node(i, j);
+        if (!interior[node]) continue;
+        // As in `apply_stencil`, with 0 inside: beyond the rim a ghost mirrors this node.
+        const auto far = [&](int step, bool is_last, double slope_term) {
+          if (!interior[node + step]) return is_last ? slope_term : 0;
+          return rim(node + 2 * step);
+        };
+        const double left = far(-1, i == 1, -2 * hu * tangents.su0[component]);
+        const double right = far(1, i == M - 2, 2 * hu * tangents.su1[component]);
+        const double below = far(-M, j == 1, -2 * hv * tangents.sv0[component]);
+        const double above = far(M, j == grid.rows - 2, 2 * hv * tangents.sv1[component]);
+        const double at_u = rim(node - 1) + rim(node + 1);
+        const double at_v = rim(node - M) + rim(node + M);
+        const double corners =
+            rim(node - M - 1) + rim(node - M + 1) + rim(node + M - 1) + rim(node + M + 1);
+        const double uuuu = (left + right) - 4 * at_u;
+        const double vvvv = (below + above) - 4 * at_v;
+        const double uuvv =
+            corners - 2 * (rim(node - 1) + rim(node + 1) + rim(node - M) + rim(node + M));
+        f[node] -= b * uuuu + c * uuvv + d * vvvv;
+      }
+    }
+  }
+}
+
 }  // namespace pliant

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pliant/plate/domain.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {
@@ -9,5 +10,10 @@ namespace pliant {
 /// are those of `apply_stencil`. docs/model.md, eq. (6). Requires: at least 3 x 3 nodes.
 void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangents& tangents,
                   const Field& w, Field& load);
+
+/// The same for any outline, eq. (12): it reaches the interior nodes within two steps of the rim.
+/// Only interior rows of `load` change. Requires: a mask.
+void subtract_rim(const Grid& grid, const InteriorMask& interior, const Stiffness& stiffness,
+                  const EdgeTangents& tangents, const Field& w, Field& load);
 
 }  // namespace pliant

@@ -4,20 +4,11 @@
 #include <utility>
 
 namespace pliant {
-namespace {
-
-void add(SolverCounts& total, const SolverCounts& counts) {
-  total.analyses += counts.analyses;
-  total.factorizations += counts.factorizations;
-  total.solves += counts.solves;
-}
-
-}  // namespace
 
 void SolverCache::keep_only(std::span<const Outline> outlines) {
   std::erase_if(kept_, [&](const Kept& kept) {
     if (std::find(outlines.begin(), outlines.end(), kept.outline) != outlines.end()) return false;
-    add(gone_, kept.solver->counts());
+    gone_ = gone_ + kept.solver->counts();
     return true;
   });
 }
@@ -32,7 +23,7 @@ PlateSolver& SolverCache::solver_of(const Outline& outline) {
 
 SolverCounts SolverCache::counts() const {
   SolverCounts total = gone_;
-  for (const Kept& kept : kept_) add(total, kept.solver->counts());
+  for (const Kept& kept : kept_) total = total + kept.solver->counts();
   return total;
 }
 

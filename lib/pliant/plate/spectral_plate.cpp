@@ -340,6 +340,13 @@ bool SpectralPlate::is_zero(const ConstNodesView& field, int component) const {
   return true;
 }
 
+void SpectralPlate::clear(const NodesView& field, int component) const {
+  for (int j = 0; j < rows_ - 2; ++j) {
+    std::fill_n(field.first + component * field.component_stride + j * field.row_stride,
+                columns_ - 2, 0.0);
+  }
+}
+
 // What can be stepped by itself: one component of one pair of parities, if there is anything in it.
 SpectralPlate::Parts SpectralPlate::moving_parts() const {
   Parts parts;
@@ -373,7 +380,10 @@ int SpectralPlate::between_width() const {
 void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution) {
   PLIANT_EXPECTS(prepared_.has_value());
   ++counts_.solves;
-  std::fill_n(is_still_, 3, false);
+  for (int component = 0; component < 3; ++component) {
+    is_still_[component] = is_zero(load, component);
+    if (is_still_[component]) clear(solution, component);
+  }
   to_sines(load, &Parity::load);
   const Parts parts = moving_parts();
   for_each(parts.count, [&](std::size_t task) {

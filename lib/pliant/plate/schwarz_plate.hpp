@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/domain_rows.hpp"
+#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/number_block.hpp"
+#include "pliant/plate/operator.hpp"
+#include "pliant/plate/spectral_plate.hpp"
+
+namespace pliant {
+
+/// A clamped plate whose outline is no rectangle, by conjugate gradients: overlapping rectangles,
+/// each solved in sine space, one after another and back, say where the solution is; residuals in
+/// extended precision say how far it is off. docs/model.md, "Overlapping rectangles". Memory and
+/// work per node and step do not grow with the plate. Not for other rooms.
+class SchwarzPlate {
+ public:
+  /// Memory out of `budget` and work on `threads`, which both outlive it; none: no limit, one
+  /// thread. The bits depend on neither.
+  /// A system takes `max_rounds` at most; with most covers it takes about ten.
+  explicit SchwarzPlate(MemoryBudget* budget, ThreadPool* threads = nullptr, int max_rounds = 60)
+      : budget_(budget), threads_(threads), memory_(budget), max_rounds_(max_rounds) {}
+
+  /// Makes ready for a system. What is kept from the last one never changes a result's bits.
+  /// Requires: `cover_by_rectangles` finds a cover. Errors: SolverFailed where the matrix is not
+  /// positive definite or not finite; OutOfMemory.
+  Result<void> prepare(const Grid& grid, const InteriorMask& interior, const Stiffness& stiffness,
+                       double shift);
+
+  /// Solves for three right-hand sides from a guess. Fields are on all nodes, row by row without
+  /// gaps, `first` is node (0,0); interior ones are read and written. Requires: prepared. Errors:
+  /// SolverFailed where the rounds do not suffice, with `solution` of no meaning; Interrupted.
+  Result<void> solve(const ConstNodesView& load, const NodesView& solution,
+                     const StopRequest& should_stop = {});
+
+  /// One step of backward Euler with the shift that was prepared for, the load without the rim's
+  /// part; views as above. Requires: prepared; inertia = rho/dt. Errors: those of `solve`;
+  /// displacement and velocity are then as they were.
+  Result<void> advance(const ConstNodesView& load, double inertia, double dt,
+                       const NodesView& displacement, const NodesView& velocity,
+                       const StopRequest& should_stop);
+
+  /// One round there and back over the rectangles: an approximation of the solution that is linear
+  /// in the right-hand side, symmetric and positive definite. Views as above. Requires: prepared.
+  void precondition(const ConstNodesView& load, const NodesView& solution);
+
+  /// Rounds of all systems so far.
+  long rounds() const { return rounds_; }
+
+  SolverCounts counts() const { return counts_; }
+  std::size_t memory() const;
+
+ private:
+  // A rectangle of the cover.
+  struct Part {
+    Box box;  // of interior nodes
+    SpectralPlate* plate = nullptr;
+    std::vector<DomainRows::Edge> facing;  // nodes inside along sides that others see beyond
+    std::vector<long> around;              // interior nodes outside that the stencil reaches
+  };
+  // A field on all nodes with rows of zeros around; what is not interior is 0.
+  struct NodeField {
+    double* of[3] = {};
+  };
+  using Sums = double[3];
+
+  Result<void> lay_out();
+  void let_go();
+  void make_parts(const std::vector<Box>& cover);
+  Part part_of(const Box& box) const;
+  Result<void> iterate(const StopRequest& should_stop);
+  bool settle_if_free(int component);
+  Result<void> run(bool (&is_unsolved)[3], const StopRequest& should_stop);
+  Result<void> correct(const StopRequest& should_stop);
+  bool retire(const Sums& energy, const Sums& change, const Sums& target);
+  bool is_any_active() const { return is_active_[0] || is_active_[1] || is_active_[2]; }
+  void find_residual();
+  void apply_rounds();
+  void visit(const Part& part, bool is_last);
+  void take_correction(const Part& part, int component, bool is_last);
+  void apply_operator();
+  void dot(const NodeField& a, const NodeField& b, Sums& total);
+  void add(const NodeField& from, const Sums& factor, const NodeField& to);
+  void turn_direction(const Sums& factor);
+  template <class Work>
+  void for_each(std::size_t count, const Work& work);
+  template <class Work>
+  void for_each_block(const Work& work);
+  template <class Work>
+  void for_each_run(const Work& work);
+
+  MemoryBudget* budget_;
+  ThreadPool* threads_;
+  MemoryShare memory_;
+  int max_rounds_;
+  long rounds_ = 0;
+  int rounds_left_ = 0;  // of the system in hand
+  SolverCounts counts_;
+
+  PlateSystem system_;
+  bool is_prepared_ = false;
+  double trusted_gain_ = 0;  // how far a residual may fall until it is computed anew
+  DomainRows rows_;
+  std::vector<std::unique_ptr<SpectralPlate>> plates_;  // one for each size of rectangles
+  std::vector<Part> parts_;
+  std::size_t once_ = 0;  // parts, the last ones, that a round visits once
+  NumberBlock numbers_;
+  NodeField load_, solution_, residual_, correction_, direction_;
+  NodeField product_;  // of operator and direction; what is left of a residual during a round
+  NodeField patch_;    // the correction of one rectangle, its rows one after the other
+  double* block_sums_ = nullptr;
+  bool is_active_[3] = {};  // components that are not solved yet
+};
+
+}  // namespace pliant

@@ -1,0 +1,107 @@
+#include <new>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/rim_load.hpp"
+#include "pliant/plate/schwarz_plate.hpp"
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+namespace {
+
+class SchwarzPlateSolver final : public PlateSolver {
+ public:
+  SchwarzPlateSolver(MemoryBudget* budget, ThreadPool* threads, int max_rounds)
+      : budget_(budget), threads_(threads), max_rounds_(max_rounds), load_memory_(budget) {}
+
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
+                             const StopRequest& should_stop) override try {
+    const Grid& grid = problem.grid;
+    PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
+    PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
+    PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+    const double inertia = problem.dynamics.density / steps.length;
+    const double shift = (inertia + problem.dynamics.damping) / steps.length;
+    if (!plate_) plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_);
+    auto done = plate_->prepare(grid, problem.interior, problem.stiffness, shift);
+    int step = 0;
+    if (done) {
+      done = take_load(problem);
+      if (!done) return fail(done.error());
+      subtract_rim(grid, problem.interior, problem.stiffness, problem.tangents, state.displacement,
+                   load_);
+      clear_rim(problem.interior, state.velocity);
+    }
+    const auto view = [&](Field& field) {
+      return NodesView{field.data(), grid.columns, grid.node_count()};
+    };
+    for (; done && step < steps.count; ++step) {
+      done = plate_->advance({load_.data(), grid.columns, grid.node_count()}, inertia, steps.length,
+                             view(state.displacement), view(state.velocity), should_stop);
+      if (!done) break;
+    }
+    if (done) return state;
+    if (done.error().code != ErrorCode::SolverFailed) return fail(done.error());
+    return finish_directly(problem, {steps.count - step, steps.length}, std::move(state),
+                           should_stop);
+  } catch (const std::bad_alloc&) {
+    return fail(no_memory_for_factor(unknown_count(problem.grid, problem.interior)));
+  }
+
+  SolverCounts counts() const override {
+    return plate_ ? past_counts_ + plate_->counts() : past_counts_;
+  }
+  std::size_t memory() const override {
+    return load_memory_.bytes() + (plate_ ? plate_->memory() : 0);
+  }
+
+ private:
+  // The load, to be changed beside the rim.
+  Result<void> take_load(const PlateProblem& problem) {
+    if (load_.rows() != problem.load.rows()) {
+      const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
+      load_.resize(0, 3);
+      if (!load_memory_.try_resize(bytes)) {
+        return fail(factor_too_large(unknown_count(problem.grid, problem.interior),
+                                     load_memory_.complaint(bytes)));
+      }
+    }
+    load_ = problem.load;
+    return {};
+  }
+
+  // The rectangles do not suffice: the matrix is factored for the steps that are left. Nothing of
+  // it is kept, so that what the next frame does depends on that frame alone.
+  Result<PlateState> finish_directly(const PlateProblem& problem, const TimeSteps& steps,
+                                     PlateState state, const StopRequest& should_stop) {
+    past_counts_ = counts();
+    plate_.reset();
+    const auto direct = make_solver(available_solvers().front(), budget_);
+    auto result = advance_backward_euler(*direct, problem, steps, std::move(state), should_stop);
+    past_counts_ = past_counts_ + direct->counts();
+    return result;
+  }
+
+  static void clear_rim(const InteriorMask& interior, Field& velocity) {
+    for (std::size_t node = 0; node < interior.size(); ++node) {
+      if (!interior[node]) velocity.row(static_cast<Eigen::Index>(node)).setZero();
+    }
+  }
+
+  MemoryBudget* budget_;
+  ThreadPool* threads_;
+  int max_rounds_;
+  std::unique_ptr<SchwarzPlate> plate_;
+  SolverCounts past_counts_;  // of what was let go
+  MemoryShare load_memory_;
+  Field load_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                       int max_rounds) {
+  return std::make_unique<SchwarzPlateSolver>(budget, threads, max_rounds);
+}
+
+}  // namespace pliant
