@@ -1,77 +1,141 @@
-// What a union of boxes costs with the sparse direct solver: an L, three quarters of a square, of
-// 51, 101, 201 and 401 nodes a side, beside the whole square, whose matrix is that of a rectangle.
+// What a union of boxes costs by overlapping rectangles in sine space and by a sparse factor: an L,
+// three quarters of a square, and a ring, eight ninths of it, in frames of 20 backward Euler steps.
 //
-//   first      find the order of elimination and factor, as for every new outline
-//   set-up     factor for new coefficients, the order kept
-//   step       one solve of three right-hand sides; backward Euler does one a step
+//   first      a new outline: cover and tables, or order of elimination and factor, then the frame
+//   new        new coefficients on the same outline
+//   kept       the same coefficients as in the frame before
+//   rounds     over the rectangles, a step of `kept`
 //   memory     what the solver holds
 //
-// The table has the medians of 5. Run: build/release/bench/unions
+// Medians of 5 frames in ms of processor time, one thread; from 300 nodes a side on of 3, and of 1
+// by factors. In brackets: how many times as long it takes by a factor. Run:
+// build/release/bench/unions [SIDE ...], 101 201 401 by default.
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/solver_factories.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace {
 
 using namespace pliant;
 
-constexpr int repetitions = 5;
+constexpr int steps = 20;
 
-void check(bool is_good) {
-  if (is_good) return;
-  fmt::print(stderr, "unions: the solver failed\n");
+template <class T>
+T check(Result<T> result) {
+  if (result) return *std::move(result);
+  fmt::print(stderr, "unions: {}\n", result.error().message);
   std::exit(1);
 }
 
 template <class F>
-double median_ms(const F& f) {
+double median_ms(int repetitions, const F& f) {
   std::vector<double> times;
   for (int k = 0; k < repetitions; ++k) {
-    const auto begin = std::chrono::steady_clock::now();
-    f(k);
-    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
-    times.push_back(time.count());
+    const std::clock_t begin = std::clock();
+    f();
+    times.push_back(1000.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   std::sort(times.begin(), times.end());
-  return times[repetitions / 2];
+  return times[times.size() / 2];
+}
+
+// A push that fades out with the distance from a point, all in one patch of boxes.
+PlateProblem problem_on(int side, const std::vector<Box>& boxes) {
+  const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
+  const double h = 1.0 / (side - 1);
+  const Grid grid{side, side, h, h};
+  Field load = Field::Zero(grid.node_count(), 3);
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const double distance = std::hypot(i * h - 0.2, j * h - 0.3) / 0.3;
+      load.row(grid.node(i, j)).array() += 1000 * std::max(0.0, 1 - distance);
+    }
+  }
+  return {grid, {1, 2, 1}, {40, 20}, {}, std::move(load), patch.interior};
+}
+
+struct Times {
+  double first, fresh, kept, rounds;
+  std::size_t memory;
+};
+
+template <class Make>
+Times measure(PlateProblem problem, int repetitions, const Make& make) {
+  const TimeSteps frame{steps, 1.0 / 24 / steps};
+  const Field zero = Field::Zero(problem.grid.node_count(), 3);
+  PlateState state{zero, zero};
+  long asked = 0;
+  std::unique_ptr<PlateSolver> solver;
+  const auto advance = [&] {
+    state = check(solver->advance(problem, frame, std::move(state), [&] {
+      ++asked;
+      return false;
+    }));
+  };
+  Times times{};
+  times.first = median_ms(repetitions, [&] {
+    solver.reset();
+    solver = make();
+    advance();
+  });
+  times.fresh = median_ms(repetitions, [&] {
+    problem.stiffness.c += 1e-6;
+    advance();
+  });
+  asked = 0;
+  times.kept = median_ms(repetitions, advance);
+  times.rounds = static_cast<double>(asked) / repetitions / steps;
+  times.memory = solver->memory();
+  return times;
 }
 
 void measure(const char* shape, int side, const std::vector<Box>& boxes) {
-  const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
-  const double dt = 1.0 / 24 / 20;
-  PlateSystem system{{side, side, 1.0 / (side - 1), 1.0 / (side - 1)},
-                     {1, 2, 1},
-                     (40 / dt + 20) / dt,
-                     patch.interior};
-  const double first = median_ms([&](int) { check(make_solver()->factor(system).has_value()); });
-  const auto solver = make_solver();
-  check(solver->factor(system).has_value());
-  const double set_up = median_ms([&](int k) {
-    system.stiffness.c = 2 + 1e-6 * (k + 1);
-    check(solver->factor(system).has_value());
-  });
-  const Field load = Field::Constant(patch.interior_count(), 3, 10);
-  const double step = median_ms([&](int) { check(solver->solve(load).has_value()); });
-  fmt::print("{:>6} {:>8} {:>10} {:>10.2f} {:>10.2f} {:>10.3f} {:>12}\n", side, shape,
-             patch.interior_count(), first, set_up, step, bytes_text(solver->memory()));
+  const PlateProblem problem = problem_on(side, boxes);
+  const bool is_small = side < 300;
+  const Times ours = measure(problem, is_small ? 5 : 3,
+                             [] { return make_schwarz_plate_solver(nullptr, nullptr); });
+  const SolverChoice choice =
+      is_available(SolverChoice::Cholmod) ? SolverChoice::Cholmod : SolverChoice::Eigen;
+  const Times direct =
+      measure(problem, is_small ? 5 : 1, [&] { return make_plate_solver(choice); });
+  fmt::print(
+      "| {} | {} | {} | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.1f} | {} | {} |\n",
+      side, shape, unknown_count(problem.grid, problem.interior), ours.first,
+      direct.first / ours.first, ours.fresh, direct.fresh / ours.fresh, ours.kept,
+      direct.kept / ours.kept, ours.rounds, bytes_text(ours.memory), bytes_text(direct.memory));
+  std::fflush(stdout);
 }
 
 }  // namespace
 
-int main() {
-  fmt::print("{:>6} {:>8} {:>10} {:>10} {:>10} {:>10} {:>12}\n", "side", "shape", "unknowns",
-             "first, ms", "set-up, ms", "step, ms", "memory");
-  for (const int side : {51, 101, 201, 401}) {
-    const int last = side - 1;
-    measure("L", side, {{0, last, 0, last / 2}, {0, last / 2, 0, last}});
-    measure("square", side, {{0, last, 0, last}});
+int main(int count, char** arguments) {
+  std::vector<int> sides;
+  for (int k = 1; k < count; ++k) sides.push_back(std::atoi(arguments[k]));
+  if (sides.empty()) sides = {101, 201, 401};
+  fmt::print(
+      "| side | shape | unknowns | first, ms | new, ms | kept, ms | rounds | memory | factor |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (const int side : sides) {
+    if (side < 20) {
+      fmt::print(stderr, "unions: a side has 20 nodes or more\n");
+      return 2;
+    }
+    const int e = side - 1;
+    const int a = e / 3;
+    measure("L", side, {{0, e, 0, e / 2}, {0, e / 2, 0, e}});
+    measure("ring", side, {{0, e, 0, a}, {0, a, 0, e}, {e - a, e, 0, e}, {0, e, e - a, e}});
   }
   return 0;
 }
