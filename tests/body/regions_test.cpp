@@ -170,3 +170,69 @@ TEST_CASE("a node beyond double in world space is an error, not a force that sel
   CHECK(report.error().code == ErrorCode::NotFinite);
   CHECK(body.look(in).error().message == report.error().message);
 }
+
+TEST_CASE("a frame is taken whole or not at all", "[body][islands]") {
+  // Three islands of different sizes, and nodes that settle ahead of the solve.
+  const NodeSheet s = hilly_sheet(61, 21);
+  const std::vector<SampledForce> wide{press(-20, 0, 3e4, 5.5), press(0, 1, 4e4, 6.5),
+                                       press(20, 0, -5e4, 4.5)};
+  const std::vector<SampledForce> narrow{press(-20, 0, 3e4), press(0, 1, 4e4, 4.5),
+                                         press(20, 0, -5e4, 2.5)};
+  const auto release = GENERATE(Release::Freeze, Release::Recover);
+  Body body(s.grid, s.rest,
+            {.measure = Measure::Rest, .combine = Combine::Islands, .release = release});
+  REQUIRE(body.step(inputs_of(wide)));
+  REQUIRE(body.step(inputs_of(wide)));
+  Body uninterrupted(s.grid, s.rest,
+                     {.measure = Measure::Rest, .combine = Combine::Islands, .release = release});
+  uninterrupted.restore(body.state());
+  REQUIRE(uninterrupted.step(inputs_of(narrow)));
+
+  const BodyState before = body.state();
+  int interrupted = 0;
+  for (int patience = 0;; ++patience) {
+    int asked = 0;
+    const auto report = body.step(inputs_of(narrow), [&] { return asked++ == patience; });
+    if (report) break;
+    REQUIRE(report.error().code == ErrorCode::Interrupted);
+    REQUIRE(body.state() == before);
+    ++interrupted;
+  }
+  CHECK(interrupted >= 3);  // in each island
+  CHECK(body.state() == uninterrupted.state());
+
+  // The last island goes beyond double, the others do not.
+  const BodyState sound = body.state();
+  std::vector<SampledForce> boundless = narrow;
+  boundless[2].magnitude = 1e308;
+  BodyInputs in = inputs_of(boundless);
+  in.stiffness = {1e-3, 2e-3, 1e-3};
+  in.dynamics = {0, 0};
+  REQUIRE(body.step(in).error().code == ErrorCode::NotFinite);
+  CHECK(body.state() == sound);
+}
+
+TEST_CASE("a step in the memory of an earlier report is the same step", "[body][islands]") {
+  const NodeSheet s = hilly_sheet(41, 21);
+  const auto how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
+  const auto release = GENERATE(Release::Freeze, Release::Recover);
+  const BodySettings settings{.combine = how, .release = release};
+  Body body(s.grid, s.rest, settings), fresh(s.grid, s.rest, settings);
+  StepReport former;
+  for (int frame = 0; frame < 24; ++frame) {
+    // Comes, stays, moves and goes, and with a second one at times.
+    std::vector<SampledForce> forces;
+    if (frame % 8 < 5) forces.push_back(press(-10 + frame / 4, 0, 3e4));
+    if (frame % 6 < 4) forces.push_back(press(-4, 2, -2e4, 4.5));
+    const auto expected = fresh.step(inputs_of(forces)).value();
+    former = body.step(inputs_of(forces), {}, std::move(former)).value();
+    REQUIRE(former.selection == expected.selection);
+    REQUIRE(former.patches == expected.patches);
+    REQUIRE(former.is_solved == expected.is_solved);
+    REQUIRE(former.lost == expected.lost);
+    REQUIRE(former.pushing == expected.pushing);
+    REQUIRE(former.recovering == expected.recovering);
+    REQUIRE(former.settling == expected.settling);
+    REQUIRE(body.state() == fresh.state());
+  }
+}

@@ -2,46 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
+#include "pliant/body/field_rows.hpp"
 #include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
 
 namespace pliant {
 namespace {
-
-// The rows of a box out of a field on all nodes.
-Field rows_of(const Grid& grid, const Box& box, const Field& nodes) {
-  Field part(Eigen::Index{box.columns()} * box.rows(), 3);
-  for (int component = 0; component < 3; ++component) {
-    for (int j = 0; j < box.rows(); ++j) {
-      part.col(component).segment(Eigen::Index{j} * box.columns(), box.columns()) =
-          nodes.col(component).segment(grid.node(box.i0, box.j0 + j), box.columns());
-    }
-  }
-  return part;
-}
-
-// The interior rows of a patch, numbered row by row, in their places of a field on all nodes.
-void replace_interior(const Grid& grid, const Patch& patch, const Field& part, Field& nodes) {
-  const Box& box = patch.box;
-  const int width = box.columns() - 2;
-  for (int component = 0; component < 3; ++component) {
-    Eigen::Index row = 0;
-    for (int j = box.j0 + 1; j < box.j1; ++j) {
-      if (patch.is_rectangle()) {
-        nodes.col(component).segment(grid.node(box.i0 + 1, j), width) =
-            part.col(component).segment(row, width);
-        row += width;
-        continue;
-      }
-      for (int i = box.i0 + 1; i < box.i1; ++i) {
-        if (patch.holds(i, j)) nodes(grid.node(i, j), component) = part(row++, component);
-      }
-    }
-  }
-}
 
 double length(const Eigen::RowVector3d& a) {
   return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
@@ -56,12 +24,6 @@ EdgeTangents tangents_of(const Patch& patch, const Region& region, EdgeTangents 
   return tangents;
 }
 
-std::vector<Patch> all_of(const std::vector<std::vector<Patch>>& patches) {
-  std::vector<Patch> all;
-  for (const auto& some : patches) all.insert(all.end(), some.begin(), some.end());
-  return all;
-}
-
 std::vector<std::vector<Patch>> patches_of(const Selection& selection) {
   std::vector<std::vector<Patch>> patches;
   for (const Region& region : selection.regions) patches.push_back(patches_of(region));
@@ -74,21 +36,22 @@ bool is_lost(const ForceSelection& at_rest, const ForceSelection& now) {
          (now.force.is_empty() && !at_rest.force.is_empty());
 }
 
-// The forces that lost their nodes. Selects on the rest mesh only for those that hold none.
-std::vector<int> lost_forces(const Grid& grid, const Transform& transform, const Field& rest,
-                             const std::vector<SampledForce>& forces, const Selection& selection) {
-  std::vector<int> lost;
-  Field nodes;
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    const ForceSelection& now = selection.forces[k];
-    const bool holds_region = forces[k].deformation_radius == 0 || !now.deformation.is_empty();
-    const bool holds_load = forces[k].force_radius == 0 || !now.force.is_empty();
-    if (holds_region && holds_load) continue;
-    if (nodes.size() == 0) nodes = to_world(transform, rest);
-    const ForceSelection at_rest = select_region(grid, nodes, {&forces[k], 1}).forces.front();
-    if (is_lost(at_rest, now)) lost.push_back(static_cast<int>(k));
+// The rectangle that alone is solved in a frame; an empty box: there are several patches, or it has
+// another outline.
+Box lone_rectangle(const StepReport& report) {
+  const Patch* lone = nullptr;
+  for (const auto& some : report.patches) {
+    for (const Patch& patch : some) {
+      if (lone || !patch.is_rectangle()) return {};
+      lone = &patch;
+    }
   }
-  return lost;
+  return lone ? lone->box : Box{};
+}
+
+bool is_outline_of(const SolverCache::Outline& outline, const Patch& patch) {
+  return outline.columns == patch.box.columns() && outline.rows == patch.box.rows() &&
+         outline.interior == patch.interior;
 }
 
 }  // namespace
@@ -130,58 +93,85 @@ Field Body::measured_nodes(const Transform& transform) const {
 }
 
 Result<StepReport> Body::look(const BodyInputs& inputs) const {
-  return plan(inputs, measured_nodes(inputs.transform));
+  BodyWorkspace work;
+  return plan(inputs, work, {}, nullptr);
 }
 
-Result<StepReport> Body::plan(const BodyInputs& inputs, const Field& nodes) const {
-  if (!nodes.allFinite()) {
+// In `report`, an earlier one of this body or an empty one.
+Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, StepReport report,
+                              Profile* profile) const {
+  const StageTimer timer(profile, Stage::Selection);
+  work.tiles.update(grid_, {measured(), inputs.transform});
+  if (!work.tiles.are_finite()) {
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
-  StepReport report;
   report.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
-  report.selection =
-      select_region(grid_, nodes, inputs.forces, settings_.combine, inputs.selectors);
+  // Regions with nodes that recovered are not those of the forces.
+  const bool had_others = report.recovering > 0;
+  if (had_others) report.selection = {};
+  const bool are_same =
+      reselect(report.selection, work.tiles, inputs.forces, settings_.combine, inputs.selectors);
+  if (had_others || !are_same) report.patches = patches_of(report.selection);
+  report.lost.clear();
   if (settings_.measure == Measure::Current) {
-    report.lost = lost_forces(grid_, inputs.transform, rest_, inputs.forces, report.selection);
+    report.lost = lost_forces(inputs, report.selection, work, std::move(report.lost));
   }
-  report.patches = patches_of(report.selection);
   if (recovers()) {
-    const Recovering recovering = recovering_nodes(grid_, state_.unsettled, all_of(report.patches));
+    const Recovering recovering =
+        recovering_nodes(grid_, state_.unsettled, report.patches, work.marks);
+    report.recovering = recovering.node_count;
     if (recovering.node_count > 0) {
       report.selection =
           recombined(std::move(report.selection), settings_.combine, recovering.boxes);
       report.patches = patches_of(report.selection);
-      report.recovering = recovering.node_count;
     }
-  }
-  if (recovers()) {
-    report.settling =
-        settling_nodes(grid_, rest_, state_.positions, state_.velocities, all_of(report.patches));
+    report.settling = settling_nodes(grid_, rest_, state_.positions, state_.velocities,
+                                     report.patches, work.marks, std::move(report.settling));
   }
   report.is_solved = report.unknown_count() > 0;
+  report.pushing.clear();
   for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
-    report.pushing.push_back(pushes(grid_, nodes, inputs.forces[k],
+    report.pushing.push_back(pushes(grid_, work.tiles.nodes(), inputs.forces[k],
                                     report.selection.forces[k].force, report.patches_of_force(k)));
   }
   return report;
 }
 
-Result<StepReport> Body::step(const BodyInputs& inputs, const StopRequest& should_stop) {
-  if (inputs.forces.empty() && !recovers()) return StepReport{};
-  const Field nodes = measured_nodes(inputs.transform);
-  auto report = plan(inputs, nodes);
-  if (!report) return report;
-
-  std::optional<BodyState> before;
-  if (!report->settling.empty()) before = state_;
-  settle(report->settling);
-  if (!report->is_solved) return report;
-  const auto moved = solve(inputs, nodes, *report, should_stop);
-  if (!moved) {
-    if (before) state_ = *std::move(before);
-    return fail(moved.error());
+// The forces that lost their nodes. Selects on the rest mesh only for those that hold none.
+std::vector<int> Body::lost_forces(const BodyInputs& inputs, const Selection& selection,
+                                   BodyWorkspace& work, std::vector<int> lost) const {
+  bool has_rest_tiles = false;
+  for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
+    const SampledForce& force = inputs.forces[k];
+    const ForceSelection& now = selection.forces[k];
+    const bool holds_region = force.deformation_radius == 0 || !now.deformation.is_empty();
+    const bool holds_load = force.force_radius == 0 || !now.force.is_empty();
+    if (holds_region && holds_load) continue;
+    if (!has_rest_tiles) work.rest_tiles.update(grid_, {rest_, inputs.transform});
+    has_rest_tiles = true;
+    if (is_lost(boxes_of(work.rest_tiles, force), now)) lost.push_back(static_cast<int>(k));
   }
-  take(*moved);
+  return lost;
+}
+
+Result<StepReport> Body::step(const BodyInputs& inputs, const StopRequest& should_stop,
+                              StepReport reuse, Profile* profile) {
+  if (inputs.forces.empty() && !recovers()) return StepReport{};
+  auto report = plan(inputs, work_, std::move(reuse), profile);
+  if (!report) return report;
+  if (!report->is_solved) {
+    settle(report->settling);
+    return report;
+  }
+  // The next state is made beside the current one, which stays until that is whole.
+  StageTimer beginning(profile, Stage::StateOut);
+  begin_next(*report);
+  beginning.stop();
+  if (auto solved = solve(inputs, *report, should_stop, profile); !solved) {
+    return fail(solved.error());
+  }
+  const StageTimer ending(profile, Stage::StateOut);
+  if (auto taken = take(); !taken) return fail(taken.error());
   return report;
 }
 
@@ -193,91 +183,115 @@ void Body::settle(const std::vector<int>& nodes) {
   }
 }
 
-Result<std::vector<Body::Moved>> Body::solve(const BodyInputs& inputs, const Field& nodes,
-                                             const StepReport& report,
-                                             const StopRequest& should_stop) {
-  std::vector<SolverCache::Outline> outlines;
-  for (const auto& patches : report.patches) {
-    for (const Patch& patch : patches) {
+// The nodes that no solve moves: where they are, or at rest, and without velocity.
+void Body::begin_next(const StepReport& report) {
+  const bool settles = !report.settling.empty();
+  const Box hole = settles ? Box{} : lone_rectangle(report);
+  copy_around(grid_, hole, state_.positions, work_.next_positions);
+  clear_around(grid_, hole, work_.next_velocities);
+  for (const int node : report.settling) work_.next_positions.row(node) = rest_.row(node);
+}
+
+// Lets go of the solvers that the frame has no use for.
+void Body::keep_solvers(const StepReport& report) {
+  auto& outlines = work_.outlines;
+  std::size_t count = 0;
+  bool are_same = true;
+  for (const auto& some : report.patches) {
+    for (const Patch& patch : some) {
+      are_same = are_same && count < outlines.size() && is_outline_of(outlines[count], patch);
+      ++count;
+    }
+  }
+  if (are_same && count == outlines.size()) return;
+  outlines.clear();
+  for (const auto& some : report.patches) {
+    for (const Patch& patch : some) {
       outlines.push_back({patch.box.columns(), patch.box.rows(), patch.interior});
     }
   }
+  work_.solves.resize(count);
   solvers_.keep_only(outlines);
+}
 
-  std::vector<Moved> moved;
+Result<void> Body::solve(const BodyInputs& inputs, const StepReport& report,
+                         const StopRequest& should_stop, Profile* profile) {
+  keep_solvers(report);
+  const bool from_rest = settings_.reference == Reference::Rest;
+  // Nodes that settle are at rest ahead of the solve.
+  const Field& positions = report.settling.empty() ? state_.positions : work_.next_positions;
+  const Matrix3d to_object = inverse_linear(inputs.transform);
+  std::size_t place = 0;
   for (std::size_t k = 0; k < report.patches.size(); ++k) {
     if (report.patches[k].empty()) continue;
     const Region& region = report.selection.regions[k];
-    const Field load = vectors_to_object(
-        inputs.transform, assemble_load(grid_, nodes, inputs.forces, report.selection, k));
     const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
     for (const Patch& patch : report.patches[k]) {
-      auto one = solve(patch, region, load, inputs, report.steps, should_stop);
-      if (!one) return fail(one.error());
-      one->settling_length = length;
-      moved.push_back(*std::move(one));
+      BodyWorkspace::PatchSolve& one = work_.solves[place];
+      PlateProblem& problem = one.problem;
+      const Box& box = patch.box;
+      one.patch = &patch;
+      one.settling_length = length;
+      problem.grid = {box.columns(), box.rows(), grid_.hu, grid_.hv};
+      problem.stiffness = inputs.stiffness;
+      problem.dynamics = inputs.dynamics;
+      problem.tangents = tangents_of(patch, region, inputs.tangents);
+      problem.interior = patch.interior;
+      problem.profile = profile;
+      {
+        const StageTimer timer(profile, Stage::Load);
+        problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, report.selection, k,
+                                     box, to_object, std::move(problem.load));
+      }
+      {
+        const StageTimer timer(profile, Stage::StateIn);
+        Field& displacement = one.plate.displacement;
+        displacement = from_rest
+                           ? difference_of(grid_, box, positions, rest_, std::move(displacement))
+                           : rows_of(grid_, box, positions, std::move(displacement));
+        one.plate.velocity = rows_of(grid_, box, state_.velocities, std::move(one.plate.velocity));
+      }
+      PlateSolver& solver = solvers_.solver_of(work_.outlines[place]);
+      auto next = solver.advance(problem, report.steps, std::move(one.plate), should_stop);
+      if (!next) return fail(next.error());
+      one.plate = *std::move(next);
+      ++place;
     }
   }
-  return moved;
+  return {};
 }
 
-Result<Body::Moved> Body::solve(const Patch& patch, const Region& region, const Field& load,
-                                const BodyInputs& inputs, const TimeSteps& steps,
-                                const StopRequest& should_stop) {
-  const Box& box = patch.box;
-  const bool from_rest = settings_.reference == Reference::Rest;
-  const Field reference = rows_of(grid_, box, rest_);
-  PlateState plate{rows_of(grid_, box, state_.positions), rows_of(grid_, box, state_.velocities)};
-  if (from_rest) plate.displacement -= reference;
-
-  const Grid load_grid{region.box.columns(), region.box.rows(), grid_.hu, grid_.hv};
-  const Box place{box.i0 - region.box.i0, box.i1 - region.box.i0, box.j0 - region.box.j0,
-                  box.j1 - region.box.j0};
-  const PlateProblem problem{{box.columns(), box.rows(), grid_.hu, grid_.hv},
-                             inputs.stiffness,
-                             inputs.dynamics,
-                             tangents_of(patch, region, inputs.tangents),
-                             rows_of(load_grid, place, load),
-                             patch.interior};
-  PlateSolver& solver = solvers_.solver_of({box.columns(), box.rows(), patch.interior});
-  auto next = solver.advance(problem, steps, std::move(plate), should_stop);
-  if (!next) return fail(next.error());
-
-  // The rim stays as it was: rest + (position - rest) may round.
-  const Field moved = from_rest ? Field(reference + next->displacement) : next->displacement;
-  Moved result{&patch, interior_of(problem.grid, patch.interior, moved),
-               interior_of(problem.grid, patch.interior, next->velocity)};
-  if (!result.positions.allFinite() || !result.velocities.allFinite()) {
-    return fail(ErrorCode::NotFinite, "the state stopped being finite");
+// Makes what was solved the state, all of it or nothing. The rim stays as it was: rest + (position
+// - rest) may round.
+Result<void> Body::take() {
+  const Field* const reference = settings_.reference == Reference::Rest ? &rest_ : nullptr;
+  for (const BodyWorkspace::PatchSolve& one : work_.solves) {
+    if (!put_interior(grid_, *one.patch, one.plate.displacement, one.plate.velocity, reference,
+                      work_.next_positions, work_.next_velocities)) {
+      return fail(ErrorCode::NotFinite, "the state stopped being finite");
+    }
   }
-  return result;
+  if (recovers()) mark_unsettled();
+  state_.positions.swap(work_.next_positions);
+  state_.velocities.swap(work_.next_velocities);
+  return {};
 }
 
-void Body::take(const std::vector<Moved>& moved) {
-  if (recovers()) mark_unsettled(moved);
-  state_.velocities.setZero();
-  for (const Moved& one : moved) {
-    replace_interior(grid_, *one.patch, one.positions, state_.positions);
-    replace_interior(grid_, *one.patch, one.velocities, state_.velocities);
-  }
-}
-
-// Requires: `moved` is not yet in the state.
-void Body::mark_unsettled(const std::vector<Moved>& moved) {
+// Requires: the next positions are there, and not yet in the state.
+void Body::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  for (const Moved& one : moved) {
-    Eigen::Index row = 0;
+  for (const BodyWorkspace::PatchSolve& one : work_.solves) {
     const Box& box = one.patch->box;
     for (int j = box.j0 + 1; j < box.j1; ++j) {
       for (int i = box.i0 + 1; i < box.i1; ++i) {
         if (!one.patch->holds(i, j)) continue;
         const int node = grid_.node(i, j);
-        const double displacement = length(one.positions.row(row) - rest_.row(node));
-        const double motion = length(one.positions.row(row) - state_.positions.row(node));
+        const auto position = work_.next_positions.row(node);
+        const double displacement = length(position - rest_.row(node));
+        const double motion = length(position - state_.positions.row(node));
         const double larger = std::max(displacement, motion);
         state_.unsettled[static_cast<std::size_t>(node)] =
             larger > 0 && larger >= one.settling_length;
-        ++row;
       }
     }
   }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "pliant/body/settings.hpp"
+#include "pliant/body/workspace.hpp"
+#include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
@@ -64,7 +66,8 @@ struct StepReport {
 class Body {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
-  Body(const Grid& grid, Field rest, const BodySettings& settings, SolverCache solvers = SolverCache());
+  Body(const Grid& grid, Field rest, const BodySettings& settings,
+       SolverCache solvers = SolverCache());
 
   /// The rest mesh, and no carried velocity.
   void reset();
@@ -78,7 +81,12 @@ class Body {
   /// other with what the last solve left it; a frame without a solve changes neither. Errors:
   /// NotFinite when a node or the new state is not; Interrupted when `should_stop` says so; those
   /// of the solver. The state is then as it was.
-  Result<StepReport> step(const BodyInputs& inputs, const StopRequest& should_stop = {});
+  ///
+  /// The report takes the memory of `reuse`, a report of an earlier step of this body or none. With
+  /// it nothing is allocated while the regions stay, in sine space and where nothing recovers.
+  /// `profile` is told where the time goes; none: nobody asks.
+  Result<StepReport> step(const BodyInputs& inputs, const StopRequest& should_stop = {},
+                          StepReport reuse = {}, Profile* profile = nullptr);
 
   const Grid& grid() const { return grid_; }
   const Field& rest() const { return rest_; }  ///< #nodes x 3, object space [length]
@@ -92,23 +100,20 @@ class Body {
   void restore(BodyState state);
 
  private:
-  // A patch once its solve is done.
-  struct Moved {
-    const Patch* patch = nullptr;
-    Field positions;   // #interior nodes x 3
-    Field velocities;  // likewise
-    double settling_length = 0;
-  };
-
-  Result<StepReport> plan(const BodyInputs& inputs, const Field& nodes) const;
-  Result<std::vector<Moved>> solve(const BodyInputs& inputs, const Field& nodes,
-                                   const StepReport& report, const StopRequest& should_stop);
-  Result<Moved> solve(const Patch& patch, const Region& region, const Field& load,
-                      const BodyInputs& inputs, const TimeSteps& steps,
-                      const StopRequest& should_stop);
-  void take(const std::vector<Moved>& moved);
-  void mark_unsettled(const std::vector<Moved>& moved);
+  const Field& measured() const {
+    return settings_.measure == Measure::Rest ? rest_ : state_.positions;
+  }
+  Result<StepReport> plan(const BodyInputs& inputs, BodyWorkspace& work, StepReport report,
+                          Profile* profile) const;
+  std::vector<int> lost_forces(const BodyInputs& inputs, const Selection& selection,
+                               BodyWorkspace& work, std::vector<int> lost) const;
   void settle(const std::vector<int>& nodes);
+  void begin_next(const StepReport& report);
+  void keep_solvers(const StepReport& report);
+  Result<void> solve(const BodyInputs& inputs, const StepReport& report,
+                     const StopRequest& should_stop, Profile* profile);
+  Result<void> take();
+  void mark_unsettled();
   bool recovers() const { return settings_.release == Release::Recover; }
 
   Grid grid_;
@@ -116,6 +121,7 @@ class Body {
   BodySettings settings_;
   BodyState state_;
   SolverCache solvers_;
+  BodyWorkspace work_;
 };
 
 }  // namespace pliant

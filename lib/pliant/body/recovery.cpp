@@ -8,30 +8,32 @@
 namespace pliant {
 namespace {
 
-NodeMarks interior_marks(const Grid& grid, std::span<const Patch> patches) {
-  NodeMarks marks(static_cast<std::size_t>(grid.node_count()), 0);
-  for (const Patch& patch : patches) {
-    for (int j = patch.box.j0 + 1; j < patch.box.j1; ++j) {
-      for (int i = patch.box.i0 + 1; i < patch.box.i1; ++i) {
-        if (patch.holds(i, j)) marks[grid.node(i, j)] = 1;
+void mark_interiors(const Grid& grid, std::span<const std::vector<Patch>> patches,
+                    NodeMarks& marks) {
+  marks.assign(static_cast<std::size_t>(grid.node_count()), 0);
+  for (const auto& some : patches) {
+    for (const Patch& patch : some) {
+      for (int j = patch.box.j0 + 1; j < patch.box.j1; ++j) {
+        for (int i = patch.box.i0 + 1; i < patch.box.i1; ++i) {
+          if (patch.holds(i, j)) marks[grid.node(i, j)] = 1;
+        }
       }
     }
   }
-  return marks;
 }
 
 }  // namespace
 
 Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
-                            std::span<const Patch> held_by_forces) {
+                            std::span<const std::vector<Patch>> patches, NodeMarks& marks) {
   Recovering recovering;
   if (std::find(unsettled.begin(), unsettled.end(), 1) == unsettled.end()) return recovering;
-  const NodeMarks held = interior_marks(grid, held_by_forces);
+  mark_interiors(grid, patches, marks);
   std::vector<Box> runs;  // along u, with the neighbours on all sides
   for (int j = 0; j < grid.rows; ++j) {
     for (int i = 0; i < grid.columns; ++i) {
       const int node = grid.node(i, j);
-      if (!unsettled[node] || held[node]) continue;
+      if (!unsettled[node] || marks[node]) continue;
       ++recovering.node_count;
       const Box around = intersection({i - 1, i + 1, j - 1, j + 1}, grid.box());
       const bool goes_on = !runs.empty() && runs.back().j1 == around.j1 && runs.back().i1 == i;
@@ -43,15 +45,17 @@ Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
 }
 
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
-                                const Field& velocities, std::span<const Patch> patches) {
-  const NodeMarks moving = interior_marks(grid, patches);
-  std::vector<int> nodes;
+                                const Field& velocities,
+                                std::span<const std::vector<Patch>> patches, NodeMarks& marks,
+                                std::vector<int> reuse) {
+  mark_interiors(grid, patches, marks);
+  reuse.clear();
   for (int node = 0; node < grid.node_count(); ++node) {
-    if (moving[node]) continue;
+    if (marks[node]) continue;
     const bool is_at_rest = positions.row(node) == rest.row(node) && velocities.row(node).isZero(0);
-    if (!is_at_rest) nodes.push_back(node);
+    if (!is_at_rest) reuse.push_back(node);
   }
-  return nodes;
+  return reuse;
 }
 
 double settling_length(const Grid& grid, const Field& rest, const Region& region) {

@@ -27,12 +27,16 @@ struct Recovering {
   int node_count = 0;
   std::vector<Box> boxes;  ///< with the neighbours; no two share a node
 };
+/// `patches` are those that forces hold, of each region. `marks` is room to work in.
 Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
-                            std::span<const Patch> held_by_forces);
+                            std::span<const std::vector<Patch>> patches, NodeMarks& marks);
 
 /// The nodes that are interior to no patch, and neither at rest nor without velocity, ascending.
+/// `marks` is room to work in, and the result takes the memory of `reuse`.
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
-                                const Field& velocities, std::span<const Patch> patches);
+                                const Field& velocities,
+                                std::span<const std::vector<Patch>> patches, NodeMarks& marks,
+                                std::vector<int> reuse);
 
 /// The length below which displacement and motion settle: 1e-6 of the diagonal of the box around
 /// the region's rest positions (#nodes x 3, object space).

@@ -111,10 +111,19 @@ Transform make_transform(const Vector3d& translate, const Vector3d& rotate_degre
   return {linear, translate};
 }
 
-Field to_world(const Transform& transform, const Field& points) {
-  Field world = product(points, transform.linear);
-  for (int k = 0; k < 3; ++k) world.col(k).array() += transform.translation[k];
-  return world;
+Field to_world(const Transform& transform, const Field& points, Field reuse) {
+  const Matrix3d& a = transform.linear;
+  reuse.resize(points.rows(), 3);
+  for (int k = 0; k < 3; ++k) {
+    const auto turned = points.col(0) * a(k, 0) + points.col(1) * a(k, 1) + points.col(2) * a(k, 2);
+    reuse.col(k).array() = turned.array() + transform.translation[k];
+  }
+  return reuse;
+}
+
+Matrix3d inverse_linear(const Transform& transform) {
+  PLIANT_EXPECTS(transform.is_invertible());
+  return inverse(transform.linear);
 }
 
 Field vectors_to_world(const Transform& transform, const Field& vectors) {
@@ -122,8 +131,7 @@ Field vectors_to_world(const Transform& transform, const Field& vectors) {
 }
 
 Field vectors_to_object(const Transform& transform, const Field& vectors) {
-  PLIANT_EXPECTS(transform.is_invertible());
-  return product(vectors, inverse(transform.linear));
+  return product(vectors, inverse_linear(transform));
 }
 
 }  // namespace pliant

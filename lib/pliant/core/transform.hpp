@@ -39,13 +39,28 @@ inline Transform make_transform(const Placement& placement) {
   return make_transform(placement.translate, placement.rotate, placement.scale, placement.order);
 }
 
-/// Points (#points x 3) to world space. The sums have a stated order: (x + y + z) + translation.
-Field to_world(const Transform& transform, const Field& points);
+/// A point to world space. The sum has a stated order: (x + y + z) + translation.
+inline Vector3d to_world(const Transform& transform, const Vector3d& point) {
+  const Matrix3d& a = transform.linear;
+  Vector3d world;
+  for (int k = 0; k < 3; ++k) {
+    const double turned = point[0] * a(k, 0) + point[1] * a(k, 1) + point[2] * a(k, 2);
+    world[k] = turned + transform.translation[k];
+  }
+  return world;
+}
+
+/// Points (#points x 3) to world space, each as above. The result takes the memory of `reuse`.
+Field to_world(const Transform& transform, const Field& points, Field reuse = {});
 
 /// Vectors (#vectors x 3) to world space: the linear part only.
 Field vectors_to_world(const Transform& transform, const Field& vectors);
 
-/// World-space vectors (#vectors x 3) to object space, through the inverse linear part.
+/// What takes world-space vectors to object space. Requires: is_invertible().
+Matrix3d inverse_linear(const Transform& transform);
+
+/// World-space vectors (#vectors x 3) to object space, through the inverse linear part: of each the
+/// components x, y and z times those of a row of `inverse_linear`, added in this order.
 /// Requires: is_invertible().
 Field vectors_to_object(const Transform& transform, const Field& vectors);
 

@@ -17,9 +17,12 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
   const double dt = steps.length;
   const double inertia = problem.dynamics.density / dt;            // on v
   const double shift = (inertia + problem.dynamics.damping) / dt;  // on w
+  StageTimer set_up(problem.profile, Stage::SetUp);
   if (auto factored = solver.factor({grid, problem.stiffness, shift, mask}); !factored) {
     return fail(factored.error());
   }
+  set_up.stop();
+  const StageTimer solve(problem.profile, Stage::Solve);
 
   // What the rim and the tangents contribute is L of the field that is the rim and 0 inside; it is
   // known, so it joins the load.

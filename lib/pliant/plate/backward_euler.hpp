@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/plate/linear_solver.hpp"
@@ -18,6 +19,9 @@ struct PlateProblem {
 
   /// Which nodes move where the plate is no rectangle; empty: all but the outermost.
   InteriorMask interior = {};
+
+  /// Told how long set-up and solve take; none: nobody asks. It outlives the call.
+  Profile* profile = nullptr;
 };
 
 /// Advances a plate by backward Euler: in each step of length dt

@@ -52,9 +52,12 @@ class SpectralPlateSolver final : public PlateSolver {
     PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
+    StageTimer set_up(problem.profile, Stage::SetUp);
     if (auto prepared = plate_.prepare({grid, problem.stiffness, shift}); !prepared) {
       return fail(prepared.error());
     }
+    set_up.stop();
+    const StageTimer solve(problem.profile, Stage::Solve);
     if (auto taken = take_load(problem); !taken) return fail(taken.error());
     subtract_rim(grid, problem.stiffness, problem.tangents, state.displacement, load_);
 

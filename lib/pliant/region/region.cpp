@@ -24,15 +24,114 @@ int region_of(const Selection& selection, std::size_t k, Combine how) {
 
 // Calls f(load) with what the force gives to each interior node in its box, until f says false.
 template <class F>
-void visit_loads(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
-                 std::span<const Patch> patches, const F& f) {
+void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force,
+                 const Box& box, std::span<const Patch> patches, const F& f) {
   for (const Patch& patch : patches) {
     const Box inside = intersection(patch.box, box);
     for (int j = inside.j0; j <= inside.j1; ++j) {
       for (int i = inside.i0; i <= inside.i1; ++i) {
         if (!patch.holds(i, j)) continue;
-        if (!f(force_at(force, nodes.row(grid.node(i, j)).transpose()))) return;
+        if (!f(force_at(force, nodes.at(grid.node(i, j))))) return;
       }
+    }
+  }
+}
+
+bool holds(const Box& outer, const Box& inner) { return intersection(outer, inner) == inner; }
+
+// Adds to a box those nodes of a row, from (i,j) on, whose distance is less than the radius.
+void include_near(const BatchNumbers& distance, int count, double radius, int i, int j, Box& box) {
+  int first = 0;
+  while (first < count && !(distance.of[first] < radius)) ++first;
+  if (first == count) return;
+  int last = count - 1;
+  while (!(distance.of[last] < radius)) --last;
+  box.include({i + first, i + last, j, j});
+}
+
+// The two boxes of a force, grown tile by tile. A tile out of reach adds nothing to a box, nor does
+// one that lies in it already, so that of a large box little more than the rim is looked at.
+class Selecting {
+ public:
+  Selecting(const NodeTiles& tiles, const SampledForce& force) : tiles_(tiles), force_(force) {}
+
+  void run() {
+    if (std::holds_alternative<FunctionForce>(force_.shape)) {
+      ask_all();
+      return;
+    }
+    for (const NodeTiles::Tile& tile : tiles_.tiles()) {
+      const double least = least_distance(force_.shape, tile.low, tile.high);
+      if (!may_add(tile.box, least)) continue;
+      for (int j = tile.box.j0; j <= tile.box.j1; ++j) {
+        const Box row{tile.box.i0, tile.box.i1, j, j};
+        if (may_add(row, least)) look_at(row);
+      }
+    }
+  }
+
+  ForceSelection boxes;
+
+ private:
+  // In the order of the nodes: the first unsound answer is the one that is told of.
+  void ask_all() {
+    const Grid& grid = tiles_.grid();
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; i += batch_size) {
+        look_at({i, std::min(i + batch_size, grid.columns) - 1, j, j});
+      }
+    }
+  }
+
+  // Whether nodes at `least` or farther can make one of the boxes hold more of `box`.
+  bool may_add(const Box& box, double least) const {
+    return (least < force_.deformation_radius && !holds(boxes.deformation, box)) ||
+           (least < force_.force_radius && !holds(boxes.force, box));
+  }
+
+  void look_at(const Box& row) {
+    const int node = tiles_.grid().node(row.i0, row.j0);
+    const Batch points = tiles_.nodes().batch(node, row.columns());
+    const BatchNumbers distance = distances(force_.shape, points);
+    include_near(distance, points.count, force_.deformation_radius, row.i0, row.j0,
+                 boxes.deformation);
+    include_near(distance, points.count, force_.force_radius, row.i0, row.j0, boxes.force);
+  }
+
+  const NodeTiles& tiles_;
+  const SampledForce& force_;
+};
+
+// The sum of the forces of a region on the nodes of a row, from (i,j) on; world space.
+Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const SampledForce> forces,
+               const Selection& selection, std::size_t region, int i, int j, int count) {
+  Batch load;
+  load.count = count;
+  for (double* component : {load.x, load.y, load.z}) std::fill_n(component, count, 0.0);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const ForceSelection& selected = selection.forces[k];
+    if (selected.region != static_cast<int>(region)) continue;
+    const Box pushed = intersection({i, i + count - 1, j, j}, selected.force);
+    if (pushed.is_empty()) continue;
+    add_forces(forces[k], nodes.batch(grid.node(pushed.i0, j), pushed.columns()), pushed.i0 - i,
+               load);
+  }
+  return load;
+}
+
+// Calls f(row, load) with the load on the nodes of a box, `row` counted within it: of up to
+// batch_size nodes at a time, as `loads_on` has it.
+template <class F>
+void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
+                     std::span<const SampledForce> forces, const Selection& selection,
+                     std::size_t region, const Box& box, const F& f) {
+  PLIANT_EXPECTS(nodes.count() == grid.node_count());
+  PLIANT_EXPECTS(selection.forces.size() == forces.size() && region < selection.regions.size());
+  for (int j = box.j0; j <= box.j1; ++j) {
+    for (int i = box.i0; i <= box.i1; i += batch_size) {
+      const int count = std::min(batch_size, box.i1 + 1 - i);
+      f(Eigen::Index{j - box.j0} * box.columns() + (i - box.i0),
+        loads_on(grid, nodes, forces, selection, region, i, j, count));
     }
   }
 }
@@ -51,26 +150,38 @@ Selection recombined(Selection selection, Combine how, std::span<const Box> othe
   return selection;
 }
 
-Selection select_region(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
-                        Combine how, std::span<const int> selectors) {
-  PLIANT_EXPECTS(nodes.rows() == grid.node_count());
-  PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
+Selection select_region(const Grid& grid, const PlacedNodes& nodes,
+                        std::span<const SampledForce> forces, Combine how,
+                        std::span<const int> selectors) {
+  NodeTiles tiles;
+  tiles.update(grid, nodes);
   Selection selection;
-  selection.forces.reserve(forces.size());
-  for (const SampledForce& force : forces) {
-    ForceSelection selected;
-    const std::size_t k = selection.forces.size();
-    selected.selector = selectors.empty() ? static_cast<int>(k) : selectors[k];
-    for (int j = 0; j < grid.rows; ++j) {
-      for (int i = 0; i < grid.columns; ++i) {
-        const double delta = distance(force.shape, nodes.row(grid.node(i, j)).transpose());
-        if (delta < force.deformation_radius) selected.deformation.include(i, j);
-        if (delta < force.force_radius) selected.force.include(i, j);
-      }
-    }
-    selection.forces.push_back(selected);
+  reselect(selection, tiles, forces, how, selectors);
+  return selection;
+}
+
+ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
+  Selecting selecting(tiles, force);
+  selecting.run();
+  return selecting.boxes;
+}
+
+bool reselect(Selection& selection, const NodeTiles& tiles, std::span<const SampledForce> forces,
+              Combine how, std::span<const int> selectors) {
+  PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
+  bool are_same = selection.forces.size() == forces.size();
+  selection.forces.resize(forces.size());
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    ForceSelection& selected = selection.forces[k];
+    const int selector = selectors.empty() ? static_cast<int>(k) : selectors[k];
+    const ForceSelection now = boxes_of(tiles, forces[k]);
+    are_same = are_same && now.deformation == selected.deformation && selector == selected.selector;
+    selected.selector = selector;
+    selected.deformation = now.deformation;
+    selected.force = now.force;
   }
-  return recombined(std::move(selection), how);
+  if (!are_same) selection = recombined(std::move(selection), how);
+  return are_same;
 }
 
 bool overlaps(const Region& region, const Box& force) {
@@ -78,26 +189,37 @@ bool overlaps(const Region& region, const Box& force) {
                      [&](const Box& part) { return !intersection(part, force).is_empty(); });
 }
 
-Field assemble_load(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces,
-                    const Selection& selection, std::size_t region) {
-  PLIANT_EXPECTS(nodes.rows() == grid.node_count());
-  PLIANT_EXPECTS(selection.forces.size() == forces.size() && region < selection.regions.size());
-  const Box& all = selection.regions[region].box;
-  Field load = Field::Zero(Eigen::Index{all.columns()} * all.rows(), 3);
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    if (selection.forces[k].region != static_cast<int>(region)) continue;
-    const Box box = intersection(all, selection.forces[k].force);
-    for (int j = box.j0; j <= box.j1; ++j) {
-      for (int i = box.i0; i <= box.i1; ++i) {
-        const int row = (j - all.j0) * all.columns() + (i - all.i0);
-        load.row(row) += force_at(forces[k], nodes.row(grid.node(i, j)).transpose()).transpose();
-      }
-    }
-  }
+Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
+                    std::span<const SampledForce> forces, const Selection& selection,
+                    std::size_t region) {
+  const Box& box = selection.regions[region].box;
+  Field load(Eigen::Index{box.columns()} * box.rows(), 3);
+  visit_load_rows(grid, nodes, forces, selection, region, box,
+                  [&](Eigen::Index row, const Batch& part) {
+                    std::copy_n(part.x, part.count, &load(row, 0));
+                    std::copy_n(part.y, part.count, &load(row, 1));
+                    std::copy_n(part.z, part.count, &load(row, 2));
+                  });
   return load;
 }
 
-Push push_of(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
+Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
+                    std::span<const SampledForce> forces, const Selection& selection,
+                    std::size_t region, const Box& box, const Matrix3d& to_object, Field reuse) {
+  reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
+  visit_load_rows(grid, nodes, forces, selection, region, box,
+                  [&](Eigen::Index row, const Batch& part) {
+                    for (int k = 0; k < 3; ++k) {
+                      const double ax = to_object(k, 0), ay = to_object(k, 1), az = to_object(k, 2);
+                      double* const to = &reuse(row, k);
+                      for (int n = 0; n < part.count; ++n)
+                        to[n] = part.x[n] * ax + part.y[n] * ay + part.z[n] * az;
+                    }
+                  });
+  return reuse;
+}
+
+Push push_of(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,
              std::span<const Patch> patches) {
   Push push;
   visit_loads(grid, nodes, force, box, patches, [&](const Vector3d& load) {
@@ -108,7 +230,7 @@ Push push_of(const Grid& grid, const Field& nodes, const SampledForce& force, co
   return push;
 }
 
-bool pushes(const Grid& grid, const Field& nodes, const SampledForce& force, const Box& box,
+bool pushes(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,
             std::span<const Patch> patches) {
   if (force.magnitude == 0) return false;
   bool is_felt = false;

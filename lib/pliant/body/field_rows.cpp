@@ -1,0 +1,114 @@
+#include "pliant/body/field_rows.hpp"
+
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+using RowView = Eigen::Map<Eigen::ArrayXd>;
+using ConstRowView = Eigen::Map<const Eigen::ArrayXd>;
+
+// Calls f(component, node, row, count) for the stretches of the interior of a box: where each
+// begins in a field on all nodes and in one on the box.
+template <class F>
+void for_interior_rows(const Grid& grid, const Box& box, const F& f) {
+  const Eigen::Index width = box.columns() - 2;
+  for (int component = 0; component < 3; ++component) {
+    for (int j = 1; j + 1 < box.rows(); ++j) {
+      f(component, Eigen::Index{grid.node(box.i0 + 1, box.j0 + j)},
+        Eigen::Index{j} * box.columns() + 1, width);
+    }
+  }
+}
+
+// Calls f(first, count) for the stretches of nodes outside the interior of a box, ascending.
+template <class F>
+void for_stretches_around(const Grid& grid, const Box& hole, const F& f) {
+  Eigen::Index first = 0;
+  if (hole.columns() > 2) {
+    for (int j = hole.j0 + 1; j < hole.j1; ++j) {
+      f(first, grid.node(hole.i0 + 1, j) - first);
+      first = grid.node(hole.i1, j);
+    }
+  }
+  f(first, grid.node_count() - first);
+}
+
+// NaN where a number is not finite, else 0.
+double unsoundness(const RowView& numbers) { return (numbers - numbers).sum(); }
+
+}  // namespace
+
+Field rows_of(const Grid& grid, const Box& box, const Field& nodes, Field reuse) {
+  reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
+  for (int component = 0; component < 3; ++component) {
+    for (int j = 0; j < box.rows(); ++j) {
+      reuse.col(component).segment(Eigen::Index{j} * box.columns(), box.columns()) =
+          nodes.col(component).segment(grid.node(box.i0, box.j0 + j), box.columns());
+    }
+  }
+  return reuse;
+}
+
+Field difference_of(const Grid& grid, const Box& box, const Field& a, const Field& b, Field reuse) {
+  reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
+  for (int component = 0; component < 3; ++component) {
+    for (int j = 0; j < box.rows(); ++j) {
+      const int node = grid.node(box.i0, box.j0 + j);
+      reuse.col(component).segment(Eigen::Index{j} * box.columns(), box.columns()) =
+          a.col(component).segment(node, box.columns()) -
+          b.col(component).segment(node, box.columns());
+    }
+  }
+  return reuse;
+}
+
+bool put_interior(const Grid& grid, const Patch& patch, const Field& displacement,
+                  const Field& velocity, const Field* reference, Field& positions,
+                  Field& velocities) {
+  double unsound = 0;
+  const auto put = [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
+    RowView position(&positions(node, component), count);
+    RowView speed(&velocities(node, component), count);
+    const ConstRowView moved(&displacement(row, component), count);
+    if (reference) {
+      position = ConstRowView(&(*reference)(node, component), count) + moved;
+    } else {
+      position = moved;
+    }
+    speed = ConstRowView(&velocity(row, component), count);
+    unsound += unsoundness(position) + unsoundness(speed);
+  };
+  for_interior_rows(grid, patch.box,
+                    [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index width) {
+                      if (patch.is_rectangle()) {
+                        put(component, node, row, width);
+                        return;
+                      }
+                      for (Eigen::Index k = 0; k < width; ++k) {
+                        if (patch.interior[static_cast<std::size_t>(row + k)])
+                          put(component, node + k, row + k, 1);
+                      }
+                    });
+  return unsound == 0;
+}
+
+void copy_around(const Grid& grid, const Box& hole, const Field& from, Field& to) {
+  to.resize(from.rows(), 3);
+  for (int component = 0; component < 3; ++component) {
+    for_stretches_around(grid, hole, [&](Eigen::Index first, Eigen::Index count) {
+      to.col(component).segment(first, count) = from.col(component).segment(first, count);
+    });
+  }
+}
+
+void clear_around(const Grid& grid, const Box& hole, Field& nodes) {
+  nodes.resize(grid.node_count(), 3);
+  for (int component = 0; component < 3; ++component) {
+    for_stretches_around(grid, hole, [&](Eigen::Index first, Eigen::Index count) {
+      nodes.col(component).segment(first, count).setZero();
+    });
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <string_view>
+
+namespace pliant {
+
+/// What a run spends its time on, in the order of a frame.
+enum class Stage {
+  Sampling,     ///< channels at the frame
+  Selection,    ///< boxes around the nodes, what the forces select, and whether all is finite
+  Load,         ///< of the forces on the nodes
+  StateIn,      ///< displacement and velocity on their way to the plate
+  SetUp,        ///< of the solver, for other coefficients or another region
+  Solve,        ///< transforms and steps
+  StateOut,     ///< new positions and velocities, and whether they are finite
+  Checkpoints,  ///< states that are kept for later
+  Output,       ///< positions in the order of the mesh, in the space asked for, and their peak
+  Writing,      ///< into files
+};
+inline constexpr std::size_t stage_count = 10;
+
+constexpr std::string_view name_of(Stage stage) {
+  constexpr std::array<std::string_view, stage_count> names = {
+      "sampling", "selection", "load",        "state in", "set-up",
+      "solve",    "state out", "checkpoints", "output",   "writing"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+/// How long a run spent in each stage, added up over whoever worked at the same time. [s]
+struct Profile {
+  std::array<double, stage_count> seconds = {};
+
+  double& operator[](Stage stage) { return seconds[static_cast<std::size_t>(stage)]; }
+  double operator[](Stage stage) const { return seconds[static_cast<std::size_t>(stage)]; }
+
+  void add(const Profile& other) {
+    for (std::size_t k = 0; k < stage_count; ++k) seconds[k] += other.seconds[k];
+  }
+  double total() const {
+    double sum = 0;
+    for (const double part : seconds) sum += part;
+    return sum;
+  }
+};
+
+/// Adds the time from here to the end of its scope to one stage; without a profile it does nothing.
+/// Not for several threads on one profile.
+class StageTimer {
+ public:
+  StageTimer(Profile* profile, Stage stage) : profile_(profile), stage_(stage) {
+    if (profile_) begin_ = Clock::now();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+  ~StageTimer() { stop(); }
+
+  /// The end, ahead of the scope's.
+  void stop() {
+    if (!profile_) return;
+    (*profile_)[stage_] += std::chrono::duration<double>(Clock::now() - begin_).count();
+    profile_ = nullptr;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Profile* profile_;
+  Stage stage_;
+  Clock::time_point begin_ = {};
+};
+
+}  // namespace pliant

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "pliant/core/grid.hpp"
+#include "pliant/region/placed_nodes.hpp"
+
+namespace pliant {
+
+/// The nodes of a grid in tiles, each with the box around it in the world, so that a force that is
+/// far away need not look at every node. Costs one pass over the nodes.
+class NodeTiles {
+ public:
+  struct Tile {
+    Box box;                           ///< its nodes
+    Vector3d low = Vector3d::Zero();   ///< the least of their x, y and z, world [length]
+    Vector3d high = Vector3d::Zero();  ///< the largest
+  };
+
+  /// Of these nodes. Refers to their positions. Allocates nothing while the grid stays.
+  /// Requires: nodes.count() = grid.node_count().
+  void update(const Grid& grid, const PlacedNodes& nodes);
+
+  const Grid& grid() const { return grid_; }
+  const PlacedNodes& nodes() const { return *nodes_; }
+  const std::vector<Tile>& tiles() const { return tiles_; }  ///< row by row
+
+  /// Whether all nodes are.
+  bool are_finite() const { return are_finite_; }
+
+ private:
+  void fill(Tile& tile);
+
+  Grid grid_;
+  std::optional<PlacedNodes> nodes_;
+  std::vector<Tile> tiles_;
+  bool are_finite_ = true;
+};
+
+}  // namespace pliant

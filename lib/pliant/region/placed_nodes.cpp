@@ -1,0 +1,39 @@
+#include "pliant/region/placed_nodes.hpp"
+
+#include <algorithm>
+
+namespace pliant {
+
+// The identity would change the sign of a 0 at most, which no distance and no force knows.
+PlacedNodes::PlacedNodes(const Field& positions, const Transform& transform)
+    : positions_(&positions) {
+  const bool is_identity =
+      transform.linear == Matrix3d::Identity() && transform.translation == Vector3d::Zero();
+  if (!is_identity) transform_ = transform;
+}
+
+Batch PlacedNodes::batch(int first, int count) const {
+  const double* const x = positions_->col(0).data() + first;
+  const double* const y = positions_->col(1).data() + first;
+  const double* const z = positions_->col(2).data() + first;
+  Batch batch;
+  batch.count = count;
+  if (!transform_) {
+    std::copy_n(x, count, batch.x);
+    std::copy_n(y, count, batch.y);
+    std::copy_n(z, count, batch.z);
+    return batch;
+  }
+  double* const images[] = {batch.x, batch.y, batch.z};
+  for (int component = 0; component < 3; ++component) {
+    const double ax = transform_->linear(component, 0);
+    const double ay = transform_->linear(component, 1);
+    const double az = transform_->linear(component, 2);
+    const double moved = transform_->translation[component];
+    double* const image = images[component];
+    for (int k = 0; k < count; ++k) image[k] = (x[k] * ax + y[k] * ay + z[k] * az) + moved;
+  }
+  return batch;
+}
+
+}  // namespace pliant

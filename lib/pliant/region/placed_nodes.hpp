@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/transform.hpp"
+#include "pliant/forces/batch.hpp"
+
+namespace pliant {
+
+/// Nodes as forces meet them: in world space, taken there where they are asked for, so that there
+/// is no copy of them. Refers to the positions, which outlive it.
+class PlacedNodes {
+ public:
+  /// #nodes x 3, in world space. Not explicit: they are where they stand.
+  PlacedNodes(const Field& positions) : positions_(&positions) {}
+
+  /// #nodes x 3, in object space.
+  PlacedNodes(const Field& positions, const Transform& transform);
+
+  Eigen::Index count() const { return positions_->rows(); }
+
+  /// World [length].
+  Vector3d at(int node) const {
+    const Vector3d position = positions_->row(node).transpose();
+    return transform_ ? to_world(*transform_, position) : position;
+  }
+
+  /// Those from node `first` on, world [length]; the numbers are those of `at`.
+  /// Requires: 0 <= count <= batch_size.
+  Batch batch(int first, int count) const;
+
+ private:
+  const Field* positions_;
+  std::optional<Transform> transform_;
+};
+
+}  // namespace pliant
