@@ -1,11 +1,15 @@
 #include "pliant/io/npy.hpp"
 
+#include <algorithm>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/io/atomic_file.hpp"
+#include "pliant/io/row_order.hpp"
 
 namespace pliant {
 namespace {
@@ -29,15 +33,19 @@ class NpyWriter final : public SurfaceWriter {
   explicit NpyWriter(AtomicFile file) : file_(std::move(file)) {}
 
   Result<void> write(int, const Field& positions) override {
-    rows_ = positions;
-    return file_.write({rows_.data(), static_cast<std::size_t>(rows_.size())});
+    numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
+    return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) {
+      const std::span<double> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
+      to_row_order(positions, first, numbers);
+      return file_.write(std::span<const double>(numbers));
+    });
   }
 
   Result<void> finish() override { return file_.commit(); }
 
  private:
   AtomicFile file_;
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rows_;  // the file's order, kept
+  std::vector<double> numbers_;  // of some rows, in the file's order
 };
 
 }  // namespace

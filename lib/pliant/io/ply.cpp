@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -82,23 +83,41 @@ class PlyWriter final : public SequenceWriter {
         normals_.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n",
         uvs_.empty() ? "" : "property double s\nproperty double t\n", mesh_.face_sizes.size(),
         count, has_corner_uvs ? fmt::format("property list {} float texcoord\n", count) : "");
+    make_vertices();
     make_faces(has_corner_uvs, has_long_counts);
   }
 
  private:
   Result<void> write_frame(const Field& positions, const ByteSink& sink) override {
     const Field normals = normals_.empty() ? Field() : unit_normals(mesh_, positions);
-    vertices_.clear();
-    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
-      const auto vertex = static_cast<std::size_t>(row);
-      for (int k = 0; k < 3; ++k) append(vertices_, positions(row, k));
-      for (int k = 0; k < 3 && !normals_.empty(); ++k)
-        append(vertices_, static_cast<float>(normals(normals_[vertex], k)));
-      for (int k = 0; k < 2 && !uvs_.empty(); ++k) append(vertices_, uvs_[vertex][k]);
+    char* vertex = vertices_.data();
+    for (Eigen::Index row = 0; row < positions.rows(); ++row, vertex += vertex_size()) {
+      const double position[] = {positions(row, 0), positions(row, 1), positions(row, 2)};
+      std::memcpy(vertex, position, sizeof(position));
+      if (normals_.empty()) continue;
+      const int of_vertex = normals_[static_cast<std::size_t>(row)];
+      float normal[3];
+      for (int k = 0; k < 3; ++k) normal[k] = static_cast<float>(normals(of_vertex, k));
+      std::memcpy(vertex + sizeof(position), normal, sizeof(normal));
     }
     if (auto written = sink(header_); !written) return written;
     if (auto written = sink(vertices_); !written) return written;
     return sink(faces_);
+  }
+
+  std::size_t vertex_size() const {
+    return 3 * sizeof(double) + (normals_.empty() ? 0 : 3 * sizeof(float)) +
+           (uvs_.empty() ? 0 : 2 * sizeof(double));
+  }
+
+  // Room for positions and normals, with (u,v) behind them.
+  void make_vertices() {
+    vertices_.resize(vertex_size() * static_cast<std::size_t>(mesh_.vertex_count()));
+    char* end = vertices_.data();
+    for (const Uv& uv : uvs_) {
+      end += vertex_size();
+      std::memcpy(end - sizeof(uv), uv.data(), sizeof(uv));
+    }
   }
 
   void make_faces(bool has_corner_uvs, bool has_long_counts) {

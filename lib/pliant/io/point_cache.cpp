@@ -1,12 +1,17 @@
 #include "pliant/io/point_cache.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pliant/io/atomic_file.hpp"
 #include "pliant/io/obj_text.hpp"
+#include "pliant/io/row_order.hpp"
 #include "pliant/io/single_precision.hpp"
 
 namespace pliant {
@@ -21,6 +26,16 @@ void append(std::string& bytes, Number number) {
     bytes += static_cast<char>(bits >> 8 * (order == std::endian::little ? k : 3 - k) & 0xff);
 }
 
+// The bytes of each number the other way round. Not as floats: some of those bits are signalling.
+void swap_bytes(std::span<float> numbers) {
+  for (float& number : numbers) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &number, sizeof(bits));
+    bits = bits >> 24 | (bits >> 8 & 0xff00) | (bits << 8 & 0xff0000) | bits << 24;
+    std::memcpy(&number, &bits, sizeof(bits));
+  }
+}
+
 template <std::endian order>
 class PointCacheWriter final : public SurfaceWriter {
  public:
@@ -28,11 +43,13 @@ class PointCacheWriter final : public SurfaceWriter {
       : cache_(std::move(cache)), mesh_(std::move(mesh)) {}
 
   Result<void> write(int frame, const Field& positions) override {
-    const auto numbers = to_single(positions, frame);
-    if (!numbers) return fail(numbers.error());
-    bytes_.clear();
-    for (const float number : *numbers) append<order>(bytes_, number);
-    return cache_.write(bytes_);
+    numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
+    return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) -> Result<void> {
+      const std::span<float> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
+      if (auto rounded = to_single(positions, frame, first, numbers); !rounded) return rounded;
+      if (order != std::endian::native) swap_bytes(numbers);
+      return cache_.write(std::span<const float>(numbers));
+    });
   }
 
   Result<void> finish() override {
@@ -43,7 +60,7 @@ class PointCacheWriter final : public SurfaceWriter {
  private:
   AtomicFile cache_;
   AtomicFile mesh_;
-  std::string bytes_;
+  std::vector<float> numbers_;  // of some rows
 };
 
 Result<AtomicFile> write_mesh(const SurfacePlan& plan) {
