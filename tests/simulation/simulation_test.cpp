@@ -1,5 +1,6 @@
 #include "pliant/simulation/simulation.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -350,6 +351,7 @@ TEST_CASE("the number of threads changes no bit", "[simulation][threads]") {
       scene({sheet("a", 21), sheet("b", 13), sheet("c", 17), sheet("d", 9)}, forces, 8),
       scene({sheet("a", 121), sheet("b", 13)}, forces, 8), scene({sheet("a", 121)}, forces, 8));
   if (s.surfaces.size() > 1) s.surfaces[1].enabled = false;
+  s.forces[1].deformation_radius = 100;  // all of it: more than one thread is worth its while
   const auto all_frames = [&](int threads) {
     auto simulation = Simulation::make(s, {.threads = threads}).value();
     std::vector<Field> positions;
@@ -443,4 +445,45 @@ TEST_CASE("errors come in the order of files and lines, each once", "[simulation
   std::vector<int> lines{refused.error().line};
   for (const Error& other : refused.error().others) lines.push_back(other.line);
   CHECK(lines == std::vector<int>{3, 4, 5});
+}
+
+TEST_CASE("a frame in the memory of another is the same frame", "[simulation]") {
+  const std::vector<Force> forces{poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)};
+  const Scene s = scene({sheet("a", 21), sheet("b", 13)}, forces, 8);
+  auto simulation = Simulation::make(s).value(), other = Simulation::make(s).value();
+  Frame frame;
+  Field positions = Field::Ones(5, 3);
+  for (const int number : {1, 2, 5, 8, 3, 3, 7}) {
+    frame = simulation.at(number, std::move(frame)).value();
+    const Frame fresh = other.at(number).value();
+    CHECK(frame.number() == number);
+    REQUIRE(frame.surfaces().size() == 2);
+    for (const std::string name : {"a", "b"}) {
+      positions = frame.surface(name).positions(std::move(positions));
+      CHECK(positions == fresh.surface(name).positions());
+      CHECK(frame.surface(name).peak_displacement() == fresh.surface(name).peak_displacement());
+    }
+  }
+}
+
+TEST_CASE("a profile tells where the time of frames goes, when asked for",
+          "[simulation][profile]") {
+  const Scene s = scene({sheet("a", 41), sheet("b", 21)}, {poke("f", {0.3, 0, 0.2})}, 8);
+  for (const auto choice : {SolverChoice::Spectral, SolverChoice::Eigen}) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto simulation = Simulation::make(s, {.solver = choice, .profile = true}).value();
+    REQUIRE(simulation.profile().total() == 0);
+    REQUIRE(simulation.at(8));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    const Profile profile = simulation.profile();
+    for (std::size_t k = 0; k < stage_count; ++k) {
+      const auto stage = static_cast<Stage>(k);
+      CAPTURE(name_of(stage));
+      CHECK((profile[stage] > 0) == (stage != Stage::Writing));  // which is not a simulation's
+    }
+    CHECK(profile.total() < elapsed.count());
+  }
+  auto silent = Simulation::make(s).value();
+  REQUIRE(silent.at(8));
+  CHECK(silent.profile().total() == 0);
 }

@@ -49,15 +49,15 @@ Axis find_axis(std::vector<double> values) {
 
 }  // namespace
 
-Field GridMapping::to_vertices(const Field& nodes) const {
-  Field vertices(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
+Field GridMapping::to_vertices(const Field& nodes, Field reuse) const {
+  reuse.resize(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
   for (int component = 0; component < 3; ++component) {
-    for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex) {
-      vertices(static_cast<Eigen::Index>(vertex), component) =
-          nodes(vertex_nodes[vertex], component);
-    }
+    const double* const from = nodes.col(component).data();
+    double* const to = reuse.col(component).data();
+    for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex)
+      to[vertex] = from[vertex_nodes[vertex]];
   }
-  return vertices;
+  return reuse;
 }
 
 Result<GridMapping> find_grid(const Mesh& mesh) {

@@ -18,8 +18,9 @@ struct GridMapping {
   std::vector<int> vertex_nodes;  ///< #vertices: the node of each vertex
   Field rest;                     ///< #nodes x 3: rest positions, object space [length]
 
-  /// A field over the nodes (#nodes x 3) taken to the vertices (#vertices x 3).
-  Field to_vertices(const Field& nodes) const;
+  /// A field over the nodes (#nodes x 3) taken to the vertices (#vertices x 3), in the memory of
+  /// `reuse`.
+  Field to_vertices(const Field& nodes, Field reuse = {}) const;
 };
 
 /// Largest distance of a u (v) from its lattice value, in spacings, that still counts as even.

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -13,14 +14,17 @@ namespace pliant {
 /// One surface at one frame. A value of its own: it may outlive the simulation.
 class SurfaceFrame {
  public:
+  SurfaceFrame() = default;
   SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
                double peak_displacement);
 
   const std::string& name() const { return name_; }
 
   /// #vertices x 3 in the order of the mesh, world space [length]. Computed from the object-space
-  /// positions at each call.
-  Field positions() const { return to_world(transform_, object_positions_); }
+  /// positions at each call, in the memory of `reuse`.
+  Field positions(Field reuse = {}) const {
+    return to_world(transform_, object_positions_, std::move(reuse));
+  }
 
   /// #vertices x 3 in the order of the mesh, object space [length].
   const Field& object_positions() const { return object_positions_; }
@@ -31,15 +35,18 @@ class SurfaceFrame {
   double peak_displacement() const { return peak_displacement_; }
 
  private:
+  friend class Simulation;  // fills it anew
+
   std::string name_;
   Field object_positions_;
   Transform transform_;
-  double peak_displacement_;
+  double peak_displacement_ = 0;
 };
 
 /// All surfaces at one frame.
 class Frame {
  public:
+  Frame() = default;
   Frame(int number, std::vector<SurfaceFrame> surfaces);
 
   int number() const { return number_; }
@@ -54,7 +61,9 @@ class Frame {
   const SurfaceFrame& surface(std::string_view name) const;
 
  private:
-  int number_;
+  friend class Simulation;
+
+  int number_ = 0;
   std::vector<SurfaceFrame> surfaces_;
 };
 

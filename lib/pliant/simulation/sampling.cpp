@@ -30,7 +30,7 @@ InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
   const double scale = -surface.material.density.at(frame)[0] * fps * fps;
   const Matrix3d turning = (after.linear - now.linear) - (now.linear - before.linear);
   // Row k: the object-space vector of the world's axis k.
-  const Field axes = vectors_to_object(now, Matrix3d::Identity());
+  const Matrix3d axes = inverse_linear(now).transpose();
   InertiaForce inertia;
   inertia.origin = now.translation;
   inertia.offset =
@@ -136,6 +136,11 @@ std::string ForceFaults::first() const {
   return first_;
 }
 
+void ForceFaults::clear() {
+  const std::lock_guard lock(mutex_);
+  first_.clear();
+}
+
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
                           const std::shared_ptr<ForceFaults>& faults) {
   return {.shape = std::visit(SampleShape{scene, force, surface, frame, faults}, force.shape),
@@ -184,10 +189,25 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
           .forces = {}};
 }
 
-SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame) {
-  SurfaceInputs inputs;
-  inputs.body = sample_body(scene, surface, frame);
-  inputs.faults = std::make_shared<ForceFaults>();
+SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame,
+                            SurfaceInputs reuse) {
+  SurfaceInputs inputs = std::move(reuse);
+  std::vector<SampledForce>& forces = inputs.body.forces;
+  std::vector<int>& selectors = inputs.body.selectors;
+  forces.clear();
+  selectors.clear();
+  inputs.sources.clear();
+  BodyInputs body = sample_body(scene, surface, frame);
+  body.forces = std::move(forces);
+  body.selectors = std::move(selectors);
+  inputs.body = std::move(body);
+  // Reports of earlier frames may still refer to theirs.
+  if (inputs.faults.use_count() == 1) {
+    inputs.faults->clear();
+  } else {
+    inputs.faults = std::make_shared<ForceFaults>();
+  }
+
   std::map<std::string_view, const Group*> group_named;
   for (const Group& group : scene.groups) group_named.emplace(group.name, &group);
   std::map<const Group*, std::vector<std::size_t>> members;  // looked up only, never walked through
@@ -195,18 +215,18 @@ SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int fram
     const auto found = group_named.find(force.group);
     const Group* const group = found != group_named.end() ? found->second : nullptr;
     if (!targets(force, group, surface.name) || !is_enabled(force, group, frame)) continue;
-    inputs.body.forces.push_back(sample_force(scene, force, surface, frame, inputs.faults));
+    forces.push_back(sample_force(scene, force, surface, frame, inputs.faults));
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group});
-    if (group) members[group].push_back(inputs.body.selectors.size());
-    inputs.body.selectors.push_back(static_cast<int>(inputs.body.selectors.size()));
+    if (group) members[group].push_back(selectors.size());
+    selectors.push_back(static_cast<int>(selectors.size()));
   }
   for (const Group& group : scene.groups) {
     if (!holds(group.targets, surface.name) || !group.enabled.at(frame)) continue;
-    const auto selector = static_cast<int>(inputs.body.forces.size());
-    for (const std::size_t member : members[&group]) inputs.body.selectors[member] = selector;
-    inputs.body.forces.push_back(sample_group(group, frame));
+    const auto selector = static_cast<int>(forces.size());
+    for (const std::size_t member : members[&group]) selectors[member] = selector;
+    forces.push_back(sample_group(group, frame));
     inputs.sources.push_back({group.name, "group", group.targets, true});
-    inputs.body.selectors.push_back(selector);
+    selectors.push_back(selector);
   }
   return inputs;
 }

@@ -21,6 +21,7 @@ class ForceFaults {
  public:
   void add(std::string message);
   std::string first() const;  ///< naming the force, the place and the answer; empty: none
+  void clear();
 
  private:
   mutable std::mutex mutex_;
@@ -44,7 +45,11 @@ struct SurfaceInputs {
 };
 /// The same without the forces.
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);
-SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame);
+
+/// In the memory of `reuse`, earlier inputs or none: nothing is allocated then but for a program's
+/// own functions and for groups.
+SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame,
+                            SurfaceInputs reuse = {});
 
 /// A force as it acts on `surface`; that of a group selects no region. Custom ones tell `faults`.
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,

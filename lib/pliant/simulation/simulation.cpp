@@ -20,9 +20,42 @@
 namespace pliant {
 namespace {
 
-// The largest distance of a node from rest once its displacement is taken to world space.
-double peak_displacement(const Transform& transform, const Field& positions, const Field& rest) {
-  return vectors_to_world(transform, positions - rest).rowwise().norm().maxCoeff();
+struct Extent {
+  bool is_finite = true;
+  double peak_displacement = 0;
+};
+
+// Whether all nodes are finite in world space, and their largest distance from rest there. In lanes
+// beside each other: one pass over the nodes.
+Extent extent_of(const Transform& transform, const Field& positions, const Field& rest) {
+  constexpr int lanes = 32;
+  alignas(64) double largest[lanes] = {};     // squared distance
+  alignas(64) double not_finite[lanes] = {};  // 0, or NaN once something was not
+  const Matrix3d& a = transform.linear;
+  const Eigen::Index count = positions.rows();
+  for (Eigen::Index first = 0; first < count; first += lanes) {
+    const int width = static_cast<int>(std::min<Eigen::Index>(lanes, count - first));
+    alignas(64) double squares[lanes] = {};
+    for (int k = 0; k < 3; ++k) {
+      const double ax = a(k, 0), ay = a(k, 1), az = a(k, 2), moved = transform.translation[k];
+      const double* const x = &positions(first, 0);
+      const double* const y = &positions(first, 1);
+      const double* const z = &positions(first, 2);
+      const double* const rest_x = &rest(first, 0);
+      const double* const rest_y = &rest(first, 1);
+      const double* const rest_z = &rest(first, 2);
+      for (int n = 0; n < width; ++n) {
+        const double world = (x[n] * ax + y[n] * ay + z[n] * az) + moved;
+        const double way =
+            (x[n] - rest_x[n]) * ax + (y[n] - rest_y[n]) * ay + (z[n] - rest_z[n]) * az;
+        not_finite[n] += world - world;
+        squares[n] += way * way;
+      }
+    }
+    for (int n = 0; n < lanes; ++n) largest[n] = squares[n] > largest[n] ? squares[n] : largest[n];
+  }
+  return {std::all_of(not_finite, not_finite + lanes, [](double x) { return x == 0; }),
+          std::sqrt(*std::max_element(largest, largest + lanes))};
 }
 
 // All as one: those of the scene's file first, each file's in the order of its lines, each once.
@@ -65,6 +98,12 @@ tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "inter
 
 }  // namespace
 
+struct Simulation::Stepped {
+  bool is_stepped = false;  // in the frame in hand
+  SurfaceInputs inputs;
+  Result<StepReport> report;
+};
+
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
   PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
   std::vector<Error> errors = check_scene(scene);
@@ -89,6 +128,8 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
   }
   if (options.should_stop && options.should_stop()) return interrupted();
   if (!errors.empty()) return fail_with_all(std::move(errors), simulation.scene_.origin);
+  simulation.stepped_.resize(simulation.bodies_.size());
+  if (options.profile) simulation.profiles_.resize(simulation.bodies_.size());
   return simulation;
 }
 
@@ -119,6 +160,9 @@ Simulation::Simulation(Scene scene, const SimulationOptions& options)
       threads_(std::make_unique<ThreadPool>(options.threads)),
       solver_(options.solver),
       should_stop_(options.should_stop) {}
+
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
 
 // Member by member the budget would go ahead of the bodies that give back to it.
 Simulation& Simulation::operator=(Simulation&& other) noexcept {
@@ -214,21 +258,28 @@ Result<SurfaceReport> Simulation::report_of(std::size_t index) const {
   return report;
 }
 
-Result<Frame> Simulation::at(int frame) {
+Result<Frame> Simulation::at(int frame, Frame reuse) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
-  std::vector<SurfaceFrame> surfaces;
+  reuse.number_ = frame;
+  reuse.surfaces_.resize(bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const StageTimer timer(profile_of(k), Stage::Output);
     const Surface& surface = scene_.surfaces[k];
     const Field& nodes = bodies_[k].state().positions;
     const Transform transform = sample_transform(surface.transform, frame);
-    if (!to_world(transform, nodes).allFinite()) {
+    const Extent extent = extent_of(transform, nodes, bodies_[k].rest());
+    if (!extent.is_finite) {
       return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
                           surface, frame));
     }
-    surfaces.emplace_back(surface.name, rest_shapes_[k].mapping.to_vertices(nodes), transform,
-                          peak_displacement(transform, nodes, bodies_[k].rest()));
+    SurfaceFrame& shown = reuse.surfaces_[k];
+    shown.name_ = surface.name;
+    shown.transform_ = transform;
+    shown.peak_displacement_ = extent.peak_displacement;
+    shown.object_positions_ =
+        rest_shapes_[k].mapping.to_vertices(nodes, std::move(shown.object_positions_));
   }
-  return Frame(frame, std::move(surfaces));
+  return reuse;
 }
 
 Result<void> Simulation::go_to(int frame) {
@@ -240,7 +291,10 @@ Result<void> Simulation::go_to(int frame) {
     if (auto stepped = step(); !stepped) return stepped;
     ++frame_;
     furthest_frame_ = std::max(furthest_frame_, frame_);
-    if (checkpoints_.is_due(frame_)) checkpoints_.offer(frame_, states());
+    if (checkpoints_.is_due(frame_)) {
+      const StageTimer timer(profile_of(0), Stage::Checkpoints);
+      checkpoints_.offer(frame_, states());
+    }
   }
   return {};
 }
@@ -248,40 +302,55 @@ Result<void> Simulation::go_to(int frame) {
 // From the output of frame_ to that of the next frame. The surfaces know nothing of each other, so
 // they may go at the same time; what they report is looked at in their order.
 Result<void> Simulation::step() {
-  struct Outcome {
-    SurfaceInputs inputs;
-    Result<StepReport> report;
-  };
-  std::vector<std::optional<Outcome>> outcomes(bodies_.size());
-  threads_->for_each(bodies_.size(), [&](std::size_t k) {
-    const Surface& surface = scene_.surfaces[k];
-    if (!surface.enabled || frame_ < start_frame(surface)) return;
-    SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
-    Result<StepReport> report = bodies_[k].step(inputs.body, should_stop_);
-    outcomes[k] = Outcome{std::move(inputs), std::move(report)};
-  });
+  threads_->for_each(bodies_.size(), [this](std::size_t k) { step_surface(k); });
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
     if (surface.enabled) warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
-    if (!outcomes[k]) continue;
+    const Stepped& stepped = stepped_[k];
+    if (!stepped.is_stepped) continue;
     warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
-    const auto& [inputs, report] = *outcomes[k];
-    if (std::string fault = inputs.faults->first(); !fault.empty()) {
+    if (std::string fault = stepped.inputs.faults->first(); !fault.empty()) {
       return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame_));
     }
-    if (!report) return fail(located(report.error(), surface, frame_));
-    warn(k, inputs, *report);
+    if (!stepped.report) return fail(located(stepped.report.error(), surface, frame_));
+    warn(k, stepped);
   }
   return {};
 }
 
-void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
-                      const StepReport& report) {
+void Simulation::step_surface(std::size_t index) {
+  Stepped& stepped = stepped_[index];
+  const Surface& surface = scene_.surfaces[index];
+  stepped.is_stepped = surface.enabled && frame_ >= start_frame(surface);
+  if (!stepped.is_stepped) return;
+  Profile* const profile = profile_of(index);
+  {
+    const StageTimer timer(profile, Stage::Sampling);
+    stepped.inputs = sample_inputs(scene_, surface, frame_, std::move(stepped.inputs));
+  }
+  StepReport former = stepped.report ? std::exchange(*stepped.report, {}) : StepReport{};
+  stepped.report =
+      bodies_[index].step(stepped.inputs.body, should_stop_, std::move(former), profile);
+}
+
+Profile* Simulation::profile_of(std::size_t surface) {
+  return profiles_.empty() ? nullptr : &profiles_[surface];
+}
+
+Profile Simulation::profile() const {
+  Profile all;
+  for (const Profile& profile : profiles_) all.add(profile);
+  return all;
+}
+
+void Simulation::warn(std::size_t surface_index, const Stepped& stepped) {
   using enum Warning::Kind;
   const Surface& surface = scene_.surfaces[surface_index];
+  const SurfaceInputs& inputs = stepped.inputs;
+  const StepReport& report = *stepped.report;
   for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
     const ForceSource& source = inputs.sources[k];
-    const std::string force(source.name);
+    const std::string_view force = source.name;
     const ForceSelection& selected = report.selection.forces[k];
     const bool is_solved = !report.patches_of_force(k).empty();
     const bool reaches =
@@ -297,7 +366,7 @@ void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
       warnings_.add(OutsideRegion, surface.name, force, frame_);
     }
     // A force that names its targets is expected to touch each; one for all surfaces, some of them.
-    const std::string place = source.targets.empty() ? std::string() : surface.name;
+    const std::string_view place = source.targets.empty() ? std::string_view() : surface.name;
     const bool touches = !source.selects || !selected.deformation.is_empty() || reaches;
     if (source.selects) {
       warnings_.expect(SelectsNothing, place, force, frame_);
@@ -314,8 +383,8 @@ void Simulation::warn(std::size_t surface_index, const SurfaceInputs& inputs,
     }
   }
   for (const int k : report.lost) {
-    const std::string force(inputs.sources[static_cast<std::size_t>(k)].name);
-    warnings_.add(LostNodes, surface.name, force, frame_);
+    warnings_.add(LostNodes, surface.name, inputs.sources[static_cast<std::size_t>(k)].name,
+                  frame_);
   }
   if (!inputs.body.tangents.are_zero()) {
     warnings_.expect(TangentsUnused, surface.name, {}, frame_);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
@@ -19,8 +20,6 @@
 #include "pliant/simulation/warnings.hpp"
 
 namespace pliant {
-
-struct SurfaceInputs;
 
 /// How a simulation runs; none of it but the solver changes a result, and that the last digits.
 struct SimulationOptions {
@@ -37,6 +36,9 @@ struct SimulationOptions {
 
   /// Who solves. Requires: available in this build.
   SolverChoice solver = SolverChoice::Auto;
+
+  /// Whether `Simulation::profile` is kept.
+  bool profile = false;
 
   /// Asked ahead of every surface that is read and of every time step, by any of the threads;
   /// `make` and `at` then fail with Interrupted.
@@ -56,9 +58,9 @@ class Simulation {
   /// where a surface is larger than `max_memory`; Interrupted.
   static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
 
-  Simulation(Simulation&&) noexcept = default;
+  Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&& other) noexcept;
-  ~Simulation() = default;
+  ~Simulation();
 
   /// Whether `make` would succeed, as far as it is known without making the sheets of the scene:
   /// reads its mesh files and looks at all channels. A scene without a surface is all right.
@@ -72,7 +74,11 @@ class Simulation {
   /// ahead. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed, OutOfMemory,
   /// Interrupted, naming surface and frame; NotFinite also where a custom force gives no sound
   /// answer, naming it too. What a custom force throws goes on to the caller.
-  Result<Frame> at(int frame);
+  ///
+  /// The frame takes the memory of `reuse`, an earlier frame or none. Playing on with it allocates
+  /// nothing while regions keep their shape, but for checkpoints, functions of a program's own,
+  /// groups, what recovers, and solvers with sparse factors.
+  Result<Frame> at(int frame, Frame reuse = {});
 
   /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface
   /// that is not solved at the frame has an empty report. The last frame's solve is told of like
@@ -95,14 +101,22 @@ class Simulation {
   /// What the surfaces' solvers had to do so far, added up.
   SolverCounts solver_counts() const;
 
+  /// How long the frames computed so far took, by stage and added up over surfaces that went at the
+  /// same time; nothing without `SimulationOptions::profile`. A caller may add to it what it knows.
+  Profile profile() const;
+
  private:
+  struct Stepped;  // what a surface's step took and told
+
   Simulation(Scene scene, const SimulationOptions& options);
 
   void add_body(const Surface& surface, RestShape rest_shape, MemoryShare share);
   Result<void> reach(int frame);
   Result<void> go_to(int frame);
   Result<void> step();
-  void warn(std::size_t surface_index, const SurfaceInputs& inputs, const StepReport& report);
+  void step_surface(std::size_t index);
+  void warn(std::size_t surface_index, const Stepped& stepped);
+  Profile* profile_of(std::size_t surface);
   void rewind(int frame);
   std::vector<BodyState> states() const;
   Result<SurfaceReport> report_of(std::size_t surface) const;
@@ -121,6 +135,8 @@ class Simulation {
   SolverChoice solver_;
   StopRequest should_stop_;
   WarningLog warnings_;
+  std::vector<Stepped> stepped_;   // one a surface; kept for its memory
+  std::vector<Profile> profiles_;  // one a surface; none: nobody asks
 };
 
 }  // namespace pliant

@@ -41,23 +41,29 @@ std::string Warning::message() const {
   return {};
 }
 
-void WarningLog::add(Warning::Kind kind, const std::string& surface, const std::string& force,
+FrameRanges& WarningLog::frames_of(FramesOfCauses& causes, const CauseView& cause) {
+  const auto found = causes.find(cause);
+  if (found != causes.end()) return found->second;
+  return causes[{cause.kind, std::string(cause.surface), std::string(cause.force)}];
+}
+
+void WarningLog::add(Warning::Kind kind, std::string_view surface, std::string_view force,
                      int frame) {
-  frames_[{kind, surface, force}].add(frame);
+  frames_of(frames_, {kind, surface, force}).add(frame);
 }
 
-void WarningLog::expect(Warning::Kind kind, const std::string& surface, const std::string& force,
+void WarningLog::expect(Warning::Kind kind, std::string_view surface, std::string_view force,
                         int frame) {
-  expected_[{kind, surface, force}].add(frame);
+  frames_of(expected_, {kind, surface, force}).add(frame);
 }
 
-void WarningLog::happened(Warning::Kind kind, const std::string& surface,
-                          const std::string& force) {
-  happened_.insert({kind, surface, force});
+void WarningLog::happened(Warning::Kind kind, std::string_view surface, std::string_view force) {
+  if (happened_.contains(CauseView{kind, surface, force})) return;
+  happened_.insert({kind, std::string(surface), std::string(force)});
 }
 
 std::vector<Warning> WarningLog::warnings(bool is_range_complete) const {
-  std::map<Cause, FrameRanges> all = frames_;
+  FramesOfCauses all = frames_;
   if (is_range_complete) {
     for (const auto& [cause, frames] : expected_) {
       if (!happened_.contains(cause)) all.emplace(cause, frames);
