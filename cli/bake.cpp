@@ -179,6 +179,8 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
 struct Output {
   std::vector<std::size_t> surfaces;  // by their index in the scene
   std::unique_ptr<AnimationWriter> writer;
+  std::vector<SurfacePose> poses = {};  // of the surfaces, kept for their memory
+  Profile profile = {};                 // of what happens here
 };
 
 Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
@@ -206,18 +208,23 @@ struct Summary {
 Result<void> write_frame(const Frame& frame, const BakeOptions& options, const Scene& scene,
                          Output& output, Summary& summary) {
   ++summary.frame_count;
-  std::vector<SurfacePose> poses;
-  for (const std::size_t k : output.surfaces) {
+  output.poses.resize(output.surfaces.size());
+  StageTimer posing(&output.profile, Stage::Output);
+  for (std::size_t n = 0; n < output.surfaces.size(); ++n) {
+    const std::size_t k = output.surfaces[n];
     const SurfaceFrame& surface = frame.surfaces()[k];
+    SurfacePose& pose = output.poses[n];
     summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
     if (is_world(options)) {
-      poses.push_back({surface.positions()});
+      pose.positions = surface.positions(std::move(pose.positions));
     } else {
-      poses.push_back(
-          {surface.object_positions(), placement_at(scene.surfaces[k].transform, frame.number())});
+      pose.positions = surface.object_positions();
+      pose.placement = placement_at(scene.surfaces[k].transform, frame.number());
     }
   }
-  return output.writer->write(frame.number(), poses);
+  posing.stop();
+  const StageTimer writing(&output.profile, Stage::Writing);
+  return output.writer->write(frame.number(), output.poses);
 }
 
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
@@ -233,13 +240,16 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   for (const std::size_t k : output.surfaces)
     summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
   Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
+  Frame frame;
   for (int number = simulation.scene().start; number <= frames.last; ++number) {
     if (was_interrupted())
       return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
-    const auto frame = simulation.at(number);  // from the start, whatever frames are written
-    if (!frame) return fail(frame.error());
+    // From the start, whatever frames are written.
+    auto reached = simulation.at(number, std::move(frame));
+    if (!reached) return fail(reached.error());
+    frame = *std::move(reached);
     if (number >= frames.first) {
-      auto written = write_frame(*frame, options, simulation.scene(), output, summary);
+      auto written = write_frame(frame, options, simulation.scene(), output, summary);
       if (!written) return fail(written.error());
       if (regions) {
         if (auto told = write_regions(simulation, number, *regions); !told) {
@@ -249,13 +259,31 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     }
     progress.advance();
   }
+  StageTimer finishing(&output.profile, Stage::Writing);
   if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
+  finishing.stop();
   if (regions) {
     if (auto finished = regions->finish(simulation.solver_counts()); !finished) {
       return fail(finished.error());
     }
   }
   return summary;
+}
+
+// Where the time of the run went, and how much of it went elsewhere: reading the scene, finding
+// grids, progress, files beside the animation.
+void print_profile(const Profile& profile, double elapsed) {
+  const auto row = [&](std::string_view stage, double seconds) {
+    print(stderr, fmt::format("{:<12} {:>10.3f} {:>8.1f}\n", stage, seconds,
+                              elapsed > 0 ? 100 * seconds / elapsed : 0));
+  };
+  print(stderr, fmt::format("{:<12} {:>10} {:>8}\n", "stage", "seconds", "share, %"));
+  for (std::size_t k = 0; k < stage_count; ++k) {
+    row(name_of(static_cast<Stage>(k)), profile.seconds[k]);
+  }
+  // Below 0 where surfaces went at the same time.
+  row("the rest", elapsed - profile.total());
+  row("run", elapsed);
 }
 
 // Where a warning's cause stands: the force, or the tangents that come first.
@@ -308,6 +336,8 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
                    "JSON file that tells what is solved in each frame, and under which forces");
+  bake->add_flag("--profile", options.is_profiled,
+                 "A table on stderr at the end: how long the run spent in each stage");
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
 }
 
@@ -326,6 +356,7 @@ int run_bake(const BakeOptions& options) {
 
   SimulationOptions run = simulation_options(options.resources);
   run.solver = *solver;
+  run.profile = options.is_profiled;
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
   auto output = open_output(*simulation, options, *frames);
@@ -342,11 +373,16 @@ int run_bake(const BakeOptions& options) {
   print_warnings(*simulation);
   if (!summary) return report(summary.error());
 
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
     print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}\n",
                               printable(options.out), summary->frame_count, summary->vertex_count,
                               elapsed.count(), summary->peak_displacement));
+  }
+  if (options.is_profiled) {
+    Profile profile = simulation->profile();
+    profile.add(output->profile);
+    print_profile(profile, elapsed.count());
   }
   return exit_done;
 }

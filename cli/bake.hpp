@@ -20,6 +20,7 @@ struct BakeOptions {
   std::string solver = "auto";
   bool resume = false;
   bool is_quiet = false;
+  bool is_profiled = false;
   ResourceOptions resources;
 };
 

@@ -166,6 +166,23 @@ class Bake(Command):
         result = self.run_pliant("bake", scene, "-o", "a.npy", "--quiet")
         self.assertEqual(result.stdout + result.stderr, "")
 
+    def test_profile_tells_where_the_time_went(self):
+        scene = self.scene()
+        for flags in ([], ["--quiet"], ["--threads", "2"]):
+            result = self.run_pliant("bake", scene, "-o", "a.npy", "--profile", *flags)
+            self.assertEqual(result.stdout == "", "--quiet" in flags)
+            lines = result.stderr.splitlines()
+            self.assertRegex(lines[0], r"^stage +seconds +share, %$")
+            rows = {line[:12].strip(): [float(number) for number in line[12:].split()]
+                    for line in lines[1:]}
+            self.assertEqual(list(rows), ["sampling", "selection", "load", "state in", "set-up",
+                                          "solve", "state out", "checkpoints", "output", "writing",
+                                          "the rest", "run"])
+            seconds, share = (sum(row[k] for row in list(rows.values())[:-1]) for k in (0, 1))
+            self.assertAlmostEqual(seconds, rows["run"][0], delta=0.0006 * len(rows))
+            self.assertAlmostEqual(share, 100, delta=0.06 * len(rows))
+            self.assertEqual(rows["run"][1], 100)
+
     def test_progress_on_a_terminal(self):
         scene = self.scene()
         try:
