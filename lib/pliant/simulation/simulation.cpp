@@ -415,6 +415,11 @@ std::vector<BodyState> Simulation::states() const {
   return states;
 }
 
+const BodyState& Simulation::state(std::size_t surface) const {
+  PLIANT_EXPECTS(surface < bodies_.size());
+  return bodies_[surface].state();
+}
+
 int Simulation::start_frame(const Surface& surface) const {
   return std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
 }

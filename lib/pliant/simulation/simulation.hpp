@@ -85,6 +85,10 @@ class Simulation {
   /// any other, though no frame shows it. Cost and errors: as `at`.
   Result<FrameReport> report(int frame);
 
+  /// What a surface, by its index in the scene, hands on at the frame that `report` last gave; at
+  /// the first one ahead of any.
+  const BodyState& state(std::size_t surface) const;
+
   const Scene& scene() const { return scene_; }
 
   /// The surfaces at rest, in the order of the scene.
