@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;
@@ -54,6 +55,17 @@ const std::vector<int> lengths{2,   3,   4,   5,   6,   7,   8,   9,   10,  11, 
                                100, 128, 143, 211, 243, 289, 360, 394, 400, 401, 499};
 
 }  // namespace
+
+TEST_CASE("kernels are as wide as they may be, but no narrower than there are",
+          "[plate][spectral]") {
+  for (int k = 0; runnable_kernels(k); ++k) {
+    const SpectralKernels* const kernels = runnable_kernels(k);
+    CHECK(&kernels_of_width(kernels->lanes) == kernels);
+    if (k > 0) CHECK(&kernels_of_width(runnable_kernels(k - 1)->lanes - 1) == kernels);
+  }
+  CHECK(&kernels_of_width(widest_lanes) == runnable_kernels(0));
+  CHECK(&kernels_of_width(0) == &baseline_kernels);
+}
 
 TEST_CASE("a point of a turn is right to an ulp or two", "[plate][spectral]") {
   const long double pi = std::acos(-1.0L);

@@ -367,6 +367,16 @@ TEST_CASE("the number of threads changes no bit", "[simulation][threads]") {
   for (const int threads : {2, 3, 8}) CHECK((all_frames(threads) == alone));
 }
 
+TEST_CASE("the width of the solver's vectors changes no bit", "[simulation]") {
+  const Scene s = scene({sheet("a", 41)}, {poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)});
+  const auto last_frame = [&](int most_lanes) {
+    auto simulation = Simulation::make(s, {.most_lanes = most_lanes}).value();
+    return simulation.at(12).value().surface("a").positions();
+  };
+  const Field widest = last_frame(widest_lanes);
+  for (const int lanes : {1, 2, 4, 8}) CHECK((last_frame(lanes) == widest));
+}
+
 TEST_CASE("what a run takes is known before it is allocated", "[simulation][memory]") {
   Scene s = scene({sheet("small"), sheet("large", 10'000)}, {poke("f", {0, 0, 0})});
   s.origin = {"scene.xml", {{"small", 3}, {"large", 4}}};

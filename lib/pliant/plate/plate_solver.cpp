@@ -1,7 +1,6 @@
 #include "pliant/plate/plate_solver.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
@@ -31,8 +30,12 @@ class DirectPlateSolver final : public PlateSolver {
 // Takes the solver that suits each problem, and lets the other one go.
 class AutomaticPlateSolver final : public PlateSolver {
  public:
-  AutomaticPlateSolver(bool prefers_spectral, MemoryBudget* budget, ThreadPool* threads)
-      : prefers_spectral_(prefers_spectral), budget_(budget), threads_(threads) {}
+  AutomaticPlateSolver(bool prefers_spectral, MemoryBudget* budget, ThreadPool* threads,
+                       int most_lanes)
+      : prefers_spectral_(prefers_spectral),
+        budget_(budget),
+        threads_(threads),
+        most_lanes_(most_lanes) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override {
@@ -61,9 +64,8 @@ class AutomaticPlateSolver final : public PlateSolver {
           prefers_spectral_ || worth_transforming(problem.grid, problem.stiffness);
       return is_worth_it ? Way::Spectral : Way::Direct;
     }
-    const std::size_t memory = budget_ ? budget_->total() : std::numeric_limits<std::size_t>::max();
     const bool is_worth_it =
-        worth_iterating(unknown_count(problem.grid, problem.interior), problem.stiffness, memory) &&
+        worth_iterating(unknown_count(problem.grid, problem.interior), problem.stiffness) &&
         is_covered(problem.grid, problem.interior);
     return is_worth_it ? Way::Schwarz : Way::Direct;
   }
@@ -81,9 +83,9 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::unique_ptr<PlateSolver> make(Way way) const {
     switch (way) {
       case Way::Spectral:
-        return make_spectral_plate_solver(budget_, threads_);
+        return make_spectral_plate_solver(budget_, threads_, most_lanes_);
       case Way::Schwarz:
-        return make_schwarz_plate_solver(budget_, threads_);
+        return make_schwarz_plate_solver(budget_, threads_, most_lanes_);
       default:
         return std::make_unique<DirectPlateSolver>(
             make_solver(available_solvers().front(), budget_));
@@ -93,6 +95,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   bool prefers_spectral_;
   MemoryBudget* budget_;
   ThreadPool* threads_;
+  int most_lanes_;
   std::unique_ptr<PlateSolver> solver_;
   Way way_ = Way::Direct;
   InteriorMask asked_for_;
@@ -131,10 +134,8 @@ bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
          stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
 }
 
-bool worth_iterating(int unknowns, const Stiffness& stiffness, std::size_t memory) {
-  // What a factor takes, measured: 1 kB an unknown at 7000, 1.4 kB at 30 000 and 120 000.
-  constexpr std::size_t bytes_to_factor = 1500;
-  if (bytes_to_factor * static_cast<std::size_t>(unknowns) > memory) return true;
+bool worth_iterating(int unknowns, const Stiffness& stiffness) {
+  // Not by memory as well: another machine would take another way, to other bits.
   constexpr int most_to_factor = 150'000;
   // A static L of 100 nodes a side takes 11 rounds with c = 2, 20 with c 5 % from its bound, 40
   // with 0.05 %, and there the more the larger it is.
@@ -144,11 +145,11 @@ bool worth_iterating(int unknowns, const Stiffness& stiffness, std::size_t memor
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, MemoryBudget* budget,
-                                               ThreadPool* threads) {
+                                               ThreadPool* threads, int most_lanes) {
   PLIANT_EXPECTS(is_available(choice));
   if (choice == SolverChoice::Auto || choice == SolverChoice::Spectral) {
-    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, budget,
-                                                  threads);
+    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, budget, threads,
+                                                  most_lanes);
   }
   return std::make_unique<DirectPlateSolver>(make_solver(kind_of(choice), budget));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -56,15 +57,19 @@ bool is_available(SolverChoice choice);
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
 
 /// Whether `Auto` and `Spectral` solve a plate of another outline by rectangles in sine space, if
-/// few of them cover it: where it pays, unless c is so close to its bound that they take long; and
-/// where the factor of its matrix is more than `memory` in all [bytes]. Depends on nothing else.
-bool worth_iterating(int unknowns, const Stiffness& stiffness, std::size_t memory);
+/// few of them cover it: where it pays, unless c is so close to its bound that they take long.
+/// Depends on nothing else.
+bool worth_iterating(int unknowns, const Stiffness& stiffness);
+
+/// As wide as the machine's vectors are.
+inline constexpr int widest_lanes = std::numeric_limits<int>::max();
 
 /// A solver that takes its memory out of `budget` and may work on `threads`, which both outlive it;
-/// none: no limit, one thread. The bits depend on the threads in no way, and on the budget only as
-/// `worth_iterating` says. Requires: `choice` is available.
+/// none: no limit, one thread. Its vectors have at most so many doubles, or as few as the
+/// architecture allows. The bits depend on none of these. Requires: `choice` is available.
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice = SolverChoice::Auto,
                                                MemoryBudget* budget = nullptr,
-                                               ThreadPool* threads = nullptr);
+                                               ThreadPool* threads = nullptr,
+                                               int most_lanes = widest_lanes);
 
 }  // namespace pliant

@@ -181,7 +181,7 @@ void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
       }
     }
     if (!part.plate) {
-      plates_.push_back(std::make_unique<SpectralPlate>(budget_, threads_));
+      plates_.push_back(std::make_unique<SpectralPlate>(budget_, threads_, kernels_));
       part.plate = plates_.back().get();
     }
     parts_.push_back(std::move(part));

@@ -23,10 +23,15 @@ namespace pliant {
 class SchwarzPlate {
  public:
   /// Memory out of `budget` and work on `threads`, which both outlive it; none: no limit, one
-  /// thread. The bits depend on neither.
+  /// thread. The bits depend on neither, nor on `kernels`.
   /// A system takes `max_rounds` at most; with most covers it takes about ten.
-  explicit SchwarzPlate(MemoryBudget* budget, ThreadPool* threads = nullptr, int max_rounds = 60)
-      : budget_(budget), threads_(threads), memory_(budget), max_rounds_(max_rounds) {}
+  explicit SchwarzPlate(MemoryBudget* budget, ThreadPool* threads = nullptr, int max_rounds = 60,
+                        const SpectralKernels& kernels = *runnable_kernels(0))
+      : budget_(budget),
+        threads_(threads),
+        kernels_(kernels),
+        memory_(budget),
+        max_rounds_(max_rounds) {}
 
   /// Makes ready for a system. What is kept from the last one never changes a result's bits.
   /// Requires: `cover_by_rectangles` finds a cover. Errors: SolverFailed where the matrix is not
@@ -98,6 +103,7 @@ class SchwarzPlate {
 
   MemoryBudget* budget_;
   ThreadPool* threads_;
+  const SpectralKernels& kernels_;
   MemoryShare memory_;
   int max_rounds_;
   long rounds_ = 0;

@@ -11,8 +11,12 @@ namespace {
 
 class SchwarzPlateSolver final : public PlateSolver {
  public:
-  SchwarzPlateSolver(MemoryBudget* budget, ThreadPool* threads, int max_rounds)
-      : budget_(budget), threads_(threads), max_rounds_(max_rounds), load_memory_(budget) {}
+  SchwarzPlateSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes, int max_rounds)
+      : budget_(budget),
+        threads_(threads),
+        most_lanes_(most_lanes),
+        max_rounds_(max_rounds),
+        load_memory_(budget) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
@@ -22,7 +26,7 @@ class SchwarzPlateSolver final : public PlateSolver {
     PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
-    if (!plate_) plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_);
+    if (!plate_) plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_, kernels_of_width(most_lanes_));
     auto done = plate_->prepare(grid, problem.interior, problem.stiffness, shift);
     int step = 0;
     if (done) {
@@ -90,6 +94,7 @@ class SchwarzPlateSolver final : public PlateSolver {
 
   MemoryBudget* budget_;
   ThreadPool* threads_;
+  int most_lanes_;
   int max_rounds_;
   std::unique_ptr<SchwarzPlate> plate_;
   SolverCounts past_counts_;  // of what was let go
@@ -100,8 +105,8 @@ class SchwarzPlateSolver final : public PlateSolver {
 }  // namespace
 
 std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                       int max_rounds) {
-  return std::make_unique<SchwarzPlateSolver>(budget, threads, max_rounds);
+                                                       int most_lanes, int max_rounds) {
+  return std::make_unique<SchwarzPlateSolver>(budget, threads, most_lanes, max_rounds);
 }
 
 }  // namespace pliant

@@ -23,8 +23,8 @@ class SolverCache {
 
   /// Of solvers as `make_plate_solver` makes them with these arguments.
   explicit SolverCache(SolverChoice choice = SolverChoice::Auto, MemoryBudget* budget = nullptr,
-                       ThreadPool* threads = nullptr)
-      : choice_(choice), budget_(budget), threads_(threads) {}
+                       ThreadPool* threads = nullptr, int most_lanes = widest_lanes)
+      : choice_(choice), budget_(budget), threads_(threads), most_lanes_(most_lanes) {}
 
   /// Lets go of all solvers but those of `outlines`: ahead of a frame, so that there is room for
   /// those that it needs anew.
@@ -45,6 +45,7 @@ class SolverCache {
   SolverChoice choice_;
   MemoryBudget* budget_;
   ThreadPool* threads_;
+  int most_lanes_;
   std::vector<Kept> kept_;
   SolverCounts gone_;  // what those did that are no longer kept
 };

@@ -17,10 +17,12 @@ std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget);
 
 // And to `make_plate_solver`.
 
-std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads);
+std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                        int most_lanes);
 /// Of outlines that `cover_by_rectangles` covers. Where a system takes more rounds, its matrix is
 /// factored.
 std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                       int most_lanes = widest_lanes,
                                                        int max_rounds = 60);
 
 /// The error that all implementations report for a matrix they cannot factor.

@@ -12,4 +12,10 @@ const SpectralKernels* runnable_kernels(int k) {
   return k == 0 ? &baseline_kernels : nullptr;
 }
 
+const SpectralKernels& kernels_of_width(int most_lanes) {
+  int k = 0;
+  while (runnable_kernels(k)->lanes > most_lanes && runnable_kernels(k + 1)) ++k;
+  return *runnable_kernels(k);
+}
+
 }  // namespace pliant

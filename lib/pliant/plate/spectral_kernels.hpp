@@ -136,6 +136,9 @@ struct SpectralKernels {
 /// where there are no more. Requires: k >= 0.
 const SpectralKernels* runnable_kernels(int k);
 
+/// The widest of them with at most so many lanes; the last one where none is as narrow.
+const SpectralKernels& kernels_of_width(int most_lanes);
+
 extern const SpectralKernels baseline_kernels;
 #ifdef PLIANT_WIDE_KERNELS
 extern const SpectralKernels avx2_kernels;

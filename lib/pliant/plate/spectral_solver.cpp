@@ -41,8 +41,8 @@ class SpectralLinearSolver final : public LinearSolver {
 // Keeps the state in sine space for all steps of an interval.
 class SpectralPlateSolver final : public PlateSolver {
  public:
-  SpectralPlateSolver(MemoryBudget* budget, ThreadPool* threads)
-      : plate_(budget, threads), load_memory_(budget) {}
+  SpectralPlateSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
+      : plate_(budget, threads, kernels_of_width(most_lanes)), load_memory_(budget) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
@@ -113,8 +113,9 @@ std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget) {
   return std::make_unique<SpectralLinearSolver>(budget);
 }
 
-std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads) {
-  return std::make_unique<SpectralPlateSolver>(budget, threads);
+std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                        int most_lanes) {
+  return std::make_unique<SpectralPlateSolver>(budget, threads, most_lanes);
 }
 
 }  // namespace pliant

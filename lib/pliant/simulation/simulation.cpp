@@ -159,6 +159,7 @@ Simulation::Simulation(Scene scene, const SimulationOptions& options)
       checkpoints_(scene_.start, options.checkpoint_bytes),
       threads_(std::make_unique<ThreadPool>(options.threads)),
       solver_(options.solver),
+      most_lanes_(options.most_lanes),
       should_stop_(options.should_stop) {}
 
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -181,7 +182,7 @@ void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemorySh
   bodies_.emplace_back(mapping.grid, mapping.rest,
                        BodySettings{solver.stepping, solver.reference, solver.measure,
                                     solver.combine, solver.release},
-                       SolverCache(solver_, memory_.get(), threads));
+                       SolverCache(solver_, memory_.get(), threads, most_lanes_));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
 }
@@ -219,11 +220,12 @@ Result<void> Simulation::reach(int frame) {
 
 Result<FrameReport> Simulation::report(int frame) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
+  std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
+  threads_->for_each(bodies_.size(), [&](std::size_t k) { surfaces[k] = report_of(k); });
   FrameReport report{frame, {}};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    auto surface = report_of(k);
-    if (!surface) return fail(located(surface.error(), scene_.surfaces[k], frame));
-    report.surfaces.push_back(*std::move(surface));
+    if (!surfaces[k]) return fail(located(surfaces[k].error(), scene_.surfaces[k], frame));
+    report.surfaces.push_back(*std::move(surfaces[k]));
   }
   return report;
 }

@@ -40,6 +40,10 @@ struct SimulationOptions {
   /// Whether `Simulation::profile` is kept.
   bool profile = false;
 
+  /// Doubles in the solver's vectors, as far as the machine lets us choose: to show that they
+  /// change no bit.
+  int most_lanes = widest_lanes;
+
   /// Asked ahead of every surface that is read and of every time step, by any of the threads;
   /// `make` and `at` then fail with Interrupted.
   StopRequest should_stop = {};
@@ -137,6 +141,7 @@ class Simulation {
   Checkpoints checkpoints_;
   std::unique_ptr<ThreadPool> threads_;
   SolverChoice solver_;
+  int most_lanes_;
   StopRequest should_stop_;
   WarningLog warnings_;
   std::vector<Stepped> stepped_;   // one a surface; kept for its memory
