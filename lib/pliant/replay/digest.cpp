@@ -1,0 +1,56 @@
+#include "pliant/replay/digest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace pliant {
+namespace {
+
+// What the solve at a frame takes, as docs/replay.md has it: a line `region solved i0 i1 j0 j1` for
+// each part of each region, then a byte for each node of a body that recovers.
+std::string region_text(const SurfaceReport& report, const BodyState& state) {
+  std::string text;
+  for (std::size_t k = 0; k < report.regions.size(); ++k) {
+    for (const Box& part : report.regions[k].parts) {
+      text += fmt::format("{} {} {} {} {} {}\n", k, report.region_is_solved[k] ? 1 : 0, part.i0,
+                          part.i1, part.j0, part.j1);
+    }
+  }
+  text.append(state.unsettled.begin(), state.unsettled.end());
+  return text;
+}
+
+double peak_displacement(const Field& positions, const Field& rest) {
+  double largest = 0;
+  for (Eigen::Index row = 0; row < rest.rows(); ++row) {
+    const double x = positions(row, 0) - rest(row, 0);
+    const double y = positions(row, 1) - rest(row, 1);
+    const double z = positions(row, 2) - rest(row, 2);
+    largest = std::max(largest, x * x + y * y + z * z);
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace
+
+Result<ReplayFrame> digest(Simulation& simulation, int frame, ThreadPool& threads,
+                           bool with_states) {
+  const auto report = simulation.report(frame);
+  if (!report) return fail(report.error());
+  const std::size_t count = report->surfaces.size();
+  ReplayFrame digests{.number = frame, .surfaces = std::vector<SurfaceDigest>(count)};
+  if (with_states) digests.states.resize(count);
+  threads.for_each(count, [&](std::size_t k) {
+    const BodyState& state = simulation.state(k);
+    const Field& rest = simulation.rest_shapes()[k].mapping.rest;
+    digests.surfaces[k] = {hash_of(state.positions), hash_of(state.velocities),
+                           hash_of(region_text(report->surfaces[k], state)),
+                           peak_displacement(state.positions, rest)};
+    if (with_states) digests.states[k] = {state.positions, state.velocities};
+  });
+  return digests;
+}
+
+}  // namespace pliant

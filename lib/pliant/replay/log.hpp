@@ -1,0 +1,67 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pliant/body/body.hpp"
+#include "pliant/core/hash.hpp"
+
+namespace pliant {
+
+// What a .replay file says (docs/replay.md), as values.
+
+/// One surface at the output of a frame. SPEC 6, 10.
+struct SurfaceDigest {
+  Hash positions;   ///< of the nodes, object space
+  Hash velocities;  ///< carried by the nodes
+  Hash region;      ///< of what the frame's solve takes; docs/replay.md
+  double peak = 0;  ///< largest distance of a node from rest, object space [length]
+
+  friend bool operator==(const SurfaceDigest&, const SurfaceDigest&) = default;
+};
+
+/// All surfaces at one frame, in the order of the scene.
+struct ReplayFrame {
+  int number = 0;
+  std::vector<SurfaceDigest> surfaces;
+  std::vector<BodyState> states = {};  ///< empty, or one a surface; without `unsettled`
+};
+
+/// A file that the scene names, such as a mesh.
+struct ReplayFile {
+  std::string name;  ///< relative to the scene's folder, where there is such a path
+  Hash hash;         ///< of its bytes
+
+  friend bool operator==(const ReplayFile&, const ReplayFile&) = default;
+};
+
+/// A surface that was simulated.
+struct ReplaySurface {
+  std::string name;
+  int columns = 0;  ///< of its grid
+  int rows = 0;
+
+  friend bool operator==(const ReplaySurface&, const ReplaySurface&) = default;
+};
+
+/// What was recorded, and with what.
+struct ReplayHeader {
+  std::string version;     ///< of pliant
+  std::string scene_file;  ///< relative to the log's folder, where there is such a path
+  std::string scene_text;
+  std::vector<ReplayFile> files;
+  std::string solver;   ///< as `solver_choice` knows it
+  std::string factors;  ///< who makes sparse factors for that solver, as `name_of` names it
+  int start = 0;        ///< first frame
+  int end = 0;          ///< last frame, >= start
+  std::vector<ReplaySurface> surfaces;
+
+  long frame_count() const { return long{end} - start + 1; }
+
+  friend bool operator==(const ReplayHeader&, const ReplayHeader&) = default;
+};
+
+/// The version of the log's format that is written, and the only one that is read.
+inline constexpr int replay_format = 1;
+
+}  // namespace pliant

@@ -1,0 +1,187 @@
+#include "pliant/replay/replay.hpp"
+
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/replay/digest.hpp"
+#include "pliant/replay/log_file.hpp"
+#include "pliant/replay/run_header.hpp"
+
+namespace pliant {
+namespace {
+
+Result<void> write_frames(Simulation& simulation, const ReplayHeader& header, ReplayLogWriter& log,
+                          const ReplayOptions& options) {
+  ThreadPool threads(options.simulation.threads);
+  for (int number = header.start; number <= header.end; ++number) {
+    const bool has_states =
+        options.states_every > 0 && (number - header.start) % options.states_every == 0;
+    const auto frame = digest(simulation, number, threads, has_states);
+    if (!frame) return fail(frame.error());
+    if (auto written = log.write(*frame); !written) return written;
+    options.frame_done(header.frame_count());
+  }
+  return log.finish();
+}
+
+// The scene that a log is about, and a remark where it is not what the caller may think.
+struct FoundScene {
+  WrittenScene written;
+  std::optional<std::string> remark = {};
+};
+
+Result<FoundScene> find_scene(const std::filesystem::path& log_file, const ReplayHeader& header,
+                              const std::optional<std::filesystem::path>& given) {
+  const std::filesystem::path file = given ? *given : log_file.parent_path() / header.scene_file;
+  std::error_code ignored;
+  if (!given && !std::filesystem::exists(file, ignored)) {
+    return FoundScene{{file, header.scene_text},
+                      fmt::format("the scene {} is not there; its text in the log is simulated",
+                                  printable(header.scene_file))};
+  }
+  auto written = read_scene_text(file);
+  if (!written) return fail(written.error());
+  return FoundScene{*std::move(written)};
+}
+
+// The solver that a log was recorded with.
+Result<SolverChoice> solver_of(const ReplayHeader& header, const std::filesystem::path& log_file) {
+  const auto choice = solver_choice(header.solver);
+  if (choice && is_available(*choice)) return *choice;
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("recorded with the solver {}, which this build has not",
+                          printable(header.solver)),
+              log_file.string(), 1);
+}
+
+// A scene that fails now and did not when it was recorded: what changed says why.
+tl::unexpected<Error> fail_because(Error error, const std::vector<std::string>& causes,
+                                   const std::filesystem::path& log_file) {
+  const bool is_input =
+      error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
+  for (const std::string& cause : causes) {
+    if (is_input) error.others.push_back({error.code, cause, log_file.string()});
+  }
+  return fail(std::move(error));
+}
+
+// Compares frame after frame of a log with what `next` gives for them, as far as `last`. The rest
+// is read for its seals.
+template <class Next>
+Result<void> compare_frames(ReplayLogReader& log, long last, const ReplayOptions& options,
+                            ReplayVerdict& verdict, const Next& next) {
+  while (true) {
+    const auto a = log.next();
+    if (!a) return fail(a.error());
+    if (!*a) return {};
+    const bool is_decided = !verdict.holds() && !options.keeps_going;
+    if (is_decided || (*a)->number > last) continue;
+    const Result<ReplayFrame> b = next(**a);
+    if (!b) return fail(b.error());
+    for (ReplayDifference& difference : differences_in(log.header(), **a, *b)) {
+      verdict.differences.push_back(std::move(difference));
+      if (!options.keeps_going) break;
+    }
+    ++verdict.frame_count;
+    options.frame_done(log.header().frame_count());
+  }
+}
+
+Result<void> read_on(ReplayLogReader& log) {
+  while (true) {
+    const auto frame = log.next();
+    if (!frame) return fail(frame.error());
+    if (!*frame) return {};
+  }
+}
+
+}  // namespace
+
+Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
+                                   const std::filesystem::path& log_file,
+                                   const ReplayOptions& options) {
+  const auto written = read_scene_text(scene_file);
+  if (!written) return fail(written.error());
+  auto simulation = simulation_of(*written, options.simulation);
+  if (!simulation) return fail(simulation.error());
+  const Scene& scene = simulation->scene();
+  if (options.last_frame &&
+      (*options.last_frame < scene.start || *options.last_frame > scene.end)) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the last frame to record is {}; the scene has the frames {} to {}",
+                            *options.last_frame, scene.start, scene.end),
+                scene_file.string());
+  }
+  if (auto free = check_log_place(log_file, *written, scene); !free) return fail(free.error());
+  auto header = header_of_text(*written, log_file, options.simulation.solver);
+  if (!header) return header;
+  complete(*header, *simulation, options.last_frame);
+  auto log = ReplayLogWriter::create(log_file, *header);
+  if (!log) return fail(log.error());
+  if (auto done = write_frames(*simulation, *header, *log, options); !done) {
+    return fail(done.error());
+  }
+  return header;
+}
+
+Result<ReplayVerdict> verify_replay(const std::filesystem::path& log_file,
+                                    const std::optional<std::filesystem::path>& scene_file,
+                                    const ReplayOptions& options) {
+  auto log = ReplayLogReader::open(log_file);
+  if (!log) return fail(log.error());
+  const ReplayHeader& then = log->header();
+  const auto solver = solver_of(then, log_file);
+  if (!solver) return fail(solver.error());
+  const auto found = find_scene(log_file, then, scene_file);
+  if (!found) return fail(found.error());
+  ReplayVerdict verdict;
+  if (found->remark) verdict.causes.push_back(*found->remark);
+
+  auto now = header_of_text(found->written, log_file, *solver);
+  if (!now) return fail(now.error());
+  for (std::string& cause : causes_in(then, *now)) verdict.causes.push_back(std::move(cause));
+  SimulationOptions run = options.simulation;
+  run.solver = *solver;
+  auto simulation = simulation_of(found->written, run);
+  if (!simulation) return fail_because(simulation.error(), verdict.causes, log_file);
+  complete(*now, *simulation, then.end);
+  verdict.mismatches = mismatches_in(then, *now);
+
+  ThreadPool threads(run.threads);
+  const auto compute = [&](const ReplayFrame& recorded) {
+    return digest(*simulation, recorded.number, threads, !recorded.states.empty());
+  };
+  auto compared =
+      compare_frames(*log, last_comparable_frame(then, *now), options, verdict, compute);
+  if (!compared) return fail(compared.error());
+  return verdict;
+}
+
+Result<ReplayVerdict> compare_replays(const std::filesystem::path& log_file,
+                                      const std::filesystem::path& other_log_file,
+                                      const ReplayOptions& options) {
+  auto log = ReplayLogReader::open(log_file);
+  if (!log) return fail(log.error());
+  auto other = ReplayLogReader::open(other_log_file);
+  if (!other) return fail(other.error());
+  ReplayVerdict verdict;
+  verdict.causes = causes_in(log->header(), other->header());
+  verdict.mismatches = mismatches_in(log->header(), other->header());
+  const long last = last_comparable_frame(log->header(), other->header());
+  const auto read = [&](const ReplayFrame&) -> Result<ReplayFrame> {
+    auto frame = other->next();
+    if (!frame) return fail(frame.error());
+    return **std::move(frame);  // it is there: `last` is a frame of both
+  };
+  if (auto compared = compare_frames(*log, last, options, verdict, read); !compared) {
+    return fail(compared.error());
+  }
+  if (auto sound = read_on(*other); !sound) return fail(sound.error());
+  return verdict;
+}
+
+}  // namespace pliant

@@ -1,0 +1,114 @@
+#include "pliant/replay/run_header.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/scene/read.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+// From a folder to a file, so that both can be moved together.
+std::string name_from(const fs::path& folder, const fs::path& file) {
+  std::error_code ignored;
+  return fs::absolute(file, ignored)
+      .lexically_normal()
+      .lexically_proximate(fs::absolute(folder, ignored).lexically_normal())
+      .generic_string();
+}
+
+std::vector<fs::path> mesh_files(const Scene& scene) {
+  std::vector<fs::path> files;
+  for (const Surface& surface : scene.surfaces) {
+    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
+    if (mesh && std::find(files.begin(), files.end(), mesh->path) == files.end()) {
+      files.push_back(mesh->path);
+    }
+  }
+  return files;
+}
+
+std::string name_of(SolverChoice solver) {
+  for (const std::string_view name : {"auto", "spectral", "cholmod", "eigen"}) {
+    if (solver_choice(name) == solver) return std::string(name);
+  }
+  return {};
+}
+
+bool is_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  return fs::equivalent(a, b, ignored);
+}
+
+Result<Scene> scene_of(const WrittenScene& written) {
+  return parse_scene(written.text, written.file.string(), written.file.parent_path());
+}
+
+}  // namespace
+
+Result<WrittenScene> read_scene_text(const fs::path& file) {
+  auto text = read_file(file, std::size_t{256} << 20);  // as `load_scene`
+  if (!text) return fail(text.error());
+  return WrittenScene{file, *std::move(text)};
+}
+
+Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path& log_file,
+                                    SolverChoice solver) {
+  const auto scene = scene_of(written);
+  if (!scene) return fail(scene.error());
+  ReplayHeader header;
+  header.version = PLIANT_VERSION;
+  header.scene_file = name_from(log_file.parent_path(), written.file);
+  header.scene_text = written.text;
+  for (const fs::path& file : mesh_files(*scene)) {
+    const auto bytes = read_file(file);
+    if (bytes)
+      header.files.push_back({name_from(written.file.parent_path(), file), hash_of(*bytes)});
+  }
+  header.solver = name_of(solver);
+  header.factors = name_of(available_solvers().front());
+  return header;
+}
+
+void complete(ReplayHeader& header, const Simulation& simulation, std::optional<int> last_frame) {
+  const Scene& scene = simulation.scene();
+  header.start = scene.start;
+  header.end = std::min(scene.end, last_frame.value_or(scene.end));
+  for (const RestShape& shape : simulation.rest_shapes()) {
+    header.surfaces.push_back({shape.name, shape.mapping.grid.columns, shape.mapping.grid.rows});
+  }
+}
+
+Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOptions& options) {
+  auto scene = scene_of(written);
+  if (!scene) return fail(scene.error());
+  return Simulation::make(*std::move(scene), options);
+}
+
+Result<void> check_log_place(const fs::path& log_file, const WrittenScene& written,
+                             const Scene& scene) {
+  std::error_code ignored;
+  const auto refuse = [&](std::string_view reason) {
+    return fail(ErrorCode::InvalidInput, fmt::format("the log would take the place of {}", reason),
+                log_file.string());
+  };
+  if (fs::exists(log_file, ignored) && !fs::is_regular_file(log_file, ignored)) {
+    return refuse("what is no regular file");
+  }
+  if (is_one_file(log_file, written.file)) return refuse("the scene");
+  for (const fs::path& file : mesh_files(scene)) {
+    if (is_one_file(log_file, file)) return refuse("a mesh of the scene");
+  }
+  return {};
+}
+
+}  // namespace pliant
