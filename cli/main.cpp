@@ -9,6 +9,7 @@
 #include "bake.hpp"
 #include "curves.hpp"
 #include "info.hpp"
+#include "replay.hpp"
 #include "report.hpp"
 #include "validate.hpp"
 
@@ -32,6 +33,8 @@ int run(int count, char* arguments[]) {
   add_validate(app, validate);
   InfoOptions info;
   add_info(app, info);
+  ReplayCommandOptions replay;
+  add_replay(app, replay);
 
   try {
     app.parse(count, arguments);
@@ -44,6 +47,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
+  if (app.got_subcommand("replay")) return run_replay(app, replay);
   return run_bake(bake);
 }
 

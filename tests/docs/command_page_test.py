@@ -16,6 +16,15 @@ def help_of(*command):
                           timeout=60).stdout
 
 
+def commands_in(text):
+    return set(re.findall(r"^  ([a-z]+) ", text.partition("Subcommands:")[2], re.MULTILINE))
+
+
+def options_of(*command):
+    text = help_of(*command)
+    return options_in(text).union(*(options_of(*command, part) for part in commands_in(text)))
+
+
 def options_in(text):
     return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help", "--version"}
 
@@ -23,9 +32,9 @@ def options_in(text):
 def main():
     with open(os.path.join(SOURCE, "docs/command.md"), encoding="utf-8") as file:
         page = file.read()
-    commands = set(re.findall(r"^  ([a-z]+) ", help_of().split("Subcommands:")[1], re.MULTILINE))
+    commands = commands_in(help_of())
     assert commands == set(re.findall(r"^\| `pliant ([a-z]+)", page, re.MULTILINE)), commands
-    offered = set().union(*(options_in(help_of(command)) for command in commands))
+    offered = options_of()
     assert offered == options_in(page), offered ^ options_in(page)
     listed = re.search(r"picks the format: (.*?)\. Several", " ".join(help_of("bake").split())).group(1)
     endings = re.findall(r"^\| `(\.\w+)`", page, re.MULTILINE)

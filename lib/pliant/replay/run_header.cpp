@@ -17,12 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From a folder to a file, so that both can be moved together.
+// From a folder to a file, so that both can be moved together. An empty folder is the current one.
 std::string name_from(const fs::path& folder, const fs::path& file) {
   std::error_code ignored;
+  const fs::path base = folder.empty() ? fs::current_path(ignored) : fs::absolute(folder, ignored);
   return fs::absolute(file, ignored)
       .lexically_normal()
-      .lexically_proximate(fs::absolute(folder, ignored).lexically_normal())
+      .lexically_proximate(base.lexically_normal())
       .generic_string();
 }
 

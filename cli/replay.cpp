@@ -1,0 +1,156 @@
+#include "replay.hpp"
+
+#include <filesystem>
+#include <limits>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+#include "pliant/pliant.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+namespace {
+
+CLI::Validator integer_from(int least) {
+  constexpr int most = std::numeric_limits<int>::max();
+  const std::string range = fmt::format("from {} to {}", least, most);
+  return CLI::Validator(
+      [=](std::string& text) -> std::string {
+        const auto number = to_integer(text);
+        return number && *number >= least ? "" : fmt::format("{}: no integer {}", text, range);
+      },
+      range);
+}
+
+// Runs `work` with the options for it while a bar shows how far it is.
+template <class Work>
+auto with_progress(const ReplayCommandOptions& options, const Work& work) {
+  std::optional<Progress> progress;
+  ReplayOptions replay;
+  replay.simulation = simulation_options(options.resources);
+  replay.last_frame = options.last_frame;
+  replay.states_every = options.states_every;
+  replay.keeps_going = options.keeps_going;
+  replay.frame_done = [&](long frame_count) {
+    if (!progress) progress.emplace(static_cast<int>(frame_count), options.is_quiet);
+    progress->advance();
+  };
+  return work(replay);
+}
+
+int record(const ReplayCommandOptions& options) {
+  catch_interrupts();
+  outlive_readers();
+  const auto recorded = with_progress(options, [&](const ReplayOptions& replay) {
+    return record_replay(options.scene, options.log, replay);
+  });
+  if (!recorded) return report(recorded.error());
+  if (!options.is_quiet) {
+    print(stdout, fmt::format("{}: {} frames, {} surfaces recorded\n", printable(options.log),
+                              recorded->frame_count(), recorded->surfaces.size()));
+  }
+  return exit_done;
+}
+
+// A difference is data; what may explain it is a remark.
+int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdict,
+         std::string_view done) {
+  if (!verdict) return report(verdict.error());
+  const std::string log = printable(options.log);
+  for (const std::string& cause : verdict->causes) {
+    print(stderr, fmt::format("{}: note: {}\n", log, cause));
+  }
+  for (const std::string& mismatch : verdict->mismatches) {
+    print(stdout, fmt::format("{}: {}\n", log, mismatch));
+  }
+  for (const ReplayDifference& difference : verdict->differences) {
+    print(stdout, fmt::format("{}: {}\n", log, difference.message()));
+  }
+  if (!verdict->holds()) return exit_failed;
+  if (!options.is_quiet) {
+    print(stdout, fmt::format("{}: {} frames, all {}\n", log, verdict->frame_count, done));
+  }
+  return exit_done;
+}
+
+int verify(const ReplayCommandOptions& options) {
+  catch_interrupts();
+  std::optional<std::filesystem::path> scene;
+  if (!options.scene.empty()) scene = options.scene;
+  const auto verdict = with_progress(options, [&](const ReplayOptions& replay) {
+    return verify_replay(options.log, scene, replay);
+  });
+  return tell(options, verdict, "as they were recorded");
+}
+
+int diff(const ReplayCommandOptions& options) {
+  const auto verdict = with_progress(options, [&](const ReplayOptions& replay) {
+    return compare_replays(options.log, options.other_log, replay);
+  });
+  return tell(options, verdict, "equal");
+}
+
+void add_record(CLI::App& replay, ReplayCommandOptions& options) {
+  CLI::App* record =
+      replay.add_subcommand("record", "Simulate a scene and write its log: hashes of every frame");
+  record->add_option("SCENE", options.scene, "Scene file")->required();
+  record->add_option("-o,--out", options.log, "The log, RUN.replay")->required();
+  record
+      ->add_option("--states", options.states_every,
+                   "Record whole states too, every so many frames, so that a difference there "
+                   "can be told by node and size")
+      ->check(integer_from(1));
+  record->add_option("--last", options.last_frame, "The last frame to record; all by default")
+      ->check(integer_from(std::numeric_limits<int>::min()));
+}
+
+void add_verify(CLI::App& replay, ReplayCommandOptions& options) {
+  CLI::App* verify = replay.add_subcommand(
+      "verify", "Simulate what a log recorded and name the first frame and surface that differ");
+  verify->add_option("LOG", options.log, "The log, RUN.replay")->required();
+  verify->add_option("SCENE", options.scene,
+                     "Scene file; by default the one that was recorded, or its text in the log "
+                     "where that is not there");
+}
+
+void add_diff(CLI::App& replay, ReplayCommandOptions& options) {
+  CLI::App* diff = replay.add_subcommand("diff", "Compare two logs");
+  diff->add_option("A", options.log, "A log")->required();
+  diff->add_option("B", options.other_log, "Another log")->required();
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, ReplayCommandOptions& options) {
+  CLI::App* replay =
+      app.add_subcommand("replay", "Record what a scene computes, and hold it against that later");
+  replay->require_subcommand(1);
+  add_record(*replay, options);
+  add_verify(*replay, options);
+  add_diff(*replay, options);
+  for (const char* compares : {"verify", "diff"}) {
+    replay->get_subcommand(compares)->add_flag("--keep-going", options.keeps_going,
+                                               "Name all differences, not only the first");
+  }
+  for (const char* simulates : {"record", "verify"}) {
+    add_threads(*replay->get_subcommand(simulates), options.resources);
+    add_memory(*replay->get_subcommand(simulates), options.resources);
+  }
+  for (const char* any : {"record", "verify", "diff"}) {
+    replay->get_subcommand(any)->add_flag("--quiet", options.is_quiet,
+                                          "No progress, and no summary when all went well");
+  }
+}
+
+int run_replay(const CLI::App& app, const ReplayCommandOptions& options) {
+  const CLI::App* const replay = app.get_subcommand("replay");
+  if (replay->got_subcommand("record")) return record(options);
+  if (replay->got_subcommand("verify")) return verify(options);
+  return diff(options);
+}
+
+}  // namespace pliant::cli

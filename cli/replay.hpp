@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "resources.hpp"
+
+namespace pliant::cli {
+
+/// Options of `pliant replay`.
+struct ReplayCommandOptions {
+  std::string scene;
+  std::string log;
+  std::string other_log;
+  std::optional<int> last_frame;
+  int states_every = 0;
+  bool keeps_going = false;
+  bool is_quiet = false;
+  ResourceOptions resources;
+};
+
+void add_replay(CLI::App& app, ReplayCommandOptions& options);
+
+/// Whichever of record, verify and diff `app` was told to run.
+int run_replay(const CLI::App& app, const ReplayCommandOptions& options);
+
+}  // namespace pliant::cli
