@@ -11,5 +11,5 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/pliant-config-version.cm
 install(FILES
   "${PROJECT_BINARY_DIR}/pliant-config.cmake"
   "${PROJECT_BINARY_DIR}/pliant-config-version.cmake"
-  cmake/FindSleef.cmake cmake/FindxxHash.cmake cmake/FindCHOLMOD.cmake
+  cmake/PliantReplayTest.cmake cmake/FindSleef.cmake cmake/FindxxHash.cmake cmake/FindCHOLMOD.cmake
   DESTINATION "${pliant_package_dir}")

@@ -22,8 +22,18 @@ set(flags "")
 if(SANITIZE)
   set(flags "-DCMAKE_CXX_FLAGS=-fsanitize=${SANITIZE}")
 endif()
+# A replay that holds, and one of another scene.
+set(pliant "${WORK}/prefix/bin/pliant")
+file(READ "${SOURCE}/scene.xml" scene)
+string(REPLACE "4000" "4001" scene "${scene}")
+file(WRITE "${WORK}/other.xml" "${scene}")
+run("${pliant}" replay record "${SOURCE}/scene.xml" -o "${WORK}/scene.replay")
+run("${pliant}" replay record "${WORK}/other.xml" -o "${WORK}/other.replay")
+
 run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${WORK}/build"
-    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DREADME_CODE=${WORK}/readme.cpp" ${flags})
+    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DREADME_CODE=${WORK}/readme.cpp" "-DLOGS=${WORK}"
+    ${flags})
 run("${CMAKE_COMMAND}" --build "${WORK}/build")
 run("${WORK}/build/consumer")
-run("${WORK}/prefix/bin/pliant" --version)
+run("${pliant}" --version)
+run("${CMAKE_CTEST_COMMAND}" --test-dir "${WORK}/build" --no-tests=error --output-on-failure)
