@@ -6,7 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/solver_factories.hpp"
 #include "support/count_allocations.hpp"
 
 namespace {
@@ -52,9 +52,7 @@ int main() {
   const auto spectral = make_plate_solver(SolverChoice::Auto, nullptr, &threads);
   bool is_good =
       is_free_of_allocations("rectangle", *spectral, {grid, {1, 2, 1}, {40, 20}, {}, load});
-  // Too little for a factor, so that the rectangles are taken.
-  MemoryBudget tight(8'000'000);
-  const auto schwarz = make_plate_solver(SolverChoice::Auto, &tight, &threads);
+  const auto schwarz = make_schwarz_plate_solver(nullptr, &threads);
   is_good =
       is_free_of_allocations("union", *schwarz, {grid, {1, 2, 1}, {40, 20}, {}, load, ell(grid)}) &&
       is_good;
