@@ -1,0 +1,217 @@
+// Holds every golden replay against this build: with the kernels of every width that the machine
+// has, and with several threads; with --once in one way only. --bless records those that are
+// missing or differ again, and tells what changed. docs/replay.md, "Golden replays".
+//
+// usage: golden SOURCE_FOLDER [--once | --bless]
+
+#include <algorithm>
+#include <clocale>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <locale>
+#include <set>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/spectral_kernels.hpp"
+#include "pliant/replay/log_file.hpp"
+#include "pliant/replay/replay.hpp"
+#include "pliant/scene/read.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace pliant;
+
+// As many frames as keep a golden replay quick where nothing is optimised.
+constexpr int most_frames = 24;
+constexpr int most_frames_of_large_surfaces = 12;
+constexpr long most_nodes = 41L * 41;
+
+struct Golden {
+  std::string name;  // of the scene in the source folder, without its ending
+  fs::path scene;
+  fs::path log;
+};
+
+// How a golden replay is run: nothing of it may show in a bit.
+struct Run {
+  int lanes = widest_lanes;
+  int threads = 1;
+
+  std::string name() const {
+    return lanes == widest_lanes ? fmt::format("{} threads", threads)
+                                 : fmt::format("{} doubles a vector", lanes);
+  }
+};
+
+std::vector<Run> runs_to_do(bool once) {
+  std::vector<Run> runs;
+  if (once) return {Run{}};
+  for (int k = 0; const SpectralKernels* kernels = runnable_kernels(k); ++k) {
+    runs.push_back({.lanes = kernels->lanes});
+  }
+  for (const int threads : {2, 3, 8}) runs.push_back({.threads = threads});
+  return runs;
+}
+
+// Of all examples, and of the reference tests, which reach what the examples leave out; in the
+// order of their names.
+std::vector<Golden> find_goldens(const fs::path& source) {
+  std::vector<Golden> goldens;
+  for (const char* folder : {"examples", "tests/reference/scenes"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
+      if (entry.path().extension() != ".xml") continue;
+      const fs::path name = entry.path().lexically_relative(source).replace_extension();
+      goldens.push_back({name.generic_string(), entry.path(),
+                         (source / "tests/golden" / name).replace_extension(".replay")});
+    }
+  }
+  std::sort(goldens.begin(), goldens.end(),
+            [](const Golden& a, const Golden& b) { return a.name < b.name; });
+  return goldens;
+}
+
+// Logs of scenes that are no more.
+std::vector<fs::path> find_orphans(const fs::path& source, const std::vector<Golden>& goldens) {
+  std::vector<fs::path> orphans;
+  for (const auto& entry : fs::recursive_directory_iterator(source / "tests/golden")) {
+    const auto is_this = [&](const Golden& golden) { return golden.log == entry.path(); };
+    if (entry.path().extension() == ".replay" &&
+        std::none_of(goldens.begin(), goldens.end(), is_this)) {
+      orphans.push_back(entry.path());
+    }
+  }
+  return orphans;
+}
+
+void say(const std::string& line) { std::fputs((line + '\n').c_str(), stdout); }
+
+// Whether all is well with a golden replay, and what there is to say of it.
+struct Outcome {
+  bool is_well = true;
+  std::vector<std::string> lines = {};
+};
+
+Outcome outcome_of(const std::string& run, const Result<ReplayVerdict>& verdict) {
+  Outcome outcome{.is_well = verdict && verdict->holds()};
+  if (outcome.is_well) return outcome;
+  for (const std::string& line : verdict ? verdict->lines() : to_lines(verdict.error())) {
+    outcome.lines.push_back(fmt::format("{}: {}", run, line));
+  }
+  return outcome;
+}
+
+Outcome verify(const Golden& golden, const std::vector<Run>& runs) {
+  for (const Run& run : runs) {
+    const ReplayOptions options{.simulation = {.threads = run.threads, .most_lanes = run.lanes}};
+    Outcome outcome = outcome_of(run.name(), verify_replay(golden.log, golden.scene, options));
+    if (!outcome.is_well) return outcome;
+  }
+  return {};
+}
+
+// The last frame to record of a scene.
+Result<int> last_frame(const Golden& golden) {
+  auto scene = load_scene(golden.scene);
+  if (!scene) return fail(scene.error());
+  const auto simulation = Simulation::make(*std::move(scene));
+  if (!simulation) return fail(simulation.error());
+  long nodes = 0;
+  for (const RestShape& shape : simulation->rest_shapes()) nodes += shape.mapping.rest.rows();
+  const int frames = nodes > most_nodes ? most_frames_of_large_surfaces : most_frames;
+  return std::min(simulation->scene().end, simulation->scene().start + frames - 1);
+}
+
+// What a golden replay has become.
+std::vector<std::string> description(const ReplayVerdict& verdict) {
+  std::vector<std::string> lines = verdict.causes;
+  lines.insert(lines.end(), verdict.mismatches.begin(), verdict.mismatches.end());
+  if (verdict.differences.empty()) return lines;
+  std::set<int> frames;
+  double largest = 0;
+  for (const ReplayDifference& difference : verdict.differences) {
+    frames.insert(difference.frame);
+    if (difference.peaks) {
+      largest = std::max(largest, std::abs((*difference.peaks)[1] - (*difference.peaks)[0]));
+    }
+  }
+  lines.push_back(verdict.differences.front().message());
+  lines.push_back(fmt::format("{} of {} frames differ, peak displacements by {:.3g} at most",
+                              frames.size(), verdict.frame_count, largest));
+  return lines;
+}
+
+Outcome bless(const Golden& golden) {
+  const auto last = last_frame(golden);
+  if (!last) return outcome_of("scene", fail(last.error()));
+  const bool is_new = !fs::exists(golden.log);
+  const fs::path before = fs::path(golden.log).replace_extension(".before");
+  fs::create_directories(golden.log.parent_path());
+  if (!is_new) fs::rename(golden.log, before);
+  const auto recorded = record_replay(golden.scene, golden.log, {.last_frame = *last});
+  if (!recorded) {
+    if (!is_new) fs::rename(before, golden.log);
+    return outcome_of("record", fail(recorded.error()));
+  }
+  if (is_new) return {.lines = {fmt::format("new, {} frames", recorded->frame_count())}};
+  const auto verdict = compare_replays(before, golden.log, {.keeps_going = true});
+  fs::remove(before);
+  if (!verdict) return {.lines = outcome_of("before", verdict).lines};
+  return {.lines = description(*verdict)};
+}
+
+// The locale of whoever runs this, which an embedding program may set too.
+void take_locale() {
+  if (!std::setlocale(LC_ALL, "")) return;  // not installed
+  std::locale::global(std::locale(""));
+}
+
+}  // namespace
+
+int main(int count, char* arguments[]) {
+  take_locale();
+  const std::string_view option = count == 3 ? arguments[2] : "";
+  const bool blesses = option == "--bless";
+  const bool once = option == "--once";
+  if (count != 2 && !blesses && !once) {
+    std::fputs("usage: golden SOURCE_FOLDER [--once | --bless]\n", stderr);
+    return 2;
+  }
+  const fs::path source = arguments[1];
+  const std::vector<Golden> goldens = find_goldens(source);
+  const std::vector<Run> runs = runs_to_do(once);
+  std::vector<Outcome> outcomes(goldens.size());
+  ThreadPool threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  threads.for_each(goldens.size(), [&](std::size_t k) {
+    outcomes[k] = blesses ? bless(goldens[k]) : verify(goldens[k], runs);
+  });
+
+  int failed = 0;
+  for (std::size_t k = 0; k < goldens.size(); ++k) {
+    for (const std::string& line : outcomes[k].lines) {
+      say(fmt::format("{}: {}", goldens[k].name, line));
+    }
+    if (!outcomes[k].is_well) ++failed;
+  }
+  const int passed = static_cast<int>(goldens.size()) - failed;
+  for (const fs::path& orphan : find_orphans(source, goldens)) {
+    say(fmt::format("{}: no scene of that name{}", orphan.string(), blesses ? ", removed" : ""));
+    if (blesses) {
+      fs::remove(orphan);
+    } else {
+      ++failed;
+    }
+  }
+  if (failed > 0 && !blesses) {
+    say("script/test --bless records again what differs, and tells how much");
+  }
+  say(fmt::format("{} passed, {} failed", passed, failed));
+  return failed == 0 && passed > 0 ? 0 : 1;
+}
