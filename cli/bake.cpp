@@ -13,9 +13,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "frame_range.hpp"
+#include "inputs.hpp"
 #include "interrupt.hpp"
 #include "pliant/core/file_ending.hpp"
-#include "pliant/core/number.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
@@ -23,30 +24,6 @@
 
 namespace pliant::cli {
 namespace {
-
-struct FrameRange {
-  int first = 0;
-  int last = 0;
-};
-
-// A:B within the scene's frames; all of them when nothing is asked for.
-Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
-  if (!asked) return FrameRange{scene.start, scene.end};
-  const std::string& text = *asked;
-  const std::size_t colon = text.find(':');
-  const auto first = to_integer(text.substr(0, colon));
-  const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
-  if (!first || !last || *first > *last) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--frames {}: not of the form A:B with A <= B", text));
-  }
-  if (*first < scene.start || *last > scene.end) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--frames {}: the scene has the frames {} to {}", text, scene.start,
-                            scene.end));
-  }
-  return FrameRange{*first, *last};
-}
 
 // The solver of that name, if this build has it.
 Result<SolverChoice> parse_solver(const std::string& name) {
@@ -136,15 +113,6 @@ Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
   return {};
 }
 
-bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;
-  // Absolute first: of a relative name that is not there nothing would be resolved.
-  const auto place = [&](const std::filesystem::path& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
-  };
-  return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
-}
-
 // The file for the regions must be none that the bake reads or writes, nor a device or a pipe,
 // which the new file would replace.
 Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
@@ -161,11 +129,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
       !std::filesystem::is_regular_file(regions, ignored)) {
     return refuse("it is there, and no regular file");
   }
-  if (name_one_file(regions, options.scene)) return refuse("it is the scene");
-  for (const Surface& surface : scene.surfaces) {
-    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (mesh && name_one_file(regions, mesh->path)) return refuse("it is a mesh of the scene");
-  }
+  if (const auto input = input_named(regions, scene); !input.empty()) return refuse(input);
   for (const std::filesystem::path& file : files_of(plan)) {
     // Looking at the disk for each of a million frames would take long.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
@@ -284,28 +248,6 @@ void print_profile(const Profile& profile, double elapsed) {
   // Below 0 where surfaces went at the same time.
   row("the rest", elapsed - profile.total());
   row("run", elapsed);
-}
-
-// Where a warning's cause stands: the force, or the tangents that come first.
-int line_of(const Warning& warning, const SceneOrigin& origin) {
-  if (!warning.force.empty()) return origin.line_of(warning.force);
-  if (warning.kind == Warning::Kind::NeverStarts) {
-    return origin.line_of(warning.surface, "startFrame");
-  }
-  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
-    const auto found = origin.lines.find(warning.surface + '.' + tangent);
-    if (found != origin.lines.end()) return found->second;
-  }
-  return origin.line_of(warning.surface);
-}
-
-// What the author should know although the run went on, each with its line.
-void print_warnings(const Simulation& simulation) {
-  const SceneOrigin& origin = simulation.scene().origin;
-  for (const Warning& warning : simulation.warnings()) {
-    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, line_of(warning, origin),
-                              warning.message()));
-  }
 }
 
 }  // namespace

@@ -4,6 +4,18 @@
 
 namespace pliant::cli {
 
+int line_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.force.empty()) return origin.line_of(warning.force);
+  if (warning.kind == Warning::Kind::NeverStarts) {
+    return origin.line_of(warning.surface, "startFrame");
+  }
+  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
+    const auto found = origin.lines.find(warning.surface + '.' + tangent);
+    if (found != origin.lines.end()) return found->second;
+  }
+  return origin.line_of(warning.surface);
+}
+
 void print(std::FILE* stream, std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stream);
   std::fflush(stream);
@@ -21,6 +33,14 @@ int report(const Error& error) {
 void print_notes(const Scene& scene) {
   for (const SceneNote& note : scene.notes) {
     print(stderr, fmt::format("{}:{}: note: {}\n", scene.origin.file, note.line, note.message));
+  }
+}
+
+void print_warnings(const Simulation& simulation) {
+  const SceneOrigin& origin = simulation.scene().origin;
+  for (const Warning& warning : simulation.warnings()) {
+    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, line_of(warning, origin),
+                              warning.message()));
   }
 }
 

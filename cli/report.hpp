@@ -5,6 +5,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/scene.hpp"
+#include "pliant/simulation/simulation.hpp"
 
 namespace pliant::cli {
 
@@ -21,5 +22,11 @@ int report(const Error& error);
 
 /// Prints what reading a scene found that is legal, but that its author would want to know.
 void print_notes(const Scene& scene);
+
+/// Where a warning's cause stands: the force, or the tangents or start frame of its surface.
+int line_of(const Warning& warning, const SceneOrigin& origin);
+
+/// Prints what the author should know although the run went on, each with its line.
+void print_warnings(const Simulation& simulation);
 
 }  // namespace pliant::cli

@@ -1,0 +1,27 @@
+#include "frame_range.hpp"
+
+#include <fmt/format.h>
+
+#include "pliant/core/number.hpp"
+
+namespace pliant::cli {
+
+Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
+  if (!asked) return FrameRange{scene.start, scene.end};
+  const std::string& text = *asked;
+  const std::size_t colon = text.find(':');
+  const auto first = to_integer(text.substr(0, colon));
+  const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
+  if (!first || !last || *first > *last) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--frames {}: not of the form A:B with A <= B", text));
+  }
+  if (*first < scene.start || *last > scene.end) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--frames {}: the scene has the frames {} to {}", text, scene.start,
+                            scene.end));
+  }
+  return FrameRange{*first, *last};
+}
+
+}  // namespace pliant::cli
