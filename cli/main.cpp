@@ -12,6 +12,7 @@
 #include "replay.hpp"
 #include "report.hpp"
 #include "validate.hpp"
+#include "view.hpp"
 
 namespace {
 
@@ -35,6 +36,8 @@ int run(int count, char* arguments[]) {
   add_info(app, info);
   ReplayCommandOptions replay;
   add_replay(app, replay);
+  ViewOptions view;
+  add_view(app, view);
 
   try {
     app.parse(count, arguments);
@@ -48,6 +51,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
+  if (app.got_subcommand("view")) return run_view(view);
   return run_bake(bake);
 }
 

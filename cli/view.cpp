@@ -1,0 +1,116 @@
+#include "view.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "inputs.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+#include "pliant/io/atomic_file.hpp"
+#include "pliant/scene/read.hpp"
+#include "report.hpp"
+#include "view_page.hpp"
+#include "view_picture.hpp"
+#include "view_scene.hpp"
+#include "view_serve.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// Text of this many bytes is as long as a browser takes in one piece.
+constexpr std::size_t longest_page = 500'000'000;
+
+Result<void> write_page(const std::filesystem::path& file, const std::string& page) {
+  if (page.size() > longest_page) {
+    return fail(ErrorCode::OutOfMemory,
+                fmt::format("the page would have {}, more than the {} that a browser takes; show "
+                            "some of the frames with --frames A:B",
+                            bytes_text(page.size()), bytes_text(longest_page)));
+  }
+  auto output = AtomicFile::create(file);
+  if (!output) return fail(output.error());
+  if (auto written = output->write(page); !written) return written;
+  return output->commit();
+}
+
+int page_view(const ViewOptions& options, std::string_view page) {
+  const auto begin = std::chrono::steady_clock::now();
+  auto scene = load_scene(options.scene);
+  if (!scene) return report(scene.error());
+  const std::string out = options.out.value_or("view.html");
+  if (const auto input = input_named(out, *scene); !input.empty()) {
+    return report({ErrorCode::InvalidInput,
+                   fmt::format("-o {}: {}; choose another name", printable(out), input)});
+  }
+  const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
+  if (!baked) return report(baked.error());
+  const std::string made = page_with(page, title_of(baked->scene), baked->bake.packed);
+  if (auto written = write_page(out, made); !written) return report(written.error());
+  if (options.is_quiet) return exit_done;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  print(stdout,
+        fmt::format("{}: {} frames, {} vertices, {}, {:.2f} s, peak displacement {:.6g}\n",
+                    printable(out), baked->frames.count(), baked->bake.vertex_count,
+                    bytes_text(made.size()), elapsed.count(), baked->bake.peak_displacement));
+  return exit_done;
+}
+
+// A value that is no port is most likely the scene, written behind --serve.
+CLI::Validator port_number() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const auto port = to_integer(text);
+        if (port && *port >= 0 && *port <= 65535) return "";
+        return text + ": not a port, 0 to 65535; SCENE stands ahead of --serve";
+      },
+      "PORT");
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, ViewOptions& options) {
+  CLI::App* view = app.add_subcommand("view", "Make a web page that plays a scene");
+  view->add_option("SCENE", options.scene, "Scene file")->required();
+  auto* out = view->add_option("-o,--out", options.out,
+                               "The page, one file that needs no network; view.html by default");
+  view->add_option("--frames", options.frames, "A:B, or one frame; all of them by default");
+  auto* serve = view->add_option("--serve", options.port,
+                                 "Serve the page on this machine, and bake again on every save; "
+                                 "any free port by default")
+                    ->expected(0, 1)
+                    ->default_str("0")
+                    ->check(port_number())
+                    ->excludes(out);
+  auto* png = view->add_option("--png", options.png, "A picture in place of the page")
+                  ->excludes(out)
+                  ->excludes(serve);
+  auto* frame = view->add_option("--frame", options.frame, "Frame of the picture")->needs(png);
+  view->add_flag("--contact-sheet", options.is_sheet, "Twelve frames in one picture")
+      ->needs(png)
+      ->excludes(frame);
+  view->add_option("--size", options.size, "Pixels of the picture, or of each in a sheet")
+      ->needs(png)
+      ->capture_default_str();
+  view->add_option("--look", options.look,
+                   "How the picture looks, as the page's address says it: "
+                   "\"turn=30&tilt=20&colour=velocity&theme=dark\"")
+      ->needs(png);
+  add_threads(*view, options.resources);
+  add_memory(*view, options.resources);
+  view->add_flag("--quiet", options.is_quiet, "No progress and no summary");
+}
+
+int run_view(const ViewOptions& options) {
+  catch_interrupts();
+  outlive_readers();
+  const auto page = page_template();
+  if (!page) return report(page.error());
+  if (options.port) return serve_view(options, *page);
+  if (options.png) return picture_view(options, *page);
+  return page_view(options, *page);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,62 @@
+#include "view_page.hpp"
+
+#include <span>
+
+#include "view_bytes.hpp"
+
+namespace pliant::cli {
+
+// The page as the build made it, empty without npm; generated, see cli/CMakeLists.txt.
+extern const std::span<const unsigned char> embedded_page;
+
+namespace {
+
+// As text of an element.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      default:
+        result += letter;
+    }
+  }
+  return result;
+}
+
+// What stands between the two marks of the page goes, `text` comes.
+void put(std::string& page, std::string_view begin, std::string_view end, std::string_view text) {
+  const std::size_t from = page.find(begin);
+  const std::size_t to = page.find(end, from);
+  if (from == std::string::npos || to == std::string::npos) return;
+  page.replace(from + begin.size(), to - from - begin.size(), text);
+}
+
+}  // namespace
+
+Result<std::string_view> page_template() {
+  if (!embedded_page.empty()) {
+    return std::string_view(reinterpret_cast<const char*>(embedded_page.data()),
+                            embedded_page.size());
+  }
+  return fail(ErrorCode::Unwritable,
+              "this build has no viewer: npm or its packages were missing when it was made; "
+              "script/bootstrap && script/build puts it in");
+}
+
+std::string page_with(std::string_view page, std::string_view title, std::string_view packed) {
+  std::string result(page);
+  put(result, "<title>", "</title>", escaped(title) + " – pliant");
+  put(result, "<script id=\"bake\" type=\"text/plain\">", "</script>", base64(packed));
+  return result;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,235 @@
+#include "view_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "inputs.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/number.hpp"
+#include "pliant/io/atomic_file.hpp"
+#include "pliant/scene/read.hpp"
+#include "report.hpp"
+#include "view_scene.hpp"
+#include "view_server.hpp"
+
+namespace pliant::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A folder that is gone with its owner.
+class ScratchFolder {
+ public:
+  static Result<ScratchFolder> make() {
+    std::error_code error;
+    std::string name =
+        (std::filesystem::temp_directory_path(error) / "pliant-view-XXXXXX").string();
+    if (error || mkdtemp(name.data()) == nullptr) {
+      return fail(ErrorCode::Unwritable, "no folder for temporary files can be made");
+    }
+    return ScratchFolder(name);
+  }
+  ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
+
+  std::string path_;
+};
+
+// A browser without a window, ended with its owner.
+class Browser {
+ public:
+  static Result<Browser> open(const std::string& url, const std::string& folder) {
+    std::vector<std::string> words = {"",
+                                      "--headless",
+                                      "--no-first-run",
+                                      "--disable-extensions",
+                                      "--disable-dev-shm-usage",
+                                      "--use-angle=swiftshader",
+                                      "--enable-unsafe-swiftshader",
+                                      "--user-data-dir=" + folder};
+    // Chromium's own rule: root has no sandbox. All that it opens is our page.
+    if (geteuid() == 0) words.emplace_back("--no-sandbox");
+    words.push_back(url);
+    constexpr std::array<const char*, 4> programs = {"chromium", "chromium-browser",
+                                                     "google-chrome", "google-chrome-stable"};
+    for (const char* program : programs) {
+      words.front() = program;
+      if (const auto id = spawn(words)) return Browser(*id);
+    }
+    return fail(ErrorCode::Unwritable,
+                fmt::format("--png needs Chromium, which draws the picture (Debian's package "
+                            "chromium); there is none of {} on the PATH",
+                            fmt::join(programs, ", ")));
+  }
+  Browser(Browser&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Browser& operator=(Browser&&) = delete;
+  ~Browser() { close(); }
+
+  bool is_running() {
+    if (id_ != 0 && waitpid(id_, nullptr, WNOHANG) == id_) id_ = 0;
+    return id_ != 0;
+  }
+
+ private:
+  explicit Browser(pid_t id) : id_(id) {}
+
+  // In a group of its own, with all that it starts; silent.
+  static std::optional<pid_t> spawn(std::vector<std::string>& words) {
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    pid_t id = 0;
+    const int failed =
+        posix_spawnp(&id, arguments.front(), &files, &attributes, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+    if (failed != 0) return std::nullopt;
+    return id;
+  }
+
+  void close() {
+    if (id_ == 0) return;
+    kill(-id_, SIGTERM);
+    for (auto waited = 0ms; waited < 3s && is_running(); waited += 20ms) {
+      std::this_thread::sleep_for(20ms);
+    }
+    if (id_ == 0) return;
+    kill(-id_, SIGKILL);
+    waitpid(id_, nullptr, 0);
+  }
+
+  pid_t id_;
+};
+
+struct Size {
+  int width = 0;
+  int height = 0;
+};
+
+// WxH in pixels, as large as a canvas may be.
+Result<Size> parse_size(const std::string& text) {
+  constexpr int most = 8192;
+  const std::size_t cross = text.find('x');
+  const auto width = to_integer(text.substr(0, cross));
+  const auto height =
+      cross == std::string::npos ? std::nullopt : to_integer(text.substr(cross + 1));
+  if (width && height && std::min(*width, *height) >= 16 && std::max(*width, *height) <= most) {
+    return Size{static_cast<int>(*width), static_cast<int>(*height)};
+  }
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--size {}: not of the form WxH, from 16x16 to {}x{}", text, most, most));
+}
+
+// One frame, or of a sheet twelve that lie evenly.
+Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRange& frames) {
+  if (!options.is_sheet) {
+    const int frame = options.frame.value_or(frames.first);
+    if (frame >= frames.first && frame <= frames.last) return std::vector<int>{frame};
+    return fail(ErrorCode::InvalidInput, fmt::format("--frame {}: the frames are {} to {}", frame,
+                                                     frames.first, frames.last));
+  }
+  constexpr int most = 12;
+  const int count = std::min(most, frames.count());
+  std::vector<int> chosen;
+  for (int k = 0; k < count; ++k) {
+    chosen.push_back(count == 1 ? frames.first
+                                : frames.first + (frames.count() - 1) * k / (count - 1));
+  }
+  return chosen;
+}
+
+Result<std::string> draw(ViewServer& server) {
+  auto folder = ScratchFolder::make();
+  if (!folder) return fail(folder.error());
+  auto browser =
+      Browser::open(fmt::format("http://127.0.0.1:{}/take", server.port()), folder->path());
+  if (!browser) return fail(browser.error());
+  constexpr auto patience = 120s;
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < patience) {
+    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (auto picture = server.take_picture()) return *std::move(picture);
+    if (!browser->is_running()) {
+      return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
+    }
+    std::this_thread::sleep_for(20ms);
+  }
+  return fail(ErrorCode::Unwritable, "Chromium gave no picture within 120 s");
+}
+
+Result<void> make_picture(const ViewOptions& options, std::string_view page) {
+  const auto size = parse_size(options.size);
+  if (!size) return fail(size.error());
+  auto scene = load_scene(options.scene);
+  if (!scene) return fail(scene.error());
+  if (const auto input = input_named(*options.png, *scene); !input.empty()) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--png {}: {}; choose another name", printable(*options.png), input));
+  }
+  // What is asked for is checked before the scene is run for it.
+  const auto range = parse_frames(options.frames, *scene);
+  if (!range) return fail(range.error());
+  const auto frames = chosen_frames(options, *range);
+  if (!frames) return fail(frames.error());
+  auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
+  if (!baked) return fail(baked.error());
+
+  auto server = ViewServer::start(std::string(page), 0);
+  if (!server) return fail(server.error());
+  constexpr int sheet_columns = 4;
+  const nlohmann::json job = {{"width", size->width},
+                              {"height", size->height},
+                              {"frames", *frames},
+                              {"columns", sheet_columns},
+                              {"look", options.look}};
+  server->order_picture(job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  server->publish(std::move(baked->bake.packed));
+  const auto picture = draw(*server);
+  if (!picture) return fail(picture.error());
+  auto file = AtomicFile::create(*options.png);
+  if (!file) return fail(file.error());
+  if (auto written = file->write(*picture); !written) return written;
+  return file->commit();
+}
+
+}  // namespace
+
+int picture_view(const ViewOptions& options, std::string_view page) {
+  if (auto made = make_picture(options, page); !made) return report(made.error());
+  if (!options.is_quiet) print(stdout, printable(*options.png) + '\n');
+  return exit_done;
+}
+
+}  // namespace pliant::cli

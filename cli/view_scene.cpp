@@ -1,0 +1,47 @@
+#include "view_scene.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "progress.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+namespace {
+
+void print_weight(const ViewBake& bake) {
+  if (bake.position_bytes <= heavy_positions) return;
+  print(stderr, fmt::format("pliant: note: the page unpacks to {} of positions, and may be slow to "
+                            "open; --frames A:B shows some of the frames\n",
+                            bytes_text(bake.position_bytes)));
+}
+
+}  // namespace
+
+std::string title_of(const Scene& scene) {
+  return std::filesystem::path(scene.origin.file).filename().string();
+}
+
+Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
+                              const StopRequest& should_stop) {
+  print_notes(scene);
+  const auto frames = parse_frames(options.frames, scene);
+  if (!frames) return fail(frames.error());
+  SimulationOptions run = simulation_options(options.resources);
+  run.should_stop = should_stop;
+  auto simulation = Simulation::make(std::move(scene), run);
+  if (!simulation) return fail(simulation.error());
+  auto baked = [&] {
+    Progress progress(frames->last - simulation->scene().start + 1, options.is_quiet);
+    return view_bake(*simulation, *frames, {run.max_memory, should_stop},
+                     [&] { progress.advance(); });
+  }();
+  print_warnings(*simulation);
+  if (!baked) return fail(baked.error());
+  if (!options.is_quiet) print_weight(*baked);
+  return BakedScene{simulation->scene(), *frames, *std::move(baked)};
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "frame_range.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "pliant/scene/scene.hpp"
+#include "view.hpp"
+#include "view_bake.hpp"
+
+namespace pliant::cli {
+
+/// A scene that has been run for a page.
+struct BakedScene {
+  Scene scene;
+  FrameRange frames;
+  ViewBake bake;
+};
+
+/// What the page is called: the scene's file, without its folder.
+std::string title_of(const Scene& scene);
+
+/// Runs a scene that has been read, and prints its notes and warnings. Errors: those of
+/// `parse_frames`, of the simulation and of `view_bake`.
+Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
+                              const StopRequest& should_stop);
+
+}  // namespace pliant::cli

@@ -1,0 +1,137 @@
+#include "view_serve.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "interrupt.hpp"
+#include "pliant/scene/read.hpp"
+#include "report.hpp"
+#include "view_scene.hpp"
+#include "view_server.hpp"
+
+namespace pliant::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto pause = 50ms;
+
+// Looks at files now and then, and says once that one has been saved.
+class Watch {
+ public:
+  explicit Watch(std::vector<std::filesystem::path> files) {
+    for (std::filesystem::path& file : files) stamps_.emplace(std::move(file), Stamp());
+    for (auto& [file, stamp] : stamps_) stamp = stamp_of(file);
+  }
+
+  // Whether a file is another one than at the last look; from several threads at once.
+  bool has_changed() {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+    auto due = due_.load();
+    if (now < due) return has_changed_;
+    const auto next = now + std::chrono::steady_clock::duration(pause).count();
+    if (!due_.compare_exchange_strong(due, next)) return has_changed_;  // another thread looks
+    for (const auto& [file, stamp] : stamps_) {
+      if (stamp_of(file) != stamp) has_changed_ = true;
+    }
+    return has_changed_;
+  }
+
+ private:
+  struct Stamp {
+    std::filesystem::file_time_type time;
+    std::uintmax_t size = 0;
+    friend bool operator==(const Stamp&, const Stamp&) = default;
+  };
+
+  static Stamp stamp_of(const std::filesystem::path& file) {
+    std::error_code ignored;  // a file that is away for a moment is like an empty one
+    return {std::filesystem::last_write_time(file, ignored),
+            std::filesystem::file_size(file, ignored)};
+  }
+
+  std::map<std::filesystem::path, Stamp> stamps_;
+  std::atomic<std::chrono::steady_clock::rep> due_ = 0;
+  std::atomic<bool> has_changed_ = false;
+};
+
+std::vector<std::filesystem::path> inputs_of(const std::string& file, const Scene* scene) {
+  std::vector<std::filesystem::path> inputs = {file};
+  if (scene == nullptr) return inputs;
+  for (const Surface& surface : scene->surfaces) {
+    if (const auto* mesh = std::get_if<MeshFile>(&surface.shape)) inputs.push_back(mesh->path);
+  }
+  return inputs;
+}
+
+std::string to_json(const Error& error) {
+  using Json = nlohmann::ordered_json;
+  Json messages = Json::array();
+  const auto add = [&](const Error& each) {
+    messages.push_back({{"kind", "error"},
+                        {"file", std::filesystem::path(each.file).filename().string()},
+                        {"line", each.line},
+                        {"text", each.message}});
+  };
+  add(error);
+  for (const Error& other : error.others) add(other);
+  return messages.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Bakes the scene as it is now. Gives what to watch for the next time.
+std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server) {
+  // Watched from before it is read, so that no save is missed.
+  auto watch = std::make_unique<Watch>(inputs_of(options.scene, nullptr));
+  server.tell_working();
+  auto scene = load_scene(options.scene);
+  if (!scene) {
+    report(scene.error());
+    server.tell_failure(to_json(scene.error()));
+    return watch;
+  }
+  auto all = std::make_unique<Watch>(inputs_of(options.scene, &*scene));
+  if (watch->has_changed()) return watch;
+  const auto should_stop = [&] { return was_interrupted() || all->has_changed(); };
+  auto baked = bake_scene(*std::move(scene), options, should_stop);
+  if (should_stop()) return all;  // of what was baked nobody wants to know any more
+  if (!baked) {
+    report(baked.error());
+    server.tell_failure(to_json(baked.error()));
+    return all;
+  }
+  if (!options.is_quiet) {
+    print(stdout, fmt::format("{}: {} frames, {} vertices, peak displacement {:.6g}\n",
+                              printable(options.scene), baked->frames.count(),
+                              baked->bake.vertex_count, baked->bake.peak_displacement));
+  }
+  server.publish(std::move(baked->bake.packed));
+  return all;
+}
+
+}  // namespace
+
+int serve_view(const ViewOptions& options, std::string_view page) {
+  auto server = ViewServer::start(std::string(page), *options.port);
+  if (!server) return report(server.error());
+  print(stdout, fmt::format("http://127.0.0.1:{}/\n", server->port()));
+  while (!was_interrupted()) {
+    const auto watch = bake_once(options, *server);
+    while (!was_interrupted() && !watch->has_changed()) std::this_thread::sleep_for(pause);
+    // A save may take a moment: what is there is read once nothing changes any more.
+    std::this_thread::sleep_for(pause);
+  }
+  return exit_done;
+}
+
+}  // namespace pliant::cli

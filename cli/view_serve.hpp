@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+#include "view.hpp"
+
+namespace pliant::cli {
+
+/// Serves the page until Ctrl-C, and bakes again when the scene's file or a mesh of it is saved.
+/// Gives the exit code.
+int serve_view(const ViewOptions& options, std::string_view page);
+
+}  // namespace pliant::cli

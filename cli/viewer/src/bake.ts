@@ -1,0 +1,238 @@
+// What `pliant view` puts into the page, and how it is read back; docs/viewer.md has the layout.
+
+/** A parameter with a value for each frame, or one for all. */
+export type Track<T> = T[];
+export type Vector = [number, number, number];
+/** First and last column, first and last row, in nodes. */
+export type Box = [number, number, number, number];
+
+interface ArrayPlace {
+  begin: number;
+  count: number;
+}
+
+/** What is drawn on a surface from a frame on. */
+export interface Marks {
+  frame: number;
+  regions: { solved: boolean; parts: Box[] }[];
+  forces: { force: number; box: Box; push?: Vector }[];
+}
+
+interface SurfaceHead {
+  name: string;
+  enabled: boolean;
+  vertices: number;
+  columns: number;
+  rows: number;
+  origin: Vector;
+  peakDisplacement: number;
+  peakSpeed: number;
+  low: Vector;
+  high: Vector;
+  step: number;
+  error: number;
+  transforms: Track<number[]>;
+  rest: ArrayPlace;
+  uvs: ArrayPlace;
+  nodes: ArrayPlace;
+  triangles: ArrayPlace;
+  edges: ArrayPlace;
+  predictors: ArrayPlace;
+  lowBytes: ArrayPlace;
+  highBytes: ArrayPlace;
+  marks: Marks[];
+}
+
+/** A force, or the region of a group. */
+export interface Force {
+  name: string;
+  kind: string;
+  targets: string[];
+  enabled: Track<boolean>;
+  magnitude?: Track<number>;
+  deformationRadius?: Track<number>;
+  forceRadius?: Track<number>;
+  center?: Track<Vector>;
+  direction?: Track<Vector>;
+  from?: Track<Vector>;
+  to?: Track<Vector>;
+  axis?: Track<Vector>;
+  pull?: Track<number>;
+}
+
+/** Rows of a frame and the value's components. */
+export interface Channel {
+  path: string;
+  components: number;
+  keys: { at: number[]; next: string }[];
+  handles: { key: number[]; tip: number[] }[];
+  points: number[][];
+}
+
+export interface Message {
+  kind: "note" | "warning" | "error";
+  line: number;
+  text: string;
+  file?: string;
+}
+
+interface Head {
+  version: number;
+  scene: string;
+  fps: number;
+  first: number;
+  last: number;
+  surfaces: SurfaceHead[];
+  forces: Force[];
+  channels: Channel[];
+  messages: Message[];
+}
+
+export function at<T>(track: Track<T>, index: number): T {
+  return track[Math.min(index, track.length - 1)];
+}
+
+/** A track between frames: numbers go straight, anything else stays. */
+export function between(track: Track<number>, index: number, share: number): number {
+  const here = at(track, index);
+  return share === 0 ? here : here + share * (at(track, index + 1) - here);
+}
+
+export function vectorBetween(track: Track<Vector>, index: number, share: number): Vector {
+  const here = at(track, index);
+  if (share === 0) return here;
+  const next = at(track, index + 1);
+  return [0, 1, 2].map((k) => here[k] + share * (next[k] - here[k])) as Vector;
+}
+
+/** One surface over all frames. Object space, from `origin`. */
+export class BakedSurface {
+  readonly rest: Float32Array;
+  readonly uvs: Float32Array;
+  readonly triangles: Uint32Array;
+  readonly edges: Uint32Array;
+  /** The first vertex of each node of the grid; -1: none. */
+  readonly nodeVertices: Int32Array;
+  private readonly steps: Int16Array;
+
+  constructor(
+    readonly head: SurfaceHead,
+    arrays: ArrayBuffer,
+    start: number,
+  ) {
+    const floats = (place: ArrayPlace) => new Float32Array(arrays, start + place.begin, place.count);
+    const whole = (place: ArrayPlace) => new Uint32Array(arrays, start + place.begin, place.count);
+    const bytes = (place: ArrayPlace) => new Uint8Array(arrays, start + place.begin, place.count);
+    this.rest = floats(head.rest);
+    this.uvs = floats(head.uvs);
+    this.triangles = whole(head.triangles);
+    this.edges = whole(head.edges);
+    const nodes = whole(head.nodes);
+    this.nodeVertices = new Int32Array(head.columns * head.rows).fill(-1);
+    for (let vertex = nodes.length; vertex-- > 0; ) this.nodeVertices[nodes[vertex]] = vertex;
+    this.steps = unfolded(bytes(head.predictors), bytes(head.lowBytes), bytes(head.highBytes), vertexOrder(nodes, this.nodeVertices.length));
+  }
+
+  /** Displacements from rest at frame `index` plus `share` of the way to the next. */
+  displacementsAt(index: number, share: number, out: Float32Array): void {
+    const count = this.rest.length;
+    const frames = this.steps.length / count;
+    const { step } = this.head;
+    const here = index * count;
+    const next = Math.min(index + 1, frames - 1) * count;
+    for (let k = 0; k < count; ++k) {
+      const steps = this.steps[here + k];
+      out[k] = step * (share === 0 ? steps : steps + share * (this.steps[next + k] - steps));
+    }
+  }
+
+  marksAt(frame: number): Marks | undefined {
+    return this.head.marks.findLast((marks) => marks.frame <= frame);
+  }
+}
+
+/** Vertices by their nodes, those of one node as they come. */
+function vertexOrder(nodes: Uint32Array, nodeCount: number): Uint32Array {
+  const begins = new Uint32Array(nodeCount + 1);
+  for (const node of nodes) ++begins[node + 1];
+  for (let node = 0; node < nodeCount; ++node) begins[node + 1] += begins[node];
+  const order = new Uint32Array(nodes.length);
+  nodes.forEach((node, vertex) => (order[begins[node]++] = vertex));
+  return order;
+}
+
+/** Whole numbers of steps: frames x vertices x 3, from how far each was from its prediction. */
+function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Array, order: Uint32Array): Int16Array {
+  const count = order.length;
+  const steps = new Int16Array(predictors.length * count * 3);
+  const along = 4;
+  let read = 0;
+  for (let frame = 0; frame < predictors.length; ++frame) {
+    const kind = predictors[frame] & 3;
+    const isAlong = (predictors[frame] & along) !== 0;
+    const here = frame * count * 3;
+    const before = kind >= 1 && frame >= 1 ? here - count * 3 : -1;
+    const earlier = kind === 2 && frame >= 2 ? here - count * 6 : -1;
+    for (let component = 0; component < 3; ++component) {
+      let last = 0;
+      for (let k = 0; k < count; ++k, ++read) {
+        const folded = low[read] | (high[read] << 8);
+        let missed = (folded >> 1) ^ -(folded & 1);
+        if (isAlong) {
+          missed += last;
+          last = missed;
+        }
+        const place = 3 * order[k] + component;
+        let guess = 0;
+        if (before >= 0) guess = kind === 2 ? 2 * steps[before + place] : steps[before + place];
+        if (earlier >= 0) guess -= steps[earlier + place];
+        steps[here + place] = guess + missed; // modulo 2^16, as an Int16Array stores
+      }
+    }
+  }
+  return steps;
+}
+
+/** A scene over its frames. */
+export class Bake {
+  readonly head: Head;
+  readonly surfaces: BakedSurface[];
+
+  /** `unpacked`: the length of the head, the head, the arrays. */
+  constructor(unpacked: ArrayBuffer) {
+    const start = 4;
+    const length = new DataView(unpacked).getUint32(0, true);
+    this.head = JSON.parse(new TextDecoder().decode(new Uint8Array(unpacked, start, length))) as Head;
+    if (this.head.version !== 1) throw new Error(`this page reads version 1, not ${this.head.version}`);
+    this.surfaces = this.head.surfaces.map((head) => new BakedSurface(head, unpacked, start + length));
+  }
+
+  get frameCount(): number {
+    return this.head.last - this.head.first + 1;
+  }
+}
+
+/** Undoes the deflate stream that the command made. */
+export async function unpack(packed: Uint8Array<ArrayBuffer>): Promise<Bake> {
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return new Bake(await new Response(stream).arrayBuffer());
+}
+
+/** The bytes of a base 64 text. */
+export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
+  const digits = new Uint8Array(128);
+  [..."ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"].forEach((digit, value) => (digits[digit.charCodeAt(0)] = value));
+  const padding = base64.endsWith("==") ? 2 : base64.endsWith("=") ? 1 : 0;
+  const bytes = new Uint8Array((base64.length / 4) * 3 - padding);
+  for (let read = 0, write = 0; read < base64.length; read += 4) {
+    const bits =
+      (digits[base64.charCodeAt(read)] << 18) |
+      (digits[base64.charCodeAt(read + 1)] << 12) |
+      (digits[base64.charCodeAt(read + 2)] << 6) |
+      digits[base64.charCodeAt(read + 3)];
+    bytes[write++] = bits >> 16;
+    bytes[write++] = bits >> 8; // past the end of the array nothing is written
+    bytes[write++] = bits;
+  }
+  return bytes;
+}

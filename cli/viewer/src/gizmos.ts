@@ -1,0 +1,292 @@
+// The thesis's feedback for a force (5.2.2): three circles for each of its two volumes, and its
+// vector from the centre. Dark, or blue, is what deforms; light, or amber, what is pushed (fig. 12).
+
+import * as THREE from "three";
+import { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+
+import { at, between, vectorBetween, type Force, type Vector } from "./bake";
+import type { Palette } from "./theme";
+
+const segments = 96;
+
+function circlePoints(turn: (a: number) => Vector): number[] {
+  const points: number[] = [];
+  for (let k = 0; k < segments; ++k) {
+    for (const end of [k, k + 1]) points.push(...turn((2 * Math.PI * end) / segments));
+  }
+  return points;
+}
+
+const lineGeometry = (points: number[]) => new LineSegmentsGeometry().setPositions(points);
+
+const sphere = lineGeometry([
+  ...circlePoints((a) => [0, Math.cos(a), Math.sin(a)]),
+  ...circlePoints((a) => [Math.cos(a), 0, Math.sin(a)]),
+  ...circlePoints((a) => [Math.cos(a), Math.sin(a), 0]),
+]);
+const ring = lineGeometry(circlePoints((a) => [Math.cos(a), 0, Math.sin(a)]));
+const segment = lineGeometry([0, 0, 0, 0, 1, 0]);
+const head = new THREE.ConeGeometry(0.5, 1, 20).translate(0, -0.5, 0);
+const dot = new THREE.SphereGeometry(1, 16, 10);
+const up = new THREE.Vector3(0, 1, 0);
+
+const toVector = (v: Vector) => new THREE.Vector3(...v);
+
+/** How a part looks, and how it shimmers through what is in front of it. */
+class Ink {
+  readonly seen: LineMaterial;
+  readonly covered: LineMaterial;
+
+  constructor(
+    linewidth: number,
+    private readonly opacity: number,
+  ) {
+    const common = { linewidth, transparent: true, depthWrite: false };
+    this.seen = new LineMaterial(common);
+    this.covered = new LineMaterial({ ...common, depthFunc: THREE.GreaterDepth });
+    this.strength = 1;
+  }
+
+  lines(geometry: LineSegmentsGeometry): LineSegments2 {
+    const lines = new LineSegments2(geometry, this.seen);
+    lines.add(new LineSegments2(geometry, this.covered));
+    return lines;
+  }
+
+  set strength(share: number) {
+    this.seen.opacity = share * this.opacity;
+    this.covered.opacity = 0.22 * share * this.opacity;
+  }
+
+  set colour(colour: string) {
+    for (const material of [this.seen, this.covered]) material.color.set(colour);
+  }
+
+  dispose(): void {
+    for (const material of [this.seen, this.covered]) material.dispose();
+  }
+}
+
+interface Inks {
+  deformation: Ink;
+  force: Ink;
+  faint: Ink;
+}
+
+/** A vector with a head; the shaft is a line. */
+class Arrow {
+  readonly group = new THREE.Group();
+  private readonly shaft: LineSegments2;
+  private readonly tip: THREE.Mesh;
+
+  constructor(ink: Ink, faces: THREE.Material) {
+    this.shaft = ink.lines(segment);
+    this.tip = new THREE.Mesh(head, faces);
+    this.group.add(this.shaft, this.tip);
+  }
+
+  /** From `from`, along `along` with its length; hidden without one. */
+  point(from: THREE.Vector3, along: THREE.Vector3, size: number): void {
+    const length = along.length();
+    this.group.visible = length > 0;
+    if (length === 0) return;
+    const turn = new THREE.Quaternion().setFromUnitVectors(up, along.clone().divideScalar(length));
+    const headLength = Math.min(size, 0.45 * length);
+    this.shaft.position.copy(from);
+    this.shaft.quaternion.copy(turn);
+    this.shaft.scale.set(1, length - headLength, 1);
+    this.tip.position.copy(from).add(along);
+    this.tip.quaternion.copy(turn);
+    this.tip.scale.set(0.7 * headLength, headLength, 0.7 * headLength);
+  }
+}
+
+/** One force, or a group. */
+class Gizmo {
+  readonly group = new THREE.Group();
+  private readonly inks: Inks;
+  private readonly solid = new THREE.MeshBasicMaterial({ transparent: true });
+  private readonly deformation: LineSegments2[] = [];
+  private readonly force: LineSegments2[] = [];
+  private readonly middle: THREE.Mesh;
+  private readonly course: LineSegments2;
+  private readonly arrows: Arrow[] = [];
+  private readonly strongest: number;
+
+  constructor(
+    private readonly parameters: Force,
+    private readonly reach: number,
+  ) {
+    this.inks = { deformation: new Ink(1.6, 0.9), force: new Ink(2, 1), faint: new Ink(1, 0.5) };
+    this.group.name = `force ${parameters.name}`;
+    this.strongest = Math.max(...(parameters.magnitude ?? [0]).map(Math.abs));
+    const { kind } = parameters;
+    // A line's volume is a capsule, a vortex's a tube: circles at both ends, and lines between.
+    const volumes = kind === "line" ? 2 : 1;
+    const shape = kind === "vortex" ? ring : sphere;
+    for (let k = 0; k < (kind === "vortex" ? 3 : volumes); ++k) {
+      this.deformation.push(this.inks.deformation.lines(shape));
+      this.force.push(this.inks.force.lines(shape));
+    }
+    for (const each of this.deformation) each.name = `${parameters.name} deformationRadius`;
+    for (const each of this.force) each.name = `${parameters.name} forceRadius`;
+    this.middle = new THREE.Mesh(dot, this.solid);
+    this.middle.name = `${parameters.name} center`;
+    this.course = this.inks.faint.lines(segment);
+    const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1 };
+    for (let k = 0; k < (arrowCount[kind] ?? 0); ++k) {
+      this.arrows.push(new Arrow(this.inks.force, this.solid));
+      this.arrows[k].group.name = `${parameters.name} vector`;
+    }
+    this.group.add(...this.deformation, ...this.force, this.middle, this.course, ...this.arrows.map((each) => each.group));
+  }
+
+  colour(palette: Palette): void {
+    this.inks.deformation.colour = palette.deformation;
+    this.inks.force.colour = palette.force;
+    this.inks.faint.colour = palette.force;
+    this.solid.color.set(palette.force);
+  }
+
+  /** `middle` is where forces stand that are everywhere; `push` what inertia gives there. */
+  show(index: number, share: number, middle: THREE.Vector3, push: Vector | undefined): void {
+    const force = this.parameters;
+    this.group.visible = at(force.enabled, index);
+    if (!this.group.visible) return;
+    const magnitude = force.magnitude ? between(force.magnitude, index, share) : 0;
+    // A force without a magnitude still selects its region, but stays in the background.
+    const strength = magnitude === 0 && force.kind !== "group" ? 0.3 : 1;
+    for (const ink of Object.values(this.inks) as Ink[]) ink.strength = strength;
+    this.solid.opacity = strength;
+    const isEverywhere = force.kind === "uniform" || force.kind === "inertia" || force.kind === "custom";
+    const deformationRadius = !isEverywhere && force.deformationRadius ? between(force.deformationRadius, index, share) : 0;
+    const forceRadius = !isEverywhere && force.forceRadius ? between(force.forceRadius, index, share) : 0;
+    const size = deformationRadius || forceRadius || 0.35 * this.reach;
+    const length = this.strongest > 0 ? (1.15 * size * magnitude) / this.strongest : 0;
+    const vectorOf = (track: Vector[] | undefined) => (track ? toVector(vectorBetween(track, index, share)) : new THREE.Vector3());
+
+    const ends = force.from && force.to ? [vectorOf(force.from), vectorOf(force.to)] : [force.center ? vectorOf(force.center) : middle.clone()];
+    this.placeVolumes(ends, deformationRadius, forceRadius, force.axis && vectorOf(force.axis));
+    const center = ends.length === 2 ? ends[0].clone().lerp(ends[1], 0.5) : ends[0];
+    this.middle.position.copy(center);
+    this.middle.scale.setScalar(0.035 * size);
+
+    const headSize = 0.16 * size;
+    const direction = force.kind === "inertia" ? toVector(push ?? [0, 0, 0]) : vectorOf(force.direction);
+    if (direction.lengthSq() > 0) direction.normalize();
+    this.course.visible = false;
+    if (force.kind === "point" || force.kind === "uniform" || force.kind === "inertia" || force.direction) {
+      this.showCourse(center, direction, 1.15 * size);
+      this.arrows[0].point(center, direction.multiplyScalar(length), headSize);
+      for (const arrow of this.arrows.slice(1)) arrow.group.visible = false;
+    } else if (force.kind === "radial") {
+      const ways: Vector[] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+      this.burst(center, ways.map(toVector), 0.25 * size, 0.62 * length, 0.7 * headSize);
+    } else if (force.kind === "line") {
+      const [side, over] = across(ends[1].clone().sub(ends[0]));
+      this.burst(center, [side, side.clone().negate(), over, over.clone().negate()], 0.25 * size, 0.62 * length, 0.7 * headSize);
+    } else if (force.kind === "vortex") {
+      this.showVortex(center, vectorOf(force.axis), between(force.pull ?? [0], index, share), forceRadius || size, length, 0.8 * headSize);
+    }
+  }
+
+  dispose(): void {
+    for (const ink of Object.values(this.inks) as Ink[]) ink.dispose();
+    this.solid.dispose();
+  }
+
+  private placeVolumes(ends: THREE.Vector3[], deformationRadius: number, forceRadius: number, axis?: THREE.Vector3): void {
+    const place = (each: LineSegments2, k: number, radius: number) => {
+      each.visible = radius > 0;
+      each.position.copy(ends[Math.min(k, ends.length - 1)]);
+      each.scale.setScalar(Math.max(radius, 1e-30));
+      if (axis && axis.lengthSq() > 0) {
+        // Three rings around the axis.
+        const way = axis.clone().normalize();
+        each.quaternion.setFromUnitVectors(up, way);
+        each.position.addScaledVector(way, (k - 1) * 0.5 * deformationRadius);
+      }
+    };
+    this.deformation.forEach((each, k) => place(each, k, deformationRadius));
+    this.force.forEach((each, k) => place(each, k, forceRadius));
+    if (ends.length !== 2) return;
+    const along = ends[1].clone().sub(ends[0]);
+    const length = along.length();
+    if (length === 0) return;
+    for (const each of [...this.deformation, ...this.force]) each.quaternion.setFromUnitVectors(up, along.clone().divideScalar(length));
+  }
+
+  // Where the force points, whatever its magnitude.
+  private showCourse(from: THREE.Vector3, direction: THREE.Vector3, length: number): void {
+    this.course.visible = direction.lengthSq() > 0;
+    if (!this.course.visible) return;
+    this.course.position.copy(from);
+    this.course.quaternion.setFromUnitVectors(up, direction);
+    this.course.scale.set(1, length, 1);
+  }
+
+  // Away from the middle, or towards it where the magnitude is negative.
+  private burst(center: THREE.Vector3, ways: THREE.Vector3[], gap: number, length: number, headSize: number): void {
+    ways.forEach((way, k) => {
+      const from = center.clone().addScaledVector(way, length < 0 ? gap - length : gap);
+      this.arrows[k].point(from, way.clone().multiplyScalar(length), headSize);
+    });
+  }
+
+  // Along the ring, and inwards as far as it pulls.
+  private showVortex(center: THREE.Vector3, axis: THREE.Vector3, pull: number, radius: number, length: number, headSize: number): void {
+    if (axis.lengthSq() === 0) {
+      for (const arrow of this.arrows) arrow.group.visible = false;
+      return;
+    }
+    axis.normalize();
+    this.course.visible = true;
+    this.course.position.copy(center).addScaledVector(axis, -radius);
+    this.course.quaternion.setFromUnitVectors(up, axis);
+    this.course.scale.set(1, 2 * radius, 1);
+    const [side, over] = across(axis);
+    [side, over, side.clone().negate(), over.clone().negate()].forEach((way, k) => {
+      const from = center.clone().addScaledVector(way, radius);
+      const turning = axis.clone().cross(way).addScaledVector(way, -pull).normalize();
+      this.arrows[k].point(from, turning.multiplyScalar(0.8 * length), headSize);
+    });
+  }
+}
+
+/** Two unit vectors across another. */
+function across(along: THREE.Vector3): [THREE.Vector3, THREE.Vector3] {
+  const way = along.lengthSq() > 0 ? along.clone().normalize() : up.clone();
+  const helper = Math.abs(way.y) < 0.9 ? up : new THREE.Vector3(1, 0, 0);
+  const side = helper.clone().cross(way).normalize();
+  return [side, way.clone().cross(side)];
+}
+
+export class Gizmos {
+  readonly group = new THREE.Group();
+  private readonly gizmos: Gizmo[];
+
+  /** `reach` is the size of the scene. */
+  constructor(
+    readonly forces: Force[],
+    reach: number,
+    private readonly middle: THREE.Vector3,
+  ) {
+    this.group.name = "gizmos";
+    this.gizmos = forces.map((force) => new Gizmo(force, reach));
+    this.group.add(...this.gizmos.map((gizmo) => gizmo.group));
+  }
+
+  show(index: number, share: number, pushes: Map<number, Vector>): void {
+    this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, this.middle, pushes.get(k)));
+  }
+
+  colour(palette: Palette): void {
+    for (const gizmo of this.gizmos) gizmo.colour(palette);
+  }
+
+  dispose(): void {
+    for (const gizmo of this.gizmos) gizmo.dispose();
+  }
+}

@@ -1,0 +1,39 @@
+// What the page's address may say after #: `frame=12&colour=velocity&turn=30`.
+
+import type { Colour, Style } from "./surface_view";
+import type { Theme } from "./theme";
+
+export interface Look {
+  frame?: number;
+  turn?: number;
+  tilt?: number;
+  style?: Style;
+  colour?: Colour;
+  theme?: Theme;
+  gizmos?: boolean;
+  regions?: boolean;
+  boxes?: boolean;
+  floor?: boolean;
+}
+
+export function readLook(address: string): Look {
+  const words = new URLSearchParams(address.replace(/^#/, ""));
+  const number = (name: string) => {
+    const value = Number(words.get(name) ?? NaN);
+    return Number.isFinite(value) ? value : undefined;
+  };
+  const one = <T extends string>(name: string, allowed: readonly T[]) => allowed.find((each) => each === words.get(name));
+  const isOn = (name: string) => ({ on: true, off: false })[words.get(name) ?? ""];
+  return {
+    frame: number("frame"),
+    turn: number("turn"),
+    tilt: number("tilt"),
+    style: one("style", ["shaded", "lines", "wireframe"] as const),
+    colour: one("colour", ["plain", "displacement", "velocity"] as const),
+    theme: one("theme", ["light", "dark"] as const),
+    gizmos: isOn("gizmos"),
+    regions: isOn("regions"),
+    boxes: isOn("boxes"),
+    floor: isOn("floor"),
+  };
+}

@@ -1,0 +1,291 @@
+// The page: puts what the command baked on the stage, and ties buttons, keys and panels to it.
+
+import { bytesOf, unpack, type Bake, type Message } from "./bake";
+import { CurvePanel, numberText } from "./curves";
+import { fetchBake, follow } from "./live";
+import { readLook, type Look } from "./look";
+import { showMessages } from "./messages";
+import { takePicture, type PictureJob } from "./picture";
+import { Readout } from "./readout";
+import "./style.css";
+import { ramps, type Colour, type Style } from "./surface_view";
+import { ThemeChoice } from "./theme";
+import { Timeline } from "./timeline";
+import { Viewer } from "./viewer";
+
+function element<T extends Element>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no ${id}`);
+  return found as unknown as T;
+}
+
+const themes = new ThemeChoice();
+const viewer = new Viewer(element("view"), themes);
+const { playback, stage, display } = viewer;
+const timeline = new Timeline(element("timeline"), playback, themes);
+const curves = new CurvePanel(element("channels"), element("curve-view"), playback, themes);
+const readout = new Readout(stage, element("readout"), themes);
+
+// Playback
+
+const button = (id: string, press: () => void) => element<HTMLButtonElement>(id).addEventListener("click", press);
+const frameField = element<HTMLInputElement>("frame");
+const loopButton = element<HTMLButtonElement>("loop");
+
+function toggleLoop(): void {
+  playback.isLooping = !playback.isLooping;
+  loopButton.setAttribute("aria-pressed", String(playback.isLooping));
+}
+
+button("play", () => playback.toggle());
+button("back", () => playback.step(-1));
+button("on", () => playback.step(1));
+button("to-start", () => playback.goTo(playback.first));
+button("to-end", () => playback.goTo(playback.last));
+button("loop", toggleLoop);
+frameField.addEventListener("change", () => {
+  playback.pause();
+  playback.goTo(frameField.valueAsNumber);
+  frameField.value = String(playback.frame);
+});
+element<HTMLSelectElement>("speed").addEventListener("change", (event) => {
+  playback.speed = Number((event.target as HTMLSelectElement).value);
+});
+
+let wasPlaying = false;
+playback.onChange(() => {
+  if (document.activeElement !== frameField || playback.isPlaying) frameField.value = String(playback.frame);
+  readout.update();
+  if (playback.isPlaying === wasPlaying) return;
+  wasPlaying = playback.isPlaying;
+  element("play-icon").setAttribute("href", wasPlaying ? "#icon-pause" : "#icon-play");
+  element("play").setAttribute("aria-label", wasPlaying ? "Pause" : "Play");
+});
+
+// Display
+
+function check(id: string, take: (isOn: boolean) => void): (isOn: boolean) => void {
+  const box = element<HTMLInputElement>(id);
+  box.addEventListener("change", () => take(box.checked));
+  return (isOn) => {
+    box.checked = isOn;
+    take(isOn);
+  };
+}
+
+function choice<T extends string>(name: string, take: (value: T) => void): (value: T) => void {
+  const radios = [...document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)];
+  for (const radio of radios) radio.addEventListener("change", () => take(radio.value as T));
+  return (value) => {
+    for (const radio of radios) radio.checked = radio.value === value;
+    take(value);
+  };
+}
+
+const setStyle = choice<Style>("style", (style) => {
+  display.style = style;
+  viewer.redress();
+});
+const setColour = choice<Colour>("colour", (colour) => {
+  display.colour = colour;
+  viewer.redress();
+  showLegend();
+});
+const setGizmos = check("show-gizmos", (isOn) => {
+  display.hasGizmos = isOn;
+  viewer.redress();
+});
+const setRegions = check("show-regions", (isOn) => {
+  display.hasRegions = isOn;
+  viewer.redress();
+});
+const setBoxes = check("show-boxes", (isOn) => {
+  display.hasBoxes = isOn;
+  viewer.redress();
+});
+const setFloor = check("show-floor", (isOn) => (stage.hasFloor = isOn));
+check("interpolate", (isOn) => {
+  playback.isBetween = isOn;
+  playback.goTo(playback.frame);
+});
+
+function showLegend(): void {
+  const { colour } = display;
+  element<HTMLElement>("legend").hidden = colour === "plain";
+  if (colour === "plain") return;
+  const peak = viewer.peak();
+  element("legend-title").textContent = colour === "displacement" ? "Displacement" : "Velocity, per second";
+  element("legend-high").textContent = numberText(peak);
+  const ramp = element<HTMLElement>("legend-ramp");
+  ramp.style.background = ramps[colour].css();
+  ramp.setAttribute("aria-label", `Colours from 0 to ${numberText(peak)}`);
+}
+
+function togglePanel(id: string, buttonId: string, attribute: string): void {
+  const panel = element<HTMLElement>(id);
+  panel.hidden = !panel.hidden;
+  element(buttonId).setAttribute(attribute, String(!panel.hidden));
+  curves.draw();
+}
+const toggleCurves = () => togglePanel("curves", "curves-toggle", "aria-pressed");
+const toggleDisplay = () => togglePanel("display", "display-toggle", "aria-expanded");
+
+button("curves-toggle", toggleCurves);
+button("display-toggle", toggleDisplay);
+button("theme", () => themes.toggle());
+button("frame-all", () => stage.frameAll());
+const help = element<HTMLDialogElement>("help");
+button("help-toggle", () => help.showModal());
+
+// Keys
+
+function next<T>(all: readonly T[], now: T): T {
+  return all[(all.indexOf(now) + 1) % all.length];
+}
+
+const shortcuts: Record<string, (event: KeyboardEvent) => void> = {
+  " ": () => playback.toggle(),
+  ArrowLeft: (event) => playback.step(event.shiftKey ? -10 : -1),
+  ArrowRight: (event) => playback.step(event.shiftKey ? 10 : 1),
+  ArrowUp: () => timeline.toKey(-1),
+  ArrowDown: () => timeline.toKey(1),
+  Home: () => playback.goTo(playback.first),
+  End: () => playback.goTo(playback.last),
+  f: () => stage.frameAll(),
+  l: toggleLoop,
+  w: () => setStyle(next(["shaded", "lines", "wireframe"] as const, display.style)),
+  v: () => setColour(next(["displacement", "velocity", "plain"] as const, display.colour)),
+  g: () => {
+    const isOn = !display.hasGizmos;
+    for (const set of [setGizmos, setRegions, setBoxes]) set(isOn);
+  },
+  c: toggleCurves,
+  d: toggleDisplay,
+  t: () => themes.toggle(),
+  "?": () => help.showModal(),
+};
+
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || help.open) return;
+  const target = event.target as HTMLElement;
+  const shortcut = shortcuts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  // Fields and buttons keep the keys that work them.
+  const isField = target.matches("input:not([type=checkbox]), select, textarea");
+  const isPressed = event.key === " " && target.matches("button, input, [role=option]");
+  if (!shortcut || isField || isPressed) return;
+  event.preventDefault();
+  shortcut(event);
+});
+
+// What is shown
+
+function listForces(bake: Bake): void {
+  element("forces").replaceChildren(
+    ...bake.head.forces.map((force) => {
+      const item = document.createElement("li");
+      const kind = document.createElement("span");
+      kind.textContent = force.kind;
+      item.append(force.name, kind);
+      return item;
+    }),
+  );
+}
+
+function load(bake: Bake): void {
+  const { head } = bake;
+  const name = head.scene.split("/").pop() ?? head.scene;
+  document.title = `${name} – pliant`;
+  element("scene-name").textContent = name;
+  const vertices = head.surfaces.reduce((sum, each) => sum + each.vertices, 0);
+  const error = Math.max(0, ...head.surfaces.map((each) => each.error));
+  const summary = element<HTMLElement>("summary");
+  summary.textContent = `${bake.frameCount} frames · ${Number(head.fps.toPrecision(5))} fps · ${vertices.toLocaleString("en")} vertices`;
+  summary.title = `Positions of this page are within ${numberText(error)} of the bake's`;
+  frameField.min = String(head.first);
+  frameField.max = String(head.last);
+  timeline.keyFrames = [...new Set(head.channels.flatMap((channel) => channel.keys.map((key) => key.at[0])))].sort((a, b) => a - b);
+  readout.clear();
+  viewer.load(bake);
+  readout.views = viewer.views;
+  curves.load(head.channels);
+  listForces(bake);
+  showLegend();
+  showMessages(element("messages"), head.messages);
+  element("view").setAttribute("aria-label", `${head.surfaces.map((each) => each.name).join(", ")}: ${bake.frameCount} frames, ${head.forces.length} forces`);
+}
+
+function apply(look: Look): void {
+  if (look.theme) themes.choose(look.theme);
+  if (look.style) setStyle(look.style);
+  if (look.colour) setColour(look.colour);
+  if (look.gizmos !== undefined) setGizmos(look.gizmos);
+  if (look.regions !== undefined) setRegions(look.regions);
+  if (look.boxes !== undefined) setBoxes(look.boxes);
+  if (look.floor !== undefined) setFloor(look.floor);
+  if (look.turn !== undefined || look.tilt !== undefined) stage.look(look.turn, look.tilt);
+  if (look.frame !== undefined) playback.goTo(look.frame);
+}
+
+function showLive(text: string, state: string): void {
+  const live = element<HTMLElement>("live");
+  live.hidden = false;
+  live.textContent = text;
+  live.dataset.state = state;
+}
+
+function goLive(): void {
+  let isConnected = false;
+  follow({
+    baked(bake) {
+      load(bake);
+      showLive("live", "ready");
+    },
+    failed(messages: Message[]) {
+      showMessages(element("messages"), messages);
+      showLive("errors", "failed");
+    },
+    working() {
+      showLive("baking", "working");
+    },
+    connected(isThere) {
+      if (isThere && !isConnected) showLive("live", "ready");
+      if (!isThere) showLive("stopped", "failed");
+      isConnected = isThere;
+    },
+  });
+}
+
+/** `pliant view --png` opens the page for this only, and takes the picture from it. */
+async function sendPicture(): Promise<void> {
+  const job = (await (await fetch("job")).json()) as PictureJob & { look: string };
+  load(await fetchBake());
+  apply({ theme: "light", ...defined(readLook(job.look)) });
+  const picture = await takePicture(viewer, themes, job);
+  await fetch("picture", { method: "POST", body: picture });
+}
+
+function defined(look: Look): Look {
+  return Object.fromEntries(Object.entries(look).filter(([, value]) => value !== undefined)) as Look;
+}
+
+async function begin(): Promise<void> {
+  const text = element<HTMLScriptElement>("bake").textContent ?? "";
+  if (text !== "") {
+    load(await unpack(bytesOf(text)));
+    element("bake").remove();
+    apply(readLook(location.hash));
+  } else if (location.pathname === "/take") {
+    await sendPicture();
+  } else {
+    goLive();
+  }
+  document.documentElement.dataset.ready = "true";
+}
+
+addEventListener("hashchange", () => apply(readLook(location.hash)));
+begin().catch((error: Error) => {
+  showMessages(element("messages"), [{ kind: "error", line: 0, text: `This page cannot be shown: ${error.message}` }]);
+});
+
+// For tests, and for whoever looks at a page from the console.
+Object.assign(window, { pliant: { viewer, stage, playback, themes } });

@@ -1,0 +1,107 @@
+// Numbers of the vertex under the cursor.
+
+import * as THREE from "three";
+
+import type { Stage } from "./stage";
+import type { SurfaceView } from "./surface_view";
+import type { ThemeChoice } from "./theme";
+
+/** Meshes with more triangles are looked at when the cursor rests only. */
+const manyTriangles = 150_000;
+
+export class Readout {
+  views: SurfaceView[] = [];
+  private picked: { view: SurfaceView; vertex: number } | null = null;
+  private readonly caster = new THREE.Raycaster();
+  private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10), new THREE.MeshBasicMaterial({ depthTest: false, transparent: true }));
+  private pending = 0;
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly output: HTMLOutputElement,
+    themes: ThemeChoice,
+  ) {
+    this.marker.name = "picked vertex";
+    this.marker.visible = false;
+    this.marker.renderOrder = 3;
+    stage.scene.add(this.marker);
+    const colour = () => this.marker.material.color.set(themes.palette.accent);
+    themes.onChange(colour);
+    colour();
+    stage.canvas.addEventListener("pointermove", (event) => {
+      if (event.buttons === 0) this.request(event);
+    });
+    stage.canvas.addEventListener("pointerup", (event) => this.request(event));
+    stage.canvas.addEventListener("pointerleave", (event) => {
+      if (event.pointerType === "mouse") this.clear();
+    });
+  }
+
+  clear(): void {
+    clearTimeout(this.pending);
+    this.picked = null;
+    this.update();
+  }
+
+  /** Tells of the picked vertex at the frame that is shown now. */
+  update(): void {
+    this.marker.visible = this.picked !== null;
+    this.stage.invalidate();
+    if (!this.picked) {
+      this.output.replaceChildren();
+      return;
+    }
+    const { view, vertex } = this.picked;
+    const { name, columns } = view.surface.head;
+    const node = view.surface.nodeVertices.indexOf(vertex);
+    const place = view.vertex(vertex, this.marker.position);
+    this.marker.scale.setScalar(0.0045 * place.distanceTo(this.stage.camera.position));
+    const rows: [string, string][] = [
+      ["vertex", `${name} ${vertex}${node >= 0 ? ` (${node % columns}, ${Math.floor(node / columns)})` : ""}`],
+      ["u, v", `${fixed(view.surface.uvs[2 * vertex])}, ${fixed(view.surface.uvs[2 * vertex + 1])}`],
+      ["position", place.toArray().map(fixed).join(", ")],
+      ["displacement", fixed(view.displacement[vertex])],
+      ["velocity", `${fixed(view.speed[vertex])} /s`],
+    ];
+    this.output.replaceChildren(
+      ...rows.map(([label, text]) => {
+        const row = document.createElement("span");
+        const what = document.createElement("span");
+        what.textContent = label;
+        const value = document.createElement("b");
+        value.textContent = text;
+        row.append(what, value);
+        return row;
+      }),
+    );
+  }
+
+  private request(event: PointerEvent): void {
+    const triangles = this.views.reduce((sum, view) => sum + view.surface.triangles.length / 3, 0);
+    clearTimeout(this.pending);
+    this.pending = window.setTimeout(() => this.pick(event), triangles > manyTriangles ? 120 : 8);
+  }
+
+  private pick(event: PointerEvent): void {
+    const box = this.stage.canvas.getBoundingClientRect();
+    const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
+    this.caster.setFromCamera(at, this.stage.camera);
+    const [hit] = this.caster.intersectObjects(this.views.map((view) => view.mesh), false);
+    const view = this.views.find((each) => each.mesh === hit?.object);
+    if (!hit?.face || !view) {
+      this.clear();
+      return;
+    }
+    const { a, b, c } = hit.face;
+    const near = (vertex: number) => view.vertex(vertex).distanceToSquared(hit.point);
+    this.picked = { view, vertex: [a, b, c].reduce((best, each) => (near(each) < near(best) ? each : best)) };
+    this.update();
+  }
+}
+
+/** Five digits, with a sign's room kept. */
+function fixed(value: number): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 1e5 || size < 1e-4 ? value.toExponential(3) : value.toPrecision(5);
+}

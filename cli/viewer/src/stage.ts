@@ -1,0 +1,153 @@
+// Camera, light and floor; draws when something has changed.
+
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+import type { Palette } from "./theme";
+
+const restTurn = THREE.MathUtils.degToRad(32);
+const restTilt = THREE.MathUtils.degToRad(28);
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  readonly camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
+  readonly renderer: THREE.WebGLRenderer;
+  readonly controls: OrbitControls;
+  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x7c8796, 1.6);
+  private floor = new THREE.Group();
+  private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
+  private isStale = true;
+  private isPinned = false;
+  private floorColours = ["#888888", "#444444"];
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.scene.add(this.sun, this.sun.target, this.sky, this.floor);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.controls.dampingFactor = 0.12;
+    this.controls.addEventListener("change", () => this.invalidate());
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
+    this.resize();
+    const loop = () => {
+      requestAnimationFrame(loop);
+      this.controls.update();
+      if (this.isStale) this.draw();
+    };
+    requestAnimationFrame(loop);
+  }
+
+  invalidate(): void {
+    this.isStale = true;
+  }
+
+  draw(): void {
+    this.isStale = false;
+    // The light comes along: over the left shoulder, so that no side is dark.
+    const size = this.box.getSize(new THREE.Vector3()).length();
+    const offset = new THREE.Vector3(-0.6, 0.9, 0.8).applyQuaternion(this.camera.quaternion);
+    this.sun.target.position.copy(this.controls.target);
+    this.sun.position.copy(this.controls.target).addScaledVector(offset.setY(Math.max(offset.y, 0.5)), size);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** What the camera shall see. */
+  bound(box: THREE.Box3): void {
+    this.box = box.clone();
+    const size = Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
+    this.camera.near = size / 500;
+    this.camera.far = size * 50;
+    this.camera.updateProjectionMatrix();
+    this.controls.minDistance = size / 100;
+    this.controls.maxDistance = size * 12;
+    this.buildFloor();
+  }
+
+  /** Everything in sight, from the side that the camera is on. */
+  frameAll(): void {
+    const center = this.box.getCenter(new THREE.Vector3());
+    const toCamera = this.camera.position.clone().sub(this.controls.target);
+    if (toCamera.lengthSq() === 0) toCamera.set(0, 0, 1);
+    this.lookFrom(center, toCamera.normalize());
+  }
+
+  /** As seen first, or turned about the vertical and tilted, in degrees. */
+  look(turn?: number, tilt?: number): void {
+    const a = turn === undefined ? restTurn : THREE.MathUtils.degToRad(turn);
+    const b = tilt === undefined ? restTilt : THREE.MathUtils.degToRad(tilt);
+    const way = new THREE.Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
+    this.lookFrom(this.box.getCenter(new THREE.Vector3()), way);
+  }
+
+  /** From now on of this size, whatever the page's. The view is fitted to it. */
+  pin(width: number, height: number): void {
+    this.isPinned = true;
+    this.resizeTo(width, height, 1);
+    this.frameAll();
+  }
+
+  private resizeTo(width: number, height: number, ratio: number): void {
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.invalidate();
+  }
+
+  colour(palette: Palette): void {
+    this.scene.background = new THREE.Color(palette.background);
+    this.floorColours = [palette.floorAxis, palette.floor];
+    this.buildFloor();
+    this.invalidate();
+  }
+
+  set hasFloor(isShown: boolean) {
+    this.floor.visible = isShown;
+    this.invalidate();
+  }
+
+  private resize(): void {
+    if (this.isPinned) return;
+    const place = this.canvas.parentElement!.getBoundingClientRect();
+    if (place.width === 0 || place.height === 0) return;
+    this.resizeTo(place.width, place.height, Math.min(devicePixelRatio, 2));
+    // At once: what was drawn is gone.
+    this.draw();
+  }
+
+  // The corners of the box fill the picture, less a margin.
+  private lookFrom(center: THREE.Vector3, way: THREE.Vector3): void {
+    const side = new THREE.Vector3(0, 1, 0).cross(way);
+    if (side.lengthSq() < 1e-9) side.set(1, 0, 0);
+    side.normalize();
+    const over = way.clone().cross(side);
+    const tanV = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
+    const tanH = tanV * this.camera.aspect;
+    let distance = 0;
+    for (let k = 0; k < 8; ++k) {
+      const corner = new THREE.Vector3(k & 1 ? this.box.max.x : this.box.min.x, k & 2 ? this.box.max.y : this.box.min.y, k & 4 ? this.box.max.z : this.box.min.z).sub(center);
+      const depth = corner.dot(way);
+      distance = Math.max(distance, depth + Math.abs(corner.dot(side)) / tanH, depth + Math.abs(corner.dot(over)) / tanV);
+    }
+    this.controls.target.copy(center);
+    this.camera.position.copy(center).addScaledVector(way, 1.04 * Math.max(distance, 1e-12));
+    this.camera.lookAt(center);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  // Squares of a round size under the scene.
+  private buildFloor(): void {
+    this.floor.clear();
+    const size = this.box.getSize(new THREE.Vector3());
+    const extent = 1.5 * Math.max(size.x, size.z, 0.3 * size.y, 1e-9);
+    const power = 10 ** Math.floor(Math.log10(extent / 10));
+    const cell = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= extent / 20)!;
+    const count = 2 * Math.ceil(extent / cell / 2);
+    const grid = new THREE.GridHelper(count * cell, count, this.floorColours[0], this.floorColours[1]);
+    const center = this.box.getCenter(new THREE.Vector3());
+    grid.position.set(Math.round(center.x / cell) * cell, this.box.min.y - 0.02 * size.length(), Math.round(center.z / cell) * cell);
+    this.floor.add(grid);
+  }
+}

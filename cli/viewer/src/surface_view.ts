@@ -1,0 +1,184 @@
+// One surface in the scene graph: shape, shading, colours.
+
+import * as THREE from "three";
+
+import { at, type BakedSurface } from "./bake";
+import { displacementRamp, velocityRamp, type Ramp } from "./ramp";
+import type { Palette } from "./theme";
+
+export type Style = "shaded" | "lines" | "wireframe";
+export type Colour = "plain" | "displacement" | "velocity";
+
+export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: displacementRamp, velocity: velocityRamp };
+
+/** p_world = transform · (origin + p), as three.js has matrices; between frames number by number. */
+function placement(surface: BakedSurface, index: number, share: number): THREE.Matrix4 {
+  const { origin, transforms } = surface.head;
+  const here = at(transforms, index);
+  const next = at(transforms, index + 1);
+  const t = here.map((number, k) => number + share * ((next?.[k] ?? number) - number));
+  const matrix = new THREE.Matrix4();
+  matrix.set(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], 0, 0, 0, 1);
+  return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
+}
+
+export class SurfaceView {
+  readonly group = new THREE.Group();
+  readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
+  /** Of each vertex at the frame shown, world space. */
+  readonly displacement: Float32Array;
+  readonly speed: Float32Array;
+  private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
+  private readonly offsets: Float32Array;
+  private readonly offsetsBefore: Float32Array;
+  private plain = new THREE.Color();
+  private style: Style = "shaded";
+
+  constructor(
+    readonly surface: BakedSurface,
+    private readonly fps: number,
+  ) {
+    const count = surface.rest.length;
+    this.offsets = new Float32Array(count);
+    this.offsetsBefore = new Float32Array(count);
+    this.displacement = new Float32Array(count / 3);
+    this.speed = new Float32Array(count / 3);
+
+    const geometry = new THREE.BufferGeometry();
+    const changing = () => new THREE.BufferAttribute(new Float32Array(count), 3).setUsage(THREE.DynamicDrawUsage);
+    geometry.setAttribute("position", changing());
+    geometry.setAttribute("normal", changing());
+    geometry.setAttribute("color", changing());
+    geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
+    const material = new THREE.MeshStandardMaterial({
+      vertexColors: true, side: THREE.DoubleSide, roughness: 0.62, metalness: 0,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    this.mesh = new THREE.Mesh(geometry, material);
+    this.mesh.name = surface.head.name;
+
+    const wires = new THREE.BufferGeometry();
+    wires.setAttribute("position", geometry.getAttribute("position"));
+    wires.setAttribute("color", geometry.getAttribute("color"));
+    wires.setIndex(new THREE.BufferAttribute(surface.edges, 1));
+    this.lines = new THREE.LineSegments(wires, new THREE.LineBasicMaterial({ transparent: true }));
+    this.lines.name = `${surface.head.name} mesh`;
+
+    this.group.name = `surface ${surface.head.name}`;
+    this.group.matrixAutoUpdate = false;
+    this.group.add(this.mesh, this.lines);
+    for (const object of [this.mesh, this.lines]) object.frustumCulled = false; // vertices move
+  }
+
+  /** Shows frame `index` plus `share` of the way to the next. */
+  show(index: number, share: number): void {
+    const { rest } = this.surface;
+    this.surface.displacementsAt(index, share, this.offsets);
+    const positions = this.mesh.geometry.getAttribute("position") as THREE.BufferAttribute;
+    const array = positions.array as Float32Array;
+    for (let k = 0; k < array.length; ++k) array[k] = rest[k] + this.offsets[k];
+    positions.needsUpdate = true;
+    this.group.matrix.copy(placement(this.surface, index, share));
+    this.group.matrixWorldNeedsUpdate = true;
+    this.mesh.geometry.boundingSphere = null;
+    this.turnNormals(array);
+    this.measure(index, share);
+  }
+
+  /** Colours by a number of each vertex, whose largest is `peak`. */
+  paint(colour: Colour, peak: number): void {
+    const attribute = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
+    const colours = attribute.array as Float32Array;
+    if (colour === "plain") {
+      for (let k = 0; k < colours.length; k += 3) this.plain.toArray(colours, k);
+    } else {
+      const numbers = colour === "displacement" ? this.displacement : this.speed;
+      const ramp = ramps[colour].colours;
+      for (let vertex = 0; vertex < numbers.length; ++vertex) {
+        const shade = peak > 0 ? Math.min(Math.round((255 * numbers[vertex]) / peak), 255) : 0;
+        colours[3 * vertex] = ramp[3 * shade];
+        colours[3 * vertex + 1] = ramp[3 * shade + 1];
+        colours[3 * vertex + 2] = ramp[3 * shade + 2];
+      }
+    }
+    attribute.needsUpdate = true;
+  }
+
+  dress(style: Style, palette: Palette): void {
+    this.style = style;
+    this.plain.set(palette.surface);
+    this.mesh.material.colorWrite = style !== "wireframe";
+    this.mesh.material.depthWrite = style !== "wireframe";
+    this.lines.visible = style !== "shaded";
+    const { material } = this.lines;
+    material.vertexColors = style === "wireframe";
+    material.color.set(style === "wireframe" ? 0xffffff : palette.mesh);
+    material.opacity = style === "wireframe" ? 0.9 : 0.28;
+    material.needsUpdate = true;
+  }
+
+  get isWireframe(): boolean {
+    return this.style === "wireframe";
+  }
+
+  /** A vertex at the frame shown, world space. */
+  vertex(index: number, out = new THREE.Vector3()): THREE.Vector3 {
+    return out.fromBufferAttribute(this.mesh.geometry.getAttribute("position"), index).applyMatrix4(this.group.matrix);
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+    this.lines.geometry.dispose();
+    this.lines.material.dispose();
+  }
+
+  // The sum of the area vectors of the triangles around each vertex.
+  private turnNormals(p: Float32Array): void {
+    const attribute = this.mesh.geometry.getAttribute("normal") as THREE.BufferAttribute;
+    const n = attribute.array as Float32Array;
+    n.fill(0);
+    const { triangles } = this.surface;
+    for (let k = 0; k < triangles.length; k += 3) {
+      const a = 3 * triangles[k];
+      const b = 3 * triangles[k + 1];
+      const c = 3 * triangles[k + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      n[a] += x; n[a + 1] += y; n[a + 2] += z;
+      n[b] += x; n[b + 1] += y; n[b + 2] += z;
+      n[c] += x; n[c + 1] += y; n[c + 2] += z;
+    }
+    for (let k = 0; k < n.length; k += 3) {
+      const length = Math.hypot(n[k], n[k + 1], n[k + 2]) || 1;
+      n[k] /= length; n[k + 1] /= length; n[k + 2] /= length;
+    }
+    attribute.needsUpdate = true;
+  }
+
+  // Displacement from where rest would be now; velocity as the mean since the frame before.
+  private measure(index: number, share: number): void {
+    const m = this.group.matrix.elements;
+    const isFirst = index === 0 && share === 0;
+    const before = share > 0 ? index : Math.max(index - 1, 0);
+    this.surface.displacementsAt(before, 0, this.offsetsBefore);
+    const last = placement(this.surface, before, 0).elements;
+    const time = (share > 0 ? share : 1) / this.fps;
+    const { rest } = this.surface;
+    for (let k = 0; k < rest.length; k += 3) {
+      const [dx, dy, dz] = [this.offsets[k], this.offsets[k + 1], this.offsets[k + 2]];
+      const [bx, by, bz] = [this.offsetsBefore[k], this.offsetsBefore[k + 1], this.offsetsBefore[k + 2]];
+      let moved = 0, gone = 0;
+      for (let row = 0; row < 3; ++row) {
+        const offset = m[row] * dx + m[row + 4] * dy + m[row + 8] * dz;
+        moved += offset * offset;
+        const place = offset + m[row] * rest[k] + m[row + 4] * rest[k + 1] + m[row + 8] * rest[k + 2] + m[row + 12];
+        const was = last[row] * (rest[k] + bx) + last[row + 4] * (rest[k + 1] + by) + last[row + 8] * (rest[k + 2] + bz) + last[row + 12];
+        gone += (place - was) ** 2;
+      }
+      this.displacement[k / 3] = Math.sqrt(moved);
+      this.speed[k / 3] = isFirst ? 0 : Math.sqrt(gone) / time;
+    }
+  }
+}

@@ -1,0 +1,71 @@
+// Light or dark: as the system has it, until the viewer is told otherwise.
+
+export type Theme = "light" | "dark";
+
+/** Colours of what is drawn by hand; those of the page are in style.css. */
+export interface Palette {
+  background: string;
+  floor: string;
+  floorAxis: string;
+  surface: string;
+  mesh: string;
+  /** The two of the thesis, fig. 12: what deforms, and what is pushed. */
+  deformation: string;
+  force: string;
+  rim: string;
+  ink: string;
+  faint: string;
+  panel: string;
+  curves: string[];
+  accent: string;
+}
+
+const palettes: Record<Theme, Palette> = {
+  dark: {
+    background: "#15191f", floor: "#2a313b", floorAxis: "#3b4552", surface: "#b9c2cf", mesh: "#0b0e12",
+    deformation: "#6fb1ff", force: "#ffb43a", rim: "#e9f1fb", ink: "#d5dce6", faint: "#5d6877", panel: "#1b2027",
+    curves: ["#77a8ff", "#ff8078", "#6fd48f", "#77a8ff"], accent: "#ffb43a",
+  },
+  light: {
+    background: "#eef1f5", floor: "#d3d9e1", floorAxis: "#b5becb", surface: "#a9b4c3", mesh: "#11161d",
+    deformation: "#1d4f9e", force: "#b85c00", rim: "#0f1722", ink: "#1f2733", faint: "#97a2b1", panel: "#ffffff",
+    curves: ["#2563c9", "#c2362f", "#2a8a4a", "#2563c9"], accent: "#b85c00",
+  },
+};
+
+export class ThemeChoice {
+  private readonly system = matchMedia("(prefers-color-scheme: light)");
+  private chosen: Theme | null = null;
+  private readonly listeners: (() => void)[] = [];
+
+  constructor() {
+    this.system.addEventListener("change", () => this.apply());
+    this.apply();
+  }
+
+  get theme(): Theme {
+    return this.chosen ?? (this.system.matches ? "light" : "dark");
+  }
+
+  get palette(): Palette {
+    return palettes[this.theme];
+  }
+
+  choose(theme: Theme): void {
+    this.chosen = theme;
+    this.apply();
+  }
+
+  toggle(): void {
+    this.choose(this.theme === "dark" ? "light" : "dark");
+  }
+
+  onChange(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  private apply(): void {
+    document.documentElement.dataset.theme = this.theme;
+    for (const listener of this.listeners) listener();
+  }
+}

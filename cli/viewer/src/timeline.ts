@@ -1,0 +1,144 @@
+// The ruler of frames: scrub, keys as diamonds.
+
+import type { Playback } from "./playback";
+import type { ThemeChoice } from "./theme";
+
+/** 1, 2 or 5 times a power of ten, at least `least`. */
+export function niceStep(least: number): number {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].map((k) => k * power).find((each) => each >= least * 0.999999)!;
+}
+
+/** Makes a canvas as sharp as the screen; gives its size in CSS pixels, or null without one. */
+export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const context = canvas.getContext("2d");
+  if (!context || width === 0 || height === 0) return null;
+  const ratio = devicePixelRatio || 1;
+  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
+}
+
+export function diamond(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+  context.beginPath();
+  context.moveTo(x, y - radius);
+  context.lineTo(x + radius, y);
+  context.lineTo(x, y + radius);
+  context.lineTo(x - radius, y);
+  context.closePath();
+}
+
+const margin = 16;
+
+export class Timeline {
+  /** Frames with keys, ascending. */
+  keyFrames: number[] = [];
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly playback: Playback,
+    private readonly themes: ThemeChoice,
+  ) {
+    canvas.addEventListener("pointerdown", (event) => {
+      if (event.button !== 0) return;
+      canvas.setPointerCapture(event.pointerId);
+      playback.pause();
+      this.scrub(event);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      if (canvas.hasPointerCapture(event.pointerId)) this.scrub(event);
+    });
+    playback.onChange(() => this.draw());
+    themes.onChange(() => this.draw());
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  /** To the key before (-1) or after (1) the frame shown. */
+  toKey(way: -1 | 1): void {
+    const { frame } = this.playback;
+    const inRange = this.keyFrames.filter((key) => key >= this.playback.first && key <= this.playback.last).map(Math.round);
+    const key = way < 0 ? inRange.findLast((each) => each < frame) : inRange.find((each) => each > frame);
+    if (key === undefined) return;
+    this.playback.pause();
+    this.playback.goTo(key);
+  }
+
+  draw(): void {
+    this.describe();
+    const surface = prepare(this.canvas);
+    if (!surface) return;
+    const { context, width, height } = surface;
+    const { palette } = this.themes;
+    const { first, last } = this.playback;
+    const x = (frame: number) => this.x(frame, width);
+    const base = height - 16;
+
+    context.strokeStyle = palette.faint;
+    context.fillStyle = palette.ink;
+    context.font = "11px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "alphabetic";
+    context.lineWidth = 1;
+    const perFrame = (width - 2 * margin) / Math.max(last - first, 1);
+    const labelStep = Math.max(1, niceStep(46 / perFrame));
+    const tickStep = Math.max(1, niceStep(5 / perFrame));
+    context.beginPath();
+    for (let frame = Math.ceil(first / tickStep) * tickStep; frame <= last; frame += tickStep) {
+      const isLabelled = Math.round(frame / labelStep) * labelStep === frame;
+      context.moveTo(Math.round(x(frame)) + 0.5, base);
+      context.lineTo(Math.round(x(frame)) + 0.5, base - (isLabelled ? 10 : 5));
+    }
+    context.moveTo(margin, base + 0.5);
+    context.lineTo(width - margin, base + 0.5);
+    context.stroke();
+    context.globalAlpha = 0.75;
+    for (let frame = Math.ceil(first / labelStep) * labelStep; frame <= last; frame += labelStep) {
+      context.fillText(String(frame), x(frame), height - 3);
+    }
+    context.globalAlpha = 1;
+
+    context.fillStyle = palette.curves[0];
+    for (const key of this.keyFrames) {
+      if (key < first || key > last) continue;
+      diamond(context, x(key), base - 19, 4.5);
+      context.fill();
+    }
+
+    const now = x(this.playback.time);
+    context.strokeStyle = context.fillStyle = palette.accent;
+    context.lineWidth = 2;
+    context.beginPath();
+    context.moveTo(now, 4);
+    context.lineTo(now, base + 2);
+    context.stroke();
+    context.beginPath();
+    context.moveTo(now - 6, 0);
+    context.lineTo(now + 6, 0);
+    context.lineTo(now, 8);
+    context.fill();
+  }
+
+  private describe(): void {
+    const { frame, first, last, fps } = this.playback;
+    const seconds = (frame - first) / fps;
+    const isKey = this.keyFrames.some((key) => Math.round(key) === frame);
+    this.canvas.setAttribute("aria-valuemin", String(first));
+    this.canvas.setAttribute("aria-valuemax", String(last));
+    this.canvas.setAttribute("aria-valuenow", String(frame));
+    this.canvas.setAttribute("aria-valuetext", `frame ${frame}, ${seconds.toFixed(2)} s${isKey ? ", key" : ""}`);
+  }
+
+  private x(frame: number, width: number): number {
+    const { first, last } = this.playback;
+    return margin + ((frame - first) / Math.max(last - first, 1)) * (width - 2 * margin);
+  }
+
+  private scrub(event: PointerEvent): void {
+    const box = this.canvas.getBoundingClientRect();
+    const share = (event.clientX - box.left - margin) / (box.width - 2 * margin);
+    this.playback.goTo(this.playback.first + share * (this.playback.last - this.playback.first));
+  }
+}

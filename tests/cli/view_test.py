@@ -1,0 +1,374 @@
+"""What `pliant view` puts into its page, read back as docs/viewer.md tells, and how it serves it.
+
+usage: view_test.py PLIANT SOURCE_FOLDER
+
+In a build that was made without npm there is no page; then this tests what the command says of it.
+What a browser makes of the page is tested by tests/viewer.
+"""
+
+import base64
+import http.client
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+
+import numpy as np
+
+PLIANT = None
+SOURCE = None
+HAS_PAGE = False
+
+SCENE = """<scene version="1" fps="25" start="{start}" end="{end}">
+  <surface name="sheet"><grid columns="13" rows="11" width="12" depth="10"/>{transform}
+    <material density="2" damping="3"/></surface>
+  <surface name="other"><grid columns="5" rows="4"/></surface>
+  <point name="poke" center="0 0 0" direction="0.2 1 0" deformationRadius="4.5" forceRadius="2.5" targets="sheet">
+    <animate attribute="magnitude"><key frame="1" value="0"/><key frame="5" value="{magnitude}"/></animate></point>
+</scene>
+"""
+
+
+def read_page(path):
+    """Title, head and arrays of a page."""
+    with open(path, encoding="utf-8") as file:
+        page = file.read()
+    packed = re.search(r'<script id="bake" type="text/plain">([^<]*)</script>', page).group(1)
+    return re.search("<title>(.*?)</title>", page).group(1), *unpack(base64.b64decode(packed, validate=True))
+
+
+def unpack(packed):
+    unpacked = zlib.decompress(packed, wbits=-15)
+    length = int.from_bytes(unpacked[:4], "little")
+    return json.loads(unpacked[4:4 + length]), unpacked[4 + length:]
+
+
+def positions(head, arrays, surface):
+    """Frames x vertices x 3, world space, by the rules of the page, one number at a time."""
+    def array(name, kind):
+        place = surface[name]
+        return np.frombuffer(arrays, kind, place["count"], place["begin"])
+
+    count = surface["vertices"]
+    order = np.argsort(array("nodes", "<u4"), kind="stable")
+    missed = array("lowBytes", "u1").astype(int) + 256 * array("highBytes", "u1").astype(int)
+    missed = np.where(missed % 2, -(missed + 1) // 2, missed // 2)
+    missed = missed.reshape(-1, 3, count)
+    steps = np.zeros((len(missed) + 2, 3, count), int)  # two frames of rest ahead
+    for frame, predictor in enumerate(array("predictors", "u1")):
+        now = missed[frame]
+        if predictor & 4:
+            now = np.cumsum(now, axis=1)
+        before, earlier = steps[frame + 1], steps[frame]
+        now = now + [0, before, 2 * before - earlier][predictor & 3]
+        steps[frame + 2] = (now + 2**15) % 2**16 - 2**15
+    offsets = np.empty((len(missed), count, 3))
+    offsets[:, order] = surface["step"] * steps[2:].transpose(0, 2, 1)
+    rest = array("rest", "<f4").reshape(-1, 3).astype(float) + surface["origin"]
+    frames = head["last"] - head["first"] + 1
+    transforms = np.array(surface["transforms"] * (frames if len(surface["transforms"]) == 1 else 1))
+    transforms = transforms.reshape(frames, 3, 4)
+    return np.einsum("frc,fvc->fvr", transforms[:, :, :3], offsets + rest) + transforms[:, None, :, 3]
+
+
+class View(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="pliant-view-test-")
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def scene(self, name="scene.xml", *, start=1, end=12, magnitude=3000, transform=""):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(SCENE.format(start=start, end=end, magnitude=magnitude, transform=transform))
+        return self.path(name)
+
+    def run_pliant(self, *arguments, code=0):
+        result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=120,
+                                stdin=subprocess.DEVNULL, cwd=self.folder, check=False)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+
+class WithoutPage(View):
+    def test_a_build_without_the_page_says_how_to_get_it(self):
+        if HAS_PAGE:
+            self.skipTest("this build has the page")
+        result = self.run_pliant("view", self.scene(), code=1)
+        self.assertEqual(result.stderr.count("\n"), 1)
+        self.assertIn("no viewer", result.stderr)
+        self.assertIn("script/bootstrap", result.stderr)
+        self.assertEqual(os.listdir(self.folder), ["scene.xml"])
+
+
+class Page(View):
+    def setUp(self):
+        if not HAS_PAGE:
+            self.skipTest("this build has no page")
+        super().setUp()
+
+    def compare(self, scene, *options):
+        """The page's positions against those of a bake, within what the page says."""
+        self.run_pliant("view", scene, "-o", "view.html", "--quiet", *options)
+        self.run_pliant("bake", scene, "-o", "bake.npy", "--quiet", *options)
+        _, head, arrays = read_page(self.path("view.html"))
+        for surface in head["surfaces"]:
+            several = self.path(f"bake-{surface['name']}.npy")
+            expected = np.load(several if os.path.exists(several) else self.path("bake.npy"))
+            linear = np.array(surface["transforms"]).reshape(-1, 3, 4)[:, :, :3]
+            stretch = max(np.linalg.norm(each, 2) for each in linear)
+            error = np.abs(positions(head, arrays, surface) - expected).max()
+            self.assertLessEqual(error, 1.75 * surface["error"] * stretch + 1e-12)  # along a diagonal
+            size = np.ptp(expected.reshape(-1, 3), axis=0).max()
+            self.assertLess(surface["error"], size / 65535)
+            moved = np.linalg.norm(positions(head, arrays, surface)[0] - expected[0], axis=1).max()
+            self.assertLessEqual(moved, 2 * surface["error"] * stretch + 1e-12)
+        return head, arrays
+
+    def test_positions_are_those_of_a_bake(self):
+        head, _ = self.compare(self.scene())
+        self.assertEqual((head["first"], head["last"], head["fps"]), (1, 12, 25))
+        self.assertGreater(head["surfaces"][0]["peakDisplacement"], 0.1)
+        self.assertEqual(head["surfaces"][1]["peakDisplacement"], 0)
+
+    def test_a_moving_transform_is_kept_apart_from_the_displacement(self):
+        transform = ('<transform rotate="20 30 -50" scale="1 3 -0.5"><animate attribute="translate">'
+                     '<key frame="1" value="0 0 0"/><key frame="12" value="500 10 2"/></animate></transform>')
+        head, _ = self.compare(self.scene(transform=transform))
+        self.assertEqual(len(head["surfaces"][0]["transforms"]), 12)
+        self.assertEqual(len(head["surfaces"][1]["transforms"]), 1)
+
+    def test_some_of_the_frames(self):
+        head, _ = self.compare(self.scene(start=-3), "--frames", "-1:7")
+        self.assertEqual((head["first"], head["last"]), (-1, 7))
+
+    def test_a_mesh_in_any_order_and_every_kind_of_force(self):
+        for example in ("travelling", "flag", "thesis/fig10-coarse"):
+            with self.subTest(example):
+                self.compare(os.path.join(SOURCE, "examples", f"{example}.xml"))
+
+    def test_the_head_has_the_values_of_the_channels(self):
+        self.run_pliant("view", self.scene(), "--quiet")
+        _, head, _ = read_page(self.path("view.html"))
+        rows = self.run_pliant("curves", self.scene()).stdout.split("\n")[1:-1]
+        force = head["forces"][0]
+        self.assertEqual(force["magnitude"], [float(row.split(",")[2]) for row in rows])
+        self.assertEqual((force["center"], force["deformationRadius"]), ([[0, 0, 0]], [4.5]))
+        channel = head["channels"][0]
+        self.assertEqual((channel["path"], [key["at"] for key in channel["keys"]]),
+                         ("poke.magnitude", [[1, 0], [5, 3000]]))
+        for row in rows:
+            frame, value = (float(word) for word in row.split(",")[1:])
+            self.assertIn([frame, value], channel["points"])
+
+    def test_regions_are_those_that_bake_tells_of(self):
+        scene = os.path.join(SOURCE, "examples/hands.xml")
+        self.run_pliant("view", scene, "--quiet")
+        self.run_pliant("bake", scene, "-o", "a.npy", "--regions", "regions.json", "--quiet")
+        _, head, _ = read_page(self.path("view.html"))
+        with open(self.path("regions.json"), encoding="utf-8") as file:
+            frames = json.load(file)["frames"]
+        marks = head["surfaces"][0]["marks"]
+        self.assertLess(len(marks), len(frames))  # kept where they change
+        for frame in frames:
+            told = frame["surfaces"][0]
+            now = [each for each in marks if each["frame"] <= frame["frame"]][-1]
+            parts = [[[*part["columns"], *part["rows"]] for part in region["parts"]] for region in told["regions"]]
+            self.assertEqual([region["parts"] for region in now["regions"]], parts)
+            boxes = {force["name"]: [*force["forceBox"]["columns"], *force["forceBox"]["rows"]]
+                     for force in told["forces"] if force["forceBox"]}
+            self.assertEqual({head["forces"][each["force"]]["name"]: each["box"] for each in now["forces"]}, boxes)
+
+    def test_a_hundred_frames_of_ten_thousand_vertices_stay_below_5_mb(self):
+        text = SCENE.format(start=1, end=100, magnitude=9000, transform="").replace(
+            'columns="13" rows="11"', 'columns="100" rows="100"').replace("4.5", "30")
+        noise = '<noise name="n" frequency="0.5" rate="4" deformationRadius="30" forceRadius="30" magnitude="4000"/>'
+        with open(self.path("large.xml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("</scene>", noise + "</scene>"))
+        self.run_pliant("view", "large.xml", "--quiet")
+        self.assertLess(os.path.getsize(self.path("view.html")), 5e6)
+
+    def test_no_name_ends_the_script_that_holds_it(self):
+        name = "a<b>&amp;</title><script>alert(1)</script>.xml".replace("/", "")
+        self.run_pliant("view", self.scene(name), "--quiet")
+        title, head, _ = read_page(self.path("view.html"))
+        self.assertNotIn("<", title)
+        self.assertTrue(head["scene"].endswith(name))
+
+    def test_the_page_asks_for_nothing_else(self):
+        self.run_pliant("view", self.scene(), "--quiet")
+        with open(self.path("view.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertEqual(re.findall(r'<(?:script|img|iframe)[^>]*\bsrc=', page), [])
+        self.assertEqual(re.findall(r'<link[^>]*href="(?!data:)', page), [])
+        self.assertEqual(page.count("</script>"), 2)  # the bake, and the program
+
+    def test_the_same_scene_gives_the_same_page(self):
+        self.run_pliant("view", self.scene(), "-o", "a.html", "--threads", "1")
+        self.run_pliant("view", self.scene(), "-o", "b.html", "--threads", "3")
+        with open(self.path("a.html"), "rb") as a, open(self.path("b.html"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_the_summary_is_one_line(self):
+        result = self.run_pliant("view", self.scene())
+        self.assertRegex(result.stdout, r"^view\.html: 12 frames, 163 vertices, [\d.]+ kB, [\d.]+ s, "
+                                        r"peak displacement [\d.]+\n$")
+
+    def test_what_cannot_be(self):
+        scene = self.scene()
+        for arguments, code, words in (
+                (["view", "none.xml"], 2, "none.xml"),
+                (["view", scene, "-o", scene], 2, "it is the scene"),
+                (["view", scene, "--png", scene], 2, "it is the scene"),
+                (["view", scene, "--frames", "5:99"], 2, "--frames 5:99"),
+                (["view", scene, "-o", "no/where/view.html"], 1, "no/where/view.html"),
+                (["view", scene, "--serve", "99999"], 2, "not a port"),
+                (["view", scene, "--png", "a.png", "--frame", "99"], 2, "--frame 99"),
+                (["view", scene, "--png", "a.png", "--size", "3x99999"], 2, "--size 3x99999"),
+                (["view", scene, "--frame", "3"], 2, "--png"),
+                (["view", scene, "--png", "a.png", "--contact-sheet", "--frame", "3"], 2, "--frame")):
+            with self.subTest(arguments):
+                result = self.run_pliant(*arguments, code=code)
+                self.assertIn(words, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertEqual(os.listdir(self.folder), ["scene.xml"])
+
+
+    def test_more_frames_than_memory_holds_are_refused_ahead(self):
+        scene = self.scene(end=3000)
+        result = self.run_pliant("view", scene, "--max-memory", "0.006", code=1)
+        self.assertRegex(result.stderr, r"3000 frames of 163 vertices take .* --frames A:B\n$")
+        self.assertEqual(os.listdir(self.folder), ["scene.xml"])
+        self.run_pliant("view", scene, "--max-memory", "0.006", "--frames", "1:40")
+
+
+class Server:
+    """`pliant view --serve`, and a listener to its events."""
+
+    def __init__(self, scene):
+        self.process = subprocess.Popen([PLIANT, "view", scene, "--serve"], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+        self.port = int(re.search(r":(\d+)/", self.process.stdout.readline()).group(1))
+        self.events = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        self.events.request("GET", "/events")
+        self.stream = self.events.getresponse()
+
+    def get(self, path, headers=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        connection.request("GET", path, headers=headers or {})
+        response = connection.getresponse()
+        body = response.read()
+        connection.close()
+        return response.status, body
+
+    def wait_for(self, name):
+        """The next event of that name, and what it tells."""
+        while True:
+            line = self.stream.readline().decode().rstrip("\n")
+            if line == f"event: {name}":
+                return self.stream.readline().decode().rstrip("\n").removeprefix("data: ")
+
+    def stop_listening(self):
+        self.stream.close()
+        self.events.close()
+
+    def close(self):
+        self.process.send_signal(signal.SIGINT)
+        out, err = self.process.communicate(timeout=20)
+        self.stop_listening()
+        return self.process.returncode, out, err
+
+
+class Serve(View):
+    def setUp(self):
+        if not HAS_PAGE:
+            self.skipTest("this build has no page")
+        super().setUp()
+        self.server = None
+
+    def tearDown(self):
+        if self.server and self.server.process.poll() is None:
+            self.server.process.kill()
+            self.server.process.communicate()
+            self.server.stop_listening()
+
+    def start(self):
+        self.server = Server(self.scene())
+        self.server.wait_for("baked")
+        return self.server
+
+    def test_a_save_is_seen_within_a_second(self):
+        server = self.start()
+        before, _ = unpack(server.get("/bake")[1])
+        for magnitude in (500, 7000):
+            saved = time.monotonic()
+            self.scene(magnitude=magnitude)
+            server.wait_for("baked")
+            self.assertLess(time.monotonic() - saved, 5)  # a busy machine; see tests/viewer for the second
+            after, _ = unpack(server.get("/bake")[1])
+            self.assertEqual(after["forces"][0]["magnitude"][4], magnitude)
+            self.assertNotEqual(after["surfaces"][0]["peakDisplacement"], before["surfaces"][0]["peakDisplacement"])
+
+    def test_errors_are_told_with_their_lines_and_go_with_the_next_save(self):
+        server = self.start()
+        kept = server.get("/bake")[1]
+        path = self.scene()
+        with open(path, "a", encoding="utf-8") as file:
+            file.write("<scene>")
+        messages = json.loads(server.wait_for("failed"))
+        self.assertEqual(messages[0]["kind"], "error")
+        self.scene(magnitude='7" falof="')
+        messages = json.loads(server.wait_for("failed"))
+        self.assertEqual([(each["file"], each["line"]) for each in messages], [("scene.xml", 6)])
+        self.assertIn("falof", messages[0]["text"])
+        self.assertEqual(server.get("/bake")[1], kept)
+        self.scene(magnitude=5)
+        server.wait_for("baked")
+
+    def test_a_scene_that_is_wrong_from_the_start_is_served_all_the_same(self):
+        with open(self.path("scene.xml"), "w", encoding="utf-8") as file:
+            file.write("<scene")
+        self.server = Server(self.path("scene.xml"))
+        self.server.wait_for("failed")
+        self.assertEqual(self.server.get("/bake")[0], 404)
+        self.scene()
+        self.server.wait_for("baked")
+
+    def test_only_this_machine_by_its_own_names_gets_an_answer(self):
+        server = self.start()
+        for host in (f"127.0.0.1:{server.port}", f"localhost:{server.port}"):
+            self.assertEqual(server.get("/", {"Host": host})[0], 200)
+        for headers in ({"Host": "evil.example"}, {"Host": f"evil.example:{server.port}"}, {"Host": "localhost"},
+                        {"Origin": "http://evil.example"}, {"Origin": "null"}):
+            with self.subTest(headers):
+                for path in ("/", "/bake", "/events"):
+                    self.assertEqual(server.get(path, headers), (403, b""))
+        self.assertEqual(server.get("/../scene.xml")[0], 404)
+
+    def test_ctrl_c_ends_it_while_pages_listen(self):
+        server = self.start()
+        asked = time.monotonic()
+        code, out, err = server.close()
+        self.assertEqual((code, err), (0, ""), out)
+        self.assertLess(time.monotonic() - asked, 10)
+
+    def test_a_taken_port_is_said(self):
+        server = self.start()
+        result = self.run_pliant("view", self.scene(), "--serve", str(server.port), code=1)
+        self.assertIn(f"127.0.0.1:{server.port}", result.stderr)
+
+
+if __name__ == "__main__":
+    PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
+    with tempfile.TemporaryDirectory() as empty:
+        probe = subprocess.run([PLIANT, "view", "none.xml"], capture_output=True, cwd=empty, check=False, timeout=60)
+    HAS_PAGE = probe.returncode == 2  # of the scene that is not there
+    unittest.main(argv=sys.argv[:1], verbosity=2)
