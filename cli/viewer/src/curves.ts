@@ -3,10 +3,12 @@
 import type { Channel } from "./bake";
 import type { Playback } from "./playback";
 import type { ThemeChoice } from "./theme";
-import { diamond, niceStep, prepare } from "./timeline";
+import { diamond, niceStep, prepare, textSize } from "./timeline";
 
 const names = ["x", "y", "z"];
-const [left, right, top, bottom] = [56, 16, 10, 20];
+const [right, top] = [16, 10];
+const leftOf = (text: number) => 5.2 * text;
+const bottomOf = (text: number) => 1.9 * text;
 
 export class CurvePanel {
   private channels: Channel[] = [];
@@ -48,11 +50,13 @@ export class CurvePanel {
     const shown = this.channels.filter((channel) => this.chosen.has(channel.path));
     const { palette } = this.themes;
     const { first, last } = this.playback;
+    const text = textSize();
+    const [left, bottom] = [leftOf(text), bottomOf(text)];
     const [low, high] = range(shown, first, last);
     const x = (frame: number) => left + ((frame - first) / Math.max(last - first, 1)) * (width - left - right);
     const y = (value: number) => height - bottom - ((value - low) / (high - low)) * (height - top - bottom);
 
-    context.font = "11px system-ui, sans-serif";
+    context.font = `${text}px system-ui, sans-serif`;
     this.drawGrid(context, { x, y, low, high, width, height });
     context.save();
     context.beginPath();
@@ -80,7 +84,9 @@ export class CurvePanel {
     const { x, y, low, high, width, height } = plot;
     const { palette } = this.themes;
     const { first, last } = this.playback;
-    const step = niceStep(((high - low) * 34) / Math.max(height - top - bottom, 1));
+    const text = textSize();
+    const [left, bottom] = [leftOf(text), bottomOf(text)];
+    const step = niceStep(((high - low) * 3 * text) / Math.max(height - top - bottom, 1));
     context.textBaseline = "middle";
     context.textAlign = "right";
     context.lineWidth = 1;
@@ -93,10 +99,10 @@ export class CurvePanel {
       context.fillStyle = palette.ink;
       context.fillText(numberText(k * step), left - 6, y(k * step));
     }
-    const frames = Math.max(1, niceStep((46 * Math.max(last - first, 1)) / (width - left - right)));
+    const frames = Math.max(1, niceStep((4.2 * text * Math.max(last - first, 1)) / (width - left - right)));
     context.textBaseline = "alphabetic";
     context.textAlign = "center";
-    for (let frame = Math.ceil(first / frames) * frames; frame <= last; frame += frames) context.fillText(String(frame), x(frame), height - 5);
+    for (let frame = Math.ceil(first / frames) * frames; frame <= last; frame += frames) context.fillText(String(frame), x(frame), height - 0.45 * text);
   }
 
   private drawChannel(context: CanvasRenderingContext2D, channel: Channel, x: (f: number) => number, y: (v: number) => number, place: number): void {
@@ -178,6 +184,7 @@ export class CurvePanel {
 
   private scrub(event: PointerEvent): void {
     const box = this.canvas.getBoundingClientRect();
+    const left = leftOf(textSize());
     const share = (event.clientX - box.left - left) / (box.width - left - right);
     this.playback.goTo(this.playback.first + share * (this.playback.last - this.playback.first));
   }

@@ -9,7 +9,7 @@ import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js
 import { at, between, vectorBetween, type Force, type Vector } from "./bake";
 import type { Palette } from "./theme";
 
-const segments = 96;
+const segments = 64;
 
 function circlePoints(turn: (a: number) => Vector): number[] {
   const points: number[] = [];
@@ -32,6 +32,9 @@ const head = new THREE.ConeGeometry(0.5, 1, 20).translate(0, -0.5, 0);
 const dot = new THREE.SphereGeometry(1, 16, 10);
 const up = new THREE.Vector3(0, 1, 0);
 
+/** Of the size of the scene, however large the radii. */
+const longestVector = 0.3;
+
 const toVector = (v: Vector) => new THREE.Vector3(...v);
 
 /** How a part looks, and how it shimmers through what is in front of it. */
@@ -49,15 +52,20 @@ class Ink {
     this.strength = 1;
   }
 
-  lines(geometry: LineSegmentsGeometry): LineSegments2 {
-    const lines = new LineSegments2(geometry, this.seen);
-    lines.add(new LineSegments2(geometry, this.covered));
-    return lines;
+  circles(geometry: LineSegmentsGeometry): LineSegments2 {
+    const circles = this.line(geometry);
+    circles.add(new LineSegments2(geometry, this.covered));
+    return circles;
+  }
+
+  line(geometry: LineSegmentsGeometry): LineSegments2 {
+    return new LineSegments2(geometry, this.seen);
   }
 
   set strength(share: number) {
     this.seen.opacity = share * this.opacity;
     this.covered.opacity = 0.22 * share * this.opacity;
+    this.covered.visible = share === 1;
   }
 
   set colour(colour: string) {
@@ -82,7 +90,7 @@ class Arrow {
   private readonly tip: THREE.Mesh;
 
   constructor(ink: Ink, faces: THREE.Material) {
-    this.shaft = ink.lines(segment);
+    this.shaft = ink.line(segment);
     this.tip = new THREE.Mesh(head, faces);
     this.group.add(this.shaft, this.tip);
   }
@@ -127,14 +135,14 @@ class Gizmo {
     const volumes = kind === "line" ? 2 : 1;
     const shape = kind === "vortex" ? ring : sphere;
     for (let k = 0; k < (kind === "vortex" ? 3 : volumes); ++k) {
-      this.deformation.push(this.inks.deformation.lines(shape));
-      this.force.push(this.inks.force.lines(shape));
+      this.deformation.push(this.inks.deformation.circles(shape));
+      this.force.push(this.inks.force.circles(shape));
     }
     for (const each of this.deformation) each.name = `${parameters.name} deformationRadius`;
     for (const each of this.force) each.name = `${parameters.name} forceRadius`;
     this.middle = new THREE.Mesh(dot, this.solid);
     this.middle.name = `${parameters.name} center`;
-    this.course = this.inks.faint.lines(segment);
+    this.course = this.inks.faint.line(segment);
     const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1 };
     for (let k = 0; k < (arrowCount[kind] ?? 0); ++k) {
       this.arrows.push(new Arrow(this.inks.force, this.solid));
@@ -163,7 +171,7 @@ class Gizmo {
     const isEverywhere = force.kind === "uniform" || force.kind === "inertia" || force.kind === "custom";
     const deformationRadius = !isEverywhere && force.deformationRadius ? between(force.deformationRadius, index, share) : 0;
     const forceRadius = !isEverywhere && force.forceRadius ? between(force.forceRadius, index, share) : 0;
-    const size = deformationRadius || forceRadius || 0.35 * this.reach;
+    const size = Math.min(deformationRadius || forceRadius || Infinity, longestVector * this.reach);
     const length = this.strongest > 0 ? (1.15 * size * magnitude) / this.strongest : 0;
     const vectorOf = (track: Vector[] | undefined) => (track ? toVector(vectorBetween(track, index, share)) : new THREE.Vector3());
 

@@ -280,6 +280,7 @@ async function begin(): Promise<void> {
     goLive();
   }
   document.documentElement.dataset.ready = "true";
+  performance.mark("ready");
 }
 
 addEventListener("hashchange", () => apply(readLook(location.hash)));

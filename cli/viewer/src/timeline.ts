@@ -9,6 +9,11 @@ export function niceStep(least: number): number {
   return [1, 2, 5, 10].map((k) => k * power).find((each) => each >= least * 0.999999)!;
 }
 
+/** The size of small text on a canvas, as that of the page goes with the window. [px] */
+export function textSize(): number {
+  return 0.82 * parseFloat(getComputedStyle(document.documentElement).fontSize);
+}
+
 /** Makes a canvas as sharp as the screen; gives its size in CSS pixels, or null without one. */
 export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -74,16 +79,17 @@ export class Timeline {
     const { palette } = this.themes;
     const { first, last } = this.playback;
     const x = (frame: number) => this.x(frame, width);
-    const base = height - 16;
+    const text = textSize();
+    const base = height - 1.45 * text;
 
     context.strokeStyle = palette.faint;
     context.fillStyle = palette.ink;
-    context.font = "11px system-ui, sans-serif";
+    context.font = `${text}px system-ui, sans-serif`;
     context.textAlign = "center";
     context.textBaseline = "alphabetic";
     context.lineWidth = 1;
     const perFrame = (width - 2 * margin) / Math.max(last - first, 1);
-    const labelStep = Math.max(1, niceStep(46 / perFrame));
+    const labelStep = Math.max(1, niceStep((4.2 * text) / perFrame));
     const tickStep = Math.max(1, niceStep(5 / perFrame));
     context.beginPath();
     for (let frame = Math.ceil(first / tickStep) * tickStep; frame <= last; frame += tickStep) {
@@ -103,7 +109,7 @@ export class Timeline {
     context.fillStyle = palette.curves[0];
     for (const key of this.keyFrames) {
       if (key < first || key > last) continue;
-      diamond(context, x(key), base - 19, 4.5);
+      diamond(context, x(key), base - 10 - 0.8 * text, 0.41 * text);
       context.fill();
     }
 

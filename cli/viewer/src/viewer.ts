@@ -109,10 +109,13 @@ function boxOf(bake: Bake): THREE.Box3 {
   const surfaces = box.clone();
   const reach = surfaces.getSize(new THREE.Vector3()).length();
   for (const force of bake.head.forces) {
+    const radius = Math.max(0, ...(force.deformationRadius ?? []), ...(force.forceRadius ?? []));
     for (const place of [...(force.center ?? []), ...(force.from ?? []), ...(force.to ?? [])]) {
-      // One that stands far away does not make the rest small.
+      // One that stands far away, or is large, does not make the rest small.
       const point = new THREE.Vector3(...place);
-      if (surfaces.distanceToPoint(point) < 0.5 * reach) box.expandByPoint(point);
+      if (surfaces.distanceToPoint(point) > 0.5 * reach) continue;
+      const room = Math.min(0.7 * radius, 0.2 * reach);
+      box.union(new THREE.Box3().setFromCenterAndSize(point, new THREE.Vector3().setScalar(2 * room)));
     }
   }
   if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));

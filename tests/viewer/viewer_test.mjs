@@ -1,0 +1,642 @@
+// Looks at pages of `pliant view` in headless Chromium: what is in the scene graph, what keys and
+// pointer do, what the page says, how it stands in windows of all sizes.
+//
+// usage: node viewer_test.mjs PLIANT EXAMPLES PICTURES [NAME…]
+// NAME: run the tests with it in their names only. Screenshots of every example go to PICTURES.
+// Needs what `script/bootstrap --viewer` installs. Ends with the line "N passed, N failed".
+
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import path from "node:path";
+import { createInterface } from "node:readline";
+
+import { chromium } from "playwright-core";
+
+const [pliant, examples, pictures, ...only] = process.argv.slice(2).map((word, k) => (k < 3 ? path.resolve(word) : word));
+mkdirSync(pictures, { recursive: true });
+const folder = mkdtempSync(path.join(tmpdir(), "pliant-viewer-"));
+const inFolder = (name) => path.join(folder, name);
+const run = (...words) => execFileSync(pliant, words, { cwd: folder, encoding: "utf8", timeout: 120_000 });
+
+const tests = [];
+const test = (name, body) => tests.push([name, body]);
+
+// Files
+
+/** A float64 array as NumPy writes it: shape and numbers. */
+function readNpy(file) {
+  const bytes = readFileSync(file);
+  const length = bytes.readUInt16LE(8);
+  const shape = bytes.toString("latin1", 10, 10 + length).match(/'shape': \(([^)]*)\)/)[1].split(",").filter((word) => word.trim()).map(Number);
+  return { shape, numbers: new Float64Array(bytes.buffer.slice(bytes.byteOffset + 10 + length, bytes.byteOffset + bytes.length)) };
+}
+
+/** Values of a channel by frame. */
+function curve(scene, channel) {
+  const rows = run("curves", scene, "--channel", channel).trim().split("\n").slice(1);
+  return new Map(rows.map((row) => row.split(",").slice(1).map(Number)).map(([frame, ...value]) => [frame, value]));
+}
+
+const example = (name) => path.join(examples, `${name}.xml`);
+
+function pageOf(scene, ...options) {
+  const out = inFolder(`${path.basename(scene, ".xml")}.html`);
+  run("view", scene, "-o", out, "--quiet", ...options);
+  return `file://${out}`;
+}
+
+// Pages
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+
+/** Opens a page that has to be silent: nothing in its console, nothing asked from elsewhere. */
+async function open(url, { width = 1280, height = 800, ...options } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: "dark", ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) page.complaints.push(message.text());
+  });
+  page.on("request", (request) => {
+    const allowed = ["file:", "data:", "blob:"].includes(new URL(request.url()).protocol) || request.url().startsWith(new URL(url).origin);
+    if (!allowed) page.complaints.push(`asks for ${request.url()}`);
+  });
+  await page.goto(url);
+  await page.waitForFunction("document.documentElement.dataset.ready === 'true'", null, { timeout: 60_000 });
+  return page;
+}
+
+async function withPage(url, options, body) {
+  const page = await open(url, options);
+  await body(page);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+}
+
+const frameOf = (page) => page.evaluate(() => window.pliant.playback.frame);
+const goTo = (page, frame) => page.evaluate((to) => window.pliant.playback.goTo(to), frame);
+
+/** World positions of a surface's vertices as the scene graph has them, and the page's own bound. */
+const worldPositions = (page, name) =>
+  page.evaluate((wanted) => {
+    const { stage, viewer } = window.pliant;
+    stage.scene.updateMatrixWorld(true);
+    const mesh = stage.scene.getObjectByName(wanted);
+    const { array } = mesh.geometry.getAttribute("position");
+    const m = mesh.matrixWorld.elements;
+    const result = [];
+    for (let k = 0; k < array.length; k += 3) {
+      for (let row = 0; row < 3; ++row) result.push(m[row] * array[k] + m[row + 4] * array[k + 1] + m[row + 8] * array[k + 2] + m[row + 12]);
+    }
+    return { positions: result, error: viewer.views.find((view) => view.surface.head.name === wanted).surface.head.error };
+  }, name);
+
+/** Where an object of that name stands, and how large it is: world matrix. */
+const matricesOf = (page, name) =>
+  page.evaluate((wanted) => {
+    const { stage } = window.pliant;
+    stage.scene.updateMatrixWorld(true);
+    const found = [];
+    stage.scene.traverse((object) => {
+      if (object.name === wanted) found.push({ elements: [...object.matrixWorld.elements], isVisible: object.visible });
+    });
+    return found;
+  }, name);
+
+const near = (actual, expected, tolerance, what) =>
+  assert.ok(Math.abs(actual - expected) <= tolerance, `${what}: ${actual} is not ${expected} within ${tolerance}`);
+
+// Tests
+
+const allExamples = [...readdirSync(examples), ...readdirSync(path.join(examples, "thesis")).map((name) => path.join("thesis", name))]
+  .filter((name) => name.endsWith(".xml"))
+  .map((name) => name.slice(0, -4));
+
+for (const name of allExamples) {
+  test(`every example opens without a complaint: ${name}`, async () => {
+    for (const colorScheme of ["dark", "light"]) {
+      await withPage(pageOf(example(name)), { colorScheme }, async (page) => {
+        const { first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);
+        await goTo(page, Math.round(first + 0.4 * (last - first)));
+        await page.waitForTimeout(100);
+        await page.screenshot({ path: path.join(pictures, `${path.basename(name)}-${colorScheme}.png`) });
+        for (const frame of [first, last]) {
+          await goTo(page, frame);
+          const isFinite = await page.evaluate(() => window.pliant.viewer.views.every((view) => view.mesh.geometry.getAttribute("position").array.every(Number.isFinite)));
+          assert.ok(isFinite, `frame ${frame}`);
+        }
+      });
+    }
+  });
+}
+
+test("vertices stand where a bake has them", async () => {
+  for (const name of ["sheet", "travelling", "flag", "finger"]) {
+    const scene = example(name);
+    run("bake", scene, "-o", inFolder(`${name}.npy`), "--quiet");
+    await withPage(pageOf(scene), {}, async (page) => {
+      const heads = await page.evaluate(() => window.pliant.viewer.bake.head.surfaces.map(({ name: each }) => each));
+      const { first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);
+      for (const surface of heads) {
+        const { shape, numbers } = readNpy(inFolder(heads.length > 1 ? `${name}-${surface}.npy` : `${name}.npy`));
+        assert.equal(shape[0], last - first + 1);
+        for (const frame of [first, first + 1, Math.round((first + last) / 2), last]) {
+          await goTo(page, frame);
+          const { positions, error } = await worldPositions(page, surface);
+          assert.equal(positions.length, shape[1] * 3);
+          const begin = (frame - first) * positions.length;
+          const size = positions.reduce((most, each) => Math.max(most, Math.abs(each)), 0);
+          const off = positions.reduce((most, each, k) => Math.max(most, Math.abs(each - numbers[begin + k])), 0);
+          assert.ok(off <= 1.8 * error + 1e-6 * size, `${name} ${surface} frame ${frame}: off by ${off}, may be ${error}`);
+          assert.ok(off < 1e-4 * size);
+        }
+      }
+    });
+  }
+});
+
+test("circles and vectors are where the channels say", async () => {
+  const scene = example("travelling");
+  const center = curve(scene, "finger.center");
+  const magnitude = curve(scene, "finger.magnitude");
+  const strongest = Math.max(...[...magnitude.values()].map(([value]) => Math.abs(value)));
+  await withPage(pageOf(scene), {}, async (page) => {
+    for (const frame of [1, 8, 30, 57]) {
+      await goTo(page, frame);
+      for (const [which, radius] of [["deformationRadius", 2.6], ["forceRadius", 1.1]]) {
+        const [{ elements }] = await matricesOf(page, `finger ${which}`);
+        for (let k = 0; k < 3; ++k) {
+          near(elements[12 + k], center.get(frame)[k], 1e-6, `${which} at frame ${frame}`);
+          near(Math.hypot(...elements.slice(4 * k, 4 * k + 3)), radius, 1e-6, `${which} along axis ${k}`);
+        }
+      }
+      const tip = await page.evaluate(() => {
+        const group = window.pliant.stage.scene.getObjectByName("finger vector");
+        window.pliant.stage.scene.updateMatrixWorld(true);
+        return group.visible ? [...group.children[1].matrixWorld.elements.slice(12, 15)] : null;
+      });
+      const share = magnitude.get(frame)[0] / strongest;
+      if (share === 0) {
+        assert.equal(tip, null);
+        continue;
+      }
+      const direction = [0.3, 0.1, 1];
+      direction.forEach((way, k) => {
+        const expected = center.get(frame)[k] + ((1.15 * 2.6 * share) / Math.hypot(...direction)) * way;
+        near(tip[k], expected, 1e-5, `tip at frame ${frame}`);
+      });
+    }
+  });
+});
+
+test("every kind of force has its gizmo", async () => {
+  const forces = `
+    <point name="a" magnitude="5"/><radial name="b" center="1 2 3" magnitude="-5" deformationRadius="2"/>
+    <line name="c" from="-2 1 0" to="2 1 0" magnitude="5"/><line name="d" from="0 0 0" to="0 0 0" direction="0 0 1" magnitude="5"/>
+    <uniform name="e" direction="0 -1 0" magnitude="5"/><vortex name="f" axis="0 0 2" pull="0.5" magnitude="5"/>
+    <noise name="g" magnitude="5"/><inertia name="h"/>
+    <group name="i" center="3 0 0" deformationRadius="4"><point name="j" center="3 0 0" magnitude="2"/></group>
+    <point name="k" enabled="false" magnitude="3"/>`;
+  writeFileSync(inFolder("kinds.xml"), `<scene version="1" start="1" end="6"><surface name="s"><grid columns="9" rows="9" width="8" depth="8"/>
+    <transform><animate attribute="translate"><key frame="1" value="0 0 0"/><key frame="3" value="0 1 0"/><key frame="6" value="0 0 0"/></animate></transform></surface>${forces}</scene>`);
+  await withPage(pageOf(inFolder("kinds.xml")), {}, async (page) => {
+    await goTo(page, 3);
+    const isShown = (name) => page.evaluate((wanted) => window.pliant.stage.scene.getObjectByName(`force ${wanted}`).visible, name);
+    for (const name of "abcdefghij") assert.equal(await isShown(name), true, name);
+    assert.equal(await isShown("k"), false);
+    // A radial force that attracts points at its centre.
+    const tips = await page.evaluate(() => {
+      const found = [];
+      window.pliant.stage.scene.traverse((object) => object.name === "b vector" && object.visible && found.push(object.children.map((part) => part.position.toArray())));
+      return found;
+    });
+    assert.equal(tips.length, 6);
+    const distance = (p) => Math.hypot(p[0] - 1, p[1] - 2, p[2] - 3);
+    for (const [shaft, tip] of tips) assert.ok(distance(tip) < distance(shaft));
+    // A capsule has circles at both ends.
+    const ends = await matricesOf(page, "c forceRadius");
+    assert.deepEqual(ends.map(({ elements }) => elements[12]), [-2, 2]);
+    // The group has the region's circles; the force in it only its own.
+    assert.equal((await matricesOf(page, "i deformationRadius"))[0].elements[0], 4);
+    assert.equal((await matricesOf(page, "j deformationRadius"))[0].isVisible, false);
+    assert.equal((await matricesOf(page, "h vector"))[0].isVisible, true);
+    await page.screenshot({ path: path.join(pictures, "kinds.png") });
+  });
+});
+
+test("the rim of a region lies on the surface, along its box", async () => {
+  const scene = example("hands");
+  run("bake", scene, "-o", "hands.npy", "--regions", "hands.json", "--quiet");
+  const told = JSON.parse(readFileSync(inFolder("hands.json"), "utf8")).frames;
+  await withPage(pageOf(scene), {}, async (page) => {
+    for (const frame of [12, 30, 60]) {
+      await goTo(page, frame);
+      const drawn = await page.evaluate(() => {
+        const { stage, viewer } = window.pliant;
+        const { head, nodeVertices } = viewer.views[0].surface;
+        const lines = stage.scene.getObjectByName(`${head.name} rim`);
+        const at = viewer.views[0].mesh.geometry.getAttribute("position").array;
+        const nodes = new Map([...nodeVertices].map((vertex, node) => [[0, 1, 2].map((k) => at[3 * vertex + k]).join(), node]));
+        if (!lines.visible) return [];
+        const ends = lines.geometry.attributes.instanceStart.data.array;
+        return Array.from({ length: ends.length / 3 }, (_, k) => nodes.get([0, 1, 2].map((c) => ends[3 * k + c]).join()) ?? null).map((node) => node !== null && [node % head.columns, Math.floor(node / head.columns)]);
+      });
+      assert.ok(!drawn.includes(false), "an end that is no vertex");
+      const expected = new Set();
+      for (const region of told.find((each) => each.frame === frame).surfaces[0].regions) {
+        if (!region.solved) continue;
+        const { columns: [i0, i1], rows: [j0, j1] } = region.box;
+        for (let i = i0; i <= i1; ++i) for (const j of [j0, j1]) expected.add(`${i},${j}`);
+        for (let j = j0; j <= j1; ++j) for (const i of [i0, i1]) expected.add(`${i},${j}`);
+      }
+      assert.deepEqual(new Set(drawn.map(String)), expected, `frame ${frame}`);
+    }
+  });
+});
+
+test("plays at the frame rate, and loops", async () => {
+  await withPage(pageOf(example("thesis/fig08-force")), {}, async (page) => {
+    const { fps, first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);
+    await page.keyboard.press("Space");
+    assert.equal(await page.getByRole("button", { name: "Pause" }).count(), 1);
+    // Time and frame are read together: a busy machine may leave frames out, but not be late.
+    const sample = () => page.evaluate(() => new Promise((tell) => requestAnimationFrame(() => setTimeout(() => tell([performance.now(), window.pliant.playback.frame])))));
+    const [begin, from] = await sample();
+    await page.waitForTimeout(400);
+    const [end, to] = await sample();
+    const passed = ((end - begin) / 1000) * fps;
+    const length = last - first + 1;
+    const gone = (((to - from) % length) + length) % length;
+    const off = Math.min(Math.abs(gone - (passed % length)), length - Math.abs(gone - (passed % length)));
+    assert.ok(off <= 4, `${gone} frames in the time of ${passed} (of ${length})`);
+    await page.keyboard.press("Space");
+    const stopped = await frameOf(page);
+    await page.waitForTimeout(150);
+    assert.equal(await frameOf(page), stopped);
+    // Without the loop it ends on the last frame.
+    await page.getByRole("button", { name: "Loop" }).click();
+    await goTo(page, last - 1);
+    await page.getByRole("button", { name: "Play", exact: true }).click();
+    await page.getByRole("button", { name: "Play", exact: true }).waitFor({ timeout: 20_000 });
+    assert.equal(await frameOf(page), last);
+  });
+});
+
+test("keys, buttons and the field go to frames", async () => {
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    const slider = page.getByRole("slider", { name: "Frame" });
+    const steps = [
+      ["ArrowRight", 2], ["Shift+ArrowRight", 12], ["ArrowLeft", 11], ["End", 96], ["ArrowRight", 96], ["Home", 1], ["ArrowLeft", 1],
+      ["ArrowDown", 12], ["ArrowDown", 24], ["ArrowDown", 24], ["ArrowUp", 12], // the keys of poke.magnitude
+    ];
+    for (const [key, frame] of steps) {
+      await page.keyboard.press(key);
+      assert.equal(await frameOf(page), frame, key);
+      assert.equal(await slider.getAttribute("aria-valuenow"), String(frame));
+    }
+    assert.match(await slider.getAttribute("aria-valuetext"), /frame 12, 0\.46 s, key/);
+    await page.getByRole("button", { name: "One frame on" }).click();
+    assert.equal(await frameOf(page), 13);
+    await page.getByRole("button", { name: "First frame" }).click();
+    assert.equal(await frameOf(page), 1);
+    await page.getByRole("spinbutton", { name: "Frame" }).fill("500");
+    await page.keyboard.press("Enter");
+    assert.equal(await frameOf(page), 96);
+    assert.equal(await page.getByRole("spinbutton", { name: "Frame" }).inputValue(), "96");
+  });
+});
+
+test("the timeline is scrubbed, with a finger too", async () => {
+  await withPage(pageOf(example("sheet")), { hasTouch: true }, async (page) => {
+    const box = await page.locator("#timeline").boundingBox();
+    const x = (frame) => box.x + 16 + ((frame - 1) / 95) * (box.width - 32);
+    const y = box.y + box.height / 2;
+    await page.mouse.move(x(20), y);
+    await page.mouse.down();
+    assert.equal(await frameOf(page), 20);
+    for (const frame of [30, 77, 41]) {
+      await page.mouse.move(x(frame), y);
+      assert.equal(await frameOf(page), frame);
+    }
+    await page.mouse.move(x(96) + 400, y + 60);
+    assert.equal(await frameOf(page), 96);
+    await page.mouse.up();
+    await page.touchscreen.tap(x(50), y);
+    assert.equal(await frameOf(page), 50);
+  });
+});
+
+test("frames are whole unless asked for more", async () => {
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    const heightAt = async (frame) => {
+      await goTo(page, frame);
+      return (await worldPositions(page, "sheet")).positions[3 * (30 * 61 + 21) + 1];
+    };
+    const [ten, eleven] = [await heightAt(10), await heightAt(11)];
+    assert.notEqual(ten, eleven);
+    assert.equal(await heightAt(10.3), ten);
+    await page.keyboard.press("d");
+    await page.getByLabel("Between frames").check();
+    near(await heightAt(10.25), 0.75 * ten + 0.25 * eleven, 1e-5, "between");
+  });
+});
+
+test("numbers under the cursor are those of the vertex", async () => {
+  const scene = example("travelling");
+  await withPage(pageOf(scene), {}, async (page) => {
+    run("bake", scene, "-o", "head.npy", "--quiet");
+    const { shape, numbers } = readNpy(inFolder("head.npy"));
+    await goTo(page, 30);
+    // A vertex that faces the camera, and where it is on the screen.
+    const { vertex, x, y } = await page.evaluate(() => {
+      const { viewer, stage } = window.pliant;
+      const view = viewer.views[0];
+      const toCamera = stage.camera.position.clone().normalize();
+      let best = { facing: -1 };
+      for (let k = 0; k < view.displacement.length; ++k) {
+        const place = view.vertex(k);
+        const facing = place.clone().sub(stage.controls.target).normalize().dot(toCamera);
+        if (facing <= best.facing) continue;
+        const seen = place.project(stage.camera);
+        const box = stage.canvas.getBoundingClientRect();
+        best = { facing, vertex: k, x: box.left + ((seen.x + 1) / 2) * box.width, y: box.top + ((1 - seen.y) / 2) * box.height };
+      }
+      return best;
+    });
+    await page.mouse.move(x, y);
+    const readout = page.locator("#readout");
+    await readout.getByText("displacement").waitFor();
+    const rows = Object.fromEntries(await readout.locator(":scope > span").evaluateAll((all) => all.map((row) => [...row.children].map((each) => each.textContent))));
+    assert.match(rows.vertex, new RegExp(`^head ${vertex} \\(\\d+, \\d+\\)$`));
+    const at = (frame) => [0, 1, 2].map((k) => numbers[((frame - 1) * shape[1] + vertex) * 3 + k]);
+    const length = (a, b) => Math.hypot(...a.map((value, k) => value - b[k]));
+    near(Number(rows.displacement), length(at(30), at(1)), 1e-3, "displacement");
+    near(parseFloat(rows.velocity), length(at(30), at(29)) * 24, 1e-2, "velocity");
+    rows.position.split(", ").forEach((word, k) => near(Number(word), at(30)[k], 1e-3, "position"));
+    // It follows the vertex, and goes with the cursor.
+    await page.keyboard.press("ArrowRight");
+    const later = await readout.textContent();
+    assert.ok(later.includes(String(vertex)));
+    await page.mouse.move(x, 5);
+    await page.waitForFunction(() => document.getElementById("readout").textContent === "");
+  });
+});
+
+test("styles and colours change what is drawn", async () => {
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    await goTo(page, 12);
+    const canvas = page.locator("#view");
+    const seen = new Set();
+    const look = async (what) => {
+      await page.waitForTimeout(150);
+      const picture = (await canvas.screenshot()).toString("base64");
+      assert.ok(!seen.has(picture), `${what} changes nothing`);
+      seen.add(picture);
+    };
+    await look("the start");
+    for (const key of ["w", "w", "v", "v", "g", "t"]) {
+      await page.keyboard.press(key);
+      await look(key);
+    }
+  });
+});
+
+test("the legend has the peak of the bake", async () => {
+  const scene = example("sheet");
+  const peak = Number(run("bake", scene, "-o", "peak.npy").match(/peak displacement ([\d.]+)/)[1]);
+  await withPage(pageOf(scene), {}, async (page) => {
+    near(Number(await page.locator("#legend-high").textContent()), peak, 1e-3, "legend");
+    await page.keyboard.press("d");
+    await page.getByText("Velocity", { exact: true }).click();
+    await page.getByText("Velocity, per second").waitFor();
+    await page.getByText("Plain", { exact: true }).click();
+    assert.equal(await page.locator("#legend").isVisible(), false);
+  });
+});
+
+test("curves are chosen, and go along with the frame", async () => {
+  await withPage(pageOf(example("travelling")), {}, async (page) => {
+    await page.getByRole("button", { name: "Curves" }).click();
+    const options = page.getByRole("listbox", { name: "Animated channels" }).getByRole("option");
+    assert.deepEqual(await options.allTextContents(), ["finger.magnitude", "finger.center"]);
+    await options.nth(1).click();
+    assert.equal(await options.nth(1).getAttribute("aria-selected"), "true");
+    assert.match(await page.locator("#curve-view").getAttribute("aria-label"), /finger\.center, 3 keys/);
+    const box = await page.locator("#curve-view").boundingBox();
+    const left = 5.2 * 0.82 * (await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)));
+    await page.mouse.click(box.x + left + (39 / 71) * (box.width - left - 16), box.y + box.height / 2);
+    assert.equal(await frameOf(page), 40);
+    // Drawn with as many colours as there are components.
+    const colours = await page.evaluate(() => {
+      const canvas = document.getElementById("curve-view");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const found = new Set();
+      for (let k = 0; k < data.length; k += 4) if (data[k + 3] === 255) found.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+      return [0x77a8ff, 0xff8078, 0x6fd48f].map((colour) => found.has(colour));
+    });
+    assert.deepEqual(colours, [true, true, true]);
+  });
+});
+
+for (const [width, height] of [[360, 640], [768, 1024], [1280, 800], [3840, 2160]]) {
+  test(`nothing jumps or sticks out at ${width} x ${height}`, async () => {
+    await withPage(pageOf(example("sheet")), { width, height, hasTouch: width < 700 }, async (page) => {
+      await page.screenshot({ path: path.join(pictures, `window-${width}.png`) });
+      const places = () =>
+        page.evaluate(() => {
+          const ids = ["view", "timeline", "play", "frame", "loop", "speed", "legend", "frame-all", "help-toggle"];
+          return ids.map((id) => {
+            const { x, y, right, bottom } = document.getElementById(id).getBoundingClientRect();
+            return [id, x, y, right, bottom];
+          });
+        });
+      const before = await places();
+      for (const [id, x, y, right, bottom] of before) assert.ok(x >= 0 && y >= 0 && right <= width + 0.5 && bottom <= height + 0.5, `${id} sticks out`);
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth > innerWidth), false);
+      await goTo(page, 96);
+      await page.mouse.move(width / 2, height * 0.4);
+      await page.waitForTimeout(200);
+      await page.keyboard.press("Space");
+      await page.waitForTimeout(200);
+      await page.keyboard.press("Space");
+      assert.deepEqual(await places(), before);
+      await page.keyboard.press("c");
+      await page.keyboard.press("d");
+      await page.waitForTimeout(200);
+      await page.screenshot({ path: path.join(pictures, `window-${width}-panels.png`) });
+      for (const [id, x, , right, bottom] of await places()) assert.ok(x >= 0 && right <= width + 0.5 && bottom <= height + 0.5, `${id} sticks out`);
+    });
+  });
+}
+
+test("everything that can be worked has a name and takes the focus", async () => {
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    await page.keyboard.press("c");
+    await page.keyboard.press("d");
+    const nameless = await page.evaluate(() =>
+      [...document.querySelectorAll("button, input, select, canvas, [role]")]
+        .filter((each) => each.offsetParent !== null)
+        .filter((each) => !(each.getAttribute("aria-label") ?? each.labels?.[0]?.textContent ?? each.textContent).trim())
+        .map((each) => each.outerHTML),
+    );
+    assert.deepEqual(nameless, []);
+    const reached = new Set();
+    for (let k = 0; k < 40; ++k) {
+      await page.keyboard.press("Tab");
+      reached.add(await page.evaluate(() => document.activeElement.id));
+    }
+    for (const id of ["frame-all", "theme", "view", "show-gizmos", "channels", "play", "timeline", "frame", "loop", "speed"]) assert.ok(reached.has(id), id);
+    await page.keyboard.press("?");
+    await page.getByRole("dialog", { name: "Keys" }).waitFor();
+    await page.keyboard.press("Escape");
+    assert.equal(await page.getByRole("dialog").count(), 0);
+  });
+});
+
+test("light and dark: the system's, then the author's choice", async () => {
+  for (const colorScheme of ["dark", "light"]) {
+    await withPage(pageOf(example("sheet")), { colorScheme }, async (page) => {
+      const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
+      assert.equal(await theme(), colorScheme);
+      await page.getByRole("button", { name: "Theme" }).click();
+      assert.notEqual(await theme(), colorScheme);
+    });
+  }
+});
+
+test("the address sets the look", async () => {
+  await withPage(`${pageOf(example("sheet"))}#frame=17&colour=velocity&style=wireframe&gizmos=off&turn=90&tilt=0&theme=light&frame=x`, {}, async (page) => {
+    const { display, camera, gizmos } = await page.evaluate(() => ({
+      display: window.pliant.viewer.display,
+      camera: window.pliant.stage.camera.position.clone().sub(window.pliant.stage.controls.target).normalize().toArray(),
+      gizmos: window.pliant.stage.scene.getObjectByName("gizmos").visible,
+    }));
+    assert.equal(await frameOf(page), 17);
+    assert.deepEqual([display.colour, display.style, display.hasGizmos, gizmos], ["velocity", "wireframe", false, false]);
+    near(camera[0], 1, 1e-3, "camera");
+  });
+});
+
+test("a scene's name is text, whatever it is", async () => {
+  const name = "a<img src=x onerror=alert(1)>&lt;b.xml";
+  writeFileSync(inFolder(name), readFileSync(example("sheet")));
+  await withPage(pageOf(inFolder(name)).replace(/[^/]*$/, encodeURIComponent(name.replace(/\.xml$/, ".html"))), {}, async (page) => {
+    assert.equal(await page.locator("#scene-name").textContent(), name);
+    assert.equal(await page.title(), `${name} – pliant`);
+  });
+});
+
+test("10⁴ vertices over 100 frames load within a second", async () => {
+  writeFileSync(inFolder("large.xml"), `<scene version="1" start="1" end="100"><surface name="s"><grid columns="100" rows="100" width="20" depth="20"/>
+    <material density="40" damping="20"/></surface><noise name="n" frequency="0.4" rate="3" deformationRadius="30" forceRadius="30" magnitude="3000"/></scene>`);
+  const url = pageOf(inFolder("large.xml"));
+  const times = [];
+  for (let k = 0; k < 3; ++k) {
+    await withPage(url, {}, async (page) => times.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime)));
+  }
+  console.log(`  ${times.map((time) => Math.round(time)).join(", ")} ms`);
+  // The best of three: others may be at work on the machine.
+  assert.ok(Math.min(...times) < (process.env.CI ? 3000 : 2000), `${times} ms`);
+});
+
+// The command that serves
+
+async function serve(scene) {
+  const command = spawn(pliant, ["view", scene, "--serve"], { stdio: ["ignore", "pipe", "pipe"] });
+  const lines = createInterface({ input: command.stdout });
+  const url = await new Promise((resolve, reject) => {
+    lines.once("line", resolve);
+    command.once("exit", () => reject(new Error("it ended")));
+  });
+  return { url, stop: () => new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); }) };
+}
+
+test("a save changes the page in place, within a second", async () => {
+  const scene = inFolder("live.xml");
+  const text = readFileSync(example("sheet"), "utf8");
+  writeFileSync(scene, text);
+  const server = await serve(scene);
+  try {
+    await withPage(server.url, {}, async (page) => {
+      await page.waitForFunction(() => window.pliant.viewer.bake !== null);
+      await goTo(page, 30);
+      await page.evaluate(() => window.pliant.stage.look(77, 11));
+      await page.keyboard.press("c");
+      const camera = () => page.evaluate(() => window.pliant.stage.camera.position.toArray());
+      const [before, peak] = [await camera(), await page.locator("#legend-high").textContent()];
+      const times = [];
+      for (const [from, to] of [['value="8000"', 'value="12000"'], ['magnitude="3200"', 'magnitude="9000"'], ['end="96"', 'end="60"']]) {
+        const shown = await page.evaluate(() => (window.before = window.pliant.viewer.bake, 1));
+        assert.equal(shown, 1);
+        const saved = Date.now();
+        writeFileSync(scene, text.replace(from, to));
+        await page.waitForFunction(() => window.pliant.viewer.bake !== window.before, null, { polling: 10 });
+        times.push(Date.now() - saved);
+      }
+      console.log(`  ${times.join(", ")} ms`);
+      assert.ok(Math.min(...times) < 1000, `${times} ms`);
+      (await camera()).forEach((number, k) => near(number, before[k], 1e-9, "camera"));
+      assert.equal(await frameOf(page), 30);
+      assert.equal(await page.locator("#curves").isVisible(), true);
+      assert.equal(await page.locator("#summary").textContent(), "60 frames · 24 fps · 3,721 vertices");
+      assert.notEqual(peak, "0");
+
+      // Errors stand in the page, with their lines, over what was there.
+      const wrong = text.replace("falloff=", "falof=").replace('density="40"', 'density="forty"');
+      writeFileSync(scene, wrong);
+      await page.locator(".message.error").first().waitFor();
+      const messages = await page.locator(".message.error").allTextContents();
+      const lineOf = (word) => wrong.split("\n").findIndex((line) => line.includes(word)) + 1;
+      assert.ok(messages.some((each) => each.includes(`line ${lineOf("falof=")}`) && each.includes("falof")), messages.join());
+      assert.ok(messages.some((each) => each.includes(`line ${lineOf("forty")}`)), messages.join());
+      assert.equal(await frameOf(page), 30);
+      await page.screenshot({ path: path.join(pictures, "errors.png") });
+      writeFileSync(scene, text);
+      await page.waitForFunction(() => document.querySelectorAll(".message.error").length === 0);
+    });
+  } finally {
+    await server.stop();
+  }
+});
+
+test("pictures have the size and the frame that was asked for", async () => {
+  const size = (file) => {
+    const bytes = readFileSync(inFolder(file));
+    assert.equal(bytes.toString("latin1", 1, 4), "PNG");
+    return [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
+  };
+  run("view", example("sheet"), "--png", "one.png", "--frame", "12", "--size", "640x360", "--quiet");
+  assert.deepEqual(size("one.png"), [640, 360]);
+  run("view", example("sheet"), "--png", "other.png", "--frame", "24", "--size", "640x360", "--quiet");
+  assert.notDeepEqual(readFileSync(inFolder("one.png")), readFileSync(inFolder("other.png")));
+  run("view", example("sheet"), "--png", "again.png", "--frame", "12", "--size", "640x360", "--quiet");
+  assert.deepEqual(readFileSync(inFolder("one.png")), readFileSync(inFolder("again.png")));
+  run("view", example("sheet"), "--png", "sheet.png", "--contact-sheet", "--size", "200x160", "--quiet");
+  assert.deepEqual(size("sheet.png"), [800, 3 * 188]);
+});
+
+let failed = 0;
+let passed = 0;
+for (const [name, body] of tests) {
+  if (only.length > 0 && !only.some((word) => name.includes(word))) continue;
+  const begin = Date.now();
+  try {
+    await body();
+    ++passed;
+    console.log(`ok      ${name} (${Date.now() - begin} ms)`);
+  } catch (error) {
+    ++failed;
+    console.log(`FAILED  ${name}\n${error.stack}`);
+    for (const context of browser.contexts()) await context.close();
+  }
+}
+await browser.close();
+rmSync(folder, { recursive: true });
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed > 0 ? 1 : 0);
