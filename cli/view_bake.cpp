@@ -28,8 +28,7 @@ using Json = nlohmann::ordered_json;
 // The arrays behind the head, each told of in it by where it begins and how many numbers it has.
 class Arrays {
  public:
-  // Little-endian numbers of four bytes, or bytes. Those of four come first, so that they are
-  // aligned.
+  // Little-endian numbers of four bytes, or bytes. Each array begins at a multiple of four.
   template <class Number>
   Json add(std::span<const Number> numbers) {
     const std::size_t begin = bytes_.size();

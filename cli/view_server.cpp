@@ -1,6 +1,7 @@
 #include "view_server.hpp"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -27,6 +28,7 @@ std::string event_text(std::string_view name, std::string_view data) {
 struct ViewServer::State {
   httplib::Server server;
   std::thread listener;
+  std::atomic<bool> has_ended = false;
   std::string page;
   int port = 0;
 
@@ -144,8 +146,13 @@ Result<ViewServer> ViewServer::start(std::string page, int port) {
                     "one, or 0 for any that is free",
                     this_machine, port));
   }
-  state->listener = std::thread([raw = state.get()] { raw->server.listen_after_bind(); });
-  while (!state->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  state->listener = std::thread([raw = state.get()] {
+    raw->server.listen_after_bind();
+    raw->has_ended = true;
+  });
+  while (!state->server.is_running() && !state->has_ended) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   return ViewServer(std::move(state));
 }
 

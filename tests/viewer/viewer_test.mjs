@@ -230,6 +230,29 @@ test("every kind of force has its gizmo", async () => {
   });
 });
 
+test("one frame, no force, a surface of nine vertices", async () => {
+  writeFileSync(inFolder("least.xml"), '<scene version="1" start="5" end="5"><surface name="s"><grid columns="3" rows="3"/></surface></scene>');
+  await withPage(pageOf(inFolder("least.xml")), {}, async (page) => {
+    for (const key of ["Space", "ArrowRight", "ArrowDown", "End", "c", "f"]) await page.keyboard.press(key);
+    assert.equal(await frameOf(page), 5);
+    assert.equal((await worldPositions(page, "s")).positions.length, 27);
+  });
+});
+
+test("a small scene far from the origin keeps its shape", async () => {
+  writeFileSync(inFolder("far.xml"), `<scene version="1" start="1" end="24"><surface name="s"><grid columns="21" rows="21" width="1e-3" depth="1e-3"/>
+    <transform translate="1e6 -1e6 3e5"/></surface><point name="a" center="1e6 -1e6 3e5" deformationRadius="6e-4" forceRadius="2e-4" magnitude="0.3"/></scene>`);
+  run("bake", inFolder("far.xml"), "-o", "far.npy", "--quiet");
+  const { numbers } = readNpy(inFolder("far.npy"));
+  await withPage(pageOf(inFolder("far.xml")), {}, async (page) => {
+    await goTo(page, 20);
+    const { positions } = await worldPositions(page, "s");
+    // The bake's own doubles are 1e-10 apart there.
+    const off = positions.reduce((most, each, k) => Math.max(most, Math.abs(each - numbers[19 * 441 * 3 + k])), 0);
+    assert.ok(off < 1e-8, `${off}`);
+  });
+});
+
 test("the rim of a region lies on the surface, along its box", async () => {
   const scene = example("hands");
   run("bake", scene, "-o", "hands.npy", "--regions", "hands.json", "--quiet");

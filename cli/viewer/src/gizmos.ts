@@ -283,7 +283,7 @@ export class Gizmos {
   ) {
     this.group.name = "gizmos";
     this.gizmos = forces.map((force) => new Gizmo(force, reach));
-    this.group.add(...this.gizmos.map((gizmo) => gizmo.group));
+    for (const gizmo of this.gizmos) this.group.add(gizmo.group);
   }
 
   show(index: number, share: number, pushes: Map<number, Vector>): void {

@@ -199,7 +199,7 @@ function load(bake: Bake): void {
   const vertices = head.surfaces.reduce((sum, each) => sum + each.vertices, 0);
   const error = Math.max(0, ...head.surfaces.map((each) => each.error));
   const summary = element<HTMLElement>("summary");
-  summary.textContent = `${bake.frameCount} frames · ${Number(head.fps.toPrecision(5))} fps · ${vertices.toLocaleString("en")} vertices`;
+  summary.textContent = `${bake.frameCount} ${bake.frameCount === 1 ? "frame" : "frames"} · ${Number(head.fps.toPrecision(5))} fps · ${vertices.toLocaleString("en")} vertices`;
   summary.title = `Positions of this page are within ${numberText(error)} of the bake's`;
   frameField.min = String(head.first);
   frameField.max = String(head.last);
