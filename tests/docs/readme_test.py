@@ -26,8 +26,11 @@ def main():
         for command in commands:
             words = shlex.split(command)
             words[0] = PLIANT if words[0].endswith("pliant") else os.path.join(SOURCE, words[0])
-            subprocess.run(words, cwd=folder, check=True, timeout=120)
-            print("ok", command)
+            result = subprocess.run(words, cwd=folder, check=False, timeout=120, capture_output=True, text=True)
+            # A build that was made without npm says so.
+            is_left_out = words[1] == "view" and "this build has no viewer" in result.stderr
+            assert result.returncode == 0 or is_left_out, f"{command}: {result.stderr}"
+            print("left out" if is_left_out else "ok", command)
     for path in re.findall(r"\]\((?!https?:)([^)#]+)\)", readme):
         assert os.path.exists(os.path.join(SOURCE, path)), f"the README links to {path}"
 
