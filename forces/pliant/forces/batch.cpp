@@ -95,15 +95,16 @@ struct CommonUnitForce {
 };
 
 // magnitude x falloff at each distance.
-BatchNumbers strengths(const SampledForce& force, BatchNumbers distance, int count) {
+BatchNumbers strengths(const SampledForce& force, const BatchNumbers& distance, int count) {
+  BatchNumbers strength = distance;
   const double magnitude = force.magnitude;
   const double radius = force.force_radius;
-  double* const of = distance.of;
+  double* const of = strength.of;
   if (force.falloff_curve) {
     for (int k = 0; k < count; ++k) {
       of[k] = magnitude * force.falloff_curve->value(std::min(of[k] / radius, 1.0))[0];
     }
-    return distance;
+    return strength;
   }
   switch (force.falloff) {
     case Falloff::Constant:
@@ -128,7 +129,7 @@ BatchNumbers strengths(const SampledForce& force, BatchNumbers distance, int cou
         of[k] = magnitude * falloff(Falloff::Gaussian, of[k] / radius);
       break;
   }
-  return distance;
+  return strength;
 }
 
 // Rounding keeps order: of a component p >= low > c, the difference p - c as computed is not below

@@ -11,7 +11,8 @@ namespace {
 constexpr int tile_size = batch_size;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-using Lanes = Eigen::Array<double, batch_size, 1>;
+using Lanes = Eigen::Array<double, 8, 1>;  // as many as registers hold of all three
+static_assert(batch_size % 8 == 0);
 
 // The least and the largest of what came by, in lanes beside each other.
 struct Extremes {
@@ -19,13 +20,20 @@ struct Extremes {
   Lanes high = Lanes::Constant(-infinity);
   Lanes unsound = Lanes::Zero();  // NaN once something was not finite
 
-  // Fills up the lanes behind the numbers with the first of them.
+  // Fills up the last lanes with the first of the numbers.
   void include(double* numbers, int count) {
-    std::fill(numbers + count, numbers + batch_size, numbers[0]);
-    const Eigen::Map<const Lanes> lanes(numbers);
-    low = low.min(lanes);
-    high = high.max(lanes);
-    unsound += lanes - lanes;
+    const int filled = (count + 7) / 8 * 8;
+    std::fill(numbers + count, numbers + filled, numbers[0]);
+    Lanes least = low, largest = high, sum = unsound;
+    for (int k = 0; k < filled; k += 8) {
+      const Lanes lanes = Eigen::Map<const Lanes>(numbers + k);
+      least = least.min(lanes);
+      largest = largest.max(lanes);
+      sum += lanes - lanes;
+    }
+    low = least;
+    high = largest;
+    unsound = sum;
   }
 
   bool are_finite() const { return unsound.sum() == 0; }

@@ -4,14 +4,6 @@
 
 namespace pliant {
 
-// The identity would change the sign of a 0 at most, which no distance and no force knows.
-PlacedNodes::PlacedNodes(const Field& positions, const Transform& transform)
-    : positions_(&positions) {
-  const bool is_identity =
-      transform.linear == Matrix3d::Identity() && transform.translation == Vector3d::Zero();
-  if (!is_identity) transform_ = transform;
-}
-
 Batch PlacedNodes::batch(int first, int count) const {
   const double* const x = positions_->col(0).data() + first;
   const double* const y = positions_->col(1).data() + first;

@@ -16,7 +16,8 @@ class PlacedNodes {
   PlacedNodes(const Field& positions) : positions_(&positions) {}
 
   /// #nodes x 3, in object space.
-  PlacedNodes(const Field& positions, const Transform& transform);
+  PlacedNodes(const Field& positions, const Transform& transform)
+      : positions_(&positions), transform_(transform) {}
 
   Eigen::Index count() const { return positions_->rows(); }
 
