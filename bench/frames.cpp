@@ -1,144 +1,327 @@
-// What a frame costs from the forces to the new positions: sheets of 51 to 1001 vertices per side,
-// all of each in the region. A frame is 20 backward Euler steps, by the solver that a run takes;
-// bench/plate tells what becomes of them.
+// What a frame costs from the channels to the file: square sheets, every vertex in the region, 20
+// backward Euler steps a frame by the solver that a run takes; bench/plate tells what becomes of
+// these. Frames are played by a Simulation; its own profile says what each stage took.
 //
-//   rest       of a frame: distances, region and load, displacement in, new positions out
-//   frame      20 steps and the rest, coefficients unchanged; frames/s is its inverse
 //   triad      the yardstick in the same run: a[k] = b[k] + 3 c[k] over 15 doubles a node, which is
 //              what a step moves at least
+//   solve      transforms and steps, coefficients unchanged
+//   select     channels, boxes around the nodes, distances, whether all is finite
+//   load       of two forces, one over a sixth of the sheet and one over a tenth
+//   in, out    the state on its way to the plate and back, and whether it is finite
+//   output     positions in the order of the mesh and in world space, and their peak
+//   writers    one frame into each format, on a disk that is in memory if there is one
+//   holds      whether all but the solve, with the slowest writer, takes less than the solve
 //
-// The table at the end has the medians, and in brackets multiples of the triad, so that it can be
-// compared between machines and between noisy moments of one.
-// Run: build/release/bench/frames [--benchmark_min_time=SECONDS]
+// Medians over frames, in ms; "rest" is the sum of all but the solve, "frame" that of all but the
+// writers: on a noisy machine a median of sums would tell of the noise. With --least the least
+// times, for a machine that others use: they lengthen a time, and nothing shortens it. Then what it
+// takes to select on a million vertices, beside a look at every distance.
+//
+// Run: build/release/bench/frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]
 
 #include <algorithm>
-#include <map>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <random>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "pliant/body/body.hpp"
-#include "pliant/mesh/grid_mapping.hpp"
-#include "pliant/mesh/grid_sheet.hpp"
+#include "pliant/pliant.hpp"
+#include "pliant/region/region.hpp"
 
 namespace {
 
 using namespace pliant;
 
 constexpr int steps_per_frame = 20;
-constexpr double frame_length = 1.0 / 24;
+constexpr double fps = 24;
+const std::vector<std::string> endings = {"npy", "pc2", "mdd", "ply"};
 
-struct Sheet {
-  Grid grid;
-  Field rest;
+struct Options {
+  std::vector<int> sides = {51, 101, 201, 401, 480, 481, 1001};
+  double seconds = 2;  // for each side
+  int threads = 1;
+  bool is_least = false;
 };
 
-Sheet make_sheet(int side) {
-  const auto mapping =
-      find_grid(make_mesh({.columns = side, .rows = side, .width = 20, .depth = 20}));
-  return {mapping->grid, mapping->rest};
+double seconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-BodyInputs make_inputs() {
-  BodyInputs inputs;
-  inputs.dynamics = {40, 20};
-  inputs.frame_length = frame_length;
-  inputs.dt = frame_length / steps_per_frame;
+// The median of many times, or the least of them.
+double typical(std::vector<double> times, bool is_least) {
+  const auto middle = times.begin() + static_cast<long>(is_least ? 0 : times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
+}
+
+Force force(std::string name, decltype(Force::shape) shape, double magnitude,
+            double deformation_radius, double force_radius, Falloff falloff) {
+  Force force;
+  force.name = std::move(name);
+  force.shape = std::move(shape);
+  force.magnitude = magnitude;
+  force.deformation_radius = deformation_radius;
+  force.force_radius = force_radius;
+  force.falloff = falloff;
+  return force;
+}
+
+Scene make_scene(int side) {
+  Surface sheet;
+  sheet.name = "sheet";
+  sheet.shape = GridSheet{.columns = side, .rows = side, .width = 20, .depth = 20};
+  sheet.material.density = 40.0;
+  sheet.material.damping = 20.0;
+  sheet.solver.dt = 1 / fps / steps_per_frame;
+  sheet.solver.measure = Measure::Rest;  // the region stays the whole sheet
+  Scene scene;
+  scene.fps = fps;
+  scene.start = 0;
+  scene.end = 50'000;
+  scene.surfaces.push_back(std::move(sheet));
   // Reaches past every corner; a force in the middle and one aside.
-  inputs.forces = {{PointForce{{0, 0, 0}, {0, 1, 0}}, 500, 100, 4, Falloff::Smooth},
-                   {RadialForce{{4, -1, 3}}, 300, 3, 3, Falloff::Gaussian}};
-  return inputs;
+  scene.forces.push_back(
+      force("middle", PointChannels{.center = Value<3>{0, 0, 0}}, 500, 100, 4, Falloff::Smooth));
+  scene.forces.push_back(
+      force("aside", RadialChannels{.center = Value<3>{4, -1, 3}}, 300, 3, 3, Falloff::Gaussian));
+  return scene;
 }
 
-void triad(benchmark::State& state) {
-  const auto count = static_cast<std::size_t>(5 * state.range(0) * state.range(0));
-  std::vector<double> a(count, 0), b(count, 1), c(count, 2);
-  for (auto _ : state) {
+// Times of many frames. [s]
+struct Times {
+  std::vector<double> triad, solve, select, load, in, out, output;
+  std::vector<std::vector<double>> writers = std::vector<std::vector<double>>(endings.size());
+};
+
+double triad(int side) {
+  static std::vector<double> a, b, c;
+  const auto count = static_cast<std::size_t>(5) * side * side;
+  a.resize(count, 0), b.resize(count, 1), c.resize(count, 2);
+  return seconds([&] {
     for (std::size_t k = 0; k < count; ++k) a[k] = b[k] + 3 * c[k];
-    benchmark::DoNotOptimize(a.data());
-    benchmark::ClobberMemory();
-  }
+  });
 }
 
-void frame(benchmark::State& state) {
-  const Sheet sheet = make_sheet(static_cast<int>(state.range(0)));
-  Body body(sheet.grid, sheet.rest, {.measure = Measure::Rest});
-  const BodyInputs inputs = make_inputs();
-  benchmark::DoNotOptimize(body.step(inputs));  // sets the solver up; the frames below keep that
-  for (auto _ : state) benchmark::DoNotOptimize(body.step(inputs));
-  state.counters["frames/s"] =
-      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
-}
-
-void rest_of_frame(benchmark::State& state) {
-  const Sheet sheet = make_sheet(static_cast<int>(state.range(0)));
-  const BodyInputs inputs = make_inputs();
-  for (auto _ : state) {
-    const Field nodes = to_world(inputs.transform, sheet.rest);
-    const Selection selection = select_region(sheet.grid, nodes, inputs.forces);
-    const Field load = vectors_to_object(
-        inputs.transform, assemble_load(sheet.grid, nodes, inputs.forces, selection));
-    const Field displacement = nodes - sheet.rest;
-    const Field moved = sheet.rest + displacement;
-    benchmark::DoNotOptimize(load.data());
-    benchmark::DoNotOptimize(moved.data());
-  }
-}
-
-// Shows every line as usual and keeps the medians.
-class Medians : public benchmark::ConsoleReporter {
+class Folder {
  public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& run : runs) {
-      if (run.aggregate_name == "median") {
-        seconds_[run.run_name.function_name + "/" + run.run_name.args] =
-            run.GetAdjustedRealTime() * 1e-3;
-      }
-    }
+  Folder() {
+    std::string name = std::filesystem::exists("/dev/shm")
+                           ? "/dev/shm/pliant-frames-XXXXXX"
+                           : (std::filesystem::temp_directory_path() / "pliant-frames-XXXXXX");
+    path_ = mkdtemp(name.data());
   }
-
-  double milliseconds(std::string_view name, int side) const {
-    const auto found = seconds_.find(fmt::format("{}/{}", name, side));
-    return found == seconds_.end() ? 0 : found->second * 1e3;
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
   }
+  std::filesystem::path file(const std::string& name) const { return path_ / name; }
 
  private:
-  std::map<std::string, double> seconds_;
+  std::filesystem::path path_;
 };
 
-void print_table(const Medians& medians, const std::vector<int>& sides) {
-  fmt::print("\nmedians in ms, and in brackets as multiples of the triad of the same size\n");
-  fmt::print("{:>6} {:>10} {:>20} {:>20} {:>10}\n", "side", "triad", "rest", "frame", "frames/s");
-  for (const int side : sides) {
-    const double triad_ms = medians.milliseconds("triad", side);
-    if (triad_ms == 0) continue;
-    const double frame_ms = medians.milliseconds("frame", side);
-    const auto cell = [&](double ms) { return fmt::format("{:.3f} ({:.1f})", ms, ms / triad_ms); };
-    fmt::print("{:>6} {:>10.4f} {:>20} {:>20} {:>10.1f}\n", side, triad_ms,
-               cell(medians.milliseconds("rest_of_frame", side)), cell(frame_ms), 1e3 / frame_ms);
+// One frame into a file of each format. Twice, since the first has its buffers to make.
+void time_writers(const Folder& folder, const Simulation& simulation, const SurfacePose& pose,
+                  Times& times) {
+  const Mesh& mesh = simulation.rest_shapes()[0].mesh;
+  for (std::size_t k = 0; k < endings.size(); ++k) {
+    const auto writer = make_writer({.file = folder.file("a." + endings[k]),
+                                     .surfaces = {{"sheet", &mesh, mesh.positions}},
+                                     .first_frame = 1,
+                                     .last_frame = 2,
+                                     .fps = fps})
+                            .value();
+    double last = 0;
+    for (int frame = 1; frame <= 2; ++frame)
+      last = seconds([&] { (void)writer->write(frame, {&pose, 1}); });
+    times.writers[k].push_back(last);
   }
+}
+
+Times measure(int side, const Options& options) {
+  auto simulation =
+      Simulation::make(make_scene(side),
+                       {.checkpoint_bytes = 0, .threads = options.threads, .profile = true})
+          .value();
+  const Folder folder;
+  Times times;
+  Frame frame = simulation.at(2).value();  // sets all up
+  SurfacePose pose;
+  pose.positions = frame.surfaces()[0].positions();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int number = 3;; ++number) {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    if (number >= 8 && spent.count() > options.seconds) return times;
+    const Profile before = simulation.profile();
+    frame = simulation.at(number, std::move(frame)).value();
+    const double showing =
+        seconds([&] { pose.positions = frame.surfaces()[0].positions(std::move(pose.positions)); });
+    const Profile after = simulation.profile();
+    const auto took = [&](Stage stage) { return after[stage] - before[stage]; };
+    times.solve.push_back(took(Stage::SetUp) + took(Stage::Solve));
+    times.select.push_back(took(Stage::Sampling) + took(Stage::Selection));
+    times.load.push_back(took(Stage::Load));
+    times.in.push_back(took(Stage::StateIn));
+    times.out.push_back(took(Stage::StateOut));
+    times.output.push_back(took(Stage::Output) + showing);
+    times.triad.push_back(triad(side));
+    if (number % 4 == 3) time_writers(folder, simulation, pose, times);
+  }
+}
+
+void print_frames(const Options& options) {
+  fmt::print("{} in ms; in brackets triads\n", options.is_least ? "least times" : "medians");
+  fmt::print("{:>5} {:>7} {:>15} {:>7} {:>7} {:>7} {:>7} {:>7} {:>15}", "side", "triad", "solve",
+             "select", "load", "in", "out", "output", "rest");
+  for (const std::string& ending : endings) fmt::print(" {:>7}", "." + ending);
+  fmt::print(" {:>8} {:>8} {:>6}\n", "frame", "frames/s", "holds");
+  for (const int side : options.sides) {
+    const Times times = measure(side, options);
+    const double one = typical(times.triad, options.is_least);
+    double rest = 0;
+    for (const auto* part : {&times.select, &times.load, &times.in, &times.out, &times.output})
+      rest += typical(*part, options.is_least);
+    const auto with_triads = [&](const std::vector<double>& of) {
+      return fmt::format("{:.3f} ({:.1f})", typical(of, options.is_least) * 1e3,
+                         typical(of, options.is_least) / one);
+    };
+    const auto plain = [&](const std::vector<double>& of) {
+      return fmt::format("{:.3f}", typical(of, options.is_least) * 1e3);
+    };
+    fmt::print("{:>5} {:>7} {:>15} {:>7} {:>7} {:>7} {:>7} {:>7} {:>15}", side, plain(times.triad),
+               with_triads(times.solve), plain(times.select), plain(times.load), plain(times.in),
+               plain(times.out), plain(times.output),
+               fmt::format("{:.3f} ({:.1f})", rest * 1e3, rest / one));
+    double slowest = 0;
+    for (const auto& writer : times.writers) {
+      slowest = std::max(slowest, typical(writer, options.is_least));
+      fmt::print(" {:>7}", plain(writer));
+    }
+    const double solve = typical(times.solve, options.is_least);
+    fmt::print(" {:>8.3f} {:>8.1f} {:>6}\n", (solve + rest) * 1e3, 1 / (solve + rest),
+               rest + slowest < solve ? "yes" : "no");
+    std::fflush(stdout);
+  }
+}
+
+// Pokes strewn over the sheet, each a fiftieth of its side in radius.
+std::vector<SampledForce> strewn(int count, double extent) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-extent / 2, extent / 2);
+  std::vector<SampledForce> forces;
+  for (int k = 0; k < count; ++k) {
+    const double x = place(random), z = place(random);
+    SampledForce& force = forces.emplace_back();
+    force.shape = PointForce{{x, 0, z}, {0, 1, 0}};
+    force.deformation_radius = extent / 50;
+    force.force_radius = extent / 100;
+  }
+  return forces;
+}
+
+Selection look_at_all(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces) {
+  Selection selection;
+  for (const SampledForce& force : forces) {
+    ForceSelection selected;
+    selected.selector = static_cast<int>(selection.forces.size());
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const double delta = distance(force.shape, nodes.row(grid.node(i, j)).transpose());
+        if (delta < force.deformation_radius) selected.deformation.include(i, j);
+        if (delta < force.force_radius) selected.force.include(i, j);
+      }
+    }
+    selection.forces.push_back(selected);
+  }
+  return recombined(std::move(selection), Combine::Box);
+}
+
+void print_selection(const Options& options) {
+  constexpr int side = 1001;
+  const Mesh mesh = make_mesh({.columns = side, .rows = side, .width = 20, .depth = 20});
+  const GridMapping mapping = find_grid(mesh).value();
+  const Transform transform;
+  fmt::print("\nselection on {} x {} vertices, ms\n{:>7} {:>10} {:>12}\n", side, side, "forces",
+             "select", "every one");
+  for (const int count : {1, 10, 200}) {
+    const std::vector<SampledForce> forces = strewn(count, 20);
+    NodeTiles tiles;
+    Selection selection;
+    std::vector<double> quick, slow;
+    for (int round = 0; round < 5; ++round) {
+      quick.push_back(seconds([&] {
+        tiles.update(mapping.grid, {mapping.rest, transform});
+        reselect(selection, tiles, forces, Combine::Box);
+      }));
+      if (round > 0 && count > 10) continue;
+      Selection all;
+      slow.push_back(seconds([&] { all = look_at_all(mapping.grid, mapping.rest, forces); }));
+      if (all != selection) fmt::print("DIFFERS\n");
+    }
+    fmt::print("{:>7} {:>10.3f} {:>12.2f}\n", count, typical(quick, options.is_least) * 1e3,
+               typical(slow, options.is_least) * 1e3);
+  }
+}
+
+bool read_number(std::string_view text, auto& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+bool read_sides(std::string_view text, std::vector<int>& sides) {
+  sides.clear();
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    int side = 0;
+    if (!read_number(text.substr(0, comma), side) || side < 3) return false;
+    sides.push_back(side);
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return true;
+}
+
+bool parse(int count, char* arguments[], Options& options) {
+  for (int k = 1; k < count; ++k) {
+    const std::string_view name = arguments[k];
+    if (name == "--least") {
+      options.is_least = true;
+      continue;
+    }
+    if (++k == count) return false;
+    const std::string_view value = arguments[k];
+    const bool is_known =
+        (name == "--seconds" && read_number(value, options.seconds)) ||
+        (name == "--threads" && read_number(value, options.threads) && options.threads >= 1) ||
+        (name == "--sides" && read_sides(value, options.sides));
+    if (!is_known) return false;
+  }
+  return true;
 }
 
 }  // namespace
 
 int main(int count, char* arguments[]) {
-  const std::vector<int> sides{51, 101, 201, 401, 481, 1001};
-  for (const auto& [name, function] :
-       {std::pair{"triad", &triad}, {"rest_of_frame", &rest_of_frame}, {"frame", &frame}}) {
-    auto* registered = benchmark::RegisterBenchmark(name, function);
-    for (const int side : sides) registered->Arg(side);
-    registered->Unit(benchmark::kMillisecond)->Repetitions(5)->ReportAggregatesOnly();
+  Options options;
+  if (!parse(count, arguments, options)) {
+    fmt::print(stderr,
+               "usage: frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]\n");
+    return 2;
   }
-  benchmark::Initialize(&count, arguments);
-  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
-  Medians medians;
-  benchmark::RunSpecifiedBenchmarks(&medians);
-  print_table(medians, sides);
+  print_frames(options);
+  print_selection(options);
   return 0;
 }

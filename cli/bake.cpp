@@ -173,7 +173,8 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
                          Output& output, Summary& summary) {
   ++summary.frame_count;
   output.poses.resize(output.surfaces.size());
-  StageTimer posing(&output.profile, Stage::Output);
+  Profile* const profile = options.is_profiled ? &output.profile : nullptr;
+  StageTimer posing(profile, Stage::Output);
   for (std::size_t n = 0; n < output.surfaces.size(); ++n) {
     const std::size_t k = output.surfaces[n];
     const SurfaceFrame& surface = frame.surfaces()[k];
@@ -187,7 +188,7 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
     }
   }
   posing.stop();
-  const StageTimer writing(&output.profile, Stage::Writing);
+  const StageTimer writing(profile, Stage::Writing);
   return output.writer->write(frame.number(), output.poses);
 }
 
@@ -223,7 +224,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     }
     progress.advance();
   }
-  StageTimer finishing(&output.profile, Stage::Writing);
+  StageTimer finishing(options.is_profiled ? &output.profile : nullptr, Stage::Writing);
   if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
   finishing.stop();
   if (regions) {
