@@ -18,7 +18,7 @@ const [pliant, examples, pictures, ...only] = process.argv.slice(2).map((word, k
 mkdirSync(pictures, { recursive: true });
 const folder = mkdtempSync(path.join(tmpdir(), "pliant-viewer-"));
 const inFolder = (name) => path.join(folder, name);
-const run = (...words) => execFileSync(pliant, words, { cwd: folder, encoding: "utf8", timeout: 120_000 });
+const run = (...words) => execFileSync(pliant, words, { cwd: folder, encoding: "utf8", timeout: 300_000 });
 
 const tests = [];
 const test = (name, body) => tests.push([name, body]);
@@ -58,6 +58,7 @@ const browser = await chromium.launch({
 async function open(url, { width = 1280, height = 800, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: "dark", ...options });
   const page = await context.newPage();
+  page.setDefaultTimeout(120_000); // a machine may be busy
   page.complaints = [];
   page.on("pageerror", (error) => page.complaints.push(String(error)));
   page.on("console", (message) => {
@@ -68,7 +69,7 @@ async function open(url, { width = 1280, height = 800, ...options } = {}) {
     if (!allowed) page.complaints.push(`asks for ${request.url()}`);
   });
   await page.goto(url);
-  await page.waitForFunction("document.documentElement.dataset.ready === 'true'", null, { timeout: 60_000 });
+  await page.waitForFunction("document.documentElement.dataset.ready === 'true'");
   return page;
 }
 
