@@ -87,10 +87,10 @@ double estimate_condition(const PlateSystem& system) {
   const double most_v = 4 / (system.grid.hv * system.grid.hv);
   const double least_u = std::numbers::pi * std::numbers::pi / (width * width);
   const double least_v = std::numbers::pi * std::numbers::pi / (depth * depth);
-  const auto form = [&](double x, double y) { return b * x * x + c * x * y + d * y * y; };
   const double most =
       system.shift + b * most_u * most_u + std::max(c, 0.0) * most_u * most_v + d * most_v * most_v;
-  return std::max(1.0, most / (system.shift + form(least_u, least_v)));
+  const double least = b * least_u * least_u + c * least_u * least_v + d * least_v * least_v;
+  return std::max(1.0, most / (system.shift + least));
 }
 
 }  // namespace pliant

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "pliant/simulation/checkpoints.hpp"
 #include "pliant/simulation/frame.hpp"
 #include "pliant/simulation/frame_report.hpp"
+#include "pliant/simulation/frame_sequence.hpp"
 #include "pliant/simulation/rest_shape.hpp"
 #include "pliant/simulation/warnings.hpp"
 
@@ -72,7 +72,7 @@ class Simulation {
   static Result<void> check(const Scene& scene, const SimulationOptions& options = {});
 
   /// The scene's frames, start to end.
-  std::ranges::iota_view<int, int> frames() const { return {scene_.start, scene_.end + 1}; }
+  FrameSequence frames() const { return {scene_.start, scene_.end}; }
 
   /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
   /// ahead. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed, OutOfMemory,
