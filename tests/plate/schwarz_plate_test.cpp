@@ -301,11 +301,10 @@ TEST_CASE("large unions go to rectangles by themselves", "[plate][schwarz][solve
     };
     const bool is_large = worth_iterating(unknown_count(plate.grid, plate.interior), {1, 2, 1});
     CHECK(is_large == (side == 461));
-    const Field expected =
-        displacement(is_large ? make_schwarz_plate_solver(nullptr, nullptr)
-                              : make_plate_solver(direct == SolverKind::Cholmod
-                                                      ? SolverChoice::Cholmod
-                                                      : SolverChoice::Eigen));
+    const Field expected = displacement(is_large ? make_schwarz_plate_solver(nullptr, nullptr)
+                                                 : make_plate_solver(direct == SolverKind::Cholmod
+                                                                         ? SolverChoice::Cholmod
+                                                                         : SolverChoice::Eigen));
     for (const SolverChoice choice : {SolverChoice::Auto, SolverChoice::Spectral})
       CHECK(displacement(make_plate_solver(choice)) == expected);
   }

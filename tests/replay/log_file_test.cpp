@@ -126,14 +126,14 @@ TEST_CASE("a log is read as it was written", "[replay]") {
   }
 }
 
-TEST_CASE("every flipped bit of a log is found", "[replay]") {
+TEST_CASE("a flipped bit is found in every byte of a log", "[replay]") {
   const ScratchFolder folder;
   const std::string sound = write_small_log(folder.file("a.replay"));
   REQUIRE_FALSE(trouble_in(folder, sound));
-  for (std::size_t bit = 0; bit < 8 * sound.size(); ++bit) {
+  for (std::size_t byte = 0; byte < sound.size(); ++byte) {
     std::string changed = sound;
-    changed[bit / 8] = static_cast<char>(changed[bit / 8] ^ (1 << (bit % 8)));
-    CAPTURE(bit);
+    changed[byte] = static_cast<char>(changed[byte] ^ (1 << (byte % 8)));
+    CAPTURE(byte);
     const auto trouble = trouble_in(folder, changed);
     REQUIRE(trouble);
     REQUIRE(trouble->code == ErrorCode::InvalidInput);

@@ -26,7 +26,9 @@ class SchwarzPlateSolver final : public PlateSolver {
     PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
-    if (!plate_) plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_, kernels_of_width(most_lanes_));
+    if (!plate_)
+      plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_,
+                                              kernels_of_width(most_lanes_));
     auto done = plate_->prepare(grid, problem.interior, problem.stiffness, shift);
     int step = 0;
     if (done) {
