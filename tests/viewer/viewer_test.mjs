@@ -7,10 +7,11 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
 
 import { chromium } from "playwright-core";
 
@@ -289,8 +290,9 @@ test("plays at the frame rate, and loops", async () => {
     const { fps, first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);
     await page.keyboard.press("Space");
     assert.equal(await page.getByRole("button", { name: "Pause" }).count(), 1);
-    // Time and frame are read together: a busy machine may leave frames out, but not be late.
-    const sample = () => page.evaluate(() => new Promise((tell) => requestAnimationFrame(() => setTimeout(() => tell([performance.now(), window.pliant.playback.frame])))));
+    // The page's clock and the frame that it shows, read after the page's own callback for the same picture: however busy the machine is, it leaves
+    // frames out rather than being late.
+    const sample = () => page.evaluate(() => new Promise((tell) => requestAnimationFrame((time) => tell([time, window.pliant.playback.frame]))));
     const [begin, from] = await sample();
     await page.waitForTimeout(400);
     const [end, to] = await sample();
@@ -298,7 +300,7 @@ test("plays at the frame rate, and loops", async () => {
     const length = last - first + 1;
     const gone = (((to - from) % length) + length) % length;
     const off = Math.min(Math.abs(gone - (passed % length)), length - Math.abs(gone - (passed % length)));
-    assert.ok(off <= 4, `${gone} frames in the time of ${passed} (of ${length})`);
+    assert.ok(off <= 1.001, `${gone} frames in the time of ${passed} (of ${length})`);
     await page.keyboard.press("Space");
     const stopped = await frameOf(page);
     await page.waitForTimeout(150);
@@ -307,7 +309,7 @@ test("plays at the frame rate, and loops", async () => {
     await page.getByRole("button", { name: "Loop" }).click();
     await goTo(page, last - 1);
     await page.getByRole("button", { name: "Play", exact: true }).click();
-    await page.getByRole("button", { name: "Play", exact: true }).waitFor({ timeout: 20_000 });
+    await page.getByRole("button", { name: "Play", exact: true }).waitFor();
     assert.equal(await frameOf(page), last);
   });
 });
@@ -556,17 +558,17 @@ test("a scene's name is text, whatever it is", async () => {
   });
 });
 
-test("10⁴ vertices over 100 frames load within a second", async () => {
+test("a page of 10⁴ vertices over 100 frames stays under 5 MB, and loads", async () => {
   writeFileSync(inFolder("large.xml"), `<scene version="1" start="1" end="100"><surface name="s"><grid columns="100" rows="100" width="20" depth="20"/>
     <material density="40" damping="20"/></surface><noise name="n" frequency="0.4" rate="3" deformationRadius="30" forceRadius="30" magnitude="3000"/></scene>`);
   const url = pageOf(inFolder("large.xml"));
+  assert.ok(statSync(fileURLToPath(url)).size < 5e6);
+  // Told, not asserted: it depends on the machine and on what else is at work there.
   const times = [];
   for (let k = 0; k < 3; ++k) {
     await withPage(url, {}, async (page) => times.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime)));
   }
-  console.log(`  ${times.map((time) => Math.round(time)).join(", ")} ms`);
-  // The best of three: others may be at work on the machine.
-  assert.ok(Math.min(...times) < (process.env.CI ? 3000 : 2000), `${times} ms`);
+  console.log(`  ready after ${times.map((time) => Math.round(time)).join(", ")} ms`);
 });
 
 // The command that serves
@@ -581,7 +583,7 @@ async function serve(scene) {
   return { url, stop: () => new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); }) };
 }
 
-test("a save changes the page in place, within a second", async () => {
+test("a save changes the page in place", async () => {
   const scene = inFolder("live.xml");
   const text = readFileSync(example("sheet"), "utf8");
   writeFileSync(scene, text);
@@ -603,8 +605,7 @@ test("a save changes the page in place, within a second", async () => {
         await page.waitForFunction(() => window.pliant.viewer.bake !== window.before, null, { polling: 10 });
         times.push(Date.now() - saved);
       }
-      console.log(`  ${times.join(", ")} ms`);
-      assert.ok(Math.min(...times) < 1000, `${times} ms`);
+      console.log(`  shown after ${times.join(", ")} ms`);
       (await camera()).forEach((number, k) => near(number, before[k], 1e-9, "camera"));
       assert.equal(await frameOf(page), 30);
       assert.equal(await page.locator("#curves").isVisible(), true);
@@ -645,7 +646,7 @@ test("pictures have the size and the frame that was asked for", async () => {
   assert.deepEqual(size("sheet.png"), [800, 3 * 188]);
 });
 
-let failed = 0;
+const failures = [];
 let passed = 0;
 for (const [name, body] of tests) {
   if (only.length > 0 && !only.some((word) => name.includes(word))) continue;
@@ -655,12 +656,13 @@ for (const [name, body] of tests) {
     ++passed;
     console.log(`ok      ${name} (${Date.now() - begin} ms)`);
   } catch (error) {
-    ++failed;
+    failures.push(name);
     console.log(`FAILED  ${name}\n${error.stack}`);
     for (const context of browser.contexts()) await context.close();
   }
 }
 await browser.close();
 rmSync(folder, { recursive: true });
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed > 0 ? 1 : 0);
+for (const name of failures) console.log(`FAILED  ${name}`);
+console.log(`${passed} passed, ${failures.length} failed`);
+process.exit(failures.length > 0 ? 1 : 0);
