@@ -19,6 +19,14 @@ if(PLIANT_SANITIZE)
   target_link_options(pliant_settings INTERFACE -fsanitize=${PLIANT_SANITIZE})
 endif()
 
+# pliant_build_fast(TARGET): for targets that have little to compute themselves. Half the time of a
+# build with sanitizers goes to optimising them, more than all their runs win by it.
+function(pliant_build_fast target)
+  if(PLIANT_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
+endfunction()
+
 find_program(PLIANT_CCACHE ccache)
 if(PLIANT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${PLIANT_CCACHE})
