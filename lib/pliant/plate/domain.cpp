@@ -51,9 +51,7 @@ Field apply_stencil(const Grid& grid, const InteriorMask& interior, const Stiffn
   const std::ptrdiff_t two_rows = std::ptrdiff_t{2} * M;
   const double hu = grid.hu;
   const double hv = grid.hv;
-  const double b = stiffness.b / (hu * hu * hu * hu);
-  const double c = stiffness.c / (hu * hu * hv * hv);
-  const double d = stiffness.d / (hv * hv * hv * hv);
+  const Stiffness scaled = scaled_stiffness(grid, stiffness);
 
   Field result(unknown_count(grid, interior), 3);
   for_each_unknown(grid, interior, [&](int node, int row) {
@@ -75,7 +73,7 @@ Field apply_stencil(const Grid& grid, const InteriorMask& interior, const Stiffn
       const double vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
       const double uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
                           2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
-      result(row, component) = b * uuuu + c * uuvv + d * vvvv;
+      result(row, component) = scaled.b * uuuu + scaled.c * uuvv + scaled.d * vvvv;
     }
   });
   return result;

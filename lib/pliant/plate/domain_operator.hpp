@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "pliant/plate/operator.hpp"
+#include "pliant/plate/stencil.hpp"
 
 namespace pliant {
 
@@ -12,11 +13,10 @@ namespace pliant {
 /// adds.
 struct StencilWeights {
   explicit StencilWeights(const PlateSystem& system) {
-    const double hu = system.grid.hu;
-    const double hv = system.grid.hv;
-    two_u = system.stiffness.b / (hu * hu * hu * hu);
-    corner = system.stiffness.c / (hu * hu * hv * hv);
-    two_v = system.stiffness.d / (hv * hv * hv * hv);
+    const Stiffness scaled = scaled_stiffness(system.grid, system.stiffness);
+    two_u = scaled.b;
+    corner = scaled.c;
+    two_v = scaled.d;
     centre = system.shift + 6 * two_u + 4 * corner + 6 * two_v;
     beside_u = -4 * two_u - 2 * corner;
     beside_v = -2 * corner - 4 * two_v;

@@ -1,6 +1,7 @@
 #include "pliant/plate/rim_load.hpp"
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/stencil.hpp"
 
 namespace pliant {
 
@@ -12,9 +13,7 @@ void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangen
   PLIANT_EXPECTS(w.rows() == grid.node_count() && load.rows() == grid.node_count());
   const double hu = grid.hu;
   const double hv = grid.hv;
-  const double b = stiffness.b / (hu * hu * hu * hu);
-  const double c = stiffness.c / (hu * hu * hv * hv);
-  const double d = stiffness.d / (hv * hv * hv * hv);
+  const Stiffness scaled = scaled_stiffness(grid, stiffness);
   for (int component = 0; component < 3; ++component) {
     const double* const x = w.col(component).data();
     double* const f = load.col(component).data();
@@ -38,7 +37,7 @@ void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangen
           rim(i - 1, j - 1) + rim(i + 1, j - 1) + rim(i - 1, j + 1) + rim(i + 1, j + 1);
       const double uuvv =
           corners - 2 * (rim(i - 1, j) + rim(i + 1, j) + rim(i, j - 1) + rim(i, j + 1));
-      f[grid.node(i, j)] -= b * uuuu + c * uuvv + d * vvvv;
+      f[grid.node(i, j)] -= scaled.b * uuuu + scaled.c * uuvv + scaled.d * vvvv;
     };
     for (int j = 1; j <= N - 2; ++j) {
       const bool is_outer_row = j <= 2 || j >= N - 3;
@@ -58,9 +57,7 @@ void subtract_rim(const Grid& grid, const InteriorMask& interior, const Stiffnes
   PLIANT_EXPECTS(w.rows() == grid.node_count() && load.rows() == grid.node_count());
   const double hu = grid.hu;
   const double hv = grid.hv;
-  const double b = stiffness.b / (hu * hu * hu * hu);
-  const double c = stiffness.c / (hu * hu * hv * hv);
-  const double d = stiffness.d / (hv * hv * hv * hv);
+  const Stiffness scaled = scaled_stiffness(grid, stiffness);
   for (int component = 0; component < 3; ++component) {
     const double* const x = w.col(component).data();
     double* const f = load.col(component).data();
@@ -86,7 +83,7 @@ void subtract_rim(const Grid& grid, const InteriorMask& interior, const Stiffnes
         const double vvvv = (below + above) - 4 * at_v;
         const double uuvv =
             corners - 2 * (rim(node - 1) + rim(node + 1) + rim(node - M) + rim(node + M));
-        f[node] -= b * uuuu + c * uuvv + d * vvvv;
+        f[node] -= scaled.b * uuuu + scaled.c * uuvv + scaled.d * vvvv;
       }
     }
   }

@@ -4,6 +4,13 @@
 
 namespace pliant {
 
+Stiffness scaled_stiffness(const Grid& grid, const Stiffness& stiffness) {
+  const double hu = grid.hu;
+  const double hv = grid.hv;
+  return {stiffness.b / (hu * hu * hu * hu), stiffness.c / (hu * hu * hv * hv),
+          stiffness.d / (hv * hv * hv * hv)};
+}
+
 Field apply_stencil(const Grid& grid, const Stiffness& stiffness, const EdgeTangents& tangents,
                     const Field& w) {
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3 && w.rows() == grid.node_count());
@@ -11,9 +18,7 @@ Field apply_stencil(const Grid& grid, const Stiffness& stiffness, const EdgeTang
   const int N = grid.rows;
   const double hu = grid.hu;
   const double hv = grid.hv;
-  const double b = stiffness.b / (hu * hu * hu * hu);
-  const double c = stiffness.c / (hu * hu * hv * hv);
-  const double d = stiffness.d / (hv * hv * hv * hv);
+  const Stiffness scaled = scaled_stiffness(grid, stiffness);
 
   Field result(unknown_count(grid), 3);
   for (int component = 0; component < 3; ++component) {
@@ -37,7 +42,7 @@ Field apply_stencil(const Grid& grid, const Stiffness& stiffness, const EdgeTang
         const double vvvv = (below + above) - 4 * (p[-M] + p[M]) + 6 * p[0];
         const double uuvv = (p[-M - 1] + p[-M + 1] + p[M - 1] + p[M + 1]) -
                             2 * (p[-1] + p[1] + p[-M] + p[M]) + 4 * p[0];
-        y[(j - 1) * (M - 2) + (i - 1)] = b * uuuu + c * uuvv + d * vvvv;
+        y[(j - 1) * (M - 2) + (i - 1)] = scaled.b * uuuu + scaled.c * uuvv + scaled.d * vvvv;
       }
     }
   }
