@@ -10,9 +10,7 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
                                           const StopRequest& should_stop) {
   const Grid& grid = problem.grid;
   const InteriorMask& mask = problem.interior;
-  PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
-  PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
-  PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+  PLIANT_EXPECTS(is_on_nodes(problem, state));
 
   const double dt = steps.length;
   const double inertia = problem.dynamics.density / dt;            // on v

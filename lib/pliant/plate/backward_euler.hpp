@@ -24,6 +24,13 @@ struct PlateProblem {
   Profile* profile = nullptr;
 };
 
+/// Whether the problem's load and the state have a row for each node.
+inline bool is_on_nodes(const PlateProblem& problem, const PlateState& state) {
+  const int nodes = problem.grid.node_count();
+  return problem.load.rows() == nodes && state.displacement.rows() == nodes &&
+         state.velocity.rows() == nodes;
+}
+
 /// Advances a plate by backward Euler: in each step of length dt
 ///
 ///   (rho/dt^2 + eta/dt) w' + L w' = F + (rho/dt^2 + eta/dt) w + (rho/dt) v,   v' = (w' - w)/dt (8)

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/load_copy.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/schwarz_plate.hpp"
 #include "pliant/plate/solver_factories.hpp"
@@ -16,14 +17,12 @@ class SchwarzPlateSolver final : public PlateSolver {
         threads_(threads),
         most_lanes_(most_lanes),
         max_rounds_(max_rounds),
-        load_memory_(budget) {}
+        load_(budget) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
     const Grid& grid = problem.grid;
-    PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
-    PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
-    PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+    PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
     if (!plate_)
@@ -32,18 +31,19 @@ class SchwarzPlateSolver final : public PlateSolver {
     auto done = plate_->prepare(grid, problem.interior, problem.stiffness, shift);
     int step = 0;
     if (done) {
-      done = take_load(problem);
+      done = load_.take(problem);
       if (!done) return fail(done.error());
       subtract_rim(grid, problem.interior, problem.stiffness, problem.tangents, state.displacement,
-                   load_);
+                   load_.nodes());
       clear_rim(problem.interior, state.velocity);
     }
     const auto view = [&](Field& field) {
       return NodesView{field.data(), grid.columns, grid.node_count()};
     };
     for (; done && step < steps.count; ++step) {
-      done = plate_->advance({load_.data(), grid.columns, grid.node_count()}, inertia, steps.length,
-                             view(state.displacement), view(state.velocity), should_stop);
+      done = plate_->advance({load_.nodes().data(), grid.columns, grid.node_count()}, inertia,
+                             steps.length, view(state.displacement), view(state.velocity),
+                             should_stop);
       if (!done) break;
     }
     if (done) return state;
@@ -57,25 +57,9 @@ class SchwarzPlateSolver final : public PlateSolver {
   SolverCounts counts() const override {
     return plate_ ? past_counts_ + plate_->counts() : past_counts_;
   }
-  std::size_t memory() const override {
-    return load_memory_.bytes() + (plate_ ? plate_->memory() : 0);
-  }
+  std::size_t memory() const override { return load_.memory() + (plate_ ? plate_->memory() : 0); }
 
  private:
-  // The load, to be changed beside the rim.
-  Result<void> take_load(const PlateProblem& problem) {
-    if (load_.rows() != problem.load.rows()) {
-      const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
-      load_.resize(0, 3);
-      if (!load_memory_.try_resize(bytes)) {
-        return fail(factor_too_large(unknown_count(problem.grid, problem.interior),
-                                     load_memory_.complaint(bytes)));
-      }
-    }
-    load_ = problem.load;
-    return {};
-  }
-
   // The rectangles do not suffice: the matrix is factored for the steps that are left. Nothing of
   // it is kept, so that what the next frame does depends on that frame alone.
   Result<PlateState> finish_directly(const PlateProblem& problem, const TimeSteps& steps,
@@ -100,8 +84,7 @@ class SchwarzPlateSolver final : public PlateSolver {
   int max_rounds_;
   std::unique_ptr<SchwarzPlate> plate_;
   SolverCounts past_counts_;  // of what was let go
-  MemoryShare load_memory_;
-  Field load_;
+  LoadCopy load_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/load_copy.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "pliant/plate/spectral_plate.hpp"
@@ -42,14 +43,12 @@ class SpectralLinearSolver final : public LinearSolver {
 class SpectralPlateSolver final : public PlateSolver {
  public:
   SpectralPlateSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
-      : plate_(budget, threads, kernels_of_width(most_lanes)), load_memory_(budget) {}
+      : plate_(budget, threads, kernels_of_width(most_lanes)), load_(budget) {}
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
     const Grid& grid = problem.grid;
-    PLIANT_EXPECTS(problem.load.rows() == grid.node_count());
-    PLIANT_EXPECTS(state.displacement.rows() == grid.node_count());
-    PLIANT_EXPECTS(state.velocity.rows() == grid.node_count());
+    PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
     StageTimer set_up(problem.profile, Stage::SetUp);
@@ -58,13 +57,13 @@ class SpectralPlateSolver final : public PlateSolver {
     }
     set_up.stop();
     const StageTimer solve(problem.profile, Stage::Solve);
-    if (auto taken = take_load(problem); !taken) return fail(taken.error());
-    subtract_rim(grid, problem.stiffness, problem.tangents, state.displacement, load_);
+    if (auto taken = load_.take(problem); !taken) return fail(taken.error());
+    subtract_rim(grid, problem.stiffness, problem.tangents, state.displacement, load_.nodes());
 
     const long first = grid.node(1, 1);
     const long count = grid.node_count();
     const bool is_done =
-        plate_.advance({load_.data() + first, grid.columns, count}, inertia, steps,
+        plate_.advance({load_.nodes().data() + first, grid.columns, count}, inertia, steps,
                        {state.displacement.data() + first, grid.columns, count},
                        {state.velocity.data() + first, grid.columns, count}, should_stop);
     if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
@@ -75,22 +74,9 @@ class SpectralPlateSolver final : public PlateSolver {
   }
 
   SolverCounts counts() const override { return plate_.counts(); }
-  std::size_t memory() const override { return plate_.memory() + load_memory_.bytes(); }
+  std::size_t memory() const override { return plate_.memory() + load_.memory(); }
 
  private:
-  // The load, to be changed at the rim.
-  Result<void> take_load(const PlateProblem& problem) {
-    if (load_.rows() != problem.load.rows()) {
-      const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
-      load_.resize(0, 3);
-      if (!load_memory_.try_resize(bytes)) {
-        return fail(factor_too_large(unknown_count(problem.grid), load_memory_.complaint(bytes)));
-      }
-    }
-    load_ = problem.load;
-    return {};
-  }
-
   static void clear_rim(const Grid& grid, Field& velocity) {
     for (int component = 0; component < 3; ++component) {
       auto column = velocity.col(component);
@@ -103,8 +89,7 @@ class SpectralPlateSolver final : public PlateSolver {
   }
 
   SpectralPlate plate_;
-  MemoryShare load_memory_;
-  Field load_;
+  LoadCopy load_;
 };
 
 }  // namespace

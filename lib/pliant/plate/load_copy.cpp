@@ -1,0 +1,20 @@
+#include "pliant/plate/load_copy.hpp"
+
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+
+Result<void> LoadCopy::take(const PlateProblem& problem) {
+  if (nodes_.rows() != problem.load.rows()) {
+    const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
+    nodes_.resize(0, 3);
+    if (!memory_.try_resize(bytes)) {
+      return fail(factor_too_large(unknown_count(problem.grid, problem.interior),
+                                   memory_.complaint(bytes)));
+    }
+  }
+  nodes_ = problem.load;
+  return {};
+}
+
+}  // namespace pliant
