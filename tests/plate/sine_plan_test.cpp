@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/primes.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;
@@ -31,13 +32,14 @@ std::vector<double> random_points(int count) {
 // By the definition, in extended precision, the angle reduced in whole numbers.
 std::vector<long double> defined(int length, const std::vector<double>& x) {
   const long double pi = std::acos(-1.0L);
+  std::vector<long double> sines;
+  for (long n = 0; n < 2L * length; ++n) {
+    sines.push_back(std::sin(pi * static_cast<long double>(n) / length));
+  }
   std::vector<long double> sums;
   for (long k = 1; k < length; ++k) {
     long double sum = 0;
-    for (long j = 1; j < length; ++j) {
-      sum += x[static_cast<std::size_t>(j - 1)] *
-             std::sin(pi * static_cast<long double>(j * k % (2L * length)) / length);
-    }
+    for (long j = 1; j < length; ++j) sum += x[j - 1] * sines[j * k % (2L * length)];
     sums.push_back(sum);
   }
   return sums;
@@ -49,10 +51,18 @@ double norm(const std::vector<double>& x) {
   return std::sqrt(sum);
 }
 
-// Smooth, odd and even, with each radix; primes, a prime squared, twice a prime.
-const std::vector<int> lengths{2,   3,   4,   5,   6,   7,   8,   9,   10,  11,  12, 13, 14,
-                               16,  17,  18,  19,  20,  21,  22,  25,  26,  30,  34, 60, 97,
-                               100, 128, 143, 211, 243, 289, 360, 394, 400, 401, 499};
+// Smooth, odd and even, with each radix; squares, twice and three times a large prime; all primes
+// to 600, and larger ones whose halves are smooth and are not.
+std::vector<int> lengths() {
+  std::vector<int> lengths{2,  4,  6,   8,   9,   10,  12,  14,  16,  18,  20,  21,  22,
+                           25, 26, 30,  60,  100, 128, 143, 243, 360, 400, 480, 625, 1000,
+                           34, 38, 201, 289, 361, 394, 478, 502, 537, 994, 1007};
+  for (int length = 3; length < 600; ++length) {
+    if (is_prime(length)) lengths.push_back(length);
+  }
+  lengths.insert(lengths.end(), {719, 787, 1009, 1999});
+  return lengths;
+}
 
 }  // namespace
 
@@ -83,7 +93,7 @@ TEST_CASE("a point of a turn is right to an ulp or two", "[plate][spectral]") {
 
 TEST_CASE("the sine transform is what its definition says", "[plate][spectral]") {
   const SpectralKernels& kernels = *runnable_kernels(0);
-  for (const int length : lengths) {
+  for (const int length : lengths()) {
     CAPTURE(length);
     const SinePlan plan(length);
     const int points = length - 1;
@@ -97,8 +107,8 @@ TEST_CASE("the sine transform is what its definition says", "[plate][spectral]")
         difference.push_back(static_cast<double>(expected[k] - y[k * kernels.lanes + lane]));
       }
       // The transform is sqrt(L/2) times an orthogonal one; a few roundings a stage. A convolution
-      // has two transforms of twice the length.
-      const double stages = plan.view().chirp ? 8 : 2;
+      // has two transforms, and a chirp turns all points by rounded angles twice.
+      const double stages = plan.view().chirp ? 8 : plan.view().kernel ? 4 : 2;
       CHECK(norm(difference) <= stages * 2.2e-16 * std::sqrt(length / 2.0) * norm(column));
     }
   }
@@ -106,17 +116,17 @@ TEST_CASE("the sine transform is what its definition says", "[plate][spectral]")
 
 TEST_CASE("the sine transform is its own inverse", "[plate][spectral]") {
   const SpectralKernels& kernels = *runnable_kernels(0);
-  for (const int length : {400, 401, 1000, 2000, 2003}) {
+  for (const int length : {400, 401, 479, 719, 1000, 1006, 2000, 2003}) {
     const SinePlan plan(length);
     const std::vector<double> x = random_points((length - 1) * kernels.lanes);
     std::vector<double> y = transformed(plan, kernels, transformed(plan, kernels, x));
     for (std::size_t k = 0; k < x.size(); ++k) y[k] = y[k] * (2.0 / length) - x[k];
-    CHECK(norm(y) <= (plan.view().chirp ? 3e-15 : 1e-15) * norm(x));
+    CHECK(norm(y) <= (plan.view().kernel ? 3e-15 : 1e-15) * norm(x));
   }
 }
 
 TEST_CASE("every width of vectors transforms to the same bits", "[plate][spectral]") {
-  for (const int length : lengths) {
+  for (const int length : lengths()) {
     CAPTURE(length);
     const SinePlan plan(length);
     const int points = length - 1;
@@ -141,6 +151,35 @@ TEST_CASE("every width of vectors transforms to the same bits", "[plate][spectra
       }
       if (which == 0) first = result;
       CHECK((result == first));
+    }
+  }
+}
+
+TEST_CASE("a sine transform keeps to the room that it asks for", "[plate][spectral]") {
+  for (int length = 2; length < 1200; ++length) {
+    CAPTURE(length);
+    const SinePlan plan(length);
+    CHECK(plan.size() >= static_cast<std::size_t>(length));
+    CHECK(plan.size() <= SinePlan::most_size(length));
+    const SineView view = plan.view();
+    CHECK(sine_work(view) <= 6L * length);
+    if (length % 7 != 0 && !is_prime(length)) continue;
+    for (int which = 0; runnable_kernels(which); ++which) {
+      const SpectralKernels& kernels = *runnable_kernels(which);
+      const auto used = static_cast<std::size_t>(sine_work(view) * kernels.lanes);
+      std::vector<double> work(used + 64, 7.0);
+      const std::vector<double> x = random_points((length - 1) * kernels.lanes);
+      std::vector<double> points = x;
+      points.resize(x.size() + 64, 7.0);
+      kernels.sine_transform(view, points.data(), work.data());
+      bool is_within = true;
+      for (std::size_t k = 0; k < 64; ++k) {
+        is_within = is_within && work[used + k] == 7 && points[x.size() + k] == 7;
+      }
+      CHECK(is_within);
+      CHECK(work[used - 1] != 7);  // and it uses all of it
+      points.resize(x.size());
+      CHECK((points == transformed(plan, kernels, x)));  // whatever was in it
     }
   }
 }

@@ -265,7 +265,7 @@ void SchwarzPlate::apply_operator() {
   });
 }
 
-// z = B r, eq. (33): what is left of r lies in the product's place.
+// z = B r, eq. (36): what is left of r lies in the product's place.
 void SchwarzPlate::apply_rounds() {
   for_each_block([&](int component, std::size_t block) {
     for (const auto& [first, count] : rows_.runs(block)) {
@@ -295,7 +295,7 @@ void SchwarzPlate::visit(const Part& part, bool is_last) {
 }
 
 // Adds a rectangle's part y to z and takes A y out of what is left. On the rectangle that leaves
-// nothing but what the clamped sides have more than A, eq. (32); around it, what the stencil says.
+// nothing but what the clamped sides have more than A, eq. (35); around it, what the stencil says.
 void SchwarzPlate::take_correction(const Part& part, int component, bool is_last) {
   const long M = system_.grid.columns;
   const Box& box = part.box;
@@ -389,7 +389,7 @@ Result<void> SchwarzPlate::correct(const StopRequest& should_stop) {
   return {};
 }
 
-// Conjugate gradients from a residual computed anew, as far as it can be trusted. Eq. (34).
+// Conjugate gradients from a residual computed anew, as far as it can be trusted. Eq. (37).
 // Components that are not solved by then stay in `is_unsolved`.
 Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should_stop) {
   find_residual();

@@ -1,10 +1,11 @@
 #include "pliant/plate/sine_plan.hpp"
 
-#include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "pliant/core/elementary.hpp"
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/primes.hpp"
 
 namespace pliant {
 namespace {
@@ -19,22 +20,46 @@ std::vector<int> radices_of(int length) {
   return radices;
 }
 
-// Whether a Fourier transform of this length goes by stages.
-bool is_smooth(int length) { return length == 1 || !radices_of(length).empty(); }
-
-// The least length from `least` on with no prime above 5.
-int smooth_from(int least) {
-  for (int length = least;; ++length) {
-    int rest = length;
-    for (const int prime : {2, 3, 5}) {
-      while (rest % prime == 0) rest /= prime;
-    }
-    if (rest == 1) return length;
+// Those of a convolution, which has the eights first, and no 2 in the last stage if it can: that
+// one goes there and back at once.
+std::vector<int> convolution_radices(int length) {
+  std::vector<int> radices;
+  for (; length % 8 == 0; length /= 8) radices.push_back(8);
+  const bool has_four = length % 4 == 0;
+  if (has_four) length /= 4;
+  for (const int radix : {2, 3, 5, 7, 11, 13}) {
+    for (; length % radix == 0; length /= radix) radices.push_back(radix);
   }
+  if (has_four) radices.push_back(4);
+  if (length > 1) return {};
+  return radices;
+}
+
+// About what the stages of a convolution take for each point, as measured, or 0 where it has a
+// prime above 5. A stage of 4 or 8 counts as two or three of 2.
+long cost_of_point(int length) {
+  long cost = 0;
+  for (const auto& [prime, share] : {std::pair{2, 4}, {3, 9}, {5, 13}}) {
+    for (; length % prime == 0; length /= prime) cost += share;
+  }
+  return length == 1 ? cost : 0;
+}
+
+// The cheapest length of a convolution from `least` on: a multiple of 8, with no prime above 5, and
+// no longer than the next power of 2.
+int convolution_length(int least) {
+  int best = 8;
+  while (best < least) best *= 2;
+  for (int length = best - 8; length >= least; length -= 8) {
+    const long cost = cost_of_point(length);
+    if (cost > 0 && cost * length <= cost_of_point(best) * best) best = length;
+  }
+  return best;
 }
 
 std::vector<double> stage_tables(int length, const std::vector<int>& radices) {
   std::vector<double> tables;
+  tables.reserve(2 * static_cast<std::size_t>(length));
   const auto add = [&](long numerator, long denominator) {
     const TurnPoint point = turn_point(numerator, denominator);
     tables.push_back(point.cosine);
@@ -54,39 +79,40 @@ std::vector<double> stage_tables(int length, const std::vector<int>& radices) {
   return tables;
 }
 
-// A plain transform of one column, for the convolution's kernel: sum over j of x_j exp(-i 2 pi
-// jk/n).
-std::vector<double> transformed(const std::vector<double>& x, const std::vector<int>& radices) {
-  // By the same stages as the kernels, on single numbers: decimation in frequency, self-sorting.
-  const long length = static_cast<long>(x.size()) / 2;
-  std::vector<double> from = x, to(x.size());
-  long n = length, stride = 1;
+// The kernel of a convolution through the stages as the kernels do it: decimation in frequency in
+// place, exp(-i 2 pi jk/n).
+std::vector<double> transformed(std::vector<double> x, const std::vector<int>& radices) {
+  const std::size_t length = x.size() / 2;
+  std::size_t n = length;
   for (const int radix : radices) {
-    const long m = n / radix;
+    const std::size_t m = n / radix;
     std::vector<TurnPoint> roots;
     for (int j = 0; j < radix; ++j) roots.push_back(turn_point(j, radix));
-    for (long p = 0; p < m; ++p) {
-      for (int k = 0; k < radix; ++k) {
-        const TurnPoint twiddle = turn_point(p * k, n);
-        for (long q = 0; q < stride; ++q) {
+    std::vector<double> points(2 * roots.size());
+    for (std::size_t p = 0; p < m; ++p) {
+      std::vector<TurnPoint> turns;
+      for (int k = 0; k < radix; ++k) turns.push_back(turn_point(static_cast<long>(p) * k, n));
+      for (std::size_t begin = p; begin < length; begin += n) {
+        for (int k = 0; k < radix; ++k) {
           double re = 0, im = 0;
           for (int j = 0; j < radix; ++j) {
             const TurnPoint& root = roots[static_cast<std::size_t>(j * k % radix)];
-            const double* const a = &from[2 * (q + stride * (p + m * j))];
+            const double* const a = &x[2 * (begin + m * j)];
             re += a[0] * root.cosine + a[1] * root.sine;
             im += a[1] * root.cosine - a[0] * root.sine;
           }
-          double* const b = &to[2 * (q + stride * (radix * p + k))];
-          b[0] = re * twiddle.cosine + im * twiddle.sine;
-          b[1] = im * twiddle.cosine - re * twiddle.sine;
+          points[2 * k] = re * turns[k].cosine + im * turns[k].sine;
+          points[2 * k + 1] = im * turns[k].cosine - re * turns[k].sine;
+        }
+        for (int k = 0; k < radix; ++k) {
+          x[2 * (begin + m * k)] = points[2 * k];
+          x[2 * (begin + m * k) + 1] = points[2 * k + 1];
         }
       }
     }
-    from.swap(to);
     n = m;
-    stride *= radix;
   }
-  return from;
+  return x;
 }
 
 }  // namespace
@@ -122,52 +148,146 @@ TurnPoint turn_point(long numerator, long denominator) {
   }
 }
 
-SinePlan::SinePlan(int length) : length_(length), fourier_length_(length) {
+SinePlan::SinePlan(int length) : length_(length) {
   PLIANT_EXPECTS(length >= 2);
-  for (int j = 0; j <= length / 2; ++j) {
-    const TurnPoint point = turn_point(j, 2L * length);
-    fold_.push_back(point.cosine);
+  if (auto radices = radices_of(length); !radices.empty()) {
+    set_stages(length, std::move(radices));
+    make_fold();
+    make_places();
+  } else if (is_prime(length)) {
+    make_powers();
+  } else {
+    make_fold();
+    make_chirp();
+  }
+}
+
+void SinePlan::set_stages(int length, std::vector<int> radices) {
+  fourier_length_ = length;
+  tables_ = stage_tables(length, radices);
+  radices_ = std::move(radices);
+}
+
+void SinePlan::make_fold() {
+  fold_.reserve(2 * static_cast<std::size_t>(length_));
+  for (int j = 0; j < length_; ++j) {
+    // Mirrored to the last bit.
+    const bool is_beyond = 2 * j > length_;
+    const TurnPoint point = turn_point(is_beyond ? length_ - j : j, 2L * length_);
+    fold_.push_back(is_beyond ? -point.cosine : point.cosine);
     fold_.push_back(point.sine);
   }
-  if (!is_smooth(length)) {
-    // Inputs 0 ... L-1, outputs 0 ... L/2: a circular convolution from here on does not overlap.
-    fourier_length_ = smooth_from(length + length / 2);
+}
+
+// Wave number k has the digits of k in reverse.
+void SinePlan::make_places() {
+  places_.reserve(static_cast<std::size_t>(length_ + 1) / 2);
+  for (int k = 0; 2 * k < length_; ++k) {
+    int place = 0;
+    int rest = k;
+    int m = length_;
+    for (const int radix : radices_) {
+      m /= radix;
+      place += rest % radix * m;
+      rest /= radix;
+    }
+    places_.push_back(place);
   }
-  radices_ = radices_of(fourier_length_);
-  tables_ = stage_tables(fourier_length_, radices_);
-  if (fourier_length_ != length) make_chirp();
 }
 
 // Bluestein: jk = (j^2 + k^2 - (k-j)^2)/2, so that with c_j = exp(-i pi j^2/L)
 //   sum over j of x_j exp(-i 2 pi jk/L) = c_k (sum over j of (c_j x_j) conj(c_{k-j})).
 void SinePlan::make_chirp() {
+  // Inputs 0 ... L-1, outputs 0 ... L/2: a circular convolution from here on does not overlap.
+  const int whole = convolution_length(length_ + length_ / 2);
+  set_stages(whole, convolution_radices(whole));
   const auto point_of = [&](long j) { return turn_point(j * j % (2L * length_), 2L * length_); };
-  std::vector<double> kernel(2 * static_cast<std::size_t>(fourier_length_), 0.0);
+  std::vector<double> kernel(2 * static_cast<std::size_t>(whole), 0.0);
   const auto set = [&](int place, const TurnPoint& point) {
     // Over the length, for the way back.
-    kernel[2 * static_cast<std::size_t>(place)] = point.cosine / fourier_length_;
-    kernel[2 * static_cast<std::size_t>(place) + 1] = point.sine / fourier_length_;
+    kernel[2 * static_cast<std::size_t>(place)] = point.cosine / whole;
+    kernel[2 * static_cast<std::size_t>(place) + 1] = point.sine / whole;
   };
+  chirp_.reserve(2 * static_cast<std::size_t>(length_));
   for (int j = 0; j < length_; ++j) {
     const TurnPoint point = point_of(j);
     chirp_.push_back(point.cosine);
     chirp_.push_back(point.sine);
     if (j <= length_ / 2) set(j, point);
-    if (j > 0) set(fourier_length_ - j, point);
+    if (j > 0) set(whole - j, point);
   }
-  kernel_ = transformed(kernel, radices_);
+  kernel_ = transformed(std::move(kernel), radices_);
+}
+
+// Rader: docs/model.md, eq. (30) to (32), whose letters these are.
+void SinePlan::make_powers() {
+  const int L = length_;
+  const int h = (L - 1) / 2;
+  // With a single stage there would be none to take the points in and give them out.
+  std::vector<int> radices = convolution_radices(h);
+  const bool is_turned = radices.size() >= 2;
+  const int whole = is_turned ? h : convolution_length(2 * h - 1);
+  set_stages(whole, is_turned ? std::move(radices) : convolution_radices(whole));
+
+  const auto turn_of = [&](int c) { return is_turned ? turn_point(c, 2L * h) : TurnPoint(); };
+  std::vector<double> kernel(2 * static_cast<std::size_t>(whole), 0.0);
+  const auto set = [&](int place, long power, const TurnPoint& turn) {
+    const long halved = power * ((L + 1) / 2) % L;
+    const double sine = turn_point(halved, L).sine / whole;  // over the length, for the way back
+    kernel[2 * static_cast<std::size_t>(place)] = sine * turn.cosine;
+    kernel[2 * static_cast<std::size_t>(place) + 1] = -sine * turn.sine;
+  };
+  const auto reserve = [&](auto& numbers, int count) { numbers.reserve(std::size_t(count)); };
+  for (auto* const evens : {&in_evens_, &out_evens_}) reserve(*evens, h);
+  for (auto* const turns : {&in_turns_, &out_turns_}) reserve(*turns, 2 * h);
+
+  const long root = primitive_root(L);
+  const long inverse = power_modulo(root, L - 2, L);
+  long there = 1, back = 1;  // root^c and root^-c
+  for (int c = 0; c < h; ++c) {
+    const TurnPoint turn = turn_of(c);
+    const int in_sign = back % 2 == 0 ? 1 : -1;
+    in_evens_.push_back(static_cast<int>(back % 2 == 0 ? back : L - back));
+    in_turns_.push_back(in_sign * turn.cosine);
+    in_turns_.push_back(in_sign * turn.sine);
+    // -(1 + i) exp(-i pi c/h): the convolution's result is i times what is conjugate to eq. (32)'s.
+    const int out_sign = there % 2 == 0 ? 1 : -1;
+    out_evens_.push_back(static_cast<int>(there % 2 == 0 ? there : L - there));
+    out_turns_.push_back(-out_sign * (turn.cosine + turn.sine));
+    out_turns_.push_back(out_sign * (turn.cosine - turn.sine));
+    set(c, there, turn);
+    if (!is_turned && c > 0) set(whole - c, back, turn);
+    there = there * root % L;
+    back = back * inverse % L;
+  }
+  kernel_ = transformed(std::move(kernel), radices_);
 }
 
 SineView SinePlan::view() const {
+  const auto start = [](const auto& numbers) { return numbers.empty() ? nullptr : numbers.data(); };
   return {length_,
-          fold_.data(),
           {fourier_length_, static_cast<int>(radices_.size()), radices_.data(), tables_.data()},
-          chirp_.empty() ? nullptr : chirp_.data(),
-          chirp_.empty() ? nullptr : kernel_.data()};
+          start(fold_),
+          start(places_),
+          start(chirp_),
+          {start(in_evens_), start(in_turns_)},
+          {start(out_evens_), start(out_turns_)},
+          start(kernel_)};
 }
 
-std::size_t SinePlan::table_size(int length) {
-  // Fold L, the convolution's length up to 2 L or so: stages twice that, chirp and kernel.
+std::size_t SinePlan::size() const {
+  std::size_t doubles = 0;
+  for (const auto* const numbers : {&tables_, &fold_, &chirp_, &in_turns_, &out_turns_, &kernel_}) {
+    doubles += numbers->capacity();
+  }
+  for (const auto* const numbers : {&radices_, &places_, &in_evens_, &out_evens_}) {
+    doubles += (numbers->capacity() + 1) / 2;  // integers of half the size
+  }
+  return doubles;
+}
+
+std::size_t SinePlan::most_size(int length) {
+  // Fold and chirp 2 L each, a convolution of up to 3 L points: stages and kernel twice that each.
   return 16 * static_cast<std::size_t>(length) + 256;
 }
 

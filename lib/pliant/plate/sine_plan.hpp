@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "pliant/plate/spectral_kernels.hpp"
@@ -18,18 +19,26 @@ class SinePlan {
   /// Valid as long as the plan is where it is.
   SineView view() const;
 
-  /// Doubles that the tables of such a plan take at most.
-  static std::size_t table_size(int length);
+  /// Doubles that the tables take, and what those of a plan of some length take at most.
+  std::size_t size() const;
+  static std::size_t most_size(int length);
 
  private:
+  void set_stages(int length, std::vector<int> radices);
+  void make_fold();
+  void make_places();
   void make_chirp();
+  void make_powers();
 
   int length_ = 0;
   int fourier_length_ = 0;
-  std::vector<double> fold_;
   std::vector<int> radices_;
   std::vector<double> tables_;
+  std::vector<double> fold_;
+  std::vector<int> places_;
   std::vector<double> chirp_;
+  std::vector<int> in_evens_, out_evens_;
+  std::vector<double> in_turns_, out_turns_;
   std::vector<double> kernel_;
 };
 

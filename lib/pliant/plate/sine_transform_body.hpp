@@ -1,6 +1,6 @@
 // Vectors of PLIANT_LANES doubles and the sine transform of as many columns: the first part of the
-// kernels, included once by each file that compiles them.
-// No #pragma once, no other header: see spectral_kernels.hpp.
+// kernels, included once by each file that compiles them. No #pragma once, no other header: see
+// spectral_kernels.hpp.
 
 namespace pliant {
 namespace {
@@ -11,7 +11,8 @@ constexpr int lanes = PLIANT_LANES;
 typedef double Lanes __attribute__((vector_size(8 * PLIANT_LANES)));
 typedef double LanesAt __attribute__((vector_size(8 * PLIANT_LANES), aligned(8), may_alias));
 
-#define PLIANT_INLINE __attribute__((always_inline)) inline
+#define PLIANT_INLINED __attribute__((always_inline))  // after a lambda's parameters
+#define PLIANT_INLINE PLIANT_INLINED inline
 
 PLIANT_INLINE Lanes load(const double* from) { return *reinterpret_cast<const LanesAt*>(from); }
 PLIANT_INLINE void store(double* to, Lanes x) { *reinterpret_cast<LanesAt*>(to) = x; }
@@ -53,6 +54,24 @@ PLIANT_INLINE void butterfly(Complex (&x)[R], const double* roots) {
     x[1] = b + d;
     x[2] = a - c;
     x[3] = b - d;
+  } else if constexpr (R == 8) {
+    constexpr double root = 0.70710678118654752440;  // of 1/2
+    Complex even[4], odd[4];
+#pragma GCC unroll 4
+    for (int j = 0; j < 4; ++j) {
+      even[j] = x[j] + x[j + 4];
+      odd[j] = x[j] - x[j + 4];
+    }
+    odd[1] = {(odd[1].re + odd[1].im) * root, (odd[1].im - odd[1].re) * root};
+    odd[2] = times_minus_i(odd[2]);
+    odd[3] = {(odd[3].im - odd[3].re) * root, (odd[3].re + odd[3].im) * -root};
+    butterfly<4>(even, roots);
+    butterfly<4>(odd, roots);
+#pragma GCC unroll 4
+    for (int j = 0; j < 4; ++j) {
+      x[2 * j] = even[j];
+      x[2 * j + 1] = odd[j];
+    }
   } else {
     constexpr int half = (R - 1) / 2;
     Complex sum[half], difference[half];
@@ -86,131 +105,255 @@ PLIANT_INLINE void butterfly(Complex (&x)[R], const double* roots) {
   }
 }
 
-// One stage, decimation in frequency, self-sorting (Stockham): n = R m points, `stride` of each.
-template <int R>
-const double* stage(int m, int stride, const double* tables, const double* from, double* to) {
+// Calls work.operator()<R>() for a stage's radix.
+template <class Work>
+PLIANT_INLINE void with_radix(int radix, const Work& work) {
+  switch (radix) {
+    case 2:
+      return work.template operator()<2>();
+    case 3:
+      return work.template operator()<3>();
+    case 4:
+      return work.template operator()<4>();
+    case 5:
+      return work.template operator()<5>();
+    case 7:
+      return work.template operator()<7>();
+    case 8:
+      return work.template operator()<8>();
+    case 11:
+      return work.template operator()<11>();
+    default:
+      return work.template operator()<13>();
+  }
+}
+
+// The stages of a transform from one on: for blocks of n = radix m points.
+struct Stages {
+  int count;
+  const int* radices;
+  const double* tables;
+  int n;
+
+  int radix() const { return radices[0]; }
+  int m() const { return n / radices[0]; }
+  Stages next() const {
+    const int others = radix() - 1;
+    const long size = (radix() % 2 == 1 ? others : 0) + 2L * others * (m() - 1);
+    return {count - 1, radices + 1, tables + size, m()};
+  }
+};
+
+PLIANT_INLINE Stages stages_of(const FourierView& view) {
+  return {view.stage_count, view.radices, view.tables, view.length};
+}
+
+PLIANT_INLINE double* point(double* points, int k) {
+  return points + static_cast<long>(k) * complex_size;
+}
+
+// One stage in place, decimation in frequency: after all of them what belongs to a wave number is
+// where its digits in reverse say. `take(k)` gives the input's points.
+template <int R, class Take>
+void split(int m, const double* tables, double* points, Take take) {
   const double* const roots = tables;
   if (R % 2 == 1) tables += R - 1;
-  const long apart = static_cast<long>(stride) * m * complex_size;
   for (int p = 0; p < m; ++p) {
-    const double* a = from + static_cast<long>(stride) * p * complex_size;
-    double* b = to + static_cast<long>(stride) * R * p * complex_size;
-    for (int q = 0; q < stride; ++q) {
-      Complex x[R];
+    Complex x[R];
 #pragma GCC unroll 16
-      for (int j = 0; j < R; ++j) x[j] = load_complex(a + j * apart);
-      butterfly<R>(x, roots);
-      store_complex(b, x[0]);
+    for (int j = 0; j < R; ++j) x[j] = take(p + j * m);
+    butterfly<R>(x, roots);
+    store_complex(point(points, p), x[0]);
 #pragma GCC unroll 16
-      for (int j = 1; j < R; ++j) {
-        // For p = 0 nothing turns.
-        const Complex y =
-            p == 0 ? x[j] : turned(x[j], tables[2 * (j - 1)], tables[2 * (j - 1) + 1]);
-        store_complex(b + static_cast<long>(j) * stride * complex_size, y);
-      }
-      a += complex_size;
-      b += complex_size;
+    for (int j = 1; j < R; ++j) {
+      // For p = 0 nothing turns.
+      const Complex y = p == 0 ? x[j] : turned(x[j], tables[2 * (j - 1)], tables[2 * (j - 1) + 1]);
+      store_complex(point(points, p + j * m), y);
     }
     if (p > 0) tables += 2 * (R - 1);
   }
-  return tables;
+}
+template <class Take>
+PLIANT_INLINE void split(const Stages& stages, double* points, const Take& take) {
+  with_radix(stages.radix(), [&]<int R>() { split<R>(stages.m(), stages.tables, points, take); });
 }
 
-// Transforms `points`, with room for as many at `spare`; gives which of the two has the result.
-double* fourier(const FourierView& view, double* points, double* spare) {
-  const double* tables = view.tables;
-  int n = view.length;
-  int stride = 1;
-  for (int k = 0; k < view.stage_count; ++k) {
-    const int radix = view.radices[k];
-    const int m = n / radix;
-    switch (radix) {
-      case 2:
-        tables = stage<2>(m, stride, tables, points, spare);
-        break;
-      case 3:
-        tables = stage<3>(m, stride, tables, points, spare);
-        break;
-      case 4:
-        tables = stage<4>(m, stride, tables, points, spare);
-        break;
-      case 5:
-        tables = stage<5>(m, stride, tables, points, spare);
-        break;
-      case 7:
-        tables = stage<7>(m, stride, tables, points, spare);
-        break;
-      case 11:
-        tables = stage<11>(m, stride, tables, points, spare);
-        break;
-      default:
-        tables = stage<13>(m, stride, tables, points, spare);
-        break;
+// The same stage transposed, decimation in time: all of them, the last one first, take what is in
+// the order of reversed digits back to plain order. `give(k, x)` gets the output's points.
+template <int R, class Give>
+void merge(int m, const double* tables, double* points, Give give) {
+  const double* const roots = tables;
+  if (R % 2 == 1) tables += R - 1;
+  for (int p = 0; p < m; ++p) {
+    Complex x[R];
+    x[0] = load_complex(point(points, p));
+#pragma GCC unroll 16
+    for (int j = 1; j < R; ++j) {
+      const Complex y = load_complex(point(points, p + j * m));
+      x[j] = p == 0 ? y : turned(y, tables[2 * (j - 1)], tables[2 * (j - 1) + 1]);
     }
-    double* const result = spare;
-    spare = points;
-    points = result;
-    n = m;
-    stride *= radix;
+    butterfly<R>(x, roots);
+#pragma GCC unroll 16
+    for (int j = 0; j < R; ++j) give(p + j * m, x[j]);
+    if (p > 0) tables += 2 * (R - 1);
   }
-  return points;
+}
+template <class Give>
+PLIANT_INLINE void merge(const Stages& stages, double* points, const Give& give) {
+  with_radix(stages.radix(), [&]<int R>() { merge<R>(stages.m(), stages.tables, points, give); });
 }
 
-// The transform of the view's length by a convolution of another one (Bluestein).
-double* chirped(const SineView& view, double* points, double* spare) {
+// The same for so many blocks one after another, and back.
+void split_in_place(const Stages& stages, int blocks, double* points) {
+  with_radix(stages.radix(), [&]<int R>() {
+    const int m = stages.m();
+    for (int block = 0; block < blocks; ++block) {
+      double* const begin = point(points, block * R * m);
+      split<R>(m, stages.tables, begin,
+               [=](int k) PLIANT_INLINED { return load_complex(point(begin, k)); });
+    }
+  });
+}
+void merge_in_place(const Stages& stages, double* points) {
+  merge(stages, points,
+        [=](int k, const Complex& x) PLIANT_INLINED { store_complex(point(points, k), x); });
+}
+
+// What is left of a transform from these stages on, of so many blocks. Each block goes through all
+// of them while it is near.
+void transform(const Stages& stages, int blocks, double* points) {
+  if (stages.count == 0) return;
+  if (stages.count == 1) return split_in_place(stages, blocks, points);
+  const Stages next = stages.next();
+  for (int block = 0; block < blocks; ++block) {
+    double* const begin = point(points, block * stages.n);
+    split_in_place(stages, 1, begin);
+    transform(next, stages.radix(), begin);
+  }
+}
+
+// The last stage there, the product with the kernel's transform, and the first stage back.
+template <int R>
+void multiply(int blocks, const double* roots, const double* kernel, double* points) {
+  for (int block = 0; block < blocks; ++block) {
+    Complex x[R];
+#pragma GCC unroll 16
+    for (int j = 0; j < R; ++j) x[j] = load_complex(point(points, j));
+    butterfly<R>(x, roots);
+#pragma GCC unroll 16
+    for (int j = 0; j < R; ++j) {
+      const Complex y = turned(x[j], kernel[2 * j], -kernel[2 * j + 1]);
+      x[j] = {y.im, y.re};  // real and imaginary part exchanged: the way back
+    }
+    butterfly<R>(x, roots);
+#pragma GCC unroll 16
+    for (int j = 0; j < R; ++j) store_complex(point(points, j), x[j]);
+    kernel += 2 * R;
+    points = point(points, R);
+  }
+}
+
+// From these stages on there, the product, and back; the result has its parts exchanged.
+void convolve(const Stages& stages, int blocks, const double* kernel, double* points) {
+  if (stages.count == 1) {
+    return with_radix(stages.radix(),
+                      [&]<int R>() { multiply<R>(blocks, stages.tables, kernel, points); });
+  }
+  const Stages next = stages.next();
+  for (int block = 0; block < blocks; ++block) {
+    double* const begin = point(points, block * stages.n);
+    split_in_place(stages, 1, begin);
+    convolve(next, stages.radix(), kernel + 2L * block * stages.n, begin);
+    merge_in_place(stages, begin);
+  }
+}
+
+// The circular convolution of what `take` gives with a kernel; `give` gets it with its parts
+// exchanged.
+template <class Take, class Give>
+PLIANT_INLINE void convolve(const SineView& view, double* work, const Take& take,
+                            const Give& give) {
+  const Stages stages = stages_of(view.fourier);
+  split(stages, work, take);
+  convolve(stages.next(), stages.radix(), view.kernel, work);
+  merge(stages, work, give);
+}
+
+// The point k of a tile, from 1 on.
+PLIANT_INLINE double* row(double* points, int k) {
+  return points + static_cast<long>(k - 1) * lanes;
+}
+
+PLIANT_INLINE Complex turned_by(const double* turns, int k, const Complex& x) {
+  return turned(x, turns[2 * k], turns[2 * k + 1]);
+}
+
+// Eq. (29): what goes into the Fourier transform at point j, and what comes out at wave number k.
+PLIANT_INLINE Complex folded(const double* fold, int length, double* points, int j) {
+  if (j == 0) return Complex{};
+  const Lanes x = load(row(points, j));
+  const Lanes mirrored = load(row(points, length - j));
+  const Lanes sum = x + mirrored;
+  return {sum * fold[2 * j], (x - mirrored) - sum * fold[2 * j + 1]};
+}
+PLIANT_INLINE void unfold(const Complex& x, int length, double* points, int k) {
+  if (k > 0) store(row(points, 2 * k), 0.5 * x.re);
+  if (2 * k + 1 < length) store(row(points, 2 * k + 1), -0.5 * x.im);
+}
+
+void by_stages(const SineView& view, double* points, double* work) {
   const int length = view.length;
-  const int whole = view.fourier.length;
-  for (int j = 0; j < length; ++j) {
-    double* const p = points + static_cast<long>(j) * complex_size;
-    store_complex(p, turned(load_complex(p), view.chirp[2 * j], view.chirp[2 * j + 1]));
+  const double* const fold = view.fold;
+  const int* const places = view.places;
+  const Stages stages = stages_of(view.fourier);
+  split(stages, work, [=](int j) PLIANT_INLINED { return folded(fold, length, points, j); });
+  transform(stages.next(), stages.radix(), work);
+  for (int k = 0; 2 * k < length; ++k) {
+    unfold(load_complex(point(work, places[k])), length, points, k);
   }
-  for (int j = length; j < whole; ++j) {
-    store_complex(points + static_cast<long>(j) * complex_size, Complex{});
-  }
-  double* const product = fourier(view.fourier, points, spare);
-  double* const other = product == points ? spare : points;
-  for (int k = 0; k < whole; ++k) {
-    double* const p = product + static_cast<long>(k) * complex_size;
-    const Complex x = turned(load_complex(p), view.kernel[2 * k], -view.kernel[2 * k + 1]);
-    store_complex(p, {x.im, x.re});  // real and imaginary part exchanged: the way back
-  }
-  double* const result = fourier(view.fourier, product, other);
-  for (int k = 0; k <= length / 2; ++k) {
-    double* const p = result + static_cast<long>(k) * complex_size;
-    const Complex x = load_complex(p);
-    store_complex(p, turned({x.im, x.re}, view.chirp[2 * k], view.chirp[2 * k + 1]));
-  }
-  return result;
 }
 
-// docs/model.md, eq. (29): the sums and differences of mirrored points are the real input
-// of one complex transform, whose real part has the even modes and whose imaginary part the odd
-// ones.
+// The Fourier transform by a convolution with a chirp (Bluestein).
+void by_chirp(const SineView& view, double* points, double* work) {
+  const int length = view.length;
+  const double* const fold = view.fold;
+  const double* const chirp = view.chirp;
+  convolve(
+      view, work,
+      [=](int j) PLIANT_INLINED {
+        return j < length ? turned_by(chirp, j, folded(fold, length, points, j)) : Complex{};
+      },
+      [=](int k, const Complex& x) PLIANT_INLINED {
+        if (2 * k < length) unfold(turned_by(chirp, k, {x.im, x.re}), length, points, k);
+      });
+}
+
+// Eq. (30) to (32).
+void by_powers(const SineView& view, double* points, double* work) {
+  const int length = view.length;
+  const int half = (length - 1) / 2;
+  const PairsView in = view.in;
+  const PairsView out = view.out;
+  convolve(
+      view, work,
+      [=](int a) PLIANT_INLINED {
+        if (a >= half) return Complex{};
+        const int n = in.evens[a];
+        return turned_by(in.turns, a, {load(row(points, n)), load(row(points, length - n))});
+      },
+      [=](int b, const Complex& x) PLIANT_INLINED {
+        if (b >= half) return;
+        const int k = out.evens[b];
+        const Complex y = turned_by(out.turns, b, x);
+        store(row(points, k), y.re);
+        store(row(points, length - k), y.im);
+      });
+}
+
 void sine_transform(const SineView& view, double* points, double* work) {
-  const int length = view.length;
-  double* const spare = work + 2L * lanes * view.fourier.length;
-  store_complex(work, Complex{});
-  for (int j = 1; 2 * j <= length; ++j) {
-    const Lanes x = load(points + static_cast<long>(j - 1) * lanes);
-    const Lanes mirrored = load(points + static_cast<long>(length - j - 1) * lanes);
-    const Lanes sum = x + mirrored;
-    const Lanes difference = x - mirrored;
-    const Lanes re = sum * view.fold[2 * j];
-    const Lanes im = sum * view.fold[2 * j + 1];
-    store_complex(work + static_cast<long>(length - j) * complex_size, {-re, -im - difference});
-    store_complex(work + static_cast<long>(j) * complex_size, {re, difference - im});
-  }
-  const double* const sums =
-      view.chirp ? chirped(view, work, spare) : fourier(view.fourier, work, spare);
-  for (int k = 0; 2 * k + 1 < length; ++k) {
-    const Complex x = load_complex(sums + static_cast<long>(k) * complex_size);
-    store(points + static_cast<long>(2 * k) * lanes, -0.5 * x.im);
-    if (k > 0) store(points + static_cast<long>(2 * k - 1) * lanes, 0.5 * x.re);
-  }
-  if (length % 2 == 1) {  // the last mode is even, and has no odd one after it
-    const Complex x = load_complex(sums + static_cast<long>(length / 2) * complex_size);
-    store(points + static_cast<long>(length - 2) * lanes, 0.5 * x.re);
-  }
+  if (view.in.evens) return by_powers(view, points, work);
+  if (view.chirp) return by_chirp(view, points, work);
+  by_stages(view, points, work);
 }
 
 }  // namespace

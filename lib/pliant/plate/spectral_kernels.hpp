@@ -12,24 +12,35 @@ namespace pliant {
 struct FourierView {
   int length = 1;
   int stage_count = 0;
-  const int* radices = nullptr;  ///< of the stages, each 2, 3, 4, 5, 7, 11 or 13
+  const int* radices = nullptr;  ///< of the stages, each 2, 3, 4, 5, 7, 8, 11 or 13
   /// A stage of radix r on n points, m = n/r: cos and sin of 2 pi j/r for j = 1 ... (r-1)/2 if r is
   /// odd, then for p = 1 ... m-1 and j = 1 ... r-1 those of 2 pi p j/n.
   const double* tables = nullptr;
 };
 
+/// Pairs of the points k and L-k of a sine transform of odd prime length L.
+struct PairsView {
+  const int* evens = nullptr;     ///< the even one of each pair
+  const double* turns = nullptr;  ///< for each pair cos and sin, scaled, of what it is turned by
+};
+
 /// The sine transform S_k = sum over j of x_j sin(pi j k/L), j and k from 1 to L-1. docs/model.md.
+/// There are three ways: where L is a product of small primes by the stages of one Fourier
+/// transform; where it is another prime by a convolution over the powers of a primitive root; else
+/// by a convolution with a chirp.
 struct SineView {
   int length = 2;                  ///< L >= 2
-  const double* fold = nullptr;    ///< cos and sin of pi j/L for j = 0 ... L/2
   FourierView fourier;             ///< of L points, or of the convolution
-  const double* chirp = nullptr;   ///< where L has a large prime: cos and sin of pi j^2/L, j < L
-  const double* kernel = nullptr;  ///< and the convolution's transformed kernel, complex
+  const double* fold = nullptr;    ///< but with powers: cos and sin of pi j/L for j < L
+  const int* places = nullptr;     ///< by stages: where they leave wave number k, for k < L/2
+  const double* chirp = nullptr;   ///< with a chirp: cos and sin of pi j^2/L, j < L
+  PairsView in, out;               ///< with powers: (L-1)/2 pairs each, in the order of the powers
+  const double* kernel = nullptr;  ///< of a convolution: transformed, as the stages leave it
 };
 
 /// Numbers that a sine transform needs room for, per lane: the points, and the work.
 constexpr long sine_points(const SineView& view) { return view.length - 1; }
-constexpr long sine_work(const SineView& view) { return 4L * view.fourier.length; }
+constexpr long sine_work(const SineView& view) { return 2L * view.fourier.length; }
 
 /// Columns that the transforms of a field bring in together. Room for them comes after the work.
 constexpr int group_columns = 32;

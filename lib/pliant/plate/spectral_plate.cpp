@@ -124,7 +124,7 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
   is_along_u_ = columns >= rows;
   const int across = std::min(columns, rows) - 1;
   const int along = std::max(columns, rows) - 1;
-  const std::size_t tables = SinePlan::table_size(across) + SinePlan::table_size(along);
+  const std::size_t tables = SinePlan::most_size(across) + SinePlan::most_size(along);
   // Tables first: what the rest takes depends on them, and they are small.
   if (const std::size_t bytes = (tables + numbers_.count()) * sizeof(double);
       !memory_.try_resize(bytes)) {

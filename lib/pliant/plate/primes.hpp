@@ -1,0 +1,16 @@
+#pragma once
+
+namespace pliant {
+
+// Residues of a prime, as the sine transform needs them. Not for other rooms.
+
+/// Whether a number has no divisor but 1 and itself. O(sqrt(number)). Requires: number >= 2.
+bool is_prime(long number);
+
+/// base^exponent modulo a number below 2^31. Requires: 0 <= base < modulus, exponent >= 0.
+long power_modulo(long base, long exponent, long modulus);
+
+/// The least number whose powers modulo a prime are all of 1 ... prime - 1. Requires: prime < 2^31.
+long primitive_root(long prime);
+
+}  // namespace pliant
