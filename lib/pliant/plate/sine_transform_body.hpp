@@ -214,21 +214,33 @@ void split_in_place(const Stages& stages, int blocks, double* points) {
     }
   });
 }
-void merge_in_place(const Stages& stages, double* points) {
-  merge(stages, points,
-        [=](int k, const Complex& x) PLIANT_INLINED { store_complex(point(points, k), x); });
+void merge_in_place(const Stages& stages, int blocks, double* points) {
+  with_radix(stages.radix(), [&]<int R>() {
+    const int m = stages.m();
+    for (int block = 0; block < blocks; ++block) {
+      double* const begin = point(points, block * R * m);
+      merge<R>(m, stages.tables, begin,
+               [=](int k, const Complex& x) PLIANT_INLINED { store_complex(point(begin, k), x); });
+    }
+  });
 }
 
-// What is left of a transform from these stages on, of so many blocks. Each block goes through all
-// of them while it is near.
+// Whether blocks are few enough to go through a stage together and still be near for the next one;
+// others go through all stages one by one.
+PLIANT_INLINE bool are_near(const Stages& stages, int blocks) {
+  constexpr int near_points = 2048 / complex_size;  // 16 kB
+  return blocks == 1 || blocks * stages.n <= near_points;
+}
+
+// What is left of a transform from these stages on, of so many blocks.
 void transform(const Stages& stages, int blocks, double* points) {
   if (stages.count == 0) return;
-  if (stages.count == 1) return split_in_place(stages, blocks, points);
-  const Stages next = stages.next();
+  if (are_near(stages, blocks)) {
+    split_in_place(stages, blocks, points);
+    return transform(stages.next(), blocks * stages.radix(), points);
+  }
   for (int block = 0; block < blocks; ++block) {
-    double* const begin = point(points, block * stages.n);
-    split_in_place(stages, 1, begin);
-    transform(next, stages.radix(), begin);
+    transform(stages, 1, point(points, block * stages.n));
   }
 }
 
@@ -259,12 +271,13 @@ void convolve(const Stages& stages, int blocks, const double* kernel, double* po
     return with_radix(stages.radix(),
                       [&]<int R>() { multiply<R>(blocks, stages.tables, kernel, points); });
   }
-  const Stages next = stages.next();
+  if (are_near(stages, blocks)) {
+    split_in_place(stages, blocks, points);
+    convolve(stages.next(), blocks * stages.radix(), kernel, points);
+    return merge_in_place(stages, blocks, points);
+  }
   for (int block = 0; block < blocks; ++block) {
-    double* const begin = point(points, block * stages.n);
-    split_in_place(stages, 1, begin);
-    convolve(next, stages.radix(), kernel + 2L * block * stages.n, begin);
-    merge_in_place(stages, begin);
+    convolve(stages, 1, kernel + 2L * block * stages.n, point(points, block * stages.n));
   }
 }
 
