@@ -1,5 +1,6 @@
 #include "pliant/core/memory_budget.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "support/catch.hpp"
@@ -29,6 +30,17 @@ TEST_CASE("shares of a budget never add up to more than it", "[core][memory]") {
   CHECK(budget.available() == 100);
   MemoryShare unlimited(nullptr);
   CHECK(unlimited.try_resize(std::size_t{1} << 60));
+}
+
+TEST_CASE("a share that was moved from knows its budget no more", "[core][memory]") {
+  auto budget = std::make_unique<MemoryBudget>(100);
+  MemoryShare a(budget.get());
+  {
+    MemoryShare b = std::move(a);
+    REQUIRE(b.try_resize(70));
+  }
+  budget.reset();  // which `a` outlives
+  CHECK(a.try_resize(200));
 }
 
 TEST_CASE("bytes are spelled with three digits", "[core][memory]") {

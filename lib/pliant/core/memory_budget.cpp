@@ -11,7 +11,7 @@ namespace pliant {
 MemoryBudget::MemoryBudget(std::size_t bytes) : total_(bytes), free_(bytes) {}
 
 MemoryShare::MemoryShare(MemoryShare&& other) noexcept
-    : budget_(other.budget_), bytes_(std::exchange(other.bytes_, 0)) {}
+    : budget_(std::exchange(other.budget_, nullptr)), bytes_(std::exchange(other.bytes_, 0)) {}
 
 bool MemoryShare::try_resize(std::size_t bytes) {
   if (!budget_) {
