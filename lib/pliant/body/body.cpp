@@ -76,9 +76,12 @@ Body::Body(const Grid& grid, Field rest, const BodySettings& settings, SolverCac
   reset();
 }
 
-void Body::reset() {
-  state_ = {rest_, Field::Zero(grid_.node_count(), 3)};
-  if (recovers()) state_.unsettled.assign(static_cast<std::size_t>(grid_.node_count()), 0);
+void Body::reset() { state_ = rest_state(); }
+
+BodyState Body::rest_state() const {
+  BodyState state{rest_, Field::Zero(grid_.node_count(), 3)};
+  if (recovers()) state.unsettled.assign(static_cast<std::size_t>(grid_.node_count()), 0);
+  return state;
 }
 
 void Body::restore(BodyState state) {

@@ -96,6 +96,8 @@ class Body {
   /// Where the forces' distances are measured (#nodes x 3, world space).
   Field measured_nodes(const Transform& transform) const;
 
+  BodyState rest_state() const;  ///< after a `reset`
+
   /// Continues from `state`, which came from `state()` of a body like this one.
   void restore(BodyState state);
 

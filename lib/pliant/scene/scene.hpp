@@ -141,6 +141,10 @@ struct CustomForce {
   std::function<double(const Vector3d& p, const ForceTime& time)> distance = {};
   /// The force per unit of magnitude and falloff, finite. Must be there.
   std::function<Vector3d(const Vector3d& p, const ForceTime& time)> unit_force = {};
+  /// Names what the functions compute, all that they hold included: states that they had a part in
+  /// are kept under it beyond one simulation. Functions that answer otherwise must have another.
+  /// Empty: what follows from them is kept by no store.
+  std::string key = {};
 };
 
 /// One force of a scene.

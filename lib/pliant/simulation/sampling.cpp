@@ -216,7 +216,9 @@ SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int fram
     const Group* const group = found != group_named.end() ? found->second : nullptr;
     if (!targets(force, group, surface.name) || !is_enabled(force, group, frame)) continue;
     forces.push_back(sample_force(scene, force, surface, frame, inputs.faults));
-    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group});
+    const auto* const custom = std::get_if<CustomForce>(&force.shape);
+    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
+                              custom ? std::string_view(custom->key) : std::string_view()});
     if (group) members[group].push_back(selectors.size());
     selectors.push_back(static_cast<int>(selectors.size()));
   }

@@ -33,7 +33,8 @@ struct ForceSource {
   std::string_view name;
   std::string_view kind;  ///< the scene's word for it: point, ..., group; "custom"
   std::span<const std::string> targets;
-  bool selects = true;  ///< false: it is in a group, which selects
+  bool selects = true;        ///< false: it is in a group, which selects
+  std::string_view key = {};  ///< of a custom force
 };
 
 /// What acts on `surface` at `frame`. Refers to the scene, which must outlive it unchanged.

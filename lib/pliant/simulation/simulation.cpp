@@ -16,6 +16,7 @@
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/simulation/sampling.hpp"
+#include "pliant/simulation/stepped.hpp"
 
 namespace pliant {
 namespace {
@@ -81,28 +82,9 @@ tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin
   return fail(std::move(first));
 }
 
-// Whether any node in the box moves.
-bool moves_any(std::span<const Patch> patches, const Box& box) {
-  for (const Patch& patch : patches) {
-    const Box inside = intersection(patch.box, box);
-    for (int j = inside.j0; j <= inside.j1; ++j) {
-      for (int i = inside.i0; i <= inside.i1; ++i) {
-        if (patch.holds(i, j)) return true;
-      }
-    }
-  }
-  return false;
-}
-
 tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
 
 }  // namespace
-
-struct Simulation::Stepped {
-  bool is_stepped = false;  // in the frame in hand
-  SurfaceInputs inputs;
-  Result<StepReport> report;
-};
 
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
   PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
@@ -156,7 +138,8 @@ Simulation::Simulation(Scene scene, const SimulationOptions& options)
       memory_(std::make_unique<MemoryBudget>(options.max_memory)),
       frame_(scene_.start),
       furthest_frame_(scene_.start),
-      checkpoints_(scene_.start, options.checkpoint_bytes),
+      cache_(scene_.start, options.checkpoint_bytes, memory_.get()),
+      store_(options.store),
       threads_(std::make_unique<ThreadPool>(options.threads)),
       solver_(options.solver),
       most_lanes_(options.most_lanes),
@@ -179,9 +162,10 @@ void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemorySh
   const GridMapping& mapping = rest_shape.mapping;
   // Surfaces go at the same time; a single one has the threads to itself.
   ThreadPool* const threads = scene_.surfaces.size() == 1 ? threads_.get() : nullptr;
-  bodies_.emplace_back(mapping.grid, mapping.rest,
-                       BodySettings{solver.stepping, solver.reference, solver.measure,
-                                    solver.combine, solver.release},
+  const BodySettings settings{solver.stepping, solver.reference, solver.measure, solver.combine,
+                              solver.release};
+  keys_.emplace_back(rest_key(mapping.grid, mapping.rest, settings, solver_));
+  bodies_.emplace_back(mapping.grid, mapping.rest, settings,
                        SolverCache(solver_, memory_.get(), threads, most_lanes_));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
@@ -234,7 +218,7 @@ Result<FrameReport> Simulation::report(int frame) {
 Result<SurfaceReport> Simulation::report_of(std::size_t index) const {
   const Surface& surface = scene_.surfaces[index];
   SurfaceReport report;
-  if (!surface.enabled || frame_ < start_frame(surface)) return report;
+  if (is_idle(surface, frame_)) return report;
   const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
   const Body& body = bodies_[index];
   const auto step = body.look(inputs.body);
@@ -285,26 +269,33 @@ Result<Frame> Simulation::at(int frame, Frame reuse) {
 }
 
 Result<void> Simulation::go_to(int frame) {
-  const auto* checkpoint = checkpoints_.latest_until(frame);
-  if (frame < frame_ || (checkpoint && checkpoint->first > frame_)) {
-    rewind(checkpoint ? checkpoint->first : scene_.start);
-  }
+  const std::optional<int> kept = cache_.latest_until(frame);
+  if (frame < frame_ || kept > frame_) rewind(frame);
+  // Frames that were never passed are read one by one, for what they leave for warnings.
+  if (store_ && frame <= furthest_frame_) read_latest(frame);
   while (frame_ < frame) {
     if (auto stepped = step(); !stepped) return stepped;
+    passed_.add(frame_);
     ++frame_;
+    keep(frame_ <= furthest_frame_);
     furthest_frame_ = std::max(furthest_frame_, frame_);
-    if (checkpoints_.is_due(frame_)) {
-      const StageTimer timer(profile_of(0), Stage::Checkpoints);
-      checkpoints_.offer(frame_, states());
-    }
   }
   return {};
+}
+
+// Who goes back once is likely to go back a little further next.
+void Simulation::keep(bool is_going_back) {
+  const bool is_wanted = is_going_back ? cache_.wants(frame_) : cache_.wants_checkpoint(frame_);
+  if (!is_wanted) return;
+  const StageTimer timer(profile_of(0), Stage::Checkpoints);
+  cache_.keep(frame_, states());
 }
 
 // From the output of frame_ to that of the next frame. The surfaces know nothing of each other, so
 // they may go at the same time; what they report is looked at in their order.
 Result<void> Simulation::step() {
-  threads_->for_each(bodies_.size(), [this](std::size_t k) { step_surface(k); });
+  step_surfaces();
+  bool is_solved = false, is_read = false;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
     if (surface.enabled) warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
@@ -315,24 +306,56 @@ Result<void> Simulation::step() {
       return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame_));
     }
     if (!stepped.report) return fail(located(stepped.report.error(), surface, frame_));
-    warn(k, stepped);
+    add_facts(warnings_, surface.name, frame_, stepped.inputs, stepped.facts);
+    (stepped.is_read ? is_read : is_solved) = true;
   }
+  frame_counts_.solved += is_solved ? 1 : 0;
+  frame_counts_.read += is_read && !is_solved ? 1 : 0;
   return {};
+}
+
+void Simulation::step_surfaces() {
+  threads_->for_each(bodies_.size(), [this](std::size_t k) { step_surface(k); });
+  const auto lacks_memory = [](const Stepped& stepped) {
+    return stepped.is_stepped && !stepped.report &&
+           stepped.report.error().code == ErrorCode::OutOfMemory;
+  };
+  // Kept frames are worth less than the next one.
+  if (std::any_of(stepped_.begin(), stepped_.end(), lacks_memory) && cache_.give_way()) {
+    threads_->for_each(bodies_.size(), [&](std::size_t k) {
+      if (lacks_memory(stepped_[k])) step_surface(k);
+    });
+  }
 }
 
 void Simulation::step_surface(std::size_t index) {
   Stepped& stepped = stepped_[index];
   const Surface& surface = scene_.surfaces[index];
-  stepped.is_stepped = surface.enabled && frame_ >= start_frame(surface);
+  stepped.is_stepped = !is_idle(surface, frame_);
+  stepped.is_read = false;
   if (!stepped.is_stepped) return;
-  Profile* const profile = profile_of(index);
-  {
-    const StageTimer timer(profile, Stage::Sampling);
-    stepped.inputs = sample_inputs(scene_, surface, frame_, std::move(stepped.inputs));
+  StageTimer sampling(profile_of(index), Stage::Sampling);
+  stepped.inputs = sample_inputs(scene_, surface, frame_, std::move(stepped.inputs));
+  std::optional<Hash> next;
+  if (store_) {
+    KeyChain& keys = keys_[index];
+    if (keys.length() == frame_ + 1 - scene_.start) keys.append(&stepped.inputs, frame_);
+    next = key(index, frame_ + 1);
   }
+  sampling.stop();
+  if (next && read_surface(index, *next)) return;
+  solve_surface(index);
+  if (next) write_surface(index, *next);
+}
+
+void Simulation::solve_surface(std::size_t index) {
+  Stepped& stepped = stepped_[index];
   StepReport former = stepped.report ? std::exchange(*stepped.report, {}) : StepReport{};
   stepped.report =
-      bodies_[index].step(stepped.inputs.body, should_stop_, std::move(former), profile);
+      bodies_[index].step(stepped.inputs.body, should_stop_, std::move(former), profile_of(index));
+  if (!stepped.report) return;
+  stepped.facts = facts_of(stepped.inputs, *stepped.report, scene_.surfaces[index].solver.combine,
+                           std::move(stepped.facts));
 }
 
 Profile* Simulation::profile_of(std::size_t surface) {
@@ -345,70 +368,30 @@ Profile Simulation::profile() const {
   return all;
 }
 
-void Simulation::warn(std::size_t surface_index, const Stepped& stepped) {
-  using enum Warning::Kind;
-  const Surface& surface = scene_.surfaces[surface_index];
-  const SurfaceInputs& inputs = stepped.inputs;
-  const StepReport& report = *stepped.report;
-  for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
-    const ForceSource& source = inputs.sources[k];
-    const std::string_view force = source.name;
-    const ForceSelection& selected = report.selection.forces[k];
-    const bool is_solved = !report.patches_of_force(k).empty();
-    const bool reaches =
-        is_solved && overlaps(report.selection.regions[selected.region], selected.force);
-    // What a union solves may lie elsewhere altogether.
-    const bool is_elsewhere = surface.solver.combine == Combine::Union &&
-                              !moves_any(report.patches_of_force(k), selected.deformation);
-    if ((!is_solved || is_elsewhere) && !selected.deformation.is_empty()) {
-      warnings_.add(RegionTooSmall, surface.name, force, frame_);
-    }
-    const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
-    if (is_solved && !selected.force.is_empty() && !reaches && has_magnitude) {
-      warnings_.add(OutsideRegion, surface.name, force, frame_);
-    }
-    // A force that names its targets is expected to touch each; one for all surfaces, some of them.
-    const std::string_view place = source.targets.empty() ? std::string_view() : surface.name;
-    const bool touches = !source.selects || !selected.deformation.is_empty() || reaches;
-    if (source.selects) {
-      warnings_.expect(SelectsNothing, place, force, frame_);
-      if (touches) warnings_.happened(SelectsNothing, place, force);
-    }
-    // What another warning tells of this frame is not told twice.
-    const bool is_lost =
-        std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
-    const bool is_here = reaches || (touches && selected.force.is_empty());
-    const bool is_told = is_lost || (is_elsewhere && !selected.deformation.is_empty());
-    if (is_solved && has_magnitude && is_here && !is_told) {
-      warnings_.expect(PushesNothing, place, force, frame_);
-      if (report.pushing[k]) warnings_.happened(PushesNothing, place, force);
-    }
-  }
-  for (const int k : report.lost) {
-    warnings_.add(LostNodes, surface.name, inputs.sources[static_cast<std::size_t>(k)].name,
-                  frame_);
-  }
-  if (!inputs.body.tangents.are_zero()) {
-    warnings_.expect(TangentsUnused, surface.name, {}, frame_);
-    if (report.is_solved) warnings_.happened(TangentsUnused, surface.name, {});
-  }
+// Whether nothing can act on a surface at a frame: the next one is like this one.
+bool Simulation::is_idle(const Surface& surface, int frame) const {
+  return !surface.enabled || frame < start_frame(surface);
 }
 
 std::vector<Warning> Simulation::warnings() const {
-  return warnings_.warnings(furthest_frame_ == scene_.end);
+  const auto& ranges = passed_.ranges();
+  const bool is_complete =
+      scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
+                                     ranges.front().second == scene_.end - 1);
+  return warnings_.warnings(is_complete);
 }
 
 // Back to a kept frame, or to the start, where all is at rest.
 void Simulation::rewind(int frame) {
-  const auto* checkpoint = checkpoints_.latest_until(frame);
+  const std::optional<int> kept = cache_.latest_until(frame);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (checkpoint) {
-      bodies_[k].restore(checkpoint->second[k]);
+    if (kept) {
+      bodies_[k].restore(cache_.use(*kept)[k]);
     } else {
       bodies_[k].reset();
     }
   }
-  frame_ = checkpoint ? checkpoint->first : scene_.start;
+  frame_ = kept.value_or(scene_.start);
 }
 
 std::vector<BodyState> Simulation::states() const {

@@ -12,22 +12,26 @@
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/scene/scene.hpp"
-#include "pliant/simulation/checkpoints.hpp"
 #include "pliant/simulation/frame.hpp"
+#include "pliant/simulation/frame_cache.hpp"
+#include "pliant/simulation/frame_ranges.hpp"
 #include "pliant/simulation/frame_report.hpp"
 #include "pliant/simulation/frame_sequence.hpp"
+#include "pliant/simulation/frame_store.hpp"
 #include "pliant/simulation/rest_shape.hpp"
+#include "pliant/simulation/state_key.hpp"
 #include "pliant/simulation/warnings.hpp"
 
 namespace pliant {
 
 /// How a simulation runs; none of it but the solver changes a result, and that the last digits.
 struct SimulationOptions {
-  /// Memory for kept states, so that going back in time is quick. [bytes]
+  /// Memory for kept states, so that going back in time is quick: `FrameCache` tells what a frame
+  /// then costs. [bytes]
   std::size_t checkpoint_bytes = std::size_t{256} << 20;
 
-  /// Memory that surfaces and solvers may take together; what does not fit is refused before it is
-  /// allocated. Checkpoints come on top. [bytes]
+  /// Memory that surfaces, solvers and kept states may take together; what does not fit is refused
+  /// before it is allocated. Kept states give way to solvers. [bytes]
   std::size_t max_memory = std::numeric_limits<std::size_t>::max();
 
   /// Threads that work on several surfaces at the same time, or on the parts of a single one, the
@@ -47,6 +51,16 @@ struct SimulationOptions {
   /// Asked ahead of every surface that is read and of every time step, by any of the threads;
   /// `make` and `at` then fail with Interrupted.
   StopRequest should_stop = {};
+
+  /// Where states are kept beyond this simulation, so that another one, of the same scene or of an
+  /// edited one, need not solve again what is the same. Outlives the simulation; none: nowhere.
+  FrameStore* store = nullptr;
+};
+
+/// What it took to get at frames, each time one was gone to from the frame before it.
+struct FrameCounts {
+  int solved = 0;  ///< frames for which a surface was stepped
+  int read = 0;    ///< frames for which all that moves came out of the store
 };
 
 /// All bodies of a scene over its frames. Thesis 5.3; SPEC 6.
@@ -75,13 +89,14 @@ class Simulation {
   FrameSequence frames() const { return {scene_.start, scene_.end}; }
 
   /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
-  /// ahead. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed, OutOfMemory,
-  /// Interrupted, naming surface and frame; NotFinite also where a custom force gives no sound
-  /// answer, naming it too. What a custom force throws goes on to the caller.
+  /// ahead; once the run has been played through, less than one interval of the `FrameCache`, and
+  /// none where the store has it. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed,
+  /// OutOfMemory, Interrupted, naming surface and frame; NotFinite also where a custom force gives
+  /// no sound answer, naming it too. What a custom force throws goes on to the caller.
   ///
   /// The frame takes the memory of `reuse`, an earlier frame or none. Playing on with it allocates
-  /// nothing while regions keep their shape, but for checkpoints, functions of a program's own,
-  /// groups, what recovers, and solvers with sparse factors.
+  /// nothing while regions keep their shape, but for checkpoints, stores, functions of a program's
+  /// own, groups, what recovers, and solvers with sparse factors.
   Result<Frame> at(int frame, Frame reuse = {});
 
   /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface
@@ -93,14 +108,25 @@ class Simulation {
   /// the first one ahead of any.
   const BodyState& state(std::size_t surface) const;
 
+  /// The state at a frame as sealed bytes, to go on from in another process: `restore`. Cost and
+  /// errors: as `at`.
+  Result<std::string> state_bytes(int frame);
+
+  /// Goes to the frame whose `state_bytes` these are, and gives its number; frames from there on
+  /// have the same bits as without. Errors: InvalidInput where the bytes are damaged, or the state
+  /// is not this scene's at that frame under this engine and solver: what acts until then must be
+  /// the same, what comes later need not. Of a custom force without a key nothing is known; whoever
+  /// restores answers for it. Warnings then lack those of frames that were never computed here.
+  Result<int> restore(std::string_view state_bytes);
+
   const Scene& scene() const { return scene_; }
 
   /// The surfaces at rest, in the order of the scene.
   std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
 
-  /// What the frames computed so far gave reason to warn about, each cause once with its frames.
-  /// What happens in no frame at all, such as a force that selects nothing, is told once the last
-  /// frame has been computed.
+  /// What the frames computed, or read, so far gave reason to warn about, each cause once with its
+  /// frames. What happens in no frame at all, such as a force that selects nothing, is told once
+  /// all frames have been.
   std::vector<Warning> warnings() const;
 
   /// What the surfaces take, and a frame of each, without their solvers' factors. [bytes]
@@ -108,6 +134,8 @@ class Simulation {
 
   /// What the surfaces' solvers had to do so far, added up.
   SolverCounts solver_counts() const;
+
+  FrameCounts frame_counts() const { return frame_counts_; }
 
   /// How long the frames computed so far took, by stage and added up over surfaces that went at the
   /// same time; nothing without `SimulationOptions::profile`. A caller may add to it what it knows.
@@ -122,11 +150,22 @@ class Simulation {
   Result<void> reach(int frame);
   Result<void> go_to(int frame);
   Result<void> step();
+  void step_surfaces();
   void step_surface(std::size_t index);
-  void warn(std::size_t surface_index, const Stepped& stepped);
+  void solve_surface(std::size_t index);
+  bool read_surface(std::size_t index, const Hash& key);
+  void write_surface(std::size_t index, const Hash& key);
+  bool is_idle(const Surface& surface, int frame) const;
   Profile* profile_of(std::size_t surface);
   void rewind(int frame);
+  void keep(bool is_going_back);
   std::vector<BodyState> states() const;
+
+  const std::optional<Hash>& key(std::size_t surface, int frame);
+  Hash sealing_key(std::size_t surface, int frame);
+  bool has_marks(std::size_t surface) const;
+  void read_latest(int frame);
+  std::optional<std::vector<BodyState>> stored_states(int frame);
   Result<SurfaceReport> report_of(std::size_t surface) const;
   Error located(Error error, const Surface& surface, int frame) const;
   int start_frame(const Surface& surface) const;
@@ -138,7 +177,11 @@ class Simulation {
   std::vector<Body> bodies_;  // one a surface
   int frame_;                 // whose output the bodies hold
   int furthest_frame_;        // that was ever computed
-  Checkpoints checkpoints_;
+  FrameCache cache_;
+  FrameStore* store_;
+  std::vector<KeyChain> keys_;  // one a surface
+  FrameRanges passed_;          // frames whose warnings are known
+  FrameCounts frame_counts_;
   std::unique_ptr<ThreadPool> threads_;
   SolverChoice solver_;
   int most_lanes_;

@@ -1,0 +1,30 @@
+# A script: writes a header with a digest of everything that decides the bits of a state, so that no
+# number has to be raised by hand when the engine changes. Runs at each build, and touches the
+# header only where the digest is another.
+#   cmake -DROOMS=<folders> -DLIBRARIES=<headers> -DARCHITECTURE=<name> -DOUT=<header>
+#         -P EngineDigest.cmake
+set(digests "${ARCHITECTURE}\n")
+foreach(room IN LISTS ROOMS)
+  file(GLOB sources LIST_DIRECTORIES false "${room}/*.cpp" "${room}/*.hpp")
+  list(SORT sources)
+  foreach(source IN LISTS sources)
+    file(SHA256 "${source}" digest)
+    cmake_path(GET source FILENAME name)
+    string(APPEND digests "${name} ${digest}\n")
+  endforeach()
+endforeach()
+foreach(header IN LISTS LIBRARIES)
+  if(EXISTS "${header}")
+    file(SHA256 "${header}" digest)
+    string(APPEND digests "${digest}\n")
+  endif()
+endforeach()
+string(SHA256 digest "${digests}")
+set(text "#pragma once\n\n#define PLIANT_ENGINE_DIGEST \"${digest}\"\n")
+set(before)
+if(EXISTS "${OUT}")
+  file(READ "${OUT}" before)
+endif()
+if(NOT before STREQUAL text)
+  file(WRITE "${OUT}" "${text}")
+endif()

@@ -1,0 +1,185 @@
+// How a simulation comes to a state that it did not compute: out of a store, or from bytes.
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/simulation/sampling.hpp"
+#include "pliant/simulation/simulation.hpp"
+#include "pliant/simulation/stepped.hpp"
+#include "pliant/simulation/stored_state.hpp"
+
+namespace pliant {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "numbers are stored as they lie in memory");
+
+constexpr std::string_view magic = "pliant checkpoint 1\n";
+
+void append(std::string& bytes, std::uint64_t number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+
+std::optional<std::uint64_t> take_number(std::string_view& bytes) {
+  std::uint64_t number = 0;
+  if (bytes.size() < sizeof(number)) return {};
+  std::memcpy(&number, bytes.data(), sizeof(number));
+  bytes.remove_prefix(sizeof(number));
+  return number;
+}
+
+// What stands between the magic and the seal, if the bytes are whole.
+std::optional<std::string_view> unsealed(std::string_view bytes) {
+  if (!bytes.starts_with(magic) || bytes.size() < magic.size() + sizeof(Hash)) return {};
+  const std::string_view sealed = bytes.substr(0, bytes.size() - sizeof(Hash));
+  std::string_view seal = bytes.substr(sealed.size());
+  const std::uint64_t high = *take_number(seal), low = *take_number(seal);
+  if (hash_of(sealed) != Hash{high, low}) return {};
+  return sealed.substr(magic.size());
+}
+
+}  // namespace
+
+const std::optional<Hash>& Simulation::key(std::size_t index, int frame) {
+  KeyChain& chain = keys_[index];
+  const Surface& surface = scene_.surfaces[index];
+  while (chain.length() <= frame - scene_.start) {
+    const int last = scene_.start + chain.length() - 1;
+    if (is_idle(surface, last)) {
+      chain.append(nullptr, last);
+      continue;
+    }
+    const SurfaceInputs inputs = sample_inputs(scene_, surface, last);
+    chain.append(&inputs, last);
+  }
+  return chain.at(frame - scene_.start);
+}
+
+Hash Simulation::sealing_key(std::size_t surface, int frame) {
+  const std::optional<Hash>& known = key(surface, frame);
+  return known ? *known : unnamed_key(keys_[surface].rest());
+}
+
+bool Simulation::has_marks(std::size_t surface) const {
+  return !bodies_[surface].state().unsettled.empty();
+}
+
+// Takes what a surface's step makes from the store, if it is there. An interrupted run ends here.
+bool Simulation::read_surface(std::size_t index, const Hash& key) {
+  const StageTimer timer(profile_of(index), Stage::Checkpoints);
+  Stepped& stepped = stepped_[index];
+  if (should_stop_ && should_stop_()) {
+    stepped.report = fail(ErrorCode::Interrupted, "interrupted");
+    return true;
+  }
+  auto stored = read_stored(*store_, key, bodies_[index].rest(), has_marks(index));
+  if (!stored || stored->facts.forces.size() != stepped.inputs.body.forces.size()) return false;
+  bodies_[index].restore(std::move(stored->state));
+  stepped.facts = std::move(stored->facts);
+  stepped.is_read = true;
+  if (!stepped.report) stepped.report = StepReport{};
+  return true;
+}
+
+// Gives the store what a surface's step made, if it is sound.
+void Simulation::write_surface(std::size_t index, const Hash& key) {
+  const StageTimer timer(profile_of(index), Stage::Checkpoints);
+  const Stepped& stepped = stepped_[index];
+  if (!stepped.report || !stepped.inputs.faults->first().empty()) return;
+  const Body& body = bodies_[index];
+  store_->write(key, to_bytes(key, body.state(), stepped.facts, body.rest()));
+}
+
+// On to the latest frame until `frame` that the store has whole, if one is later than this one.
+void Simulation::read_latest(int frame) {
+  for (int candidate = frame; candidate > frame_; --candidate) {
+    auto states = stored_states(candidate);
+    if (!states) continue;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].restore(std::move((*states)[k]));
+    frame_ = candidate;
+    ++frame_counts_.read;
+    keep(true);
+    return;
+  }
+}
+
+std::optional<std::vector<BodyState>> Simulation::stored_states(int frame) {
+  const auto is_rest = [&](std::size_t k) { return key(k, frame) == keys_[k].rest(); };
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!key(k, frame) || (!is_rest(k) && !store_->holds(*key(k, frame)))) return {};
+  }
+  std::vector<BodyState> states;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (is_rest(k)) {
+      states.push_back(bodies_[k].rest_state());
+      continue;
+    }
+    auto stored = read_stored(*store_, *key(k, frame), bodies_[k].rest(), has_marks(k));
+    if (!stored) return {};
+    states.push_back(std::move(stored->state));
+  }
+  return states;
+}
+
+Result<std::string> Simulation::state_bytes(int frame) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
+  std::string bytes(magic);
+  append(bytes, static_cast<std::uint64_t>(std::int64_t{frame}));
+  append(bytes, bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const std::string state =
+        to_bytes(sealing_key(k, frame), bodies_[k].state(), {}, bodies_[k].rest());
+    append(bytes, state.size());
+    bytes += state;
+  }
+  const Hash seal = hash_of(std::string_view(bytes));
+  append(bytes, seal.high);
+  append(bytes, seal.low);
+  return bytes;
+}
+
+Result<int> Simulation::restore(std::string_view bytes) {
+  const auto refuse = [](std::string message) {
+    return fail(ErrorCode::InvalidInput, "cannot go on from the state: " + std::move(message));
+  };
+  auto left = unsealed(bytes);
+  const auto number = left ? take_number(*left) : std::nullopt;
+  const auto count = number ? take_number(*left) : std::nullopt;
+  if (!count) return refuse("it is none, or damaged");
+  const auto frame = static_cast<std::int64_t>(*number);
+  if (frame < scene_.start || frame > scene_.end) {
+    return refuse(fmt::format("its frame {} is outside the scene's frames {} to {}", frame,
+                              scene_.start, scene_.end));
+  }
+  if (*count != bodies_.size()) {
+    return refuse(fmt::format("it is of {} surfaces, the scene has {}", *count, bodies_.size()));
+  }
+  std::vector<BodyState> states;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const auto size = take_number(*left);
+    if (!size || *size > left->size()) return refuse("it is damaged");
+    const Hash of_scene = sealing_key(k, static_cast<int>(frame));
+    auto stored = from_bytes(left->substr(0, *size), of_scene, bodies_[k].rest(), has_marks(k));
+    if (!stored) {
+      return refuse(
+          fmt::format("surface \"{}\" is not the same, or what acts on it before frame "
+                      "{} is not, or the engine",
+                      scene_.surfaces[k].name, frame));
+    }
+    states.push_back(std::move(stored->state));
+    left->remove_prefix(*size);
+  }
+  frame_ = static_cast<int>(frame);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].restore(std::move(states[k]));
+  keep(true);
+  furthest_frame_ = std::max(furthest_frame_, frame_);
+  return frame_;
+}
+
+}  // namespace pliant

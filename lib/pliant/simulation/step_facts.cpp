@@ -1,0 +1,86 @@
+#include "pliant/simulation/step_facts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+// Whether any node in the box moves.
+bool moves_any(std::span<const Patch> patches, const Box& box) {
+  for (const Patch& patch : patches) {
+    const Box inside = intersection(patch.box, box);
+    for (int j = inside.j0; j <= inside.j1; ++j) {
+      for (int i = inside.i0; i <= inside.i1; ++i) {
+        if (patch.holds(i, j)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport& report,
+                    Combine combine) {
+  const ForceSelection& selected = report.selection.forces[k];
+  const bool is_solved = !report.patches_of_force(k).empty();
+  const bool reaches =
+      is_solved && overlaps(report.selection.regions[selected.region], selected.force);
+  // What a union solves may lie elsewhere altogether.
+  const bool is_elsewhere =
+      combine == Combine::Union && !moves_any(report.patches_of_force(k), selected.deformation);
+  const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
+  ForceFacts facts;
+  facts.is_too_small = (!is_solved || is_elsewhere) && !selected.deformation.is_empty();
+  facts.is_outside = is_solved && !selected.force.is_empty() && !reaches && has_magnitude;
+  facts.touches = !inputs.sources[k].selects || !selected.deformation.is_empty() || reaches;
+  facts.is_lost =
+      std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
+  // What another warning tells of this frame is not told twice.
+  const bool is_here = reaches || (facts.touches && selected.force.is_empty());
+  const bool is_told = facts.is_lost || (is_elsewhere && !selected.deformation.is_empty());
+  facts.is_push_awaited = is_solved && has_magnitude && is_here && !is_told;
+  facts.pushes = report.pushing[k];
+  return facts;
+}
+
+}  // namespace
+
+StepFacts facts_of(const SurfaceInputs& inputs, const StepReport& report, Combine combine,
+                   StepFacts reuse) {
+  StepFacts facts = std::move(reuse);
+  facts.is_solved = report.is_solved;
+  facts.forces.clear();
+  for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
+    facts.forces.push_back(facts_of(k, inputs, report, combine));
+  }
+  return facts;
+}
+
+void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
+               const StepFacts& facts) {
+  using enum Warning::Kind;
+  for (std::size_t k = 0; k < facts.forces.size(); ++k) {
+    const ForceSource& source = inputs.sources[k];
+    const std::string_view force = source.name;
+    const ForceFacts& of_force = facts.forces[k];
+    if (of_force.is_too_small) log.add(RegionTooSmall, surface, force, frame);
+    if (of_force.is_outside) log.add(OutsideRegion, surface, force, frame);
+    if (of_force.is_lost) log.add(LostNodes, surface, force, frame);
+    // A force that names its targets is expected to touch each; one for all surfaces, some of them.
+    const std::string_view place = source.targets.empty() ? std::string_view() : surface;
+    if (source.selects) {
+      log.expect(SelectsNothing, place, force, frame);
+      if (of_force.touches) log.happened(SelectsNothing, place, force);
+    }
+    if (of_force.is_push_awaited) {
+      log.expect(PushesNothing, place, force, frame);
+      if (of_force.pushes) log.happened(PushesNothing, place, force);
+    }
+  }
+  if (!inputs.body.tangents.are_zero()) {
+    log.expect(TangentsUnused, surface, {}, frame);
+    if (facts.is_solved) log.happened(TangentsUnused, surface, {});
+  }
+}
+
+}  // namespace pliant
