@@ -3,7 +3,9 @@
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
 #include "pliant/io/writer.hpp"
+#include "pliant/replay/folder_store.hpp"
 #include "pliant/replay/replay.hpp"
+#include "pliant/replay/state_file.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/scene.hpp"

@@ -1,0 +1,210 @@
+#include "pliant/replay/folder_store.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <ctime>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pliant/io/atomic_file.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view ending = ".state";
+constexpr std::size_t key_digits = 32;
+constexpr std::int64_t second = 1'000'000'000;  // [ns]
+
+// A part of a file that nobody has written to for so long is what a killed process left.
+constexpr std::int64_t abandoned_after = 600 * second;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) close(number_);
+  }
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+std::int64_t now() {
+  timespec time = {};
+  clock_gettime(CLOCK_REALTIME, &time);
+  return std::int64_t{time.tv_sec} * second + time.tv_nsec;
+}
+
+// The key that a file of ours is named by.
+std::optional<Hash> key_in(std::string_view name) {
+  if (name.size() != key_digits + ending.size() || !name.ends_with(ending)) return {};
+  return to_hash(name.substr(0, key_digits));
+}
+
+// Whether it is the name of a file of ours that is being written, as `AtomicFile` gives it.
+bool is_part(std::string_view name) {
+  const std::size_t size = key_digits + ending.size();
+  return name.starts_with('.') && name.ends_with(".part") && name.size() > 1 + size &&
+         key_in(name.substr(1, size));
+}
+
+// What a file of that many bytes takes of a disk that gives out pages.
+std::size_t on_disk(std::size_t bytes) {
+  constexpr std::size_t page = 4096;
+  return (bytes + page - 1) / page * page;
+}
+
+bool read_all(int descriptor, std::string& bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::read(descriptor, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    done += static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+}  // namespace
+
+FolderFrameStore::FolderFrameStore(fs::path folder, std::size_t byte_budget)
+    : folder_(std::move(folder)), byte_budget_(byte_budget), opened_(now()) {}
+
+Result<std::unique_ptr<FolderFrameStore>> FolderFrameStore::open(const fs::path& folder,
+                                                                 std::size_t byte_budget) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  std::error_code unknown;
+  if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown)) {
+    return fail(ErrorCode::InvalidInput, "is there, and no folder", folder.string());
+  }
+  if (!fs::is_directory(folder, unknown)) {
+    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
+                folder.string());
+  }
+  return std::unique_ptr<FolderFrameStore>(new FolderFrameStore(folder, byte_budget));
+}
+
+fs::path FolderFrameStore::file_of(const Hash& key) const {
+  return folder_ / (to_text(key) += ending);
+}
+
+bool FolderFrameStore::holds(const Hash& key) {
+  struct stat status = {};
+  return lstat(file_of(key).c_str(), &status) == 0 && S_ISREG(status.st_mode);
+}
+
+std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t most) {
+  // A link or a pipe of that name is not ours, and must not keep us waiting.
+  const Descriptor file(
+      ::open(file_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status = {};
+  if (file.number() < 0 || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return {};
+  }
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  // What cannot be whole is handed over as far as it goes, to be found out.
+  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)), '\0');
+  if (!read_all(file.number(), bytes)) return {};
+  futimens(file.number(), nullptr);  // used now; where that is not allowed, it goes sooner
+  return bytes;
+}
+
+void FolderFrameStore::write(const Hash& key, std::string_view bytes) {
+  if (!take_room(on_disk(bytes.size()))) return;
+  auto file = AtomicFile::create(file_of(key));
+  Result<void> written;
+  if (file) written = file->write(bytes);
+  if (file && written) written = file->commit();
+  if (file && written) return;
+  const Error& error = file ? written.error() : file.error();
+  const std::lock_guard lock(mutex_);
+  if (trouble_.empty()) trouble_ = error.message;
+}
+
+void FolderFrameStore::discard(const Hash& key) {
+  std::error_code ignored;
+  const bool is_gone = fs::remove(file_of(key), ignored);
+  const std::lock_guard lock(mutex_);
+  if (is_gone) ++damaged_count_;
+}
+
+std::string FolderFrameStore::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+int FolderFrameStore::damaged_count() const {
+  const std::lock_guard lock(mutex_);
+  return damaged_count_;
+}
+
+// Whether so many more bytes may go to the disk.
+bool FolderFrameStore::take_room(std::size_t bytes) {
+  const std::lock_guard lock(mutex_);
+  if (!trouble_.empty() || bytes > byte_budget_) return false;
+  // Other processes write too: count again now and then.
+  if (!is_counted_ || bytes_ + bytes > byte_budget_ || bytes_written_ > byte_budget_ / 16) {
+    make_room(bytes);
+  }
+  if (bytes_ + bytes > byte_budget_) return false;
+  bytes_ += bytes;
+  bytes_written_ += bytes;
+  return true;
+}
+
+std::vector<FolderFrameStore::Entry> FolderFrameStore::entries() const {
+  std::vector<Entry> entries;
+  std::error_code error;
+  for (fs::directory_iterator place(folder_, error), end; !error && place != end;
+       place.increment(error)) {
+    const std::string name = place->path().filename().string();
+    const auto key = key_in(name);
+    struct stat status = {};
+    if ((!key && !is_part(name)) || lstat(place->path().c_str(), &status) != 0) continue;
+    if (!S_ISREG(status.st_mode)) continue;
+    const std::int64_t used = std::int64_t{status.st_mtim.tv_sec} * second + status.st_mtim.tv_nsec;
+    if (!key && now() - used < abandoned_after) continue;
+    // Of this run's own each rank holds half as many as the one before: the bits of a key are as
+    // good as random, and the same for whoever asks.
+    const bool is_ours = key && used >= opened_;
+    entries.push_back({place->path(), on_disk(static_cast<std::size_t>(status.st_size)), used,
+                       is_ours ? 1 + std::countr_zero(key->low)
+                       : key   ? 0
+                               : -1});
+  }
+  return entries;
+}
+
+// Counts what is there, and where it is too much removes some of it.
+void FolderFrameStore::make_room(std::size_t bytes) {
+  std::vector<Entry> there = entries();
+  std::sort(there.begin(), there.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.rank, a.used, a.file) < std::tie(b.rank, b.used, b.file);
+  });
+  bytes_ = bytes_written_ = 0;
+  for (const Entry& entry : there) bytes_ += entry.bytes;
+  is_counted_ = true;
+  const bool is_full = bytes_ + bytes > byte_budget_;
+  // With some to spare, so that this is not to be done for each file.
+  const std::size_t spare = byte_budget_ / 16;
+  for (const Entry& entry : there) {
+    if (entry.rank >= 0 && (!is_full || bytes_ + bytes + spare <= byte_budget_)) break;
+    std::error_code ignored;
+    if (fs::remove(entry.file, ignored) && !ignored) bytes_ -= entry.bytes;
+  }
+}
+
+}  // namespace pliant
