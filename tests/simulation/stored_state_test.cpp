@@ -62,6 +62,24 @@ TEST_CASE("a state comes back from its bytes", "[simulation][stored]") {
   if (share == 0) CHECK(bytes.size() < 128);  // rest costs nothing
 }
 
+TEST_CASE("what no node has away from rest takes nothing", "[simulation][stored]") {
+  const Field rest = some_rest(100);
+  StoredState stored{{rest, Field::Zero(100, 3)}, {}};
+  const auto size = [&] { return bytes_of(stored, rest).size(); };
+  const std::size_t none = size();
+  stored.state.positions.col(1).setConstant(0.5);
+  const std::size_t one = size();
+  CHECK(one == none + 16 + 100 * 8);
+  stored.state.velocities.col(1).setConstant(-1);
+  CHECK(size() == one + 100 * 8);
+  stored.state.positions.setConstant(2);
+  stored.state.velocities.setConstant(2);
+  CHECK(size() == none + 16 + 100 * 6 * 8);
+  const auto back = from_bytes(bytes_of(stored, rest), key, rest, false);
+  REQUIRE(back);
+  CHECK(back->state == stored.state);
+}
+
 TEST_CASE("a minus before a zero is kept", "[simulation][stored]") {
   const Field rest = some_rest(5);
   StoredState stored{{rest, Field::Zero(5, 3)}, {}};

@@ -1,5 +1,6 @@
 #include "pliant/simulation/stored_state.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -33,6 +34,28 @@ bool is_at_rest(const BodyState& state, const Field& rest, Eigen::Index node) {
     if (!is_same(state.velocities(node, component), 0)) return false;
   }
   return state.unsettled.empty() || state.unsettled[static_cast<std::size_t>(node)] == 0;
+}
+
+// Of x, y and z of the positions, then of the velocities, a bit each that is set where any node has
+// it away from rest: what is pushed along an axis has four of them at rest throughout.
+using Columns = std::uint64_t;
+
+bool holds(Columns columns, int component) { return (columns >> component & 1u) != 0; }
+
+Columns columns_away_from_rest(const BodyState& state, const Field& rest) {
+  const auto is_zero = [](double number) { return is_same(number, 0); };
+  Columns columns = 0;
+  for (int component = 0; component < 3; ++component) {
+    const auto positions = state.positions.col(component);
+    const auto velocities = state.velocities.col(component);
+    if (!std::equal(positions.begin(), positions.end(), rest.col(component).begin(), is_same)) {
+      columns |= Columns{1} << component;
+    }
+    if (!std::all_of(velocities.begin(), velocities.end(), is_zero)) {
+      columns |= Columns{8} << component;
+    }
+  }
+  return columns;
 }
 
 std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) {
@@ -120,16 +143,19 @@ std::optional<std::vector<Run>> read_runs(Reader& reader, std::uint64_t node_cou
   return runs;
 }
 
-void append_rows(std::string& bytes, const Field& field, const std::vector<Run>& runs) {
+void append_rows(std::string& bytes, const Field& field, const std::vector<Run>& runs,
+                 Columns columns) {
   for (int component = 0; component < 3; ++component) {
+    if (!holds(columns, component)) continue;
     for (const Run& run : runs) {
       append(bytes, field.col(component).data() + run.first, run.count * sizeof(double));
     }
   }
 }
 
-void take_rows(Reader& reader, Field& field, const std::vector<Run>& runs) {
+void take_rows(Reader& reader, Field& field, const std::vector<Run>& runs, Columns columns) {
   for (int component = 0; component < 3; ++component) {
+    if (!holds(columns, component)) continue;
     for (const Run& run : runs) {
       reader.take(field.col(component).data() + run.first, run.count * sizeof(double));
     }
@@ -140,7 +166,7 @@ constexpr std::size_t bytes_of_node = 6 * sizeof(double) + 1;
 
 // What a state takes at most besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
-  return magic_size + 2 * seal_size + 5 * sizeof(std::uint64_t) + force_count;
+  return magic_size + 2 * seal_size + 6 * sizeof(std::uint64_t) + force_count;
 }
 
 // More than this no state takes: at worst every other node is away from rest, or all are.
@@ -156,10 +182,12 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
                      const Field& rest) {
   static_assert(magic.size() + 1 == magic_size);
   const std::vector<Run> runs = runs_away_from_rest(state, rest);
+  const Columns columns = columns_away_from_rest(state, rest);
   std::size_t away = 0;
   for (const Run& run : runs) away += run.count;
   std::string bytes;
-  bytes.reserve(most_head(facts.forces.size()) + runs.size() * sizeof(Run) + away * bytes_of_node);
+  bytes.reserve(most_head(facts.forces.size()) + runs.size() * sizeof(Run) +
+                away * (static_cast<std::size_t>(std::popcount(columns)) * sizeof(double) + 1));
   bytes += magic;
   bytes.resize(magic_size);
   append(bytes, key);
@@ -175,8 +203,9 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
     append(bytes, run.first);
     append(bytes, run.count);
   }
-  append_rows(bytes, state.positions, runs);
-  append_rows(bytes, state.velocities, runs);
+  append(bytes, columns);
+  append_rows(bytes, state.positions, runs, columns);
+  append_rows(bytes, state.velocities, runs, columns >> 3);
   if (!state.unsettled.empty()) {
     for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
   }
@@ -208,8 +237,9 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   BodyState& state = stored.state;
   state.positions = rest;
   state.velocities = Field::Zero(rest.rows(), 3);
-  take_rows(reader, state.positions, *runs);
-  take_rows(reader, state.velocities, *runs);
+  const Columns columns = reader.number();
+  take_rows(reader, state.positions, *runs, columns);
+  take_rows(reader, state.velocities, *runs, columns >> 3);
   if (has_marks) {
     state.unsettled.assign(static_cast<std::size_t>(node_count), 0);
     for (const Run& run : *runs) reader.take(state.unsettled.data() + run.first, run.count);
