@@ -275,6 +275,7 @@ void add_bake(CLI::App& app, BakeOptions& options) {
       ->capture_default_str();
   bake->add_flag("--resume", options.resume,
                  "Go on after the last whole frame of an interrupted .obj or .ply sequence");
+  add_cache(*bake, options.cache);
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
@@ -297,9 +298,12 @@ int run_bake(const BakeOptions& options) {
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
 
+  const auto store = open_cache(options.cache);
+  if (!store) return report(store.error());
   SimulationOptions run = simulation_options(options.resources);
   run.solver = *solver;
   run.profile = options.is_profiled;
+  run.store = store->get();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
   auto output = open_output(*simulation, options, *frames);
@@ -314,13 +318,15 @@ int run_bake(const BakeOptions& options) {
 
   const auto summary = write_frames(*simulation, options, *frames, *output, regions);
   print_warnings(*simulation);
+  print_cache_notes(store->get(), options.cache);
   if (!summary) return report(summary.error());
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}\n",
+    print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}{}\n",
                               printable(options.out), summary->frame_count, summary->vertex_count,
-                              elapsed.count(), summary->peak_displacement));
+                              elapsed.count(), summary->peak_displacement,
+                              *store ? cache_summary(simulation->frame_counts()) : ""));
   }
   if (options.is_profiled) {
     Profile profile = simulation->profile();

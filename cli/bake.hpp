@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cache.hpp"
 #include "resources.hpp"
 
 namespace pliant::cli {
@@ -21,6 +22,7 @@ struct BakeOptions {
   bool resume = false;
   bool is_quiet = false;
   bool is_profiled = false;
+  CacheOptions cache;
   ResourceOptions resources;
 };
 

@@ -1,0 +1,62 @@
+#include "cache.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "report.hpp"
+#include "resources.hpp"
+
+namespace pliant::cli {
+namespace {
+
+void print_note(const CacheOptions& options, const std::string& message) {
+  print(stderr, fmt::format("{}: note: {}\n", printable(*options.folder), message));
+}
+
+}  // namespace
+
+void add_cache(CLI::App& command, CacheOptions& options) {
+  CLI::Option* const folder =
+      command.add_option("--cache", options.folder,
+                         "Folder that keeps each frame's state: what is the same the next time is "
+                         "read, not solved, after an edit or an interrupted bake");
+  command
+      .add_option("--cache-size", options.gigabytes,
+                  "Disk space in GB that the folder may take; what was not used for long goes")
+      ->check(number_from(0))
+      ->capture_default_str()
+      ->needs(folder);
+}
+
+Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options) {
+  if (!options.folder) return nullptr;
+  if (options.folder->empty()) return fail(ErrorCode::InvalidInput, "--cache: names no folder");
+  auto store =
+      FolderFrameStore::open(*options.folder, static_cast<std::size_t>(options.gigabytes * 1e9));
+  if (store) return store;
+  if (store.error().code != ErrorCode::Unwritable) {
+    return fail(store.error().code,
+                fmt::format("--cache {}: {}", printable(*options.folder), store.error().message));
+  }
+  print_note(options, store.error().message + "; no frame is kept");
+  return nullptr;
+}
+
+void print_cache_notes(const FolderFrameStore* store, const CacheOptions& options) {
+  if (!store) return;
+  if (const int damaged = store->damaged_count(); damaged > 0) {
+    print_note(options, fmt::format("removed {} damaged file{}; those frames were solved again",
+                                    damaged, damaged == 1 ? "" : "s"));
+  }
+  if (const std::string trouble = store->trouble(); !trouble.empty()) {
+    print_note(options, trouble + "; not all frames are kept");
+  }
+}
+
+std::string cache_summary(const FrameCounts& counts) {
+  return fmt::format(", {} frames solved, {} read", counts.solved, counts.read);
+}
+
+}  // namespace pliant::cli
