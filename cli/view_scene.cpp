@@ -1,5 +1,6 @@
 #include "view_scene.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -25,12 +26,14 @@ std::string title_of(const Scene& scene) {
 }
 
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
-                              const StopRequest& should_stop) {
+                              const StopRequest& should_stop, MemoryFrameStore* store) {
   print_notes(scene);
   const auto frames = parse_frames(options.frames, scene);
   if (!frames) return fail(frames.error());
   SimulationOptions run = simulation_options(options.resources);
   run.should_stop = should_stop;
+  run.store = store;
+  if (store != nullptr) run.max_memory -= std::min(run.max_memory, store->byte_budget());
   auto simulation = Simulation::make(std::move(scene), run);
   if (!simulation) return fail(simulation.error());
   auto baked = [&] {
@@ -41,7 +44,7 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   print_warnings(*simulation);
   if (!baked) return fail(baked.error());
   if (!options.is_quiet) print_weight(*baked);
-  return BakedScene{simulation->scene(), *frames, *std::move(baked)};
+  return BakedScene{simulation->scene(), *frames, *std::move(baked), simulation->frame_counts()};
 }
 
 }  // namespace pliant::cli

@@ -1,5 +1,6 @@
 #include "view_serve.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cache.hpp"
 #include "interrupt.hpp"
 #include "pliant/scene/read.hpp"
 #include "report.hpp"
@@ -89,8 +91,15 @@ std::string to_json(const Error& error) {
   return messages.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// For states that the next save need not have solved again: a quarter of what the command may use,
+// and no more than a gigabyte.
+std::size_t store_bytes(const ResourceOptions& resources) {
+  return std::min(simulation_options(resources).max_memory / 4, std::size_t{1'000'000'000});
+}
+
 // Bakes the scene as it is now. Gives what to watch for the next time.
-std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server) {
+std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
+                                 MemoryFrameStore& store) {
   // Watched from before it is read, so that no save is missed.
   auto watch = std::make_unique<Watch>(inputs_of(options.scene, nullptr));
   server.tell_working();
@@ -103,7 +112,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server)
   auto all = std::make_unique<Watch>(inputs_of(options.scene, &*scene));
   if (watch->has_changed()) return watch;
   const auto should_stop = [&] { return was_interrupted() || all->has_changed(); };
-  auto baked = bake_scene(*std::move(scene), options, should_stop);
+  auto baked = bake_scene(*std::move(scene), options, should_stop, &store);
   if (should_stop()) return all;  // of what was baked nobody wants to know any more
   if (!baked) {
     report(baked.error());
@@ -111,9 +120,10 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server)
     return all;
   }
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {} frames, {} vertices, peak displacement {:.6g}\n",
-                              printable(options.scene), baked->frames.count(),
-                              baked->bake.vertex_count, baked->bake.peak_displacement));
+    print(stdout,
+          fmt::format("{}: {} frames, {} vertices, peak displacement {:.6g}{}\n",
+                      printable(options.scene), baked->frames.count(), baked->bake.vertex_count,
+                      baked->bake.peak_displacement, cache_summary(baked->counts)));
   }
   server.publish(std::move(baked->bake.packed));
   return all;
@@ -125,8 +135,9 @@ int serve_view(const ViewOptions& options, std::string_view page) {
   auto server = ViewServer::start(std::string(page), *options.port);
   if (!server) return report(server.error());
   print(stdout, fmt::format("http://127.0.0.1:{}/\n", server->port()));
+  MemoryFrameStore store(store_bytes(options.resources));
   while (!was_interrupted()) {
-    const auto watch = bake_once(options, *server);
+    const auto watch = bake_once(options, *server, store);
     while (!was_interrupted() && !watch->has_changed()) std::this_thread::sleep_for(pause);
     // A save may take a moment: what is there is read once nothing changes any more.
     std::this_thread::sleep_for(pause);

@@ -314,6 +314,17 @@ class Serve(View):
             self.assertEqual(after["forces"][0]["magnitude"][4], magnitude)
             self.assertNotEqual(after["surfaces"][0]["peakDisplacement"], before["surfaces"][0]["peakDisplacement"])
 
+    def test_what_was_solved_for_an_earlier_save_is_not_solved_again(self):
+        server = self.start()
+        for magnitude in (500, 7000, 500):
+            self.scene(magnitude=magnitude)
+            server.wait_for("baked")
+        _, out, _ = server.close()
+        solved = [int(count) for count in re.findall(r", (\d+) frames solved, \d+ read\n", out)]
+        self.assertEqual(len(solved), 4)
+        self.assertGreater(solved[2], 0)
+        self.assertEqual(solved[3], 0)
+
     def test_errors_are_told_with_their_lines_and_go_with_the_next_save(self):
         server = self.start()
         kept = server.get("/bake")[1]
