@@ -271,8 +271,10 @@ class Server:
     def wait_for(self, name):
         """The next event of that name, and what it tells."""
         while True:
-            line = self.stream.readline().decode().rstrip("\n")
-            if line == f"event: {name}":
+            line = self.stream.readline().decode()
+            if not line:
+                raise EOFError(f"the events ended ahead of \"{name}\", with {self.stream.status}")
+            if line.rstrip("\n") == f"event: {name}":
                 return self.stream.readline().decode().rstrip("\n").removeprefix("data: ")
 
     def stop_listening(self):
