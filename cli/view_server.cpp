@@ -79,8 +79,10 @@ struct ViewServer::State {
             if (seen < 0 && bake_number > 0 && event != baked_text()) {
               text = baked_text();
             }
-            text += std::exchange(seen, event_number) != event_number ? event : ": still here\n\n";
+            if (std::exchange(seen, event_number) != event_number) text += event;
           }
+          // A piece of no bytes would end the stream: for a page ahead of the first event.
+          if (text.empty()) text = ": still here\n\n";
           return sink.write(text.data(), text.size());
         });
   }
