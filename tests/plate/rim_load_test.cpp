@@ -6,6 +6,19 @@
 
 using namespace pliant;
 
+namespace {
+
+EdgeTangents four_tangents() {
+  EdgeTangents tangents;
+  tangents.su0 = Vector3d(1, -2, 3);
+  tangents.su1 = Vector3d(-4, 5, 0.5);
+  tangents.sv0 = Vector3d(0.25, 7, -1);
+  tangents.sv1 = Vector3d(2, 0, 11);
+  return tangents;
+}
+
+}  // namespace
+
 TEST_CASE("the rim's part of a load is that of the stencil", "[plate][spectral]") {
   for (const auto& [columns, rows] : {std::pair{3, 3},
                                       {3, 4},
@@ -20,11 +33,7 @@ TEST_CASE("the rim's part of a load is that of the stencil", "[plate][spectral]"
     CAPTURE(columns, rows);
     const Grid grid{columns, rows, 0.25, 0.125};
     const Stiffness stiffness{1.5, 0.75, 3};
-    EdgeTangents tangents;
-    tangents.su0 = Vector3d(1, -2, 3);
-    tangents.su1 = Vector3d(-4, 5, 0.5);
-    tangents.sv0 = Vector3d(0.25, 7, -1);
-    tangents.sv1 = Vector3d(2, 0, 11);
+    const EdgeTangents tangents = four_tangents();
     const Field w = Field::Random(grid.node_count(), 3);
     const Field load = Field::Random(grid.node_count(), 3);
     Field changed = load;
@@ -41,11 +50,7 @@ TEST_CASE("the rim's part of a load is that of the stencil on any outline", "[pl
     for (const auto& [name, grid, interior] : pliant::testing::union_plates(side)) {
       CAPTURE(name, side);
       const Stiffness stiffness{1.5, 0.75, 3};
-      EdgeTangents tangents;
-      tangents.su0 = Vector3d(1, -2, 3);
-      tangents.su1 = Vector3d(-4, 5, 0.5);
-      tangents.sv0 = Vector3d(0.25, 7, -1);
-      tangents.sv1 = Vector3d(2, 0, 11);
+      const EdgeTangents tangents = four_tangents();
       const Field w = Field::Random(grid.node_count(), 3);
       const Field load = Field::Random(grid.node_count(), 3);
       Field changed = load;

@@ -87,9 +87,9 @@ std::size_t GltfBuffer::add_accessor(Json accessor) {
   return accessors_.size() - 1;
 }
 
-Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int width,
-                                             Bounds bounds) {
-  const auto view = add_view(bytes_of(numbers), array_buffer);
+Result<std::size_t> GltfBuffer::add_rows(std::span<const float> numbers, int width, Bounds bounds,
+                                         int target) {
+  const auto view = add_view(bytes_of(numbers), target);
   if (!view) return fail(view.error());
   Json accessor = {{"bufferView", *view},
                    {"componentType", floating},
@@ -97,6 +97,11 @@ Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int
                    {"type", type_of(width)}};
   if (bounds == Bounds::Written) set_bounds(accessor, numbers, width);
   return add_accessor(std::move(accessor));
+}
+
+Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int width,
+                                             Bounds bounds) {
+  return add_rows(numbers, width, bounds, array_buffer);
 }
 
 Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Bounds bounds) {
@@ -145,14 +150,7 @@ Result<std::size_t> GltfBuffer::add_indices(std::span<const std::uint32_t> indic
 }
 
 Result<std::size_t> GltfBuffer::add_keys(std::span<const float> numbers, int width, Bounds bounds) {
-  const auto view = add_view(bytes_of(numbers), no_target);
-  if (!view) return fail(view.error());
-  Json accessor = {{"bufferView", *view},
-                   {"componentType", floating},
-                   {"count", numbers.size() / static_cast<std::size_t>(width)},
-                   {"type", type_of(width)}};
-  if (bounds == Bounds::Written) set_bounds(accessor, numbers, width);
-  return add_accessor(std::move(accessor));
+  return add_rows(numbers, width, bounds, no_target);
 }
 
 Result<std::size_t> GltfBuffer::add_weights(std::span<const int> target_of_key, int target_count) {

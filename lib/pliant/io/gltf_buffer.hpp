@@ -52,6 +52,8 @@ class GltfBuffer {
   Result<void> write(std::string_view bytes);
   Result<std::size_t> add_view(std::string_view bytes, int target);
   std::size_t add_accessor(Json accessor);
+  Result<std::size_t> add_rows(std::span<const float> numbers, int width, Bounds bounds,
+                               int target);
 
   Sink sink_;
   std::uint64_t size_ = 0;
