@@ -20,12 +20,9 @@
 // Run: build/release/bench/frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <random>
 #include <string>
@@ -35,6 +32,7 @@
 
 #include <fmt/format.h>
 
+#include "measuring.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/region/region.hpp"
 
@@ -52,12 +50,6 @@ struct Options {
   int threads = 1;
   bool is_least = false;
 };
-
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // The median of many times, or the least of them.
 double typical(std::vector<double> times, bool is_least) {
@@ -275,23 +267,6 @@ void print_selection(const Options& options) {
     fmt::print("{:>7} {:>10.3f} {:>12.2f}\n", count, typical(quick, options.is_least) * 1e3,
                typical(slow, options.is_least) * 1e3);
   }
-}
-
-bool read_number(std::string_view text, auto& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-bool read_sides(std::string_view text, std::vector<int>& sides) {
-  sides.clear();
-  while (!text.empty()) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    int side = 0;
-    if (!read_number(text.substr(0, comma), side) || side < 3) return false;
-    sides.push_back(side);
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return true;
 }
 
 bool parse(int count, char* arguments[], Options& options) {

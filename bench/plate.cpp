@@ -18,10 +18,7 @@
 // half of that. --csv prints the rows for script/performance_plot.
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +28,7 @@
 
 #include <fmt/format.h>
 
+#include "measuring.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/spectral_plate.hpp"
 #ifdef PLIANT_BENCH_SUPERNODAL
@@ -51,12 +49,6 @@ struct Options {
   int threads = 1;
   std::string csv;  // file; empty: none
 };
-
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 double median(std::vector<double> numbers) {
   const auto middle = numbers.begin() + static_cast<long>(numbers.size() / 2);
@@ -201,9 +193,7 @@ std::optional<std::vector<std::pair<int, int>>> parse_boxes(std::string_view tex
     text.remove_prefix(std::min(text.size(), box.size() + 1));
     const auto number = [](std::string_view digits) {
       int value = 0;
-      const auto end = digits.data() + digits.size();
-      const auto [rest, error] = std::from_chars(digits.data(), end, value);
-      return error == std::errc() && rest == end && value >= 1 && value <= 20'000 ? value : 0;
+      return read_number(digits, value) && value >= 1 && value <= 20'000 ? value : 0;
     };
     const auto cross = box.find('x');
     const int columns = number(box.substr(0, cross));

@@ -13,16 +13,14 @@
 // Run: build/release/bench/random_access [--sides 51,101,...] [--room MIB] [--count N]
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <cstdlib>
-#include <functional>
 #include <random>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "measuring.hpp"
 #include "pliant/pliant.hpp"
 
 namespace {
@@ -36,12 +34,6 @@ struct Options {
   std::size_t room = 256;  // [MiB]
   int count = 100;         // of frames at random
 };
-
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 Scene make_scene(int side) {
   Scene scene;
@@ -110,41 +102,30 @@ void measure(int side, const Options& options) {
       solved.sum / options.count / interval, solved.most / interval, 1e3 * backwards / frame_count);
 }
 
-template <class Number>
-Number number(std::string_view text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 1) {
-    fmt::print(stderr, "not a number: {}\n", text);
-    std::exit(2);
+bool parse(int count, char* arguments[], Options& options) {
+  for (int k = 1; k < count; k += 2) {
+    if (k + 1 == count) return false;
+    const std::string_view name = arguments[k];
+    const std::string_view value = arguments[k + 1];
+    const bool is_known =
+        (name == "--room" && read_number(value, options.room)) ||
+        (name == "--count" && read_number(value, options.count) && options.count >= 1) ||
+        (name == "--sides" && read_sides(value, options.sides));
+    if (!is_known) return false;
   }
-  return value;
-}
-
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int k = 1; k + 1 < argc; k += 2) {
-    const std::string_view name = argv[k];
-    std::string_view value = argv[k + 1];
-    if (name == "--room") options.room = number<std::size_t>(value);
-    if (name == "--count") options.count = number<int>(value);
-    if (name != "--sides") continue;
-    options.sides.clear();
-    for (;;) {
-      const std::size_t comma = value.find(',');
-      options.sides.push_back(number<int>(value.substr(0, comma)));
-      if (comma == std::string_view::npos) break;
-      value.remove_prefix(comma + 1);
-    }
-  }
-  return options;
+  return true;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  const Options options = parse(argc, argv);
+int main(int count, char* arguments[]) {
+  Options options;
+  if (!parse(count, arguments, options)) {
+    fmt::print(stderr, "usage: random_access [--sides 51,101,...] [--room MIB] [--count N]\n");
+    return 2;
+  }
   fmt::print("{:>5} {:>5} {:>8} {:>8} {:>17} {:>13} {:>13} {:>9}\n", "side", "room", "interval",
              "played", "random", "share", "solved", "backwards");
   for (const int side : options.sides) measure(side, options);
+  return 0;
 }
