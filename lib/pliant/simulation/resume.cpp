@@ -1,15 +1,14 @@
 // How a simulation comes to a state that it did not compute: out of a store, or from bytes.
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pliant/simulation/sampling.hpp"
+#include "pliant/simulation/sealed_bytes.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/simulation/stepped.hpp"
 #include "pliant/simulation/stored_state.hpp"
@@ -17,32 +16,7 @@
 namespace pliant {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "numbers are stored as they lie in memory");
-
 constexpr std::string_view magic = "pliant checkpoint 1\n";
-
-void append(std::string& bytes, std::uint64_t number) {
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
-}
-
-std::optional<std::uint64_t> take_number(std::string_view& bytes) {
-  std::uint64_t number = 0;
-  if (bytes.size() < sizeof(number)) return {};
-  std::memcpy(&number, bytes.data(), sizeof(number));
-  bytes.remove_prefix(sizeof(number));
-  return number;
-}
-
-// What stands between the magic and the seal, if the bytes are whole.
-std::optional<std::string_view> unsealed(std::string_view bytes) {
-  if (!bytes.starts_with(magic) || bytes.size() < magic.size() + sizeof(Hash)) return {};
-  const std::string_view sealed = bytes.substr(0, bytes.size() - sizeof(Hash));
-  std::string_view seal = bytes.substr(sealed.size());
-  const std::uint64_t high = *take_number(seal), low = *take_number(seal);
-  if (hash_of(sealed) != Hash{high, low}) return {};
-  return sealed.substr(magic.size());
-}
 
 }  // namespace
 
@@ -138,9 +112,7 @@ Result<std::string> Simulation::state_bytes(int frame) {
     append(bytes, state.size());
     bytes += state;
   }
-  const Hash seal = hash_of(std::string_view(bytes));
-  append(bytes, seal.high);
-  append(bytes, seal.low);
+  append_seal(bytes);
   return bytes;
 }
 
@@ -148,24 +120,24 @@ Result<int> Simulation::restore(std::string_view bytes) {
   const auto refuse = [](std::string message) {
     return fail(ErrorCode::InvalidInput, "cannot go on from the state: " + std::move(message));
   };
-  auto left = unsealed(bytes);
-  const auto number = left ? take_number(*left) : std::nullopt;
-  const auto count = number ? take_number(*left) : std::nullopt;
-  if (!count) return refuse("it is none, or damaged");
-  const auto frame = static_cast<std::int64_t>(*number);
+  const auto held = unsealed(bytes, magic);
+  if (!held) return refuse("it is none, or damaged");
+  ByteReader reader(*held);
+  const auto frame = static_cast<std::int64_t>(reader.number());
+  const std::uint64_t count = reader.number();
   if (frame < scene_.start || frame > scene_.end) {
     return refuse(fmt::format("its frame {} is outside the scene's frames {} to {}", frame,
                               scene_.start, scene_.end));
   }
-  if (*count != bodies_.size()) {
-    return refuse(fmt::format("it is of {} surfaces, the scene has {}", *count, bodies_.size()));
+  if (count != bodies_.size()) {
+    return refuse(fmt::format("it is of {} surfaces, the scene has {}", count, bodies_.size()));
   }
   std::vector<BodyState> states;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    const auto size = take_number(*left);
-    if (!size || *size > left->size()) return refuse("it is damaged");
+    const std::string_view state = reader.take(reader.number());
+    if (!reader.is_sound()) return refuse("it is damaged");
     const Hash of_scene = sealing_key(k, static_cast<int>(frame));
-    auto stored = from_bytes(left->substr(0, *size), of_scene, bodies_[k].rest(), has_marks(k));
+    auto stored = from_bytes(state, of_scene, bodies_[k].rest(), has_marks(k));
     if (!stored) {
       return refuse(
           fmt::format("surface \"{}\" is not the same, or what acts on it before frame "
@@ -173,8 +145,8 @@ Result<int> Simulation::restore(std::string_view bytes) {
                       scene_.surfaces[k].name, frame));
     }
     states.push_back(std::move(stored->state));
-    left->remove_prefix(*size);
   }
+  if (reader.left() != 0) return refuse("it is damaged");
   frame_ = static_cast<int>(frame);
   for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].restore(std::move(states[k]));
   keep(true);

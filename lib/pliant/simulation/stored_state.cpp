@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
-#include "pliant/core/expects.hpp"
+#include "pliant/simulation/sealed_bytes.hpp"
 
 namespace pliant {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "numbers are stored as they lie in memory");
-
-constexpr std::string_view magic = "pliant state 1\n";
-constexpr std::size_t magic_size = 16;  // a zero follows
-constexpr std::size_t seal_size = 16;
+constexpr std::string_view magic("pliant state 1\n\0", 16);
 
 // Nodes first, first + 1, ..., first + count - 1.
 struct Run {
@@ -72,17 +66,6 @@ std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) 
   return runs;
 }
 
-void append(std::string& bytes, const void* from, std::size_t size) {
-  bytes.append(static_cast<const char*>(from), size);
-}
-
-void append(std::string& bytes, std::uint64_t number) { append(bytes, &number, sizeof(number)); }
-
-void append(std::string& bytes, const Hash& hash) {
-  append(bytes, hash.high);
-  append(bytes, hash.low);
-}
-
 unsigned char bits_of(const ForceFacts& facts) {
   const auto& [is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost] = facts;
   unsigned bits = 0;
@@ -97,39 +80,8 @@ ForceFacts facts_of(unsigned bits) {
   return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0)};
 }
 
-// Takes bytes from the front. What is not there is taken as zeros, and told by `is_sound`.
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-
-  bool is_sound() const { return is_sound_; }
-  std::size_t left() const { return bytes_.size(); }
-
-  void take(void* to, std::size_t size) {
-    if (size > bytes_.size()) {
-      is_sound_ = false;
-      return;
-    }
-    if (size > 0) std::memcpy(to, bytes_.data(), size);
-    bytes_.remove_prefix(size);
-  }
-  std::uint64_t number() {
-    std::uint64_t number = 0;
-    take(&number, sizeof(number));
-    return number;
-  }
-  Hash hash() {
-    const std::uint64_t high = number();
-    return {high, number()};
-  }
-
- private:
-  std::string_view bytes_;
-  bool is_sound_ = true;
-};
-
 // The runs that follow, as far as they lie within the nodes and in order; else none and unsound.
-std::optional<std::vector<Run>> read_runs(Reader& reader, std::uint64_t node_count) {
+std::optional<std::vector<Run>> read_runs(ByteReader& reader, std::uint64_t node_count) {
   const std::uint64_t count = reader.number();
   if (count > reader.left() / sizeof(Run)) return {};
   std::vector<Run> runs(static_cast<std::size_t>(count));
@@ -153,7 +105,7 @@ void append_rows(std::string& bytes, const Field& field, const std::vector<Run>&
   }
 }
 
-void take_rows(Reader& reader, Field& field, const std::vector<Run>& runs, Columns columns) {
+void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, Columns columns) {
   for (int component = 0; component < 3; ++component) {
     if (!holds(columns, component)) continue;
     for (const Run& run : runs) {
@@ -166,7 +118,7 @@ constexpr std::size_t bytes_of_node = 6 * sizeof(double) + 1;
 
 // What a state takes at most besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
-  return magic_size + 2 * seal_size + 6 * sizeof(std::uint64_t) + force_count;
+  return magic.size() + 2 * sizeof(Hash) + 6 * sizeof(std::uint64_t) + force_count;
 }
 
 // More than this no state takes: at worst every other node is away from rest, or all are.
@@ -180,7 +132,6 @@ std::size_t most_bytes(Eigen::Index node_count) {
 
 std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
                      const Field& rest) {
-  static_assert(magic.size() + 1 == magic_size);
   const std::vector<Run> runs = runs_away_from_rest(state, rest);
   const Columns columns = columns_away_from_rest(state, rest);
   std::size_t away = 0;
@@ -189,7 +140,6 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   bytes.reserve(most_head(facts.forces.size()) + runs.size() * sizeof(Run) +
                 away * (static_cast<std::size_t>(std::popcount(columns)) * sizeof(double) + 1));
   bytes += magic;
-  bytes.resize(magic_size);
   append(bytes, key);
   append(bytes, static_cast<std::uint64_t>(rest.rows()));
   append(bytes, std::uint64_t{state.unsettled.empty() ? 0u : 1u});
@@ -209,17 +159,15 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   if (!state.unsettled.empty()) {
     for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
   }
-  append(bytes, hash_of(std::string_view(bytes)));
+  append_seal(bytes);
   return bytes;
 }
 
 std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
                                       bool has_marks) {
-  if (bytes.size() < magic_size + seal_size || !bytes.starts_with(magic)) return {};
-  const std::string_view sealed = bytes.substr(0, bytes.size() - seal_size);
-  if (Reader(bytes.substr(sealed.size())).hash() != hash_of(sealed)) return {};
-
-  Reader reader(sealed.substr(magic_size));
+  const auto held = unsealed(bytes, magic);
+  if (!held) return {};
+  ByteReader reader(*held);
   if (reader.hash() != key) return {};
   const auto node_count = static_cast<std::uint64_t>(rest.rows());
   if (reader.number() != node_count || reader.number() != (has_marks ? 1u : 0u)) return {};
