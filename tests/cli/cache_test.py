@@ -1,7 +1,4 @@
-"""`pliant bake --cache`: what is solved, what is read, and that no result ever differs.
-
-usage: cache_test.py PLIANT [sanitized]
-"""
+"""`pliant bake --cache`: what is solved, what is read, and that no result ever differs."""
 
 import os
 import random
@@ -10,14 +7,11 @@ import resource
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import threading
 import time
 import unittest
 
-PLIANT = None
-SANITIZED = False  # built with a sanitizer, which makes everything slow
+from command import Command, PLIANT, SANITIZED, main
 
 SCENE = """<?xml version="1.0"?>
 <scene version="1" start="1" end="{end}">
@@ -33,32 +27,21 @@ SCENE = """<?xml version="1.0"?>
 """
 
 
-class Cache(unittest.TestCase):
+class Cache(Command):
     def setUp(self):
-        self.scratch = tempfile.TemporaryDirectory(prefix="pliant-cache-")
-        self.addCleanup(self.scratch.cleanup)
-        self.folder = self.scratch.name
+        super().setUp()
         self.cache = self.path("cache")
 
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
     def scene(self, last=2000, end=41, count=13, middle=None):
-        text = SCENE.format(end=end, middle=middle or (end + 1) // 2, last=last, count=count)
-        with open(self.path("scene.xml"), "w", encoding="utf-8") as file:
-            file.write(text)
-        return self.path("scene.xml")
+        return self.write("scene.xml", SCENE.format(end=end, middle=middle or (end + 1) // 2,
+                                                    last=last, count=count))
 
-    def command(self, *arguments, out="out.npy", cache=True):
+    def words(self, *arguments, out="out.npy", cache=True):
         cached = ["--cache", self.cache] if cache else []
-        return [PLIANT, "bake", self.path("scene.xml"), "-o", self.path(out), *cached, *arguments]
+        return ["bake", self.path("scene.xml"), "-o", self.path(out), *cached, *arguments]
 
-    def bake(self, *arguments, out="out.npy", cache=True, code=0, **options):
-        result = subprocess.run(self.command(*arguments, out=out, cache=cache), check=False,
-                                capture_output=True, text=True, timeout=120,
-                                stdin=subprocess.DEVNULL, cwd=self.folder, **options)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        return result
+    def bake(self, *arguments, out="out.npy", cache=True, **options):
+        return self.run_pliant(*self.words(*arguments, out=out, cache=cache), **options)
 
     def counts(self, *arguments, **options):
         """Frames solved and read, by the summary; nothing else is said."""
@@ -68,19 +51,15 @@ class Cache(unittest.TestCase):
         self.assertTrue(found, result.stdout)
         return tuple(map(int, found.groups()))
 
-    def bytes_of(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
     def expected(self):
         """The bytes of a run without a cache."""
         result = self.bake(out="plain.npy", cache=False)
         self.assertNotIn("solved", result.stdout)
-        return self.bytes_of("plain.npy")
+        return self.read("plain.npy")
 
     def check(self, solved, read, *arguments):
         self.assertEqual(self.counts(*arguments), (solved, read))
-        self.assertEqual(self.bytes_of("out.npy"), self.expected())
+        self.assertEqual(self.read("out.npy"), self.expected())
 
 
 class Reuse(Cache):
@@ -116,7 +95,7 @@ class Reuse(Cache):
         names = [name for name in os.listdir(self.folder) if name.startswith("plain-")]
         self.assertEqual(len(names), 11 + 4)
         for name in names:
-            self.assertEqual(self.bytes_of(name), self.bytes_of(name.replace("plain-", "cached-")), name)
+            self.assertEqual(self.read(name), self.read(name.replace("plain-", "cached-")), name)
 
     def test_what_is_told_of_regions_and_warnings_is_as_always(self):
         self.scene(end=11)
@@ -129,7 +108,7 @@ class Reuse(Cache):
         self.assertIn("0 frames solved, 10 read", second.stdout)
         self.assertIn('force "far" selects no node', first.stderr)
         self.assertEqual(first.stderr, second.stderr)
-        regions = [re.sub(rb'"solver".*', b"", self.bytes_of(name), flags=re.DOTALL)
+        regions = [re.sub(rb'"solver".*', b"", self.read(name), flags=re.DOTALL)
                    for name in ("first.json", "second.json")]
         self.assertEqual(*regions)
 
@@ -146,17 +125,17 @@ class Reuse(Cache):
         self.assertEqual(self.counts("--resume", out="a.obj"), (0, 10))
         self.bake(out="b.obj", cache=False)
         for frame in range(1, 12):
-            self.assertEqual(self.bytes_of(f"a.{frame:04}.obj"), self.bytes_of(f"b.{frame:04}.obj"))
+            self.assertEqual(self.read(f"a.{frame:04}.obj"), self.read(f"b.{frame:04}.obj"))
 
     def test_two_bakes_at_a_time_share_a_folder(self):
         self.scene(end=61, count=31)
         expected = self.expected()
-        runs = [subprocess.Popen(self.command(out=f"{n}.npy"), stdout=subprocess.PIPE,
+        runs = [subprocess.Popen([PLIANT, *self.words(out=f"{n}.npy")], stdout=subprocess.PIPE,
                                  stderr=subprocess.PIPE, text=True) for n in range(3)]
         for n, run in enumerate(runs):
             _, errors = run.communicate(timeout=120)
             self.assertEqual((run.returncode, errors), (0, ""))
-            self.assertEqual(self.bytes_of(f"{n}.npy"), expected)
+            self.assertEqual(self.read(f"{n}.npy"), expected)
         self.assertEqual(self.counts(), (0, 60))
 
 
@@ -172,7 +151,7 @@ class Size(Cache):
             self.assertEqual(solved + read, 40)
             self.assertGreater(solved, 0)
             self.assertLessEqual(self.disk(), float(size) * 1e9)
-            self.assertEqual(self.bytes_of("out.npy"), self.expected())
+            self.assertEqual(self.read("out.npy"), self.expected())
         self.assertLess(self.counts("--cache-size", "0.0003")[0], 40)
 
     def test_sizes_that_are_none_are_refused(self):
@@ -206,7 +185,7 @@ class Damage(Cache):
         self.assertEqual(result.stderr, f"{self.cache}: note: removed 6 damaged files; those frames "
                                         "were solved again\n")
         self.assertIn("6 frames solved, 4 read", result.stdout)
-        self.assertEqual(self.bytes_of("out.npy"), self.expected())
+        self.assertEqual(self.read("out.npy"), self.expected())
         self.check(0, 10)
 
     def test_foreign_files_are_left_alone(self):
@@ -240,7 +219,7 @@ class Trouble(Cache):
         result = self.bake()
         self.assertRegex(result.stderr, r"^[^\n]*file/cache: note: cannot make the folder: [^\n]+; "
                                         r"no frame is kept\n$")
-        self.assertEqual(self.bytes_of("out.npy"), self.expected())
+        self.assertEqual(self.read("out.npy"), self.expected())
 
     @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
     def test_a_folder_that_is_read_only_is_read(self):
@@ -268,7 +247,7 @@ class Trouble(Cache):
         self.assertRegex(result.stderr, r"^[^\n]*cache: note: cannot write the file: [^\n]+; not all "
                                         r"frames are kept\n$")
         self.assertIn("10 frames solved, 0 read", result.stdout)
-        self.assertEqual(self.bytes_of("out.npy"), self.bytes_of("plain.npy"))
+        self.assertEqual(self.read("out.npy"), self.read("plain.npy"))
         self.assertTrue(all(name.endswith(".state") for name in os.listdir(self.cache)))
 
 
@@ -283,7 +262,7 @@ class Kill(Cache):
         longest = 0.5 * (time.monotonic() - begin)  # so that none gets to the end at once
         read_before = 0
         for kill in range(kills):
-            run = subprocess.Popen(self.command("--quiet"), stdout=subprocess.DEVNULL,
+            run = subprocess.Popen([PLIANT, *self.words("--quiet")], stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
             timer = threading.Timer(generator.uniform(0, longest), run.kill)
             timer.start()
@@ -302,20 +281,16 @@ class Kill(Cache):
                 self.assertEqual(read, kept)
                 self.assertGreaterEqual(read, read_before)
                 self.assertEqual(solved + read, 1200)
-                self.assertEqual(self.bytes_of("copy.npy"), expected)
+                self.assertEqual(self.read("copy.npy"), expected)
                 read_before = read
                 shutil.rmtree(copy)
         self.assertGreater(read_before, 0)
         solved, read = self.counts()
         self.assertEqual(solved + read, 1200)
         self.assertGreaterEqual(read, read_before)
-        self.assertEqual(self.bytes_of("out.npy"), expected)
+        self.assertEqual(self.read("out.npy"), expected)
         self.assertEqual(self.counts(), (0, 1200))
 
 
 if __name__ == "__main__":
-    PLIANT = os.path.abspath(sys.argv.pop(1))
-    SANITIZED = "sanitized" in sys.argv
-    if SANITIZED:
-        sys.argv.remove("sanitized")
-    unittest.main()
+    main()

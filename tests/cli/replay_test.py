@@ -1,18 +1,12 @@
-"""Runs `pliant replay` as a user does and checks exit codes, messages and files.
-
-usage: replay_test.py PLIANT
-"""
+"""`pliant replay`: exit codes, messages and files."""
 
 import json
 import os
 import signal
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 
-PLIANT = None
+from command import Command, PLIANT, main
 
 SCENE = """<?xml version="1.0"?>
 <scene version="1" start="1" end="{end}">
@@ -25,31 +19,14 @@ SCENE = """<?xml version="1.0"?>
 """
 
 
-class Replay(unittest.TestCase):
+class Replay(Command):
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory(prefix="pliant-replay-")
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
+        super().setUp()
         self.write("scene.xml", SCENE.format(end=8))
 
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-
-    def read(self, name):
-        with open(self.path(name), "rb") as file:
-            return file.read()
-
     def replay(self, *arguments, code=0, folder=None, **settings):
-        environment = {**os.environ, **settings}
-        result = subprocess.run([PLIANT, "replay", *arguments], capture_output=True, text=True,
-                                timeout=120, stdin=subprocess.DEVNULL, env=environment,
-                                cwd=folder or self.folder, check=False)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        return result
+        return self.run_pliant("replay", *arguments, code=code, cwd=folder or self.folder,
+                               env={**os.environ, **settings})
 
     def lines_of_log(self, name):
         return [json.loads(line) for line in self.read(name).decode("utf-8").splitlines()]
@@ -174,6 +151,4 @@ class Replay(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PLIANT = os.path.abspath(sys.argv[1])
-    del sys.argv[1:]
-    unittest.main(verbosity=2)
+    main()

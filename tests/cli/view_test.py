@@ -1,7 +1,5 @@
 """What `pliant view` puts into its page, read back as docs/viewer.md tells, and how it serves it.
 
-usage: view_test.py PLIANT SOURCE_FOLDER
-
 In a build that was made without npm there is no page; then this tests what the command says of it.
 What a browser makes of the page is tested by tests/viewer.
 """
@@ -13,16 +11,15 @@ import os
 import re
 import signal
 import subprocess
-import sys
-import tempfile
-import unittest
+import time
 import zlib
 
 import numpy as np
 
-PLIANT = None
-SOURCE = None
-HAS_PAGE = False
+from command import Command, PLIANT, SOURCE, main
+
+# Without one the command says so (1) before it misses the scene (2).
+HAS_PAGE = subprocess.run([PLIANT, "view", "no-such-scene.xml"], capture_output=True, check=False, timeout=60).returncode == 2
 
 SCENE = """<scene version="1" fps="25" start="{start}" end="{end}">
   <surface name="sheet"><grid columns="13" rows="11" width="12" depth="10"/>{transform}
@@ -76,25 +73,9 @@ def positions(head, arrays, surface):
     return np.einsum("frc,fvc->fvr", transforms[:, :, :3], offsets + rest) + transforms[:, None, :, 3]
 
 
-class View(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory(prefix="pliant-view-test-")
-        self.addCleanup(scratch.cleanup)
-        self.folder = scratch.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
+class View(Command):
     def scene(self, name="scene.xml", *, start=1, end=12, magnitude=3000, transform=""):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(SCENE.format(start=start, end=end, magnitude=magnitude, transform=transform))
-        return self.path(name)
-
-    def run_pliant(self, *arguments, code=0):
-        result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=120,
-                                stdin=subprocess.DEVNULL, cwd=self.folder, check=False)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        return result
+        return self.write(name, SCENE.format(start=start, end=end, magnitude=magnitude, transform=transform))
 
 
 class WithoutPage(View):
@@ -375,8 +356,4 @@ class Serve(View):
 
 
 if __name__ == "__main__":
-    PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
-    with tempfile.TemporaryDirectory() as empty:
-        probe = subprocess.run([PLIANT, "view", "none.xml"], capture_output=True, cwd=empty, check=False, timeout=60)
-    HAS_PAGE = probe.returncode == 2  # of the scene that is not there
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    main()

@@ -1,0 +1,148 @@
+"""Scenes and meshes that are refused: each by one line, with place and words, within bounds."""
+
+import os
+import resource
+import subprocess
+
+from command import Command, GRID, PATH, PLIANT, POINT, SANITIZED, SCENE, animated, main
+
+
+# name: what is replaced in the scene, by what, the line of the error, words of its message
+BAD_SCENES = {
+    "a misspelt element": ("<grid", "<gird", 3, 'did you mean "grid"'),
+    "a misspelt attribute": ("magnitude", "magnitud", 4, 'did you mean "magnitude"'),
+    "a missing mesh file": (GRID, '<mesh file="none.obj"/>', 3, "No such file"),
+    "a folder as a mesh file": (GRID, '<mesh file="folder.obj"/>', 3, "it is a folder"),
+    "nan": ("3000", "nan", 4, "not a finite number"),
+    "a decimal comma": ("3000", "1,5", 4, 'a decimal point is written "."'),
+    "a hexadecimal number": ("3000", "0x10", 4, "stands after 0"),
+    "a number beyond all": ("3000", "1e999", 4, "outside the range"),
+    "text after a number": ("3000", "3000N", 4, '"N" stands after 3000'),
+    "a vector of two numbers": ("0 0 0", "0 0", 4, "three numbers are required, not 2"),
+    "two surfaces of one name": ("<point", f'<surface name="sheet">{GRID}</surface><point', 4,
+                                 "the name is taken at line 3"),
+    "two keys at one frame": (POINT, '<point name="p">' + animated("magnitude", (1, 0), (1, 2)) +
+                              "</point>", 4, "repeats the key"),
+    "an attribute given and animated": (POINT, '<point name="p" magnitude="3">' +
+                                        animated("magnitude", (1, 0)) + "</point>", 4, "one of both"),
+    "two columns": ('columns="13"', 'columns="2"', 3, "at least 3"),
+    "end before start": ('end="9"', 'end="0"', 2, "must not be before"),
+    "dt of 0": (GRID, GRID + '<solver dt="0"/>', 3, "must be greater than 0"),
+    "a million steps": (GRID, GRID + '<solver dt="4e-8"/>', 3, "at most 100000 are allowed"),
+    "c too small at a frame in the middle": (
+        GRID, GRID + "<material>" + animated("c", (1, 0), (5, -3), (9, 0)) + "</material>", 3,
+        "sheet.c at frame 4 is -2."),
+    "a deformationRadius in a group": (POINT, f'<group name="g">{POINT}</group>', 4,
+                                       "a force in a <group> selects no region"),
+    "a group in a group": (POINT, '<group name="g"><group name="h"/></group>', 4,
+                           'it belongs in <scene>'),
+    "a group for a target": (POINT, '<group name="g"/><uniform name="u" targets="g"/>', 4,
+                             '"g" is a <group>, not a surface'),
+    "a name twice, once in a group": (POINT, '<group name="g"><noise name="sheet"/></group>', 4,
+                                      "the name is taken at line 3"),
+    "a group's radius below 0 at a frame": (
+        POINT, '<group name="g">' + animated("deformationRadius", (1, 1), (9, -1)) + "</group>", 4,
+        "g.deformationRadius at frame 6 is -"),
+    "two falloffs": (POINT, '<point name="p" falloff="linear"><falloff><key at="0" value="1"/>'
+                            "</falloff></point>", 4, "one of both must go"),
+    "a falloff's key beyond 1": (POINT, '<point name="p"><falloff><key at="2" value="1"/></falloff>'
+                                        "</point>", 4, 'at="2": must be at most 1'),
+    "a misspelt kind of force": (POINT, '<vortx name="v"/>', 4, 'did you mean "vortex"'),
+    "another kind's attribute": (POINT, '<vortex name="v" direction="0 1 0"/>', 4,
+                                 'no attribute "direction"'),
+    "a seed below 0": (POINT, '<noise name="n" seed="-1"/>', 4, "must be at least 0"),
+    "a position given and on a path": (
+        POINT, f'<point name="p" center="0 0 0">{PATH}</point>', 4, "one of both must go"),
+    "a path of two waypoints": (
+        POINT, '<point name="p">' + PATH.replace('<waypoint at="1 1 0"/>', "") + "</point>", 4,
+        "three waypoints or more"),
+    "a path for a direction": (
+        POINT, '<point name="p">' + PATH.replace('"center"', '"direction"') + "</point>", 4,
+        "is no position; the positions of <point> are: center"),
+    "progress beyond the end at a frame": (
+        POINT, '<point name="p">' + PATH.replace("</path>", animated("progress", (1, 0), (5, 2)) +
+                                                 "</path>") + "</point>", 4,
+        "p.center.progress at frame 4 is 1."),
+    "a NUL byte": ("poke", "po\0ke", 4, "a NUL byte"),
+    "a grid of 200000 x 200000": (GRID, '<grid columns="200000" rows="200000"/>', 3, "at most 100000000"),
+    "10^5 nested elements": (GRID, "<a>" * 100000 + "</a>" * 100000, 3, "nested deeper"),
+}
+
+# name: text of the mesh file, line of the error in it, words of its message
+BAD_MESHES = {
+    "an index out of range": ("v 0 0 0\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 9/1\n", 5, "9"),
+    "coordinates that are not finite": ("v 0 0 nan\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 3/1\n", 1, "nan"),
+    "no faces": ("v 0 0 0\n", None, "no faces"),
+}
+
+
+class BadInput(Command):
+    def refused(self, scene):
+        """The lines that a bake prints of a scene that it refuses; within bounds, leaving nothing."""
+        before = self.files()
+        limit = (2 << 30, 2 << 30)
+
+        def bounded():
+            if not SANITIZED:  # they reserve more than any machine has
+                resource.setrlimit(resource.RLIMIT_AS, limit)
+
+        result = subprocess.run([PLIANT, "bake", scene, "-o", self.path("out.npy")], timeout=30,
+                                capture_output=True, text=True, check=False, preexec_fn=bounded)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(self.files(), before)
+        self.assertEqual(result.stdout, "")
+        return result.stderr.splitlines()
+
+    def test_bad_scenes(self):
+        os.mkdir(self.path("folder.obj"))
+        for name, (old, new, line, words) in BAD_SCENES.items():
+            with self.subTest(name):
+                text = SCENE.format(end=9)
+                self.assertIn(old, text)
+                lines = self.refused(self.write("s.xml", text.replace(old, new, 1)))
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], rf"^\S*s\.xml:{line}: error: ")
+                self.assertIn(words, lines[0])
+
+    def test_all_at_once(self):
+        text = SCENE.format(end=9)
+        for old, new in ((POINT, '<point name="poke" magnitud="3" center="0 0"/>'),
+                         (GRID, '<mesh file="none.obj"/><material>' +
+                          animated("c", (1, 0), (5, -3), (9, 0)) + "</material><nonsense/>")):
+            text = text.replace(old, new)
+        lines = self.refused(self.write("s.xml", text))
+        self.assertEqual(len(lines), 5, lines)
+
+    def test_bad_meshes(self):
+        scene = self.write("s.xml", SCENE.format(end=9).replace(GRID, '<mesh file="m.obj"/>'))
+        for name, (text, line, words) in BAD_MESHES.items():
+            with self.subTest(name):
+                self.write("m.obj", text)
+                lines = self.refused(scene)
+                self.assertEqual(len(lines), 1, lines)
+                place = f":{line}" if line else ""
+                self.assertRegex(lines[0], rf"^\S*m\.obj{place}: error: ")
+                self.assertIn(words, lines[0])
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")  # no (u,v): no grid
+        self.assertRegex(self.refused(scene)[0], r"s\.xml:3: error: surface \"sheet\", mesh .*no \(u,v\)")
+
+    def test_files_that_are_no_scene(self):
+        for name, text in (("empty", ""), ("blank", "\n\n"), ("text", "hello"), ("root", "<a/>")):
+            with self.subTest(name):
+                lines = self.refused(self.write("s.xml", text))
+                self.assertEqual(len(lines), 1, lines)
+                self.assertRegex(lines[0], r"^\S*s\.xml:\d+: error: ")
+        self.assertIn("it is a folder", self.refused(self.folder)[0])
+
+    def test_every_prefix_of_a_scene(self):
+        text = SCENE.format(end=2).replace("magnitude=", 'falloff="smooth" magnitude=')
+        text = text.replace(POINT.replace("magnitude=", 'falloff="smooth" magnitude='), "")
+        whole = text.rstrip()
+        for length in range(len(whole)):
+            lines = self.refused(self.write("s.xml", whole[:length]))
+            self.assertEqual(len(lines), 1, (length, lines))
+            self.assertRegex(lines[0], r"^\S*s\.xml:\d+: error: ")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,277 @@
+"""`pliant bake`: what it writes, how it resumes, what --regions tells."""
+
+import os
+import pty
+import re
+import resource
+import signal
+import subprocess
+import sys
+
+import numpy as np
+
+from command import Command, GRID, PLIANT, SANITIZED, SCENE, main
+
+ONE_FILE = (".npy", ".pc2", ".mdd", ".glb", ".gltf", ".usda")
+
+
+class Bake(Command):
+    def bake(self, *arguments):
+        self.run_pliant("bake", *arguments)
+
+    def test_npy_holds_every_frame_and_obj_agrees(self):
+        scene = self.scene()
+        self.bake(scene, "-o", self.path("a.npy"))
+        frames = np.load(self.path("a.npy"))
+        self.assertEqual((frames.shape, frames.dtype), ((12, 143, 3), np.float64))
+        self.assertTrue((frames[0] == frames[0] * [1, 0, 1]).all())  # at rest, flat
+        self.assertGreater(np.abs(frames[5, :, 1]).max(), 0.01)
+
+        self.bake(scene, "-o", self.path("a.obj"))
+        for number in range(1, 13):
+            with open(self.path(f"a.{number:04}.obj"), encoding="utf-8") as file:
+                lines = file.read().splitlines()
+            vertices = [list(map(float, line.split()[1:])) for line in lines if line[:2] == "v "]
+            self.assertTrue((np.array(vertices) == frames[number - 1]).all())
+            faces = [line for line in lines if line[:2] == "f "]
+            self.assertEqual(len(faces), 120)
+            self.assertTrue(all(len(face.split()) == 5 for face in faces))  # quads
+        self.assertEqual(len(self.files()), 14)
+
+    def test_frames_are_a_slice_of_the_whole_run(self):
+        scene = self.scene()
+        self.bake(scene, "-o", self.path("all.npy"))
+        self.bake(scene, "-o", self.path("some.npy"), "--frames", "5:8")
+        self.assertTrue((np.load(self.path("some.npy")) == np.load(self.path("all.npy"))[4:8]).all())
+        self.bake(scene, "-o", self.path("one.##.obj"), "--frames", "5")
+        self.assertIn("one.05.obj", self.files())
+
+    def test_several_surfaces_go_to_files_of_their_own(self):
+        scene = self.write("two.xml", SCENE.format(end=3).replace(
+            "<point", '<surface name="other"><grid columns="3" rows="3"/>'
+            '<transform translate="0 7 0"/></surface><point'))
+        self.bake(scene, "-o", self.path("a.npy"))
+        self.bake(scene, "-o", self.path("one.npy"), "--surface", "other")
+        self.bake(scene, "-o", self.path("object.npy"), "--surface", "other", "--space", "object")
+        self.assertEqual(self.files(), ["a-other.npy", "a-sheet.npy", "object.npy", "one.npy", "two.xml"])
+        world = np.load(self.path("one.npy"))
+        self.assertTrue((world == np.load(self.path("a-other.npy"))).all())
+        self.assertTrue((world - np.load(self.path("object.npy")) == [0, 7, 0]).all())
+
+    def test_the_same_bits_twice(self):
+        scene = self.scene()
+        for name in ("a.npy", "b.npy"):
+            self.bake(scene, "-o", self.path(name), "--quiet")
+        with open(self.path("a.npy"), "rb") as a, open(self.path("b.npy"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_summary_and_quiet(self):
+        scene = self.scene()
+        result = self.run_pliant("bake", scene, "-o", "a.npy")
+        self.assertRegex(result.stdout, r"^a\.npy: 12 frames, 143 vertices, \d+\.\d+ s, "
+                                        r"peak displacement \d\.\d+\n$")
+        self.assertEqual(result.stderr, "")  # no progress: stderr is no terminal
+        result = self.run_pliant("bake", scene, "-o", "a.npy", "--quiet")
+        self.assertEqual(result.stdout + result.stderr, "")
+
+    def test_profile_tells_where_the_time_went(self):
+        scene = self.scene()
+        for flags in ([], ["--quiet"], ["--threads", "2"]):
+            result = self.run_pliant("bake", scene, "-o", "a.npy", "--profile", *flags)
+            self.assertEqual(result.stdout == "", "--quiet" in flags)
+            lines = result.stderr.splitlines()
+            self.assertRegex(lines[0], r"^stage +seconds +share, %$")
+            rows = {line[:12].strip(): [float(number) for number in line[12:].split()]
+                    for line in lines[1:]}
+            self.assertEqual(list(rows), ["sampling", "selection", "load", "state in", "set-up",
+                                          "solve", "state out", "checkpoints", "output", "writing",
+                                          "the rest", "run"])
+            seconds, share = (sum(row[k] for row in list(rows.values())[:-1]) for k in (0, 1))
+            self.assertAlmostEqual(seconds, rows["run"][0], delta=0.0006 * len(rows))
+            self.assertAlmostEqual(share, 100, delta=0.06 * len(rows))
+            self.assertEqual(rows["run"][1], 100)
+
+    def test_progress_on_a_terminal(self):
+        scene = self.scene()
+        try:
+            main, terminal = pty.openpty()
+        except OSError as error:  # a container without /dev/pts
+            self.skipTest(f"no pseudo-terminal: {error}")
+        subprocess.run([PLIANT, "bake", scene, "-o", self.path("a.npy")], stderr=terminal,
+                       stdout=subprocess.DEVNULL, check=True, timeout=120)
+        os.close(terminal)
+        shown = os.read(main, 100000).decode()
+        os.close(main)
+        self.assertRegex(shown, r"12/12 frames, [\d.]+ frames/s, 0:00 left")
+        self.assertTrue(shown.endswith("\r\x1b[K"))  # wiped
+
+    def test_warnings_name_the_force_and_its_frames(self):
+        scene = self.write("w.xml", SCENE.format(end=5).replace('"4.5"', '"0.5"'))
+        result = self.run_pliant("bake", scene, "-o", "a.npy")
+        self.assertRegex(result.stderr, r'^\S*w\.xml:4: warning: force "poke" selects fewer than 3 x 3 '
+                                        r'nodes of "sheet", too few to solve, at frames 1-4\n$')
+
+
+    def test_threads_change_no_bit(self):
+        scene = self.write("two.xml", SCENE.format(end=6).replace(
+            "<point", '<surface name="other"><grid columns="17" rows="9" width="8" depth="8"/>'
+            '</surface><point'))
+        for threads in ("1", "2", "8"):
+            self.bake(scene, "-o", self.path(f"t{threads}.npy"), "--threads", threads)
+        for name in ("sheet", "other"):
+            files = []
+            for threads in ("1", "2", "8"):
+                with open(self.path(f"t{threads}-{name}.npy"), "rb") as file:
+                    files.append(file.read())
+            self.assertEqual(files[0], files[1])
+            self.assertEqual(files[0], files[2])
+
+    def test_solvers_agree_but_for_the_last_digits(self):
+        scene = self.write("s.xml", SCENE.format(end=12).replace('"13"', '"41"').replace(
+            '"11"', '"33"'))
+        frames = {}
+        for solver in ("auto", "spectral", "cholmod"):
+            out = self.path(f"{solver}.npy")
+            result = subprocess.run([PLIANT, "bake", scene, "-o", out, "--solver", solver],
+                                    capture_output=True, text=True, timeout=120, check=False)
+            if solver == "cholmod" and result.returncode == 2:  # a build without it says so
+                self.assertRegex(result.stderr, r"^pliant: error: --solver cholmod: this build has "
+                                                r"none; [^\n]+\n$")
+                continue
+            self.assertEqual(result.returncode, 0, result.stderr)
+            frames[solver] = np.load(out)
+        for other in frames.values():
+            self.assertLess(np.abs(other - frames["spectral"]).max(), 1e-10)
+        self.assertTrue((frames["auto"] == frames["spectral"]).all())
+        self.run_pliant("bake", scene, "-o", "a.npy", "--solver", "fftw", code=2)
+
+    def test_memory_is_refused_ahead(self):
+        scene = self.write("large.xml", SCENE.format(end=3).replace('"13"', '"9000"').replace(
+            '"11"', '"9000"'))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", "--max-memory", "2", code=1)
+        self.assertRegex(result.stderr, r'^\S*large\.xml:3: error: surface "sheet" takes \S+ GB, more '
+                                        r'than the 2 GB left of the 2 GB allowed\n$')
+        for wrong in ("0", "-1", "nan", "all", "1,5"):
+            self.run_pliant("bake", scene, "-o", "a.npy", "--max-memory", wrong, code=2)
+        self.assertEqual(self.files(), ["large.xml"])
+
+    def test_the_memory_told_ahead_is_the_memory_taken(self):
+        # One bake with a region as large as the surface; info's sum bounds it, but not by far.
+        scene = self.write("all.xml", SCENE.format(end=2).replace('"13"', '"301"').replace(
+            '"11"', '"301"').replace('"4.5"', '"100"'))
+        told = self.run_pliant("info", scene).stdout
+        surfaces, solver = re.search(r"memory\n  (\S+) MB for the surfaces, (\S+) MB for the solver",
+                                     told).groups()
+        told = (float(surfaces) + float(solver)) * 1e6
+        for out in ("a.npy", "a.obj"):
+            code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True);"
+                    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+            taken = 1000 * int(subprocess.run(
+                [sys.executable, "-c", code, PLIANT, "bake", scene, "-o", self.path(out), "--quiet"],
+                capture_output=True, text=True, check=True, timeout=120).stdout)
+            if not SANITIZED:  # their shadow memory counts too
+                self.assertLess(taken - 20e6, told)  # what any program takes
+                self.assertGreater(taken, 0.5 * told)
+
+
+class Outputs(Command):
+    def slow_scene(self):
+        """Many seconds of work, in frames that glTF can hold."""
+        return self.write("slow.xml", SCENE.format(end=4000).replace('"13"', '"161"').replace(
+            '"11"', '"161"').replace('"4.5"', '"9"'))
+
+    def test_every_ending_writes_its_files(self):
+        scene = self.write("two.xml", SCENE.format(end=3).replace(
+            "<point", '<surface name="other"><grid columns="3" rows="3"/></surface><point'))
+        for out, files in ((".pc2", ["a-other.obj", "a-other.pc2", "a-sheet.obj", "a-sheet.pc2"]),
+                           (".mdd", ["a-other.mdd", "a-other.obj", "a-sheet.mdd", "a-sheet.obj"]),
+                           (".glb", ["a.glb"]), (".gltf", ["a.bin", "a.gltf"]), (".usda", ["a.usda"])):
+            self.run_pliant("bake", scene, "-o", "a" + out)
+            self.assertEqual(self.files(), files + ["two.xml"])
+            for name in files:
+                os.remove(self.path(name))
+
+    def test_the_same_bytes_twice(self):
+        scene = self.scene()
+        for ending in ONE_FILE:
+            contents = []
+            for _ in range(2):
+                self.run_pliant("bake", scene, "-o", "a" + ending)
+                with open(self.path("a" + ending), "rb") as file:
+                    contents.append(file.read())
+            self.assertEqual(contents[0], contents[1], ending)
+
+    def test_a_file_of_the_scene_is_not_overwritten(self):
+        self.run_pliant("bake", self.scene(end=1), "-o", "head.obj")
+        os.rename(self.path("head.0001.obj"), self.path("head.obj"))
+        scene = self.write("m.xml", SCENE.format(end=2).replace(GRID, '<mesh file="head.obj"/>'))
+        before = self.files()
+        for out in ("head.pc2", "head.mdd", os.path.join("..", os.path.basename(self.folder), "head.pc2")):
+            result = self.run_pliant("bake", scene, "-o", out, code=2)
+            self.assertRegex(result.stderr, r"would overwrite \S*head\.obj, which the scene is made from")
+            self.assertEqual(self.files(), before)
+        os.rename(self.path("head.obj"), self.path("head.02.obj"))
+        scene = self.write("m.xml", SCENE.format(end=2).replace(GRID, '<mesh file="head.02.obj"/>'))
+        self.run_pliant("bake", scene, "-o", "head.##.obj", code=2)
+        self.run_pliant("bake", scene, "-o", "head.##.obj", "--frames", "1")
+
+    def test_an_interrupt_leaves_nothing(self):
+        scene = self.slow_scene()
+        for ending in ONE_FILE:
+            code, errors = self.interrupt(scene, "a" + ending, signal.SIGINT)
+            self.assertEqual(code, 1, ending + errors)
+            self.assertEqual(self.files(), ["slow.xml"], ending)
+
+    def test_killed_it_leaves_nothing_under_the_name(self):
+        scene = self.slow_scene()
+        for ending in ONE_FILE:
+            self.write("a" + ending, "old")
+            self.interrupt(scene, "a" + ending, signal.SIGKILL)
+            with open(self.path("a" + ending), encoding="utf-8") as file:
+                self.assertEqual(file.read(), "old")
+            for name in self.files():
+                self.assertRegex(name, r"^(slow\.xml|a\.\w+|\..*\.part)$")
+                if name.startswith("."):
+                    os.remove(self.path(name))
+            os.remove(self.path("a" + ending))
+            self.assertEqual(self.files(), ["slow.xml"], ending)
+
+    def test_a_full_disk_leaves_nothing(self):
+        scene = self.scene(end=1000)
+        for ending in ONE_FILE:
+            result = subprocess.run(["sh", "-c", 'ulimit -f 64; exec "$0" bake "$1" -o "$2"', PLIANT, scene,
+                                     self.path("a" + ending)], capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 1, ending + result.stderr)
+            self.assertRegex(result.stderr, r"^\S+: error: cannot write the file: File too large\n$")
+            self.assertEqual(self.files(), ["scene.xml"], ending)
+
+    def test_what_gltf_cannot_hold_is_told_ahead(self):
+        result = self.run_pliant("bake", self.scene(end=10000), "-o", "a.glb", code=2)
+        self.assertIn(".usda, .pc2, .mdd and .npy hold more", result.stderr)
+        self.run_pliant("bake", self.scene(end=10000), "-o", "a.glb", "--frames", "9990:10000")
+
+    def test_an_interrupted_sequence_is_resumed(self):
+        scene = self.scene(end=40)
+        os.mkdir(self.path("whole"))
+        for ending in (".obj", ".ply"):
+            self.run_pliant("bake", scene, "-o", "whole/a" + ending)
+            self.run_pliant("bake", scene, "-o", "a" + ending, "--frames", "1:15")
+            os.utime(self.path("a.0007" + ending), (0, 0))
+            self.run_pliant("bake", scene, "-o", "a" + ending, "--resume")
+            self.assertEqual(os.stat(self.path("a.0007" + ending)).st_mtime, 0)
+            for frame in range(1, 41):
+                name = f"a.{frame:04}{ending}"
+                with open(self.path(name), "rb") as a, open(self.path("whole/" + name), "rb") as b:
+                    self.assertEqual(a.read(), b.read(), name)
+        other = self.write("other.xml", SCENE.format(end=40).replace("3000", "3001"))
+        os.remove(self.path("a.0040.obj"))
+        result = self.run_pliant("bake", other, "-o", "a.obj", "--resume", code=1)
+        self.assertRegex(result.stderr, r"^a\.0039\.obj: error: cannot be resumed")
+        self.assertNotIn("a.0040.obj", self.files())
+        for ending in ONE_FILE:
+            result = self.run_pliant("bake", scene, "-o", "b" + ending, "--resume", code=2)
+            self.assertIn("whole at its end only", result.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,90 @@
+"""What the tests of the command share: a folder of their own, a scene, and the command run in it.
+
+Each of these tests is a program of its own, called with PLIANT SOURCE_FOLDER [sanitized] and, after
+these, what unittest takes, such as the names of tests.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
+SANITIZED = "sanitized" in sys.argv[3:4]  # built with a sanitizer, which is slow and takes memory
+
+SCENE = """<?xml version="1.0"?>
+<scene version="1" start="1" end="{end}">
+  <surface name="sheet"><grid columns="13" rows="11" width="12" depth="10"/></surface>
+  <point name="poke" center="0 0 0" deformationRadius="4.5" forceRadius="2.5" magnitude="3000"/>
+</scene>
+"""
+GRID = '<grid columns="13" rows="11" width="12" depth="10"/>'
+POINT = '<point name="poke" center="0 0 0" deformationRadius="4.5" forceRadius="2.5" magnitude="3000"/>'
+PATH = ('<path attribute="center"><waypoint at="0 0 0"/><waypoint at="1 0 0"/>'
+        '<waypoint at="1 1 0"/></path>')
+
+
+def animated(attribute, *keys):
+    return f'<animate attribute="{attribute}">' + "".join(
+        f'<key frame="{frame}" value="{value}"/>' for frame, value in keys) + "</animate>"
+
+
+class Command(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="pliant-cli-")
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def scene(self, end=12):
+        return self.write("scene.xml", SCENE.format(end=end))
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def run_pliant(self, *arguments, code=0, **options):
+        """The run, which has to end with that code; `options` are those of subprocess.run."""
+        options = {"cwd": self.folder, **options}
+        result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=120,
+                                stdin=subprocess.DEVNULL, check=False, **options)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def files(self):
+        return sorted(os.listdir(self.folder))
+
+    def holds_hidden_files(self, process):
+        """Whether it has a file of the folder open that has no name there any more."""
+        folder = f"/proc/{process.pid}/fd"
+        try:
+            targets = [os.readlink(os.path.join(folder, name)) for name in os.listdir(folder)]
+        except OSError:  # one of them is just being closed
+            return False
+        return any(target.startswith(self.folder) and "(deleted)" in target for target in targets)
+
+    def interrupt(self, scene, out, number):
+        """Sends a signal once the bake has begun to write; gives its exit code and stderr."""
+        before = self.files()
+        with subprocess.Popen([PLIANT, "bake", scene, "-o", self.path(out)],
+                              stderr=subprocess.PIPE, text=True) as process:
+            deadline = time.monotonic() + 60
+            while (self.files() == before and not self.holds_hidden_files(process)
+                   and time.monotonic() < deadline):
+                time.sleep(0.01)
+            process.send_signal(number)
+            _, errors = process.communicate(timeout=60)
+        return process.returncode, errors
+
+
+def main():
+    unittest.main(argv=sys.argv[:1] + sys.argv[4 if SANITIZED else 3:])

@@ -1,0 +1,151 @@
+"""How the command is called, and what it says when something goes wrong."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+from command import Command, PLIANT, SCENE, main
+
+
+class Usage(Command):
+    def test_version_and_help_go_to_stdout(self):
+        self.assertRegex(self.run_pliant("--version").stdout, r"^pliant \d+\.\d+\.\d+\n$")
+        for arguments in (["--help"], ["bake", "--help"]):
+            result = self.run_pliant(*arguments)
+            self.assertIn("SCENE" if "bake" in arguments else "bake", result.stdout)
+            self.assertEqual(result.stderr, "")
+
+    def test_wrong_usage_is_exit_code_2(self):
+        scene = self.scene()
+        for arguments in ([], ["bak"], ["bake"], ["bake", scene], ["bake", scene, "-o"],
+                          ["bake", scene, "-o", "a.npy", "--nonsense"],
+                          ["bake", scene, "-o", "a.npy", "--space", "camera"],
+                          ["bake", scene, "-o", "a.npy", "extra"]):
+            result = self.run_pliant(*arguments, code=2)
+            self.assertRegex(result.stderr, r"^pliant: error: [^\n]+\n$", arguments)
+            self.assertEqual(result.stdout, "", arguments)
+        for arguments, words in ((["--frames", "0:3"], "the scene has the frames 1 to 12"),
+                                 (["--frames", "5:3"], "A:B with A <= B"),
+                                 (["--frames", "x"], "A:B with A <= B"),
+                                 (["--surface", "none"], "the scene has the surfaces sheet")):
+            result = self.run_pliant("bake", scene, "-o", "a.npy", *arguments, code=2)
+            self.assertIn(words, result.stderr)
+        result = self.run_pliant("bake", scene, "-o", "a.xyz", code=2)
+        self.assertIn('no format has the ending ".xyz"', result.stderr)
+        self.assertEqual(self.files(), ["scene.xml"])
+
+
+class Errors(Command):
+    def test_every_problem_of_a_scene_with_its_line(self):
+        scene = self.write("bad.xml", "\n".join((
+            '<scene version="1" start="1" end="4">',
+            '  <surface name="sheet"><grid columns="2" rows="11"/></surface>',
+            '  <point name="poke" magnitud="3"',
+            '         forceRadius="1,5"/>',
+            '  <pont name="other"/>',
+            '</scene>')))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", code=2)
+        lines = result.stderr.splitlines()
+        self.assertEqual([re.match(r".*bad\.xml:(\d+): error: ", line).group(1) for line in lines],
+                         ["2", "3", "4", "5"], result.stderr)
+        self.assertIn('"magnitude"', lines[1])
+        self.assertEqual(self.files(), ["bad.xml"])
+
+    def test_a_rule_broken_in_the_middle_of_a_curve(self):
+        scene = self.write("c.xml", SCENE.format(end=9).replace("</surface>", """
+    <material>
+      <animate attribute="c"><key frame="1" value="0"/><key frame="5" value="-3"/>
+        <key frame="9" value="0"/></animate></material></surface>"""))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", code=2)
+        self.assertRegex(result.stderr, r"c\.xml:5: error: sheet\.c at frame 4 is -2\.\d+, but must be "
+                                        r"greater than -2 sqrt\(b d\) = -2")
+
+    def test_missing_files(self):
+        result = self.run_pliant("bake", "none.xml", "-o", "a.npy", code=2)
+        self.assertIn("none.xml: error: cannot read the file: No such file", result.stderr)
+        result = self.run_pliant("bake", self.folder, "-o", "a.npy", code=2)
+        self.assertIn("it is a folder", result.stderr)
+        scene = self.write("m.xml", SCENE.format(end=9).replace(
+            '<grid columns="13" rows="11" width="12" depth="10"/>', '<mesh file="none.obj"/>'))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", code=2)
+        self.assertRegex(result.stderr, r"m\.xml:3: error: .*none\.obj.*No such file")
+
+    def test_what_cannot_be_written_is_exit_code_1(self):
+        scene = self.scene()
+        os.mkdir(self.path("folder.npy"))
+        for out in ("no/such/a.npy", "folder.npy", "no/such/a.obj"):
+            result = self.run_pliant("bake", scene, "-o", out, code=1)
+            self.assertIn("error: cannot write the file", result.stderr)
+        self.assertEqual(self.files(), ["folder.npy", "scene.xml"])
+
+    def test_a_run_that_fails_leaves_nothing(self):
+        text = SCENE.format(end=9).replace("</surface>", '<material density="0" damping="0" b="1e-10" '
+                                                         'c="2e-10" d="1e-10"/></surface>')
+        scene = self.write("s.xml", text.replace('"3000"', '"1e308"'))
+        result = self.run_pliant("bake", scene, "-o", "a.npy", code=1)
+        self.assertIn('surface "sheet", frame 1: the state stopped being finite', result.stderr)
+        self.assertEqual(self.files(), ["s.xml"])
+
+    def test_interrupt_leaves_nothing(self):
+        scene = self.scene(end=900000)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            code, errors = self.interrupt(scene, "a.npy", number)
+            self.assertEqual(code, 1, errors)
+            self.assertRegex(errors, r"error: .*interrupted")
+            self.assertEqual(self.files(), ["scene.xml"])
+
+    def test_interrupt_within_a_frame_of_many_steps(self):
+        scene = self.write("slow.xml", SCENE.format(end=9).replace('"13"', '"301"').replace(
+            '"11"', '"301"').replace("</surface>", '<solver dt="5e-7"/></surface>'))
+        begin = time.monotonic()
+        code, errors = self.interrupt(scene, "a.npy", signal.SIGINT)
+        self.assertEqual(code, 1, errors)
+        self.assertLess(time.monotonic() - begin, 30)  # one frame takes minutes
+        self.assertEqual(self.files(), ["slow.xml"])
+
+    def test_whole_frames_of_an_interrupted_sequence_stay(self):
+        scene = self.scene(end=900000)
+        self.interrupt(scene, "a.obj", signal.SIGINT)
+        files = self.files()
+        self.assertEqual([name for name in files if name.endswith(".part")], [])
+        line_counts = set()
+        for name in files:
+            if name.endswith(".obj"):
+                with open(self.path(name), encoding="utf-8") as file:
+                    line_counts.add(len(file.readlines()))
+        self.assertEqual(len(line_counts), 1, "a frame is not whole")
+
+    def test_a_full_disk_is_exit_code_1(self):
+        scene = self.scene(end=300)
+        result = subprocess.run(["sh", "-c", 'ulimit -f 64; exec "$0" bake "$1" -o "$2"', PLIANT, scene,
+                                 self.path("a.npy")], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("error: cannot write the file: File too large", result.stderr)
+        self.assertEqual(self.files(), ["scene.xml"])
+
+    def test_streams_that_cannot_be_written_are_no_harm(self):
+        scene = self.scene()
+        for redirection in ("2>/dev/full", "2>&-", ">/dev/full", ">&-"):
+            for name, code in ((scene, 0), ("none.xml", 2)):
+                result = subprocess.run(
+                    ["sh", "-c", f'exec "$0" bake "$1" -o a.npy {redirection}', PLIANT, name],
+                    cwd=self.folder, capture_output=True, check=False)
+                self.assertEqual(result.returncode, code, redirection)
+
+    def test_warnings_come_before_the_error_that_they_explain(self):
+        text = SCENE.format(end=9).replace("</surface>", '<material density="0" damping="0" b="1e-10" '
+                                                         'c="2e-10" d="1e-10"/></surface>')
+        text = text.replace('deformationRadius="4.5" ', "").replace('magnitude="3000"/>', """magnitude="1e149">
+    <animate attribute="deformationRadius" interpolation="step">
+      <key frame="1" value="0.5"/><key frame="4" value="4.5"/></animate></point>""").replace("e-10", "e-170")
+        scene = self.write("s.xml", text)
+        lines = self.run_pliant("bake", scene, "-o", "a.npy", code=1).stderr.splitlines()
+        self.assertEqual(len(lines), 2)
+        self.assertIn("selects fewer than 3 x 3 nodes", lines[0])
+        self.assertIn("frame 4: the state stopped being finite", lines[1])
+
+
+if __name__ == "__main__":
+    main()
