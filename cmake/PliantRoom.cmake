@@ -7,7 +7,8 @@ target_compile_features(pliant_settings INTERFACE cxx_std_20)
 target_compile_options(pliant_settings INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
   -Wcast-qual -Woverloaded-virtual -Wconversion -Wno-sign-conversion
-  $<$<BOOL:${PLIANT_WERROR}>:-Werror>)
+  $<$<BOOL:${PLIANT_WERROR}>:-Werror>
+  "SHELL:-include \"${CMAKE_CURRENT_LIST_DIR}/strict_math.hpp\"")
 # GCC 12 warns of overlaps in std::string's operator+ that cannot be (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(pliant_settings INTERFACE -Wno-restrict)

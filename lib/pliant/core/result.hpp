@@ -30,9 +30,14 @@ struct Error {
   std::vector<Error> others = {};
 };
 
-/// A value, or the reason why there is none.
+/// A value, or the reason why there is none: a `tl::expected` that must not be dropped unread.
 template <class T>
-using Result = tl::expected<T, Error>;
+class [[nodiscard]] Result : public tl::expected<T, Error> {
+ public:
+  using tl::expected<T, Error>::expected;
+  Result() = default;
+  Result(tl::expected<T, Error> result) : tl::expected<T, Error>(std::move(result)) {}
+};
 
 /// An `Error` ready to be returned from a function that gives a `Result`.
 inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::string file = {},
