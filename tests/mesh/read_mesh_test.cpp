@@ -13,8 +13,8 @@ namespace {
 const std::string obj =
     "v 0 0 0\nv 1 0 0\nv 1 0 1\nvt 0 0\nvt 1 0\nvt 1 1\no a\nf 1/1 2/2 3/3\no b\nf 3/3 2/2 1/1\n";
 
-std::string complaint(const std::filesystem::path& file, const std::string& object = {},
-                      int uv_set = 0) {
+std::string complaint_of_file(const std::filesystem::path& file, const std::string& object = {},
+                              int uv_set = 0) {
   const auto mesh = read_mesh(file, object, uv_set);
   return mesh ? "none" : to_lines(mesh.error()).front();
 }
@@ -53,7 +53,7 @@ TEST_CASE("the ending picks the reader, in any case", "[mesh][read_mesh]") {
 TEST_CASE("another ending is refused with those that are read", "[mesh][read_mesh]") {
   const ScratchFolder folder;
   for (const std::string name : {"a.stl", "a", "a.obj.gz", ".obj"}) {
-    CHECK_THAT(complaint(folder.file(name)),
+    CHECK_THAT(complaint_of_file(folder.file(name)),
                EndsWith(name + "; allowed: .obj, .ply, .gltf, .glb, .fbx, .dae"));
   }
 }
@@ -62,10 +62,10 @@ TEST_CASE("object and set of (u,v) reach each reader", "[mesh][read_mesh]") {
   const ScratchFolder folder;
   const auto file = folder.write("a.obj", obj);
   CHECK(read_mesh(file, "b")->corner_vertices == std::vector{2, 1, 0});
-  CHECK_THAT(complaint(file), contains_text("2 objects"));
-  CHECK_THAT(complaint(file, "b", 1),
+  CHECK_THAT(complaint_of_file(file), contains_text("2 objects"));
+  CHECK_THAT(complaint_of_file(file, "b", 1),
              EndsWith("a.obj: error: the object has 1 UV set, so there is no set 1 (they count "
                       "from 0)"));
   const auto twice = folder.write("b.obj", obj + "o a\nf 1/1 2/2 3/3\n");
-  CHECK_THAT(complaint(twice, "a"), contains_text("2 objects of the name \"a\""));
+  CHECK_THAT(complaint_of_file(twice, "a"), contains_text("2 objects of the name \"a\""));
 }

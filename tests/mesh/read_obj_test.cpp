@@ -16,9 +16,9 @@ using pliant::testing::ScratchFolder;
 
 namespace {
 
-const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+const std::string obj_quad = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
-std::string complaint(const std::string& text, const std::string& object = {}) {
+std::string obj_complaint(const std::string& text, const std::string& object = {}) {
   const auto mesh = parse_obj(text, "m.obj", object);
   return mesh ? "none" : to_lines(mesh.error()).front();
 }
@@ -27,7 +27,7 @@ std::string complaint(const std::string& text, const std::string& object = {}) {
 
 TEST_CASE("numbers of an OBJ file are read exactly", "[mesh][read_obj]") {
   std::mt19937_64 random(9);
-  std::string text = quad + "f 1/1 2/2 3/3 4/4\n";
+  std::string text = obj_quad + "f 1/1 2/2 3/3 4/4\n";
   std::vector<double> written;
   for (int k = 0; k < 3000; ++k) written.push_back(static_cast<double>(random() % 1000000) / 1024);
   for (int k = 0; k < 3000; k += 3) {
@@ -40,7 +40,7 @@ TEST_CASE("numbers of an OBJ file are read exactly", "[mesh][read_obj]") {
 }
 
 TEST_CASE("quads stay quads and vertices keep their order", "[mesh][read_obj]") {
-  const Mesh mesh = parse_obj(quad + "f 3/3 4/4 1/1 2/2\nf 1/1 2/2 3/3\n", "m.obj").value();
+  const Mesh mesh = parse_obj(obj_quad + "f 3/3 4/4 1/1 2/2\nf 1/1 2/2 3/3\n", "m.obj").value();
   CHECK(mesh.face_sizes == std::vector{4, 3});
   CHECK(mesh.corner_vertices == std::vector{2, 3, 0, 1, 0, 1, 2});
   CHECK(mesh.corner_uvs == std::vector{2, 3, 0, 1, 0, 1, 2});
@@ -48,7 +48,7 @@ TEST_CASE("quads stay quads and vertices keep their order", "[mesh][read_obj]") 
 }
 
 TEST_CASE("every form of corner is read", "[mesh][read_obj]") {
-  const Mesh mesh = parse_obj(quad +
+  const Mesh mesh = parse_obj(obj_quad +
                                   "vn 0 1 0\nf 1 2 3\nf 1/1/1 2/2/1 3/3/1\nf 1//1 2//1 3//1\n"
                                   "f -4/-4 -3/-3 -2/-2\n",
                               "m.obj")
@@ -69,16 +69,16 @@ TEST_CASE("comments, blanks, line ends and continued lines are no matter", "[mes
 
 TEST_CASE("an object is taken by name, with its own vertices", "[mesh][read_obj]") {
   const std::string text =
-      "o first\n" + quad + "f 1/1 2/2 3/3\no second\nv 5 0 0\nf 4/4 3/3 5/1\no empty\n";
-  CHECK_THAT(complaint(text), Contains("2 objects") && Contains("\"first\", \"second\""));
-  CHECK_THAT(complaint(text, "third"), Contains("no object \"third\""));
-  CHECK_THAT(complaint(text, "empty"), Contains("no object \"empty\""));
+      "o first\n" + obj_quad + "f 1/1 2/2 3/3\no second\nv 5 0 0\nf 4/4 3/3 5/1\no empty\n";
+  CHECK_THAT(obj_complaint(text), Contains("2 objects") && Contains("\"first\", \"second\""));
+  CHECK_THAT(obj_complaint(text, "third"), Contains("no object \"third\""));
+  CHECK_THAT(obj_complaint(text, "empty"), Contains("no object \"empty\""));
   const Mesh second = parse_obj(text, "m.obj", "second").value();
   CHECK(second.vertex_count() == 3);
   CHECK(second.positions.row(0) == Eigen::RowVector3d(1, 0, 1));  // vertices 3, 4, 5, in that order
   CHECK(second.positions.row(2) == Eigen::RowVector3d(5, 0, 0));
   CHECK(second.corner_vertices == std::vector{1, 0, 2});
-  CHECK(parse_obj("o only\n" + quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() == 4);
+  CHECK(parse_obj("o only\n" + obj_quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() == 4);
 }
 
 TEST_CASE("a bad OBJ file says what is wrong in which line", "[mesh][read_obj]") {
@@ -93,43 +93,44 @@ TEST_CASE("a bad OBJ file says what is wrong in which line", "[mesh][read_obj]")
       Case{"v 0 0\n", "m.obj:1: error: vertex has 2 of 3 numbers"},
       Case{"vt\n", "m.obj:1: error: texture vertex has 0 of 1 numbers"},
       Case{"vt 0 0 0 0\n", "m.obj:1: error: texture vertex has more than 3 numbers"},
-      Case{quad + "f 1 2\n", "m.obj:9: error: face has 2 of at least 3 corners"},
-      Case{quad + "f 1/1 2/2 x/3\n", "m.obj:9: error: face corner \"x/3\" is not of the form"},
-      Case{quad + "f 1/1 2/2 3/y\n", "m.obj:9: error: face corner \"3/y\""},
-      Case{quad + "f 1/1/1 2/2/1 3/3/z\n", "m.obj:9: error: face corner \"3/3/z\""},
+      Case{obj_quad + "f 1 2\n", "m.obj:9: error: face has 2 of at least 3 corners"},
+      Case{obj_quad + "f 1/1 2/2 x/3\n", "m.obj:9: error: face corner \"x/3\" is not of the form"},
+      Case{obj_quad + "f 1/1 2/2 3/y\n", "m.obj:9: error: face corner \"3/y\""},
+      Case{obj_quad + "f 1/1/1 2/2/1 3/3/z\n", "m.obj:9: error: face corner \"3/3/z\""},
       Case{
-          quad + "f 1/1 2/2 5/3\n",
+          obj_quad + "f 1/1 2/2 5/3\n",
           "m.obj:9: error: corner 3 of the face refers to vertex 5, outside the file, which has 4"},
-      Case{quad + "f 1/1 2/9 3/3\n",
+      Case{obj_quad + "f 1/1 2/9 3/3\n",
            "m.obj:9: error: corner 2 of the face refers to texture vertex 9, outside"},
-      Case{quad + "f 1/0 2/2 3/3\n",
+      Case{obj_quad + "f 1/0 2/2 3/3\n",
            "m.obj:9: error: corner 1 of the face refers to a texture vertex ahead of"},
-      Case{quad + "f 1/ 2/2 3/3\n", "m.obj:9: error: face corner \"1/\""},
-      Case{quad + "f 0/1 2/2 3/3\n",
+      Case{obj_quad + "f 1/ 2/2 3/3\n", "m.obj:9: error: face corner \"1/\""},
+      Case{obj_quad + "f 0/1 2/2 3/3\n",
            "m.obj:9: error: corner 1 of the face refers to a vertex ahead of the file's first"},
-      Case{quad + "f -9/1 2/2 3/3\n",
+      Case{obj_quad + "f -9/1 2/2 3/3\n",
            "m.obj:9: error: corner 1 of the face refers to a vertex ahead of the file's first"},
-      Case{quad + "f 99999999999/1 2/2 3/3\n", "m.obj:9: error: face corner \"99999999999/1\""},
-      Case{quad, "m.obj: error: the file holds no faces (f)"},
+      Case{obj_quad + "f 99999999999/1 2/2 3/3\n", "m.obj:9: error: face corner \"99999999999/1\""},
+      Case{obj_quad, "m.obj: error: the file holds no faces (f)"},
       Case{"", "m.obj: error: the file holds no"},
       Case{"\x7f"
            "ELF\x02\x01",
            "m.obj: error: the file holds no faces"});
-  CHECK_THAT(complaint(c.text), StartsWith(c.expected));
+  CHECK_THAT(obj_complaint(c.text), StartsWith(c.expected));
 }
 
 TEST_CASE("a vertex that cannot be read does not move the others", "[mesh][read_obj]") {
-  const auto mesh = parse_obj("v 0 0 nan\nvt x\n" + quad + "f 2/2 3/3 4/4 5/5\n", "m.obj");
+  const auto mesh = parse_obj("v 0 0 nan\nvt x\n" + obj_quad + "f 2/2 3/3 4/4 5/5\n", "m.obj");
   REQUIRE_FALSE(mesh);
   CHECK(to_lines(mesh.error()).size() == 2);
 }
 
 TEST_CASE("a byte order mark is no part of the first statement", "[mesh][read_obj]") {
-  CHECK(parse_obj("\xEF\xBB\xBF" + quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() == 4);
+  CHECK(parse_obj("\xEF\xBB\xBF" + obj_quad + "f 1/1 2/2 3/3\n", "m.obj").value().vertex_count() ==
+        4);
 }
 
 TEST_CASE("all problems of an OBJ file come in one run, up to a limit", "[mesh][read_obj]") {
-  const auto two = parse_obj(quad + "v x 0 0\nf 1/1 2/2\nf 1/1 2/2 7/3\n", "m.obj");
+  const auto two = parse_obj(obj_quad + "v x 0 0\nf 1/1 2/2\nf 1/1 2/2 7/3\n", "m.obj");
   REQUIRE_FALSE(two);
   CHECK(to_lines(two.error()).size() == 3);
   std::string many;
@@ -139,7 +140,7 @@ TEST_CASE("all problems of an OBJ file come in one run, up to a limit", "[mesh][
 
 TEST_CASE("no prefix or mutation of an OBJ file does harm", "[mesh][read_obj]") {
   const std::string text =
-      "o a\n" + quad + "f 1/1 2/2 3/3 4/4\nf -4/-4 \\\n -3/-3 -2/-2\no b\nf 1 2 3\n";
+      "o a\n" + obj_quad + "f 1/1 2/2 3/3 4/4\nf -4/-4 \\\n -3/-3 -2/-2\no b\nf 1 2 3\n";
   for (std::size_t length = 0; length <= text.size(); ++length) {
     // A buffer of just that length, so that the sanitizer sees one byte too many.
     const std::vector<char> bytes(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length));
@@ -163,20 +164,21 @@ TEST_CASE("materials and groups of an OBJ file stay with their faces", "[mesh][r
   const std::string faces =
       "f 1 2 3\nusemtl Skin red \ng left arm\nf 1 2 4\nusemtl Steel\nf 1 3 4\ng\nusemtl Skin red\n"
       "f 2 3 4\n";
-  const Mesh mesh = parse_obj("o Body\n" + quad + faces, "m.obj").value();
+  const Mesh mesh = parse_obj("o Body\n" + obj_quad + faces, "m.obj").value();
   CHECK(mesh.object == "Body");
   CHECK(mesh.materials == FaceNames{{"Skin red", "Steel"}, {-1, 0, 1, 0}});
   CHECK(mesh.groups == FaceNames{{"left arm"}, {-1, 0, 0, -1}});
-  CHECK(parse_obj(quad + "f 1 2 3\n", "m.obj")->materials == FaceNames{});
+  CHECK(parse_obj(obj_quad + "f 1 2 3\n", "m.obj")->materials == FaceNames{});
   const Mesh part =
-      parse_obj(quad + "o a\nusemtl A\nf 1 2 3\no b\nusemtl B\nf 2 3 4\n", "m.obj", "b").value();
+      parse_obj(obj_quad + "o a\nusemtl A\nf 1 2 3\no b\nusemtl B\nf 2 3 4\n", "m.obj", "b")
+          .value();
   CHECK(part.materials == FaceNames{{"B"}, {0}});
   CHECK(part.object == "b");
 }
 
 TEST_CASE("an OBJ file says what is smooth", "[mesh][read_obj]") {
   const auto normals = [](const std::string& text) {
-    return parse_obj(quad + text, "m.obj").value().corner_normals;
+    return parse_obj(obj_quad + text, "m.obj").value().corner_normals;
   };
   using Numbers = std::vector<int>;
   const std::string vn = "vn 0 1 0\nvn 1 0 0\nvn 0 1 0\n";
@@ -193,6 +195,6 @@ TEST_CASE("an OBJ file says what is smooth", "[mesh][read_obj]") {
 TEST_CASE("normals of an OBJ file that cannot be read are none", "[mesh][read_obj]") {
   for (const char* text : {"vn nan 0 0\nf 1//1 2//1 3//1\n", "vn 1\nf 1//1 2//1 3//1\n",
                            "f 1//9 2//9 3//-9\n", "vn 0 1 0\nf 1//0 2//0 3//0\n"}) {
-    CHECK(parse_obj(quad + text, "m.obj"));
+    CHECK(parse_obj(obj_quad + text, "m.obj"));
   }
 }

@@ -23,9 +23,9 @@ const std::string with_uvs = four_vertices + "property float s\nproperty float t
 const std::string one_face = "element face 1\nproperty list uchar int vertex_indices\n";
 const std::string points = "0 0 0\n1 0 0\n1 0 1\n0 0 1\n";
 const std::string points_with_uvs = "0 0 0 0 0\n1 0 0 1 0\n1 0 1 1 1\n0 0 1 0 1\n";
-const std::string quad = header(with_uvs + one_face) + points_with_uvs + "4 0 1 2 3\n";
+const std::string ply_quad = header(with_uvs + one_face) + points_with_uvs + "4 0 1 2 3\n";
 
-std::string complaint(const std::string& bytes, const std::string& object = {}) {
+std::string ply_complaint(const std::string& bytes, const std::string& object = {}) {
   const auto mesh = parse_ply(bytes, "m.ply", object);
   return mesh ? "none" : to_lines(mesh.error()).front();
 }
@@ -197,19 +197,19 @@ TEST_CASE("a bad PLY file says what is wrong, and where", "[mesh][read_ply]") {
        "m.ply: error: the file ends within \"face\""}};
   for (const Case& c : cases) {
     CAPTURE(c.bytes);
-    CHECK_THAT(complaint(c.bytes), StartsWith(c.expected));
+    CHECK_THAT(ply_complaint(c.bytes), StartsWith(c.expected));
   }
 }
 
 TEST_CASE("a PLY file's object has no name", "[mesh][read_ply]") {
-  CHECK(complaint(quad) == "none");
-  CHECK_THAT(complaint(quad, "sheet"), contains_text("no object \"sheet\""));
+  CHECK(ply_complaint(ply_quad) == "none");
+  CHECK_THAT(ply_complaint(ply_quad, "sheet"), contains_text("no object \"sheet\""));
 }
 
 TEST_CASE("no prefix of a PLY file is taken for the whole", "[mesh][read_ply]") {
   const Mesh sheet = small_sheet(false);
-  for (const std::string& whole : {quad, binary(sheet, false), binary(sheet, true)}) {
-    REQUIRE(complaint(whole) == "none");
+  for (const std::string& whole : {ply_quad, binary(sheet, false), binary(sheet, true)}) {
+    REQUIRE(ply_complaint(whole) == "none");
     for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
       // A buffer of just that length, so that the sanitizer sees one byte too many.
       const std::vector<char> bytes(whole.begin(),
@@ -221,7 +221,7 @@ TEST_CASE("no prefix of a PLY file is taken for the whole", "[mesh][read_ply]") 
 
 TEST_CASE("no mutation of a PLY file does harm", "[mesh][read_ply]") {
   std::mt19937 random(1);
-  for (const std::string& whole : {quad, binary(small_sheet(true), false)}) {
+  for (const std::string& whole : {ply_quad, binary(small_sheet(true), false)}) {
     for (int trial = 0; trial < 3000; ++trial) {
       std::string mutant = whole;
       for (int k = 0; k < 3; ++k) mutant[random() % mutant.size()] = static_cast<char>(random());

@@ -33,7 +33,7 @@ bool is_free_of_allocations(const char* name, PlateSolver& solver, PlateProblem 
 }
 
 // All but a quarter.
-InteriorMask ell(const Grid& grid) {
+InteriorMask three_quarters(const Grid& grid) {
   InteriorMask interior(static_cast<std::size_t>(grid.node_count()), 0);
   for (int j = 1; j < grid.rows - 1; ++j) {
     for (int i = 1; i < grid.columns - 1; ++i) {
@@ -53,8 +53,8 @@ int main() {
   bool is_good =
       is_free_of_allocations("rectangle", *spectral, {grid, {1, 2, 1}, {40, 20}, {}, load});
   const auto schwarz = make_schwarz_plate_solver(nullptr, &threads);
-  is_good =
-      is_free_of_allocations("union", *schwarz, {grid, {1, 2, 1}, {40, 20}, {}, load, ell(grid)}) &&
-      is_good;
+  is_good = is_free_of_allocations("union", *schwarz,
+                                   {grid, {1, 2, 1}, {40, 20}, {}, load, three_quarters(grid)}) &&
+            is_good;
   return is_good ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "support/catch.hpp"
+#include "support/plates.hpp"
 #include "support/unions.hpp"
 
 using namespace pliant;
@@ -55,10 +56,6 @@ PlateProblem problem_on(const UnionPlate& plate, const Stiffness& stiffness,
   return {
       plate.grid,    stiffness, dynamics, tangents, 100 * Field::Random(plate.grid.node_count(), 3),
       plate.interior};
-}
-
-PlateState random_state(const Grid& grid) {
-  return {Field::Random(grid.node_count(), 3), Field::Random(grid.node_count(), 3)};
 }
 
 }  // namespace

@@ -83,10 +83,6 @@ PlateProblem problem_on(const Grid& grid, const Stiffness& stiffness, const Dyna
   return {grid, stiffness, dynamics, tangents, 100 * Field::Random(grid.node_count(), 3)};
 }
 
-PlateState random_state(const Grid& grid) {
-  return {Field::Random(grid.node_count(), 3), Field::Random(grid.node_count(), 3)};
-}
-
 }  // namespace
 
 TEST_CASE("the spectral solver is as exact as a double allows on small plates",

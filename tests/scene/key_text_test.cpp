@@ -16,7 +16,7 @@ CurveKeys<1> curve_of(const std::string& attributes, const std::string& keys) {
 }
 
 /// One key at frame 1, another at frame 9, with these attributes at the first.
-Key<1> key_of(const std::string& attributes, const std::string& animate = "") {
+Key<1> read_key(const std::string& attributes, const std::string& animate = "") {
   return curve_of(animate, "<key frame=\"1\" value=\"5\" " + attributes +
                                "/><key frame=\"9\" value=\"7\" interpolation=\"linear\"/>")
       .keys.at(0);
@@ -29,7 +29,7 @@ TEST_CASE("every interpolation has its word", "[scene][key_text]") {
                                                            {"bezier", Kind::Bezier}};
   for (const auto& [word, kind] : kinds) {
     CAPTURE(word);
-    CHECK(key_of("interpolation=\"" + word + "\"").next == Interpolation{.kind = kind});
+    CHECK(read_key("interpolation=\"" + word + "\"").next == Interpolation{.kind = kind});
   }
   const std::vector<std::pair<std::string, Ease>> eases = {
       {"sine", Ease::Sine},      {"quad", Ease::Quad},   {"cubic", Ease::Cubic},
@@ -41,18 +41,18 @@ TEST_CASE("every interpolation has its word", "[scene][key_text]") {
   for (const auto& [ease_word, ease] : eases)
     for (const auto& [side_word, side] : sides) {
       CAPTURE(ease_word, side_word);
-      CHECK(key_of("interpolation=\"" + ease_word + side_word + "\"").next ==
+      CHECK(read_key("interpolation=\"" + ease_word + side_word + "\"").next ==
             Interpolation{.kind = Kind::Easing, .ease = ease, .side = side});
     }
-  CHECK(key_of("interpolation=\"cubicBezier\" control=\"0.25 -1 1 2\"").next ==
+  CHECK(read_key("interpolation=\"cubicBezier\" control=\"0.25 -1 1 2\"").next ==
         Interpolation{.kind = Kind::CubicBezier, .control = {0.25, -1, 1, 2}});
-  CHECK(key_of("interpolation=\"elasticIn\" amplitude=\"2\" period=\"3\"").next ==
+  CHECK(read_key("interpolation=\"elasticIn\" amplitude=\"2\" period=\"3\"").next ==
         Interpolation{.kind = Kind::Easing,
                       .ease = Ease::Elastic,
                       .side = EaseSide::In,
                       .amplitude = 2,
                       .period = 3});
-  CHECK(key_of("back=\"0\"", "interpolation=\"backOut\"").next ==
+  CHECK(read_key("back=\"0\"", "interpolation=\"backOut\"").next ==
         Interpolation{.kind = Kind::Easing, .ease = Ease::Back, .side = EaseSide::Out, .back = 0});
 }
 
@@ -64,19 +64,19 @@ TEST_CASE("every tangent has its word, or is a slope", "[scene][key_text]") {
       {"smooth", Side::Smooth}, {"free", Side::Free}};
   for (const auto& [word, kind] : kinds) {
     CAPTURE(word);
-    const Key<1> both = key_of("tangent=\"" + word + "\"");
+    const Key<1> both = read_key("tangent=\"" + word + "\"");
     CHECK(both.in == Tangent<1>{.kind = kind});
     CHECK(both.out == Tangent<1>{.kind = kind});
-    CHECK(key_of("", "tangent=\"" + word + "\"").out == Tangent<1>{.kind = kind});
+    CHECK(read_key("", "tangent=\"" + word + "\"").out == Tangent<1>{.kind = kind});
   }
-  const Key<1> sides = key_of("in=\"-1.5e1\" out=\"flat\" inLength=\"0\" outLength=\"2.5\"");
+  const Key<1> sides = read_key("in=\"-1.5e1\" out=\"flat\" inLength=\"0\" outLength=\"2.5\"");
   CHECK(sides.in == Tangent<1>{.kind = Side::Slope, .slope = {-15}, .length = 0});
   CHECK(sides.out == Tangent<1>{.kind = Side::Flat, .length = 2.5});
-  const Key<1> handles = key_of("inHandle=\"-2 3\" outHandle=\"0 4\"");
+  const Key<1> handles = read_key("inHandle=\"-2 3\" outHandle=\"0 4\"");
   CHECK(handles.in == Tangent<1>{.kind = Side::Handle, .handle_frames = -2, .handle_value = {3}});
   CHECK(handles.out == Tangent<1>{.kind = Side::Handle, .handle_value = {4}});
   // One side is told, the other keeps the default.
-  const Key<1> mixed = key_of("out=\"2\"", "tangent=\"spline\"");
+  const Key<1> mixed = read_key("out=\"2\"", "tangent=\"spline\"");
   CHECK(mixed.in.kind == Side::Spline);
   CHECK(mixed.out == Tangent<1>{.kind = Side::Slope, .slope = {2}});
 }

@@ -12,12 +12,6 @@ namespace {
 
 bool are_same(const std::vector<Field>& a, const std::vector<Field>& b) { return a == b; }
 
-double peak(const std::vector<Field>& frames) {
-  double most = 0;
-  for (const Field& frame : frames) most = std::max(most, largest_difference(frame, frames[0]));
-  return most;
-}
-
 double difference(const std::vector<Field>& a, const std::vector<Field>& b) {
   double most = 0;
   for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, largest_difference(a[k], b[k]));

@@ -16,14 +16,6 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-double peak(const std::vector<Field>& frames) {
-  double largest = 0;
-  for (const Field& frame : frames) {
-    largest = std::max(largest, (frame - frames.front()).rowwise().norm().maxCoeff());
-  }
-  return largest;
-}
-
 // A force that travels, swells and rests for some frames.
 Force travelling() {
   Force force = poke("travelling", {});

@@ -26,6 +26,10 @@ inline Field sampled(const Grid& grid, const std::function<double(double, double
   return field;
 }
 
+inline PlateState random_state(const Grid& grid) {
+  return {Field::Random(grid.node_count(), 3), Field::Random(grid.node_count(), 3)};
+}
+
 /// The system's matrix column by column from the stencil, which knows nothing of the assembly.
 inline Eigen::MatrixXd dense_operator(const PlateSystem& system) {
   const int n = unknown_count(system.grid);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/pliant.hpp"
@@ -76,6 +78,15 @@ inline std::vector<Field> baked(const Scene& scene, const std::string& surface) 
 
 inline double largest_difference(const Field& a, const Field& b) {
   return (a - b).cwiseAbs().maxCoeff();
+}
+
+/// The largest displacement of a vertex from where it is in the first frame.
+inline double peak(const std::vector<Field>& frames) {
+  double largest = 0;
+  for (const Field& frame : frames) {
+    largest = std::max(largest, (frame - frames.front()).rowwise().norm().maxCoeff());
+  }
+  return largest;
 }
 
 }  // namespace pliant::testing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -14,6 +15,13 @@ namespace pliant::testing {
 using TangentKind = Tangent<1>::Kind;
 using SegmentKind = Interpolation::Kind;
 using OutsideKind = Extrapolation<1>::Kind;
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// The distance to the next number away from 0.
+inline double ulp(double x) {
+  return std::nextafter(std::fabs(x), std::numeric_limits<double>::infinity()) - std::fabs(x);
+}
 
 inline Tangent<1> of_kind(TangentKind kind) { return {.kind = kind}; }
 inline Tangent<1> of_slope(double slope) { return {.kind = TangentKind::Slope, .slope = {slope}}; }

@@ -12,12 +12,6 @@
 namespace pliant::testing {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-double ulp(double x) {
-  return std::nextafter(std::fabs(x), std::numeric_limits<double>::infinity()) - std::fabs(x);
-}
-
 TEST_CASE("default lengths reproduce any cubic", "[timeline][curve]") {
   Whim whim(1);
   for (int round = 0; round < 500; ++round) {

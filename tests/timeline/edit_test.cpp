@@ -10,8 +10,6 @@
 namespace pliant::testing {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
 double size_of(const Curve<1>& curve) {
   double size = 0;
   for (const Key<1>& key : curve.keys().keys) {

@@ -17,7 +17,7 @@ Slopes slopes_of(const CurveKeys<1>& keys) {
   return tangent_slopes(keys.keys, keys.before, keys.after, 0);
 }
 
-CurveKeys<1> random_keys(Whim& whim, int count, TangentKind kind) {
+CurveKeys<1> keys_with_repeats(Whim& whim, int count, TangentKind kind) {
   CurveKeys<1> keys;
   double frame = whim.between(-10, 10);
   for (int k = 0; k < count; ++k) {
@@ -33,7 +33,7 @@ TEST_CASE("auto and plateau never leave the interval of their neighbours", "[tim
   Whim whim(41);
   for (int round = 0; round < 8000; ++round) {
     const auto kind = whim.once_in(2) ? TangentKind::Auto : TangentKind::Plateau;
-    const CurveKeys<1> keys = random_keys(whim, 2 + whim.upto(4), kind);
+    const CurveKeys<1> keys = keys_with_repeats(whim, 2 + whim.upto(4), kind);
     const Curve<1> curve = make(keys);
     for (std::size_t k = 0; k + 1 < keys.keys.size(); ++k) {
       const auto [low, high] = std::minmax(keys.keys[k].value[0], keys.keys[k + 1].value[0]);
@@ -52,7 +52,7 @@ TEST_CASE("auto and plateau never leave the interval of their neighbours", "[tim
 TEST_CASE("tangents follow their formulas", "[timeline][tangents]") {
   Whim whim(42);
   for (int round = 0; round < 2000; ++round) {
-    const CurveKeys<1> keys = random_keys(whim, 3, TangentKind::Auto);
+    const CurveKeys<1> keys = keys_with_repeats(whim, 3, TangentKind::Auto);
     const auto& [p, k, n] = std::tie(keys.keys[0], keys.keys[1], keys.keys[2]);
     const double s_p = (k.value[0] - p.value[0]) / (k.frame - p.frame);
     const double s_n = (n.value[0] - k.value[0]) / (n.frame - k.frame);
@@ -128,7 +128,7 @@ TEST_CASE("the seam of a periodic curve is smooth", "[timeline][tangents]") {
   for (int round = 0; round < 500; ++round) {
     for (const auto kind : {TangentKind::Auto, TangentKind::Spline, TangentKind::Plateau,
                             TangentKind::Smooth, TangentKind::Free}) {
-      CurveKeys<1> keys = random_keys(whim, 2 + whim.upto(4), kind);
+      CurveKeys<1> keys = keys_with_repeats(whim, 2 + whim.upto(4), kind);
       keys.before.kind = OutsideKind::RepeatOffset;
       if (whim.once_in(2)) {
         keys.before.kind = OutsideKind::Hold;
@@ -141,7 +141,7 @@ TEST_CASE("the seam of a periodic curve is smooth", "[timeline][tangents]") {
       REQUIRE(slopes.in.front() == slopes.in.back());
     }
   }
-  CurveKeys<1> open = random_keys(whim, 4, TangentKind::Spline);
+  CurveKeys<1> open = keys_with_repeats(whim, 4, TangentKind::Spline);
   open.after.kind = OutsideKind::Repeat;  // but the values differ
   CHECK(slopes_of(open).in.back() != slopes_of(open).out.front());
 }

@@ -13,10 +13,6 @@ namespace {
 
 using timeline::TimeCubic;
 
-double ulp(double x) {
-  return std::nextafter(std::fabs(x), std::numeric_limits<double>::infinity()) - std::fabs(x);
-}
-
 /// x(q + correction) - distance, in long double, for the place of a frame.
 long double miss(const TimeCubic::Place& place, double frame, double start, double end,
                  long double start_rate, long double end_rate) {

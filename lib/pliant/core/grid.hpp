@@ -42,6 +42,11 @@ inline Box intersection(const Box& a, const Box& b) {
           a.j1 < b.j1 ? a.j1 : b.j1};
 }
 
+/// Whether every node of `inner` is one of `outer`.
+inline bool holds(const Box& outer, const Box& inner) {
+  return intersection(outer, inner) == inner;
+}
+
 /// An even lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
 /// 4.3, fig. 1, whose one spacing h is two here.
 struct Grid {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/io/raw_bytes.hpp"
 
 namespace pliant {
 namespace {
@@ -19,12 +20,6 @@ static_assert(std::endian::native == std::endian::little,
 
 tl::unexpected<Error> cannot_write(const std::filesystem::path& file, const std::string& reason) {
   return fail(ErrorCode::Unwritable, "cannot write the file: " + reason, file.string());
-}
-
-template <class Number>
-std::string_view bytes_of(std::span<const Number> numbers) {
-  const auto bytes = std::as_bytes(numbers);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 // Opens a new file beside `file`, under a name that nobody else uses; -1 with errno otherwise.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/io/raw_bytes.hpp"
+
 namespace pliant {
 namespace {
 
@@ -24,12 +26,6 @@ constexpr int element_array_buffer = 34963;
 const char* type_of(int width) {
   constexpr std::array types = {"SCALAR", "VEC2", "VEC3", "VEC4"};
   return types[static_cast<std::size_t>(width - 1)];
-}
-
-template <class Number>
-std::string_view bytes_of(std::span<const Number> numbers) {
-  const auto bytes = std::as_bytes(numbers);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 // The least and the largest of each component, as the format wants them: of the numbers as written.

@@ -24,9 +24,9 @@ std::string layer_head(const AnimationPlan& plan) {
 }
 
 // The materials that faces name, as prims that a program can shade.
-class Materials {
+class MaterialScope {
  public:
-  explicit Materials(std::string scope) : scope_(std::move(scope)) {}
+  explicit MaterialScope(std::string scope) : scope_(std::move(scope)) {}
 
   std::string path_of(const std::string& name) {
     for (const auto& [known, prim] : prims_)
@@ -78,7 +78,7 @@ class UsdaWriter final : public AnimationWriter {
     UsdaNames names;
     std::vector<std::string> prims;
     for (const UsdaSurface& surface : surfaces_) prims.push_back(names.take(surface.name()));
-    Materials materials(names.take("materials"));
+    MaterialScope materials(names.take("materials"));
     for (std::size_t k = 0; k < surfaces_.size(); ++k) {
       auto written = surfaces_[k].write(
           prims[k], [&](const std::string& name) { return materials.path_of(name); }, file_);

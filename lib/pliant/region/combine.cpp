@@ -11,8 +11,6 @@ namespace {
 
 bool has_cells(const Box& box) { return box.columns() >= 2 && box.rows() >= 2; }
 
-bool holds(const Box& outer, const Box& inner) { return intersection(outer, inner) == inner; }
-
 // A 0 or 1 for each node, or each cell, of a box; a cell has the number of its first node.
 class Marks {
  public:

@@ -37,8 +37,6 @@ void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce&
   }
 }
 
-bool holds(const Box& outer, const Box& inner) { return intersection(outer, inner) == inner; }
-
 // Adds to a box those nodes of a row, from (i,j) on, whose distance is less than the radius.
 void include_near(const BatchNumbers& distance, int count, double radius, int i, int j, Box& box) {
   int first = 0;

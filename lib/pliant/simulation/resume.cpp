@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::string_view magic = "pliant checkpoint 1\n";
+constexpr std::string_view checkpoint_magic = "pliant checkpoint 1\n";
 
 }  // namespace
 
@@ -103,7 +103,7 @@ std::optional<std::vector<BodyState>> Simulation::stored_states(int frame) {
 
 Result<std::string> Simulation::state_bytes(int frame) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
-  std::string bytes(magic);
+  std::string bytes(checkpoint_magic);
   append(bytes, static_cast<std::uint64_t>(std::int64_t{frame}));
   append(bytes, bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -120,7 +120,7 @@ Result<int> Simulation::restore(std::string_view bytes) {
   const auto refuse = [](std::string message) {
     return fail(ErrorCode::InvalidInput, "cannot go on from the state: " + std::move(message));
   };
-  const auto held = unsealed(bytes, magic);
+  const auto held = unsealed(bytes, checkpoint_magic);
   if (!held) return refuse("it is none, or damaged");
   ByteReader reader(*held);
   const auto frame = static_cast<std::int64_t>(reader.number());

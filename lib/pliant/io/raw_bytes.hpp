@@ -1,0 +1,15 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace pliant {
+
+/// The bytes that numbers are in memory, which is how the binary formats have them.
+template <class Number>
+std::string_view bytes_of(std::span<const Number> numbers) {
+  const auto bytes = std::as_bytes(numbers);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace pliant
