@@ -14,10 +14,14 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+SurfaceInputs inputs_of(const Scene& scene, std::size_t surface, int frame) {
+  return sample_inputs(scene, SceneSampling(scene), surface, frame);
+}
+
 // Who acts on a surface at a frame.
 Names names(const Scene& scene, int surface, int frame) {
   Names all;
-  for (const ForceSource& source : sample_inputs(scene, scene.surfaces[surface], frame).sources) {
+  for (const ForceSource& source : inputs_of(scene, surface, frame).sources) {
     all.emplace_back(source.name);
   }
   return all;
@@ -32,7 +36,7 @@ TEST_CASE("a keyed rate of a noise never makes it jump", "[simulation][sampling]
   const auto time_at = [&](const Channel<1>& rate, int frame) {
     s.forces = {poke("n", {0, 0, 0})};
     s.forces[0].shape = NoiseChannels{.rate = rate};
-    return std::get<NoiseForce>(sample_inputs(s, s.surfaces[0], frame).body.forces[0].shape).time;
+    return std::get<NoiseForce>(inputs_of(s, 0, frame).body.forces[0].shape).time;
   };
   // A curve that stands still is a constant.
   const Channel<1> steady = testing::curve({{0, 2.5}, {10, 2.5}});
@@ -41,6 +45,26 @@ TEST_CASE("a keyed rate of a noise never makes it jump", "[simulation][sampling]
     CHECK(time_at(steady, frame) == Approx(time_at(2.5, frame)).margin(1e-12));
     const double passed = time_at(slowing, frame + 1) - time_at(slowing, frame);
     CHECK(passed == Approx(slowing.at(frame)[0] / s.fps).margin(1e-12));
+  }
+}
+
+TEST_CASE("the time of a noise has the same bits in any order of frames",
+          "[simulation][sampling]") {
+  Scene s = scene({sheet("a"), sheet("b")}, {poke("n", {0, 0, 0})});
+  s.start = -7;
+  s.end = 300;
+  s.fps = 24;
+  s.forces[0].shape = NoiseChannels{.rate = testing::curve({{-7, 0.1}, {100, 3.3}, {300, 0.7}})};
+  const SceneSampling sampling(s);
+  for (const int frame : {300, -7, 299, 40, 200, 41, -6, 300, 64}) {
+    const auto forces = sample_inputs(s, sampling, frame % 2 == 0 ? 0 : 1, frame).body.forces;
+    const Channel<1>& rate = std::get<NoiseChannels>(s.forces[0].shape).rate;
+    double cells = rate.at(s.start)[0] * s.start;
+    for (int before = s.start; before < frame; ++before) cells += rate.at(before)[0];
+    if (frame <= s.start) cells = rate.at(frame)[0] * (frame / s.fps) * s.fps;
+    CAPTURE(frame);
+    CHECK(std::get<NoiseForce>(forces[0].shape).time == cells / s.fps);
+    CHECK(std::get<NoiseForce>(inputs_of(s, 0, frame).body.forces[0].shape).time == cells / s.fps);
   }
 }
 
@@ -68,7 +92,7 @@ TEST_CASE("a force in a group acts when and where both do", "[simulation][sampli
   CHECK(names(s, 1, 1) == Names{"free", "all", "narrow", "g"});
   CHECK(names(s, 2, 1) == Names{"free"});
   CHECK(names(s, 1, 5) == Names{"free"});
-  const auto forces = sample_inputs(s, s.surfaces[1], 1).body.forces;
+  const auto forces = inputs_of(s, 1, 1).body.forces;
   CHECK(forces[0].deformation_radius == 4.5);
   CHECK(forces[1].deformation_radius == 0);  // the group selects in its place
   CHECK(forces[3].deformation_radius == 3);
@@ -85,7 +109,7 @@ TEST_CASE("inertia is the load of the surface's own acceleration", "[simulation]
   s.forces[0].shape = InertiaChannels{};
   s.fps = 25;
   for (const int frame : {1, 4, 6, 12}) {  // also where it looks beyond the scene's frames
-    const auto inputs = sample_inputs(s, surface, frame);
+    const auto inputs = inputs_of(s, 0, frame);
     const Vector3d p(0.3, -1, 2);
     const auto at = [&](int f) -> Vector3d {
       const Transform x = sample_transform(surface.transform, f);
@@ -102,9 +126,7 @@ TEST_CASE("a surface at rest or in even motion feels no inertia", "[simulation][
   Scene s = scene({sheet("a")}, {poke("f", {0, 0, 0}, 1)});
   s.forces[0].shape = InertiaChannels{};
   s.surfaces[0].transform.rotate = Value<3>{20, 30, 40};
-  const auto load = [&] {
-    return unit_force(sample_inputs(s, s.surfaces[0], 5).body.forces[0].shape, {1, 2, 3});
-  };
+  const auto load = [&] { return unit_force(inputs_of(s, 0, 5).body.forces[0].shape, {1, 2, 3}); };
   CHECK(load() == Vector3d::Zero());
   CurveKeys<3> even;
   even.keys = {{.frame = 0, .value = {0, 0, 0}}, {.frame = 16, .value = {32, -8, 4}}};
@@ -119,7 +141,7 @@ TEST_CASE("noise goes with the second and starts from the scene's seed", "[simul
   s.fps = 20;
   s.forces[0].shape = NoiseChannels{.frequency = 0.5, .rate = 3};
   s.forces[1].shape = NoiseChannels{.seed = 4};
-  const auto forces = sample_inputs(s, s.surfaces[0], 10).body.forces;
+  const auto forces = inputs_of(s, 0, 10).body.forces;
   const auto& noise = std::get<NoiseForce>(forces[0].shape);
   CHECK(noise.time == 3 * 10 / 20.0);
   CHECK(noise.frequency == 0.5);
@@ -139,7 +161,7 @@ TEST_CASE("a custom force is asked with its time, and its answers are looked at"
             return p.x();
           },
       .unit_force = [](const Vector3d& p, const ForceTime&) { return Vector3d(p / p.z()); }};
-  const auto inputs = sample_inputs(s, s.surfaces[0], 6);
+  const auto inputs = inputs_of(s, 0, 6);
   const ForceShape& shape = inputs.body.forces[0].shape;
   CHECK(distance(shape, {3, 0, 1}) == 3);
   CHECK(asked == std::vector<double>{6, 0.2});
@@ -152,7 +174,7 @@ TEST_CASE("a custom force is asked with its time, and its answers are looked at"
   CHECK_THAT(inputs.faults->first(), contains_text("unit_force"));  // the first one is told
   // Without a distance it is everywhere.
   std::get<CustomForce>(s.forces[0].shape).distance = {};
-  CHECK(distance(sample_inputs(s, s.surfaces[0], 6).body.forces[0].shape, {-9, 0, 0}) == 0);
+  CHECK(distance(inputs_of(s, 0, 6).body.forces[0].shape, {-9, 0, 0}) == 0);
 }
 
 TEST_CASE("channels are sampled at the frame", "[simulation][sampling]") {
@@ -164,7 +186,7 @@ TEST_CASE("channels are sampled at the frame", "[simulation][sampling]") {
   surface.transform.translate = vector_curve({{1, {0, 0, 0}}, {11, {10, 20, 30}}});
   s.forces[0].shape = LineChannels{.from = Value<3>{1, 0, 0}, .to = Value<3>{2, 0, 0}};
   s.fps = 25;
-  const BodyInputs inputs = sample_inputs(s, surface, 6).body;
+  const BodyInputs inputs = inputs_of(s, 0, 6).body;
   CHECK(inputs.stiffness.c == 1.5);  // the middle of two keys with flat ends, by symmetry
   CHECK(inputs.tangents.su0 == Vector3d(5, 5, 5));
   CHECK(inputs.tangents.sv1 == Vector3d(1, 2, 3));

@@ -17,6 +17,8 @@ class SceneChecker {
   explicit SceneChecker(const Scene& scene) : scene_(scene) {}
 
   std::vector<Error> check() {
+    for (const Surface& surface : scene_.surfaces) surfaces_.insert(surface.name);
+    for (const Group& group : scene_.groups) groups_.insert(group.name);
     if (!(scene_.fps > 0) || !std::isfinite(scene_.fps) || !std::isfinite(1 / scene_.fps)) {
       complain("", "fps", fmt::format("fps is {}, but must be greater than 0", scene_.fps));
     }
@@ -93,10 +95,7 @@ class SceneChecker {
   void check_targets(std::string_view what, const std::string& name,
                      const std::vector<std::string>& targets) {
     for (const std::string& target : targets) {
-      const bool exists =
-          std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(),
-                      [&](const Surface& surface) { return surface.name == target; });
-      if (!exists) {
+      if (!surfaces_.contains(target)) {
         complain(name, "targets",
                  fmt::format("{} \"{}\" targets \"{}\", which is no surface", what, name, target));
       }
@@ -104,10 +103,7 @@ class SceneChecker {
   }
 
   void check_group(const Force& force) {
-    const bool exists = force.group.empty() ||
-                        std::any_of(scene_.groups.begin(), scene_.groups.end(),
-                                    [&](const Group& group) { return group.name == force.group; });
-    if (!exists) {
+    if (!force.group.empty() && !groups_.contains(force.group)) {
       complain(
           force.name, "group",
           fmt::format("force \"{}\" is in \"{}\", which is no group", force.name, force.group));
@@ -130,6 +126,8 @@ class SceneChecker {
   }
 
   const Scene& scene_;
+  std::set<std::string_view> surfaces_;
+  std::set<std::string_view> groups_;
   std::set<std::string> names_;
   std::vector<Error> errors_;
 };

@@ -29,7 +29,7 @@ const std::optional<Hash>& Simulation::key(std::size_t index, int frame) {
       chain.append(nullptr, last);
       continue;
     }
-    const SurfaceInputs inputs = sample_inputs(scene_, surface, last);
+    const SurfaceInputs inputs = sample_inputs(scene_, *sampling_, index, last);
     chain.append(&inputs, last);
   }
   return chain.at(frame - scene_.start);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -78,6 +77,7 @@ struct SampleShape {
   const Surface& surface;
   int frame;
   const std::shared_ptr<ForceFaults>& faults;
+  NoiseClock* clock;  // null: none is kept
 
   double seconds() const { return frame / scene.fps; }
 
@@ -85,9 +85,9 @@ struct SampleShape {
   // pattern never jumps. docs/model.md, "Forces".
   double noise_cells(const Channel<1>& rate) const {
     if (!rate.is_animated() || frame <= scene.start) return rate.at(frame)[0] * seconds();
-    double cells = rate.at(scene.start)[0] * scene.start;
-    for (int before = scene.start; before < frame; ++before) cells += rate.at(before)[0];
-    return cells / scene.fps;
+    const auto rate_at = [&](int earlier) { return rate.at(earlier)[0]; };
+    if (clock) return clock->sum(frame, rate_at) / scene.fps;
+    return NoiseClock(scene.start).sum(frame, rate_at) / scene.fps;
   }
 
   ForceShape operator()(const PointChannels& point) const {
@@ -141,9 +141,18 @@ void ForceFaults::clear() {
   first_.clear();
 }
 
+SceneSampling::SceneSampling(const Scene& scene)
+    : targets_(targets_of(scene)), clocks_(scene.forces.size()) {
+  for (std::size_t k = 0; k < clocks_.size(); ++k) {
+    const auto* const noise = std::get_if<NoiseChannels>(&scene.forces[k].shape);
+    if (noise && noise->rate.is_animated()) clocks_[k] = std::make_unique<NoiseClock>(scene.start);
+  }
+}
+
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          const std::shared_ptr<ForceFaults>& faults) {
-  return {.shape = std::visit(SampleShape{scene, force, surface, frame, faults}, force.shape),
+                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock) {
+  const SampleShape sample{scene, force, surface, frame, faults, clock};
+  return {.shape = std::visit(sample, force.shape),
           .magnitude = force.magnitude.at(frame)[0],
           .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
           .force_radius = force.force_radius.at(frame)[0],
@@ -189,15 +198,16 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
           .forces = {}};
 }
 
-SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int frame,
-                            SurfaceInputs reuse) {
+SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
+                            int frame, SurfaceInputs reuse) {
+  const SurfaceTargets& targets = sampling.targets(surface);
   SurfaceInputs inputs = std::move(reuse);
   std::vector<SampledForce>& forces = inputs.body.forces;
   std::vector<int>& selectors = inputs.body.selectors;
   forces.clear();
   selectors.clear();
   inputs.sources.clear();
-  BodyInputs body = sample_body(scene, surface, frame);
+  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
   body.forces = std::move(forces);
   body.selectors = std::move(selectors);
   inputs.body = std::move(body);
@@ -208,27 +218,31 @@ SurfaceInputs sample_inputs(const Scene& scene, const Surface& surface, int fram
     inputs.faults = std::make_shared<ForceFaults>();
   }
 
-  std::map<std::string_view, const Group*> group_named;
-  for (const Group& group : scene.groups) group_named.emplace(group.name, &group);
-  std::map<const Group*, std::vector<std::size_t>> members;  // looked up only, never walked through
-  for (const Force& force : scene.forces) {
-    const auto found = group_named.find(force.group);
-    const Group* const group = found != group_named.end() ? found->second : nullptr;
-    if (!targets(force, group, surface.name) || !is_enabled(force, group, frame)) continue;
-    forces.push_back(sample_force(scene, force, surface, frame, inputs.faults));
+  for (const auto& [index, place] : targets.forces) {
+    const Force& force = scene.forces[index];
+    const Group* const group = place >= 0 ? &scene.groups[targets.groups[place]] : nullptr;
+    if (!is_enabled(force, group, frame)) continue;
+    forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
+                                  sampling.clock(index)));
     const auto* const custom = std::get_if<CustomForce>(&force.shape);
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
                               custom ? std::string_view(custom->key) : std::string_view()});
-    if (group) members[group].push_back(selectors.size());
-    selectors.push_back(static_cast<int>(selectors.size()));
+    // Those of groups are not known yet: below 0 stands which one is meant.
+    selectors.push_back(group ? -1 - place : static_cast<int>(selectors.size()));
   }
-  for (const Group& group : scene.groups) {
-    if (!holds(group.targets, surface.name) || !group.enabled.at(frame)) continue;
-    const auto selector = static_cast<int>(forces.size());
-    for (const std::size_t member : members[&group]) selectors[member] = selector;
+  const std::size_t member_count = selectors.size();
+  std::vector<int>& group_selectors = inputs.group_selectors;
+  group_selectors.assign(targets.groups.size(), 0);
+  for (std::size_t place = 0; place < targets.groups.size(); ++place) {
+    const Group& group = scene.groups[targets.groups[place]];
+    if (!group.enabled.at(frame)) continue;
+    group_selectors[place] = static_cast<int>(forces.size());
+    selectors.push_back(static_cast<int>(forces.size()));
     forces.push_back(sample_group(group, frame));
     inputs.sources.push_back({group.name, "group", group.targets, true});
-    selectors.push_back(selector);
+  }
+  for (std::size_t k = 0; k < member_count; ++k) {
+    if (selectors[k] < 0) selectors[k] = group_selectors[-1 - selectors[k]];
   }
   return inputs;
 }

@@ -82,7 +82,9 @@ tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin
   return fail(std::move(first));
 }
 
-tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
+tl::unexpected<Error> interrupted() {
+  return fail(ErrorCode::Interrupted, "interrupted ahead of the first frame");
+}
 
 }  // namespace
 
@@ -135,6 +137,7 @@ Result<void> Simulation::check(const Scene& scene, const SimulationOptions& opti
 
 Simulation::Simulation(Scene scene, const SimulationOptions& options)
     : scene_(std::move(scene)),
+      sampling_(std::make_unique<SceneSampling>(scene_)),
       memory_(std::make_unique<MemoryBudget>(options.max_memory)),
       frame_(scene_.start),
       furthest_frame_(scene_.start),
@@ -173,6 +176,9 @@ void Simulation::add_body(const Surface& surface, RestShape rest_shape, MemorySh
 
 // The error with the surface and the frame that it befell.
 Error Simulation::located(Error error, const Surface& surface, int frame) const {
+  if (error.code == ErrorCode::Interrupted) {  // no surface is at fault
+    return {ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame)};
+  }
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
   error.file = scene_.origin.file;
   error.line = scene_.origin.line_of(surface.name);
@@ -219,7 +225,7 @@ Result<SurfaceReport> Simulation::report_of(std::size_t index) const {
   const Surface& surface = scene_.surfaces[index];
   SurfaceReport report;
   if (is_idle(surface, frame_)) return report;
-  const SurfaceInputs inputs = sample_inputs(scene_, surface, frame_);
+  const SurfaceInputs inputs = sample_inputs(scene_, *sampling_, index, frame_);
   const Body& body = bodies_[index];
   const auto step = body.look(inputs.body);
   if (!step) return fail(step.error());
@@ -335,7 +341,7 @@ void Simulation::step_surface(std::size_t index) {
   stepped.is_read = false;
   if (!stepped.is_stepped) return;
   StageTimer sampling(profile_of(index), Stage::Sampling);
-  stepped.inputs = sample_inputs(scene_, surface, frame_, std::move(stepped.inputs));
+  stepped.inputs = sample_inputs(scene_, *sampling_, index, frame_, std::move(stepped.inputs));
   std::optional<Hash> next;
   if (store_) {
     KeyChain& keys = keys_[index];

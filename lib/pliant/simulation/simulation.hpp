@@ -24,6 +24,8 @@
 
 namespace pliant {
 
+class SceneSampling;
+
 /// How a simulation runs; none of it but the solver changes a result, and that the last digits.
 struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick: `FrameCache` tells what a frame
@@ -96,7 +98,7 @@ class Simulation {
   ///
   /// The frame takes the memory of `reuse`, an earlier frame or none. Playing on with it allocates
   /// nothing while regions keep their shape, but for checkpoints, stores, functions of a program's
-  /// own, groups, what recovers, and solvers with sparse factors.
+  /// own, what recovers, and solvers with sparse factors.
   Result<Frame> at(int frame, Frame reuse = {});
 
   /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface
@@ -171,6 +173,7 @@ class Simulation {
   int start_frame(const Surface& surface) const;
 
   Scene scene_;
+  std::unique_ptr<SceneSampling> sampling_;
   std::unique_ptr<MemoryBudget> memory_;
   std::vector<MemoryShare> shares_;  // one a surface
   std::vector<RestShape> rest_shapes_;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+namespace pliant {
+
+/// The sum that a keyed rate of a noise makes over the frames, so that its pattern never jumps; not
+/// for other rooms. docs/model.md, "Forces".
+///
+/// Frame by frame it asks for the rate once each. Any other frame costs no more than `stride` times
+/// once the frames ahead of it have been passed. The sum is taken in one order whatever is asked
+/// for first, so it has the same bits. Safe from several threads at once.
+class NoiseClock {
+ public:
+  explicit NoiseClock(int start) : start_(start) {}
+
+  /// rate(start) * start + rate(start) + rate(start + 1) + … + rate(frame - 1), added in this
+  /// order. Requires: frame >= start; `rate` is the same function at each call.
+  template <class Rate>
+  double sum(int frame, const Rate& rate) {
+    const std::lock_guard lock(mutex_);
+    if (marks_.empty()) {
+      marks_.push_back(rate(start_) * start_);
+      go_to_mark(0);
+    }
+    const auto wanted = static_cast<std::size_t>(frame - start_) / stride;
+    const std::size_t mark = wanted < marks_.size() ? wanted : marks_.size() - 1;
+    if (frame < frame_ || start_ + static_cast<int>(mark) * stride > frame_) go_to_mark(mark);
+    while (frame_ < frame) {
+      sum_ += rate(frame_);
+      ++frame_;
+      const int passed = frame_ - start_;
+      if (passed % stride == 0 && static_cast<std::size_t>(passed / stride) == marks_.size()) {
+        marks_.push_back(sum_);
+      }
+    }
+    return sum_;
+  }
+
+  static constexpr int stride = 64;
+
+ private:
+  void go_to_mark(std::size_t mark) {
+    frame_ = start_ + static_cast<int>(mark) * stride;
+    sum_ = marks_[mark];
+  }
+
+  std::mutex mutex_;
+  int start_;
+  int frame_ = 0;  // whose sum `sum_` is
+  double sum_ = 0;
+  std::vector<double> marks_;  // the sums at start, start + stride, …, as far as was gone
+};
+
+}  // namespace pliant
