@@ -22,6 +22,10 @@ namespace {
 // Rates of change beyond this could overflow when a segment is evaluated.
 constexpr double largest_rate = 1e305;
 
+// Segments shorter than this, in frames, keep their time linear: so near to the least of all
+// numbers their handles are rounded to a few of them.
+constexpr double shortest_bent = 0x1p-900;
+
 /// What a note is about. Copies of a key by the loop repeat its notes; one of each is enough.
 enum class Subject { Left, InTangent, OutTangent, InOvershoot, OutOvershoot, Count };
 
@@ -210,13 +214,15 @@ class Compiler {
                   const Value<D>& rate) {
     for (int c = 0; c < D; ++c) {
       if (std::fabs(rate[c]) <= largest_rate) continue;
-      fail(key, side + " tangent has the slope " + number_text(slope[c]) +
+      fail(key, side + " tangent has " +
+                    (std::isfinite(slope[c]) ? "the slope " + number_text(slope[c]) : "a slope") +
                     ", which rises beyond all numbers within its segment; keys must not be that "
                     "close together for their change of value");
     }
   }
 
   void add_time(Segment<D>& segment, Pair start_rate, Pair end_rate) {
+    if (segment.length < shortest_bent) return;
     segment.kind = Kind::Bezier;
     segment.extra = static_cast<std::uint32_t>(track().times.size());
     track().times.emplace_back(segment.start, segment.end, start_rate, end_rate);
@@ -288,7 +294,9 @@ class Compiler {
         if (!is_single) outside.mode = Mode::Mirror;
         break;
     }
-    for (double& each : outside.slope) each = std::isfinite(each) ? each : 0;
+    for (double& each : outside.slope) {
+      each = std::fabs(each) < std::numeric_limits<double>::max() ? each : 0;
+    }
     outside.count = author.count.value_or(std::numeric_limits<double>::infinity());
     return outside;
   }

@@ -18,6 +18,13 @@ struct Cubic {
   double half_curvature(double q) const { return c2 + q * (3 * c3); }
 };
 
+/// A slope that is beyond all numbers only because its keys are so close: the largest number of its
+/// sign in its place.
+inline double within_numbers(double slope) {
+  constexpr double most = std::numeric_limits<double>::max();
+  return std::fabs(slope) > most ? std::copysign(most, slope) : slope;
+}
+
 /// Slope dy/dx of the curve (x(q), y(q)) for growing q: where the first derivatives vanish together
 /// the next ones decide (L'Hôpital). Infinite at a vertical, 0 where nothing moves.
 /// Requires: x does not fall.
@@ -27,7 +34,7 @@ inline double slope_of_curve(const Cubic& x, const Cubic& y, double q) {
   for (int order = 0; order < 3; ++order) {
     const double run = x_orders[order];
     const double rise = y_orders[order];
-    if (run > 0) return rise / run;
+    if (run > 0) return within_numbers(rise / run);
     if (rise != 0) return std::copysign(std::numeric_limits<double>::infinity(), rise);
   }
   return 0;

@@ -63,7 +63,14 @@ Easing::Easing(const Interpolation& interpolation, double length, double change)
   const bool is_both = side_ == EaseSide::InOut;
   overshoot_ = interpolation.back.value_or(1.70158) * (is_both ? 1.525 : 1.0);
   if (ease_ != Ease::Elastic) return;
-  const double period = interpolation.period.value_or(0);
+  double period = interpolation.period.value_or(0);
+  // Of the length and the period only the ratio counts; what is tiny is scaled up, which is exact,
+  // lest a third of the least of all numbers becomes 0.
+  if (length < 0x1p-900) {
+    length *= 0x1p+600;
+    period *= 0x1p+600;
+  }
+  length_ = length;
   period_ = period != 0 ? period : (is_both ? 0.45 : 0.3) * length;
   // Without a change of value nothing swings, whatever the amplitude.
   // Beyond 1e300 the swing of a tiny change is cut short rather than lost to infinity.
@@ -104,18 +111,20 @@ Easing::Share Easing::share(Progress at) const {
   return {ease_in({2 * at.left, at.passed - at.left}) / 2, false};
 }
 
-double Easing::slope(Progress at) const {
+double Easing::slope(Progress at, double scale) const {
   switch (side_) {
     case EaseSide::In:
-      return ease_in_slope(at);
+      return ease_in_slope(at, scale);
     case EaseSide::Out:
-      return ease_in_slope({at.left, at.passed});
+      return ease_in_slope({at.left, at.passed}, scale);
     default:
       break;
   }
-  if (at.passed <= at.left) return ease_in_slope({2 * at.passed, at.left - at.passed});
-  return ease_in_slope({2 * at.left, at.passed - at.left});
+  if (at.passed <= at.left) return ease_in_slope({2 * at.passed, at.left - at.passed}, scale);
+  return ease_in_slope({2 * at.left, at.passed - at.left}, scale);
 }
+
+bool Easing::is_upright(Progress at) const { return ease_ == Ease::Circ && std::isinf(slope(at)); }
 
 double Easing::ease_in(Progress at) const {
   const double u = at.passed;
@@ -145,28 +154,28 @@ double Easing::ease_in(Progress at) const {
   return u;
 }
 
-double Easing::ease_in_slope(Progress at) const {
+double Easing::ease_in_slope(Progress at, double scale) const {
   const double u = at.passed;
   switch (ease_) {
     case Ease::Sine:
-      return pi / 2 * sin_of(u * (pi / 2));
+      return scale * (pi / 2 * sin_of(u * (pi / 2)));
     case Ease::Quad:
     case Ease::Cubic:
     case Ease::Quart:
     case Ease::Quint:
-      return degree(ease_) * power(u, degree(ease_) - 1);
+      return scale * (degree(ease_) * power(u, degree(ease_) - 1));
     case Ease::Expo:
-      return log_1024 * exp_of(u * log_1024) / 1023;
+      return scale * (log_1024 * exp_of(u * log_1024) / 1023);
     case Ease::Circ:
-      return u / std::sqrt(at.left * (1 + u));
+      return scale * (u / std::sqrt(at.left * (1 + u)));
     case Ease::Back:
-      return u * (3 * (overshoot_ + 1) * u - 2 * overshoot_);
+      return scale * (u * (3 * (overshoot_ + 1) * u - 2 * overshoot_));
     case Ease::Bounce:
-      return bounce_out_slope(at.left);
+      return scale * (bounce_out_slope(at.left));
     case Ease::Elastic:
-      return elastic_slope(at);
+      return elastic_slope(at, scale);
   }
-  return 1;
+  return scale;
 }
 
 // Elastic, eq. 22: In = -f A' 2^(10(u-1)) sin(2π (w/p - s/p)) with w = (u-1) L; here w/p is minus
@@ -184,7 +193,7 @@ double Easing::elastic(Progress at) const {
   return -factor * amplitude_ * fade * wave;
 }
 
-double Easing::elastic_slope(Progress at) const {
+double Easing::elastic_slope(Progress at, double scale) const {
   const double frames_left = at.left * length_;
   const double turns = -frames_left / period_ - shift_;
   const double angle = 2 * pi * (turns - std::nearbyint(turns));
@@ -199,7 +208,8 @@ double Easing::elastic_slope(Progress at) const {
   }
   const double wave = sin_of(angle);
   const double wave_slope = 2 * pi * (length_ / period_) * cos_of(angle);
-  return -amplitude_ * fade * (factor * (log_1024 * wave + wave_slope) + factor_slope * wave);
+  return -(scale * amplitude_) * fade *
+         (factor * (log_1024 * wave + wave_slope) + factor_slope * wave);
 }
 
 Easing::Places Easing::extrema(double from, double to) const {

@@ -34,7 +34,12 @@ class Easing {
   /// Whether components with another change ease differently.
   bool is_elastic() const { return ease_ == Ease::Elastic; }
 
-  double slope(Progress at) const;  ///< d(share)/d(passed) [1]; infinite at the steep end of circ
+  /// scale * d(share)/d(passed) [1]; infinite at the steep end of circ. An elastic whose amplitude
+  /// is large against its change needs the change as the scale to stay within numbers.
+  double slope(Progress at, double scale = 1) const;
+
+  /// Whether the slope is infinite by itself.
+  bool is_upright(Progress at) const;
 
   /// The places in (0, 1) where the share may have an extremum, and how many of them count: those
   /// that bound the share in [from, to]. The waves of an elastic shrink, so that its largest
@@ -50,9 +55,9 @@ class Easing {
 
  private:
   double ease_in(Progress at) const;
-  double ease_in_slope(Progress at) const;
+  double ease_in_slope(Progress at, double scale) const;
   double elastic(Progress at) const;
-  double elastic_slope(Progress at) const;
+  double elastic_slope(Progress at, double scale = 1) const;
   void add_extrema_of_ease_in(double from, double to, Places& places) const;
   void add_extrema_of_elastic(double from, double to, Places& places) const;
 

@@ -76,12 +76,17 @@ Value<D> Track<D>::velocity_in(const Segment<D>& segment, double frame) const {
       if (c > 0 && eased[c].is_elastic()) slope = eased[c].slope(at);
       const double change = segment.ends[0][c].c1;
       velocity[c] = change != 0 ? change * slope / segment.length : 0;
+      if (std::isfinite(velocity[c]) || eased[c].is_upright(at)) continue;
+      // The share's slope may be beyond all numbers where the change is tiny.
+      velocity[c] = within_numbers(eased[c].slope(at, change) / segment.length);
     }
     return velocity;
   }
   const LinearPlace place = LinearPlace::of(segment, frame);
   const double unit = place.end == 0 ? segment.length : -segment.length;
-  for (int c = 0; c < D; ++c) velocity[c] = segment.ends[place.end][c].slope(place.q) / unit;
+  for (int c = 0; c < D; ++c) {
+    velocity[c] = within_numbers(segment.ends[place.end][c].slope(place.q) / unit);
+  }
   return velocity;
 }
 
