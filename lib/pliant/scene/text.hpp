@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -13,7 +14,13 @@ namespace pliant::xml {
 
 /// What a text means, or why it means nothing: words that follow `<grid> width="1,5": `.
 template <class T>
-using Reading = tl::expected<T, std::string>;
+class [[nodiscard]] Reading : public tl::expected<T, std::string> {
+ public:
+  using tl::expected<T, std::string>::expected;
+  Reading() = default;
+  Reading(tl::expected<T, std::string> reading)
+      : tl::expected<T, std::string>(std::move(reading)) {}
+};
 
 /// XML's blanks: space, tab, carriage return, line feed.
 inline constexpr std::string_view blanks = " \t\r\n";

@@ -14,7 +14,7 @@ namespace pliant {
 /// `next`: Linear or Bezier. Errors: another kind; a number that is not finite; a step that is not
 /// positive; last < first; more than a million keys; keys on one frame after rounding.
 template <int D>
-tl::expected<CurveKeys<D>, CurveError> bake_keys(
+[[nodiscard]] tl::expected<CurveKeys<D>, CurveError> bake_keys(
     const Curve<D>& curve, double first, double last, double step,
     Interpolation::Kind next = Interpolation::Kind::Bezier);
 

@@ -21,7 +21,7 @@ struct Compiled {
 
 /// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.
 template <int D>
-tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys);
+[[nodiscard]] tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys);
 
 extern template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&);
 extern template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&);

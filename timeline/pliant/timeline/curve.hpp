@@ -43,7 +43,7 @@ class Curve {
   /// length, which counts as 0; a handle that points backwards, which counts as none; a tangent
   /// that `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without
   /// copies.
-  static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
+  [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
 
   Value<D> value(double frame) const;       ///< [unit]. Requires: finite. O(log keys)
   Value<D> left_value(double frame) const;  ///< the limit from the left [unit]

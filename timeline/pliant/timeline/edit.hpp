@@ -22,7 +22,7 @@ namespace pliant {
 /// Errors: a frame that is not finite; a segment of another easing, naming its left key; a frame
 /// before or after the keys when one side shows copies of them.
 template <int D>
-tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame);
 
 /// The curve without one of its keys: the segment before it goes on to the next key, and automatic
 /// tangents follow their new neighbours. Where two Bézier segments with written tangents of general
@@ -30,7 +30,7 @@ tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double fram
 /// lengthened again and the curve stays the same.
 /// Errors: no such key; the only key; the key that an inner loop starts from.
 template <int D>
-tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key);
 
 /// How much higher, for each component [unit]. Left out of the deduction of D.
 template <int D>
@@ -40,14 +40,14 @@ using Rise = std::type_identity_t<Value<D>>;
 /// what the rules make of it. An inner loop that starts from the key follows; its end stays.
 /// Errors: no such key; a number that is not finite; a frame not between those of its neighbours.
 template <int D>
-tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key, double frames,
-                                            const Rise<D>& rise);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key,
+                                                          double frames, const Rise<D>& rise);
 
 /// The curve later by `frames` and higher by `rise`: g(t) = f(t - frames) + rise.
 /// Errors: a number that is not finite.
 template <int D>
-tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frames,
-                                             const Rise<D>& rise);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frames,
+                                                           const Rise<D>& rise);
 
 /// How to stretch a curve, in time about `frame` and in value about `value`.
 template <int D>
@@ -68,7 +68,8 @@ struct Scaling {
 /// Errors: a factor of 0; a number that is not finite; an elastic with an amplitude, which all
 /// components share, and value factors of different size; those of `reverse` when time_factor < 0.
 template <int D>
-tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>& scaling);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve,
+                                                       const Scaling<D>& scaling);
 
 /// The curve run backwards: g(t) = f(2·pivot - t), and the values on both sides of a jump change
 /// places. On the frame of a jump itself a curve has the value that it goes on with, so there alone
@@ -76,7 +77,7 @@ tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>
 /// Errors: a pivot that is not finite; a side that repeats for a number of copies and then holds
 /// the value of an end key that jumps, which no key of the reversed curve can hold.
 template <int D>
-tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot);
+[[nodiscard]] tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot);
 
 extern template tl::expected<Curve<1>, CurveError> insert_key(const Curve<1>&, double);
 extern template tl::expected<Curve<3>, CurveError> insert_key(const Curve<3>&, double);

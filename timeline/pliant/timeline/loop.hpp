@@ -25,7 +25,7 @@ inline constexpr double most_written_keys = 1e6;
 /// loop"). Errors: more than `most_written_keys`; copies that rounding puts on one frame, or whose
 /// numbers exceed the size of checks.hpp. Requires: broken_rule(keys) finds nothing.
 template <int D>
-tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys);
+[[nodiscard]] tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys);
 
 extern template tl::expected<WrittenKeys<1>, CurveError> written_out(const CurveKeys<1>&);
 extern template tl::expected<WrittenKeys<3>, CurveError> written_out(const CurveKeys<3>&);

@@ -33,8 +33,8 @@ class Path {
   /// Errors, naming the waypoint: fewer than three or more than 10^5; a number that is not finite
   /// or beyond 1e150; one in the same place as the one before, which for the first of a closed path
   /// is the last.
-  static tl::expected<Path, PathError> make(std::vector<Value<3>> waypoints,
-                                            bool is_closed = false);
+  [[nodiscard]] static tl::expected<Path, PathError> make(std::vector<Value<3>> waypoints,
+                                                          bool is_closed = false);
 
   /// Where the share `progress` of the way has been walked: 0 is the first waypoint, 1 the last, or
   /// the first again when closed; what lies outside counts as the nearer of the two. The share is

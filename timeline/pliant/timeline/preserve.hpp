@@ -43,19 +43,19 @@ struct Slack {
 /// The same curve with the inner loop's copies written out as keys.
 /// Errors: those of `written_out`. Requires: broken_rule(keys) finds nothing.
 template <int D>
-tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys);
+[[nodiscard]] tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys);
 
 /// The shape of keys. Errors: those of `Curve::make`. Requires: no loop with copies.
 template <int D>
-tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys);
+[[nodiscard]] tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys);
 
 /// The curve of keys that were edited, with the shape they had: a tangent that would follow its new
 /// neighbours is written as a number, with the length it has, and so is a linear extrapolation
 /// whose slope would change. Whatever stays the same keeps its kind.
 /// Errors: those of `Curve::make`. Requires: no loop with copies; a shape of as many keys.
 template <int D>
-tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
-                                             const Slack& slack = {});
+[[nodiscard]] tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
+                                                           const Slack& slack = {});
 
 /// How far rounding may carry the numbers of keys that are moved as a whole: 64 units in the last
 /// place of the largest value and of the largest frame.

@@ -23,8 +23,8 @@ struct Simplified {
 /// Errors: a frame that is not finite; last < first; max_error not finite or negative.
 /// Cost: O(keys · log keys) polynomials.
 template <int D>
-tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first, double last,
-                                                 double max_error);
+[[nodiscard]] tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first,
+                                                               double last, double max_error);
 
 extern template tl::expected<Simplified<1>, CurveError> simplify(const Curve<1>&, double, double,
                                                                  double);
