@@ -47,6 +47,11 @@ Error factor_too_large(long size, const std::string& complaint) {
           fmt::format("the factor of the plate's matrix of {} unknowns {}", size, complaint)};
 }
 
+Error no_memory_to_solve(long size, const std::string& complaint) {
+  return {ErrorCode::OutOfMemory,
+          fmt::format("the working memory for the plate's {} unknowns {}", size, complaint)};
+}
+
 Error no_memory_for_factor(long size) {
   return {
       ErrorCode::OutOfMemory,

@@ -1,6 +1,6 @@
 #include "pliant/plate/load_copy.hpp"
 
-#include "pliant/plate/solver_factories.hpp"
+#include <fmt/format.h>
 
 namespace pliant {
 
@@ -9,8 +9,9 @@ Result<void> LoadCopy::take(const PlateProblem& problem) {
     const auto bytes = static_cast<std::size_t>(problem.load.size()) * sizeof(double);
     nodes_.resize(0, 3);
     if (!memory_.try_resize(bytes)) {
-      return fail(factor_too_large(unknown_count(problem.grid, problem.interior),
-                                   memory_.complaint(bytes)));
+      return fail(ErrorCode::OutOfMemory,
+                  fmt::format("a copy of the load on {} nodes {}", problem.load.rows(),
+                              memory_.complaint(bytes)));
     }
   }
   nodes_ = problem.load;

@@ -122,7 +122,7 @@ Result<void> SchwarzPlate::prepare(const Grid& grid, const InteriorMask& interio
   return {};
 } catch (const std::bad_alloc&) {
   let_go();
-  return fail(no_memory_for_factor(unknown_count(grid, interior)));
+  return fail(no_memory_to_solve(unknown_count(grid, interior), "does not fit in memory"));
 }
 
 Result<void> SchwarzPlate::lay_out() {
@@ -150,7 +150,7 @@ Result<void> SchwarzPlate::lay_out() {
   const std::size_t bytes =
       count * sizeof(double) + rows_.memory() + sides * bytes_along_side + system_.interior.size();
   if (!memory_.try_resize(bytes)) {
-    return fail(factor_too_large(unknown_count(system_), memory_.complaint(bytes)));
+    return fail(no_memory_to_solve(unknown_count(system_), memory_.complaint(bytes)));
   }
   numbers_ = NumberBlock(count);
   std::fill_n(numbers_.begin(), count, 0.0);

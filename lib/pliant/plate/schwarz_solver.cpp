@@ -51,7 +51,8 @@ class SchwarzPlateSolver final : public PlateSolver {
     return finish_directly(problem, {steps.count - step, steps.length}, std::move(state),
                            should_stop);
   } catch (const std::bad_alloc&) {
-    return fail(no_memory_for_factor(unknown_count(problem.grid, problem.interior)));
+    return fail(no_memory_to_solve(unknown_count(problem.grid, problem.interior),
+                                   "does not fit in memory"));
   }
 
   SolverCounts counts() const override {

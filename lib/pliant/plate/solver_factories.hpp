@@ -31,6 +31,10 @@ Error not_positive_definite(long size, long pivot);
 /// The error that all implementations report when the factor is more than the budget has.
 Error factor_too_large(long size, const std::string& complaint);
 
+/// The error of a solver that factors no matrix when its working memory is more than the budget
+/// has, or than there is.
+Error no_memory_to_solve(long size, const std::string& complaint);
+
 /// The error that all implementations report when the factor does not fit in memory all the same.
 Error no_memory_for_factor(long size);
 

@@ -128,7 +128,7 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
   // Tables first: what the rest takes depends on them, and they are small.
   if (const std::size_t bytes = (tables + numbers_.count()) * sizeof(double);
       !memory_.try_resize(bytes)) {
-    return fail(factor_too_large(size, memory_.complaint(bytes)));
+    return fail(no_memory_to_solve(size, memory_.complaint(bytes)));
   }
   if (plans_[0].length() != across) plans_[0] = SinePlan(across);
   if (plans_[1].length() != along) plans_[1] = SinePlan(along);
@@ -141,7 +141,7 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
     numbers_ = NumberBlock();
     const std::size_t bytes = (tables + count.used()) * sizeof(double);
     if (!memory_.try_resize(bytes)) {
-      const Error error = factor_too_large(size, memory_.complaint(bytes));
+      const Error error = no_memory_to_solve(size, memory_.complaint(bytes));
       (void)memory_.try_resize(tables * sizeof(double));  // less is always there
       return fail(error);
     }
@@ -210,7 +210,7 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   prepared_ = system;
   return {};
 } catch (const std::bad_alloc&) {
-  return fail(no_memory_for_factor(unknown_count(system.grid)));
+  return fail(no_memory_to_solve(unknown_count(system.grid), "does not fit in memory"));
 }
 
 // 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Whether all are positive.

@@ -70,7 +70,7 @@ class SpectralPlateSolver final : public PlateSolver {
     clear_rim(grid, state.velocity);
     return state;
   } catch (const std::bad_alloc&) {
-    return fail(no_memory_for_factor(unknown_count(problem.grid)));
+    return fail(no_memory_to_solve(unknown_count(problem.grid), "does not fit in memory"));
   }
 
   SolverCounts counts() const override { return plate_.counts(); }
