@@ -1,8 +1,13 @@
 #include "pliant/simulation/frame.hpp"
 
+#include <string>
+#include <vector>
+
 #include "support/catch.hpp"
+#include "support/last_words.hpp"
 
 using namespace pliant;
+using namespace pliant::testing;
 
 TEST_CASE("a frame's surfaces are found by name and given in both spaces", "[simulation][frame]") {
   const Field points = Field::Random(7, 3);
@@ -19,3 +24,24 @@ TEST_CASE("a frame's surfaces are found by name and given in both spaces", "[sim
   CHECK(frame.find_surface("b") == &frame.surfaces()[1]);
   CHECK(frame.find_surface("c") == nullptr);
 }
+
+TEST_CASE("a surface that is not there is named, with those that are", "[simulation][frame]") {
+  const Field points = Field::Random(7, 3);
+  const Frame frame(4, {SurfaceFrame("sheet", points, {}, 0), SurfaceFrame("ball", points, {}, 0)});
+  CHECK(frame.no_surface_text("shet") ==
+        "the frame has no surface \"shet\"; did you mean \"sheet\"? it has: sheet, ball");
+  CHECK(frame.no_surface_text("x\n") == "the frame has no surface \"x\\x0a\"; it has: sheet, ball");
+  CHECK(Frame().no_surface_text("a") == "the frame has no surface \"a\"; it has: none");
+  const Frame many(4, std::vector<SurfaceFrame>(1000, SurfaceFrame("s", points, {}, 0)));
+  CHECK(many.no_surface_text("tea").size() < 200);
+}
+
+#ifdef PLIANT_CHECKS
+TEST_CASE("to ask for a surface that is not there ends the program and says which",
+          "[simulation][frame]") {
+  const Frame frame(4, {SurfaceFrame("sheet", Field::Random(7, 3), {}, 0)});
+  const std::string said = last_words([&] { (void)frame.surface("shet"); });
+  CHECK_THAT(said, contains_text("requirement broken: the frame has no surface \"shet\"; "
+                                 "did you mean \"sheet\"? it has: sheet\n"));
+}
+#endif

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "pliant/core/expects.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/text.hpp"
 
 namespace pliant {
 
@@ -26,8 +31,20 @@ const SurfaceFrame* Frame::find_surface(std::string_view name) const {
 
 const SurfaceFrame& Frame::surface(std::string_view name) const {
   const SurfaceFrame* const found = find_surface(name);
-  PLIANT_EXPECTS(found);
+  PLIANT_EXPECTS_OR(found, no_surface_text(name));
   return *found;
+}
+
+std::string Frame::no_surface_text(std::string_view name) const {
+  constexpr std::size_t most_listed = 24;
+  std::vector<std::string_view> names;
+  for (const SurfaceFrame& surface : surfaces_) names.push_back(surface.name());
+  const auto near = xml::nearest_word(name, names);
+  const bool are_all = names.size() <= most_listed;
+  if (!are_all) names.resize(most_listed);
+  return fmt::format("the frame has no surface \"{}\"; {}it has: {}{}", printable(name),
+                     near ? fmt::format("did you mean \"{}\"? ", *near) : "",
+                     names.empty() ? "none" : xml::listed(names), are_all ? "" : ", …");
 }
 
 }  // namespace pliant

@@ -54,11 +54,14 @@ class Frame {
   /// In the order of the scene.
   std::span<const SurfaceFrame> surfaces() const { return surfaces_; }
 
-  /// nullptr when the scene has no surface of that name.
+  /// nullptr when the scene has no surface of that name: for names that are data.
   const SurfaceFrame* find_surface(std::string_view name) const;
 
   /// Requires: the scene has a surface of that name.
   const SurfaceFrame& surface(std::string_view name) const;
+
+  /// What to say of a name that no surface has: the name, the nearest one, and which there are.
+  std::string no_surface_text(std::string_view name) const;
 
  private:
   friend class Simulation;
