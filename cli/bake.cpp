@@ -16,11 +16,13 @@
 #include "frame_range.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "output_folder.hpp"
 #include "pliant/core/file_ending.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -235,6 +237,17 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   return summary;
 }
 
+// What an interrupted run leaves for the next one.
+std::string kept_text(const BakeOptions& options) {
+  const std::string ending = ending_of(options.out);
+  const bool is_sequence = ending == ".obj" || ending == ".ply";
+  const std::string files =
+      is_sequence ? "the files written stay, and --resume goes on with them" : "no file is written";
+  return files + (options.cache.folder
+                      ? "; the frames solved are in --cache, and the next run reads them"
+                      : "; with --cache DIR the frames solved are kept for the next run");
+}
+
 // Where the time of the run went, and how much of it went elsewhere: reading the scene, finding
 // grids, progress, files beside the animation.
 void print_profile(const Profile& profile, double elapsed) {
@@ -293,7 +306,12 @@ int run_bake(const BakeOptions& options) {
   const auto solver = parse_solver(options.solver);
   if (!solver) return report(solver.error());
   if (auto known = check_ending(options.out); !known) return report(known.error());
-  auto scene = load_scene(options.scene);
+  if (auto there = check_output_folder("-o", options.out); !there) return report(there.error());
+  if (options.regions) {
+    auto there = check_output_folder("--regions", *options.regions);
+    if (!there) return report(there.error());
+  }
+  auto scene = read_scene(options.scene);
   if (!scene) return report(scene.error());
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
@@ -305,7 +323,7 @@ int run_bake(const BakeOptions& options) {
   run.profile = options.is_profiled;
   run.store = store->get();
   auto simulation = Simulation::make(*std::move(scene), run);
-  if (!simulation) return report(simulation.error());
+  if (!simulation) return report(with_kept(simulation.error(), "no file is written"));
   auto output = open_output(*simulation, options, *frames);
   if (!output) return report(output.error());
 
@@ -319,7 +337,7 @@ int run_bake(const BakeOptions& options) {
   const auto summary = write_frames(*simulation, options, *frames, *output, regions);
   print_warnings(*simulation);
   print_cache_notes(store->get(), options.cache);
-  if (!summary) return report(summary.error());
+  if (!summary) return report(with_kept(summary.error(), kept_text(options)));
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {

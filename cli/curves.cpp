@@ -17,6 +17,7 @@
 
 #include "curve_plot.hpp"
 #include "interrupt.hpp"
+#include "output_folder.hpp"
 #include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
@@ -25,6 +26,7 @@
 #include "pliant/pliant.hpp"
 #include "report.hpp"
 #include "resources.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -189,7 +191,9 @@ class Table {
       }
       text_ += '\n';
       if (text_.size() < chunk) continue;
-      if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+      if (was_interrupted()) {
+        return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame));
+      }
       if (auto written = output_.write(text_); !written) return written;
       text_.clear();
     }
@@ -258,7 +262,8 @@ int run_curves(const CurvesOptions& options) {
                    fmt::format("{}: no format of curves has the ending \"{}\"; allowed: .csv, .svg",
                                options.out, ending)});
   }
-  const auto scene = load_scene(options.scene);
+  if (auto there = check_output_folder("-o", options.out); !there) return report(there.error());
+  const auto scene = read_scene(options.scene);
   if (!scene) return report(scene.error());
   const auto channels = choose_channels(*scene, options.channels);
   if (!channels) return report(channels.error());
@@ -269,7 +274,10 @@ int run_curves(const CurvesOptions& options) {
   if (!output) return report(output.error());
   auto written = ending == ".svg" ? write_plot(*output, *channels, *frames, options)
                                   : Table(*output, *frames, options.has_sides).write(*channels);
-  if (!written) return report(written.error());
+  if (!written) {
+    return report(with_kept(written.error(), options.out.empty() ? "the rows written are whole"
+                                                                 : "no file is written"));
+  }
   if (auto finished = output->finish(); !finished) return report(finished.error());
   return exit_done;
 }

@@ -10,6 +10,7 @@
 #include "interrupt.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -127,7 +128,7 @@ void add_info(CLI::App& app, InfoOptions& options) {
 
 int run_info(const InfoOptions& options) {
   catch_interrupts();
-  auto scene = load_scene(options.scene);
+  auto scene = read_scene(options.scene);
   if (!scene) return report(scene.error());
   print_notes(*scene);
   const SimulationOptions run = simulation_options(options.resources);

@@ -27,4 +27,9 @@ void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool was_interrupted() { return interrupted; }
 
+Error with_kept(Error error, std::string_view kept) {
+  if (error.code == ErrorCode::Interrupted) error.message.append("; ").append(kept);
+  return error;
+}
+
 }  // namespace pliant::cli

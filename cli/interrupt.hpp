@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string_view>
+
+#include "pliant/core/result.hpp"
+
 namespace pliant::cli {
 
 /// From now on the first Ctrl-C, SIGTERM or SIGHUP is noted instead of ending the program, so that
@@ -12,5 +16,9 @@ void catch_interrupts();
 void outlive_readers();
 
 bool was_interrupted();
+
+/// The error of an interrupted run with what of it can be kept, "interrupted at frame 12; KEPT";
+/// any other error as it is.
+Error with_kept(Error error, std::string_view kept);
 
 }  // namespace pliant::cli

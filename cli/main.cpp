@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include "bake.hpp"
+#include "complete.hpp"
 #include "curves.hpp"
 #include "info.hpp"
 #include "replay.hpp"
 #include "report.hpp"
+#include "usage.hpp"
 #include "validate.hpp"
 #include "view.hpp"
 
@@ -38,15 +40,20 @@ int run(int count, char* arguments[]) {
   add_replay(app, replay);
   ViewOptions view;
   add_view(app, view);
+  HelpOptions help;
+  add_help(app, help);
 
+  if (count > 1 && arguments[1] == completion_request) {
+    return run_complete(app, {arguments + 2, arguments + count});
+  }
   try {
     app.parse(count, arguments);
   } catch (const CLI::Success& success) {  // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    print(stderr, fmt::format("pliant: error: {}; pliant --help tells more\n", error.what()));
-    return exit_usage;
+    return report_usage(app, error);
   }
+  if (app.got_subcommand("help")) return run_help(app, help);
   if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);

@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include "interrupt.hpp"
+#include "output_folder.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -45,10 +47,15 @@ auto with_progress(const ReplayCommandOptions& options, const Work& work) {
 int record(const ReplayCommandOptions& options) {
   catch_interrupts();
   outlive_readers();
+  if (auto file = check_scene_is_file(options.scene, "a log names the scene that it is of");
+      !file) {
+    return report(file.error());
+  }
+  if (auto there = check_output_folder("-o", options.log); !there) return report(there.error());
   const auto recorded = with_progress(options, [&](const ReplayOptions& replay) {
     return record_replay(options.scene, options.log, replay);
   });
-  if (!recorded) return report(recorded.error());
+  if (!recorded) return report(with_kept(recorded.error(), "no log is written"));
   if (!options.is_quiet) {
     print(stdout, fmt::format("{}: {} frames, {} surfaces recorded\n", printable(options.log),
                               recorded->frame_count(), recorded->surfaces.size()));
@@ -59,7 +66,11 @@ int record(const ReplayCommandOptions& options) {
 // A difference is data; what may explain it is a remark.
 int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdict,
          std::string_view done) {
-  if (!verdict) return report(verdict.error());
+  if (!verdict) {
+    return report(with_kept(verdict.error(), options.keeps_going
+                                                 ? "the differences until then are not told"
+                                                 : "what was compared until then holds"));
+  }
   const std::string log = printable(options.log);
   for (const std::string& cause : verdict->causes) {
     print(stderr, fmt::format("{}: note: {}\n", log, cause));
@@ -79,6 +90,9 @@ int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdi
 
 int verify(const ReplayCommandOptions& options) {
   catch_interrupts();
+  if (auto file = check_scene_is_file(options.scene, "a log is of a scene in a file"); !file) {
+    return report(file.error());
+  }
   std::optional<std::filesystem::path> scene;
   if (!options.scene.empty()) scene = options.scene;
   const auto verdict = with_progress(options, [&](const ReplayOptions& replay) {

@@ -7,6 +7,7 @@
 #include "interrupt.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -16,7 +17,7 @@ std::string counted(std::size_t count, std::string_view thing) {
 }
 
 int validate(const std::string& file, const ValidateOptions& options) {
-  const auto scene = load_scene(file);
+  const auto scene = read_scene(file);
   if (!scene) return report(scene.error());
   print_notes(*scene);
   if (const auto checked = Simulation::check(*scene, simulation_options(options.resources));
@@ -24,7 +25,7 @@ int validate(const std::string& file, const ValidateOptions& options) {
     return report(checked.error());
   }
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: all right: {}, {}, frames {} to {}\n", file,
+    print(stdout, fmt::format("{}: all right: {}, {}, frames {} to {}\n", scene->origin.file,
                               counted(scene->surfaces.size(), "surface"),
                               counted(scene->forces.size(), "force"), scene->start, scene->end));
   }
@@ -45,7 +46,8 @@ int run_validate(const ValidateOptions& options) {
   int worst = exit_done;
   for (const std::string& file : options.scenes) {
     worst = std::max(worst, validate(file, options));
-    if (was_interrupted()) return report({ErrorCode::Interrupted, "interrupted"});
+    if (!was_interrupted()) continue;
+    return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
   }
   return worst;
 }

@@ -8,10 +8,11 @@
 
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "output_folder.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/io/atomic_file.hpp"
-#include "pliant/scene/read.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 #include "view_page.hpp"
 #include "view_picture.hpp"
 #include "view_scene.hpp"
@@ -38,15 +39,16 @@ Result<void> write_page(const std::filesystem::path& file, const std::string& pa
 
 int page_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
-  auto scene = load_scene(options.scene);
-  if (!scene) return report(scene.error());
   const std::string out = options.out.value_or("view.html");
+  if (auto there = check_output_folder("-o", out); !there) return report(there.error());
+  auto scene = read_scene(options.scene);
+  if (!scene) return report(scene.error());
   if (const auto input = input_named(out, *scene); !input.empty()) {
     return report({ErrorCode::InvalidInput,
                    fmt::format("-o {}: {}; choose another name", printable(out), input)});
   }
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
-  if (!baked) return report(baked.error());
+  if (!baked) return report(with_kept(baked.error(), "no page is written"));
   const std::string made = page_with(page, title_of(baked->scene), baked->bake.packed);
   if (auto written = write_page(out, made); !written) return report(written.error());
   if (options.is_quiet) return exit_done;
@@ -108,7 +110,13 @@ int run_view(const ViewOptions& options) {
   outlive_readers();
   const auto page = page_template();
   if (!page) return report(page.error());
-  if (options.port) return serve_view(options, *page);
+  if (options.port) {
+    if (auto file = check_scene_is_file(options.scene, "--serve reads the scene at every save");
+        !file) {
+      return report(file.error());
+    }
+    return serve_view(options, *page);
+  }
   if (options.png) return picture_view(options, *page);
   return page_view(options, *page);
 }

@@ -21,10 +21,11 @@
 
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "output_folder.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/io/atomic_file.hpp"
-#include "pliant/scene/read.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 #include "view_scene.hpp"
 #include "view_server.hpp"
 
@@ -192,7 +193,8 @@ Result<std::string> draw(ViewServer& server) {
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
-  auto scene = load_scene(options.scene);
+  if (auto there = check_output_folder("--png", *options.png); !there) return there;
+  auto scene = read_scene(options.scene);
   if (!scene) return fail(scene.error());
   if (const auto input = input_named(*options.png, *scene); !input.empty()) {
     return fail(ErrorCode::InvalidInput,
@@ -227,7 +229,9 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 }  // namespace
 
 int picture_view(const ViewOptions& options, std::string_view page) {
-  if (auto made = make_picture(options, page); !made) return report(made.error());
+  if (auto made = make_picture(options, page); !made) {
+    return report(with_kept(made.error(), "no picture is written"));
+  }
   if (!options.is_quiet) print(stdout, printable(*options.png) + '\n');
   return exit_done;
 }

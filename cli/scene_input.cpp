@@ -1,0 +1,69 @@
+#include "scene_input.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "interrupt.hpp"
+#include "pliant/scene/read.hpp"
+
+namespace pliant::cli {
+namespace {
+
+constexpr const char* name = "standard input";
+
+// As much as `parse_scene` takes, and the one byte more that shows it to be too much.
+constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
+
+tl::unexpected<Error> interrupted() {
+  return fail(ErrorCode::Interrupted, "interrupted ahead of the first frame");
+}
+
+Result<std::string> read_standard_input() {
+  std::string text;
+  std::string chunk(std::size_t{1} << 20U, '\0');
+  while (text.size() < most_bytes) {
+    const ssize_t count = read(STDIN_FILENO, chunk.data(), chunk.size());
+    if (count == 0) return text;
+    if (count > 0) {
+      text.append(chunk, 0, static_cast<std::size_t>(count));
+      continue;
+    }
+    if (was_interrupted()) return interrupted();
+    if (errno != EINTR) {
+      return fail(ErrorCode::Unreadable, std::string("cannot read it: ") + std::strerror(errno),
+                  name);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+bool is_standard_input(std::string_view scene) { return scene == "-"; }
+
+Result<Scene> read_scene(const std::string& scene) {
+  if (!is_standard_input(scene)) {
+    auto loaded = load_scene(scene);
+    if (!loaded && was_interrupted()) return interrupted();  // a pipe was waited for
+    return loaded;
+  }
+  if (isatty(STDIN_FILENO) != 0) {
+    return fail(ErrorCode::InvalidInput,
+                "SCENE -: the standard input is a terminal; give a file, or a pipe: … | pliant");
+  }
+  const auto text = read_standard_input();
+  if (!text) return fail(text.error());
+  return parse_scene(*text, name, {});
+}
+
+Result<void> check_scene_is_file(std::string_view scene, std::string_view reason) {
+  if (!is_standard_input(scene)) return {};
+  return fail(
+      ErrorCode::InvalidInput,
+      fmt::format("SCENE -: the standard input does not do here: {}; save it to a file", reason));
+}
+
+}  // namespace pliant::cli

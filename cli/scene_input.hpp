@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant::cli {
+
+/// Whether a command's SCENE means the standard input: "-". A file of that name is "./-".
+bool is_standard_input(std::string_view scene);
+
+/// `load_scene`, or for "-" the same from the standard input: its meshes are relative to the
+/// current folder. Errors: those of `load_scene`; InvalidInput where the standard input is a
+/// terminal; Interrupted.
+Result<Scene> read_scene(const std::string& scene);
+
+/// For commands that read the scene again later. Errors: InvalidInput for "-", with the reason.
+Result<void> check_scene_is_file(std::string_view scene, std::string_view reason);
+
+}  // namespace pliant::cli
