@@ -1,14 +1,32 @@
 #pragma once
 
-// Counts every allocation of the executable that includes this, in one file.
+// Counts every allocation of the executable that includes this, in one file, and of all libraries
+// that it is linked with: what goes by malloc, calloc, realloc and the aligned ones, as Eigen's and
+// CHOLMOD's do, and operator new, which asks malloc. Built with a sanitizer, which has these for
+// itself, only what goes by operator new.
 
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <new>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PLIANT_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PLIANT_SANITIZED
+#endif
+#endif
 
 namespace pliant::testing {
 
 inline std::atomic<long> allocations = 0;
+
+#if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
+inline constexpr bool counts_everything = true;
+#else
+inline constexpr bool counts_everything = false;
+#endif
 
 inline void* counted(void* memory) {
   ++allocations;
@@ -17,6 +35,44 @@ inline void* counted(void* memory) {
 }
 
 }  // namespace pliant::testing
+
+#if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
+
+// glibc's own, under names that nobody replaces; its free takes what they give.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) noexcept {
+  ++pliant::testing::allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  ++pliant::testing::allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) noexcept {
+  ++pliant::testing::allocations;
+  return __libc_realloc(memory, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+  ++pliant::testing::allocations;
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  return memalign(alignment, size);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  void* const given = memalign(alignment, size);
+  if (given == nullptr) return ENOMEM;
+  *memory = given;
+  return 0;
+}
+}
+
+#else
 
 using pliant::testing::counted;
 
@@ -41,6 +97,5 @@ using pliant::testing::counted;
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
   std::free(memory);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
+
+#endif

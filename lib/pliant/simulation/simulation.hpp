@@ -26,7 +26,8 @@ namespace pliant {
 
 class SceneSampling;
 
-/// How a simulation runs; none of it but the solver changes a result, and that the last digits.
+/// How a simulation runs; none of it but the solver changes a result, and that by some 1e-9 of it
+/// at most: docs/model.md, "Which solver".
 struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick: `FrameCache` tells what a frame
   /// then costs. [bytes]
