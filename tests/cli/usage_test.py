@@ -17,9 +17,35 @@ class Usage(Command):
             self.assertIn("SCENE" if "bake" in arguments else "bake", result.stdout)
             self.assertEqual(result.stderr, "")
 
+    def test_alone_it_tells_what_there_is(self):
+        told = self.run_pliant("--help").stdout
+        result = self.run_pliant(code=2)
+        self.assertEqual((result.stdout, result.stderr), ("", told))
+        self.assertEqual(self.run_pliant("help").stdout, told)
+        for command in (["bake"], ["replay"], ["replay", "record"], ["help"]):
+            self.assertEqual(self.run_pliant("help", *command).stdout,
+                             self.run_pliant(*command, "--help").stdout)
+        self.assertEqual(self.run_pliant("replay", code=2).stderr,
+                         self.run_pliant("replay", "--help").stdout)
+
+    def test_a_misspelt_word_is_answered_with_the_nearest(self):
+        scene = self.scene()
+        for arguments, words in (
+                (["bak", scene, "-o", "a.npy"], 'pliant has no command "bak"; did you mean "bake"? the '),
+                (["help", "vew"], 'pliant has no command "vew"; did you mean "view"? the commands are '),
+                (["replay", "recrd", scene], 'pliant replay has no command "recrd"; did you mean "record"?'),
+                (["bake", scene, "-o", "a.obj", "--reume"],
+                 'pliant bake has no option "--reume"; did you mean "--resume"? pliant bake --help'),
+                (["bake", scene, "--frame=1:3"], 'no option "--frame"; did you mean "--frames"?'),
+                (["bake", scene, "-resume"], "pliant bake has no option"),
+                (["curves", "--nothing-like-it", scene], 'has no option "--nothing-like-it"; pliant curves')):
+            result = self.run_pliant(*arguments, code=2)
+            self.assertRegex(result.stderr, r"^pliant: error: [^\n]+\n$", arguments)
+            self.assertIn(words, result.stderr)
+
     def test_wrong_usage_is_exit_code_2(self):
         scene = self.scene()
-        for arguments in ([], ["bak"], ["bake"], ["bake", scene], ["bake", scene, "-o"],
+        for arguments in (["bak"], ["bake"], ["bake", scene], ["bake", scene, "-o"],
                           ["bake", scene, "-o", "a.npy", "--nonsense"],
                           ["bake", scene, "-o", "a.npy", "--space", "camera"],
                           ["bake", scene, "-o", "a.npy", "extra"]):
@@ -75,9 +101,24 @@ class Errors(Command):
     def test_what_cannot_be_written_is_exit_code_1(self):
         scene = self.scene()
         os.mkdir(self.path("folder.npy"))
-        for out in ("no/such/a.npy", "folder.npy", "no/such/a.obj"):
-            result = self.run_pliant("bake", scene, "-o", out, code=1)
-            self.assertIn("error: cannot write the file", result.stderr)
+        self.assertIn("it is a folder", self.run_pliant("bake", scene, "-o", "folder.npy", code=1).stderr)
+
+    def test_a_missing_folder_is_named_ahead_of_any_work(self):
+        # What comes first is told of: not even the scene is read.
+        for arguments, option in ((["bake", "none.xml", "-o", "no/such/a.npy"], "-o no/such/a.npy"),
+                                  (["bake", "none.xml", "-o", "a.npy", "--regions", "no/such/r.json"],
+                                   "--regions no/such/r.json"),
+                                  (["curves", "none.xml", "-o", "no/such/a.csv"], "-o no/such/a.csv"),
+                                  (["replay", "record", "none.xml", "-o", "no/such/a.replay"],
+                                   "-o no/such/a.replay")):
+            result = self.run_pliant(*arguments, code=1)
+            self.assertEqual(result.stderr,
+                             f"pliant: error: {option}: the folder no/such does not exist\n")
+        scene = self.scene()
+        result = self.run_pliant("bake", scene, "-o", "scene.xml/a.npy", code=1)
+        self.assertIn("the folder scene.xml is no folder", result.stderr)
+        self.assertEqual(self.files(), ["scene.xml"])
+        os.mkdir(self.path("folder.npy"))
         self.assertEqual(self.files(), ["folder.npy", "scene.xml"])
 
     def test_a_run_that_fails_leaves_nothing(self):
@@ -93,7 +134,8 @@ class Errors(Command):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             code, errors = self.interrupt(scene, "a.npy", number)
             self.assertEqual(code, 1, errors)
-            self.assertRegex(errors, r"error: .*interrupted")
+            self.assertRegex(errors, r"^pliant: error: interrupted at frame \d+; no file is written; "
+                                     r"with --cache DIR the frames solved are kept for the next run\n$")
             self.assertEqual(self.files(), ["scene.xml"])
 
     def test_interrupt_within_a_frame_of_many_steps(self):
@@ -107,7 +149,8 @@ class Errors(Command):
 
     def test_whole_frames_of_an_interrupted_sequence_stay(self):
         scene = self.scene(end=900000)
-        self.interrupt(scene, "a.obj", signal.SIGINT)
+        _, errors = self.interrupt(scene, "a.obj", signal.SIGINT)
+        self.assertRegex(errors, r"interrupted at frame \d+; the files written stay, and --resume goes on with them")
         files = self.files()
         self.assertEqual([name for name in files if name.endswith(".part")], [])
         line_counts = set()

@@ -82,7 +82,7 @@ class DirectSolver final : public LinearSolver {
 
   // Iterative refinement. A factorisation leaves a relative error of up to condition x eps, and
   // each pass with an exact residual multiplies the error by that much again. Without it a static
-  // plate of 401 x 401 is off by 1e-8; one pass where the error may pass 1e-9, two beyond 1e-5.
+  // plate of 401 x 401 is off by 1e-8; one pass where the error may pass 2e-9, two beyond 1e-5.
   static int passes_for(double condition) {
     if (!(condition < 1e11)) return 2;
     return condition > 1e7 ? 1 : 0;

@@ -27,7 +27,7 @@ namespace pliant {
 class SceneSampling;
 
 /// How a simulation runs; none of it but the solver changes a result, and that by some 1e-9 of it
-/// at most: docs/model.md, "Which solver".
+/// at most: docs/model.md.
 struct SimulationOptions {
   /// Memory for kept states, so that going back in time is quick: `FrameCache` tells what a frame
   /// then costs. [bytes]
