@@ -1,6 +1,7 @@
 #include "pliant/mesh/read_mesh.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,6 +9,7 @@
 #include "pliant/core/file_ending.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/read_assimp.hpp"
+#include "pliant/mesh/read_gltf.hpp"
 #include "pliant/mesh/read_obj.hpp"
 #include "pliant/mesh/read_ply.hpp"
 
@@ -22,13 +24,16 @@ Result<Mesh> with_only_set(Result<Mesh> mesh, const std::filesystem::path& file,
   return fail(checked.error().code, checked.error().message, file.string());
 }
 
+bool is_gltf(std::string_view ending) { return ending == ".gltf" || ending == ".glb"; }
+
 }  // namespace
 
 std::vector<std::string> mesh_endings() {
   return {".obj", ".ply", ".gltf", ".glb", ".fbx", ".dae"};
 }
 
-Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set) {
+Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set,
+                       const std::filesystem::path& root) {
   const std::vector<std::string> endings = mesh_endings();
   const std::string ending = ending_of(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
@@ -38,7 +43,14 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
   }
   if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);
   if (ending == ".ply") return with_only_set(read_ply(file, object), file, uv_set);
+  if (is_gltf(ending)) return read_gltf(file, object, uv_set, root);
   return read_assimp(file, object, uv_set);
+}
+
+std::vector<std::filesystem::path> mesh_references(const std::filesystem::path& file,
+                                                   const std::filesystem::path& root) {
+  return is_gltf(ending_of(file)) ? gltf_references(file, root)
+                                  : std::vector<std::filesystem::path>();
 }
 
 }  // namespace pliant

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/core/result.hpp"
+#include "pliant/mesh/read_assimp.hpp"
+
+namespace pliant::gltf {
+
+// What the JSON of a glTF 2 file says of meshes, as plain values. Every index into one of the
+// document's lists is within it. Sizes and offsets are as written: whoever reads bytes by them
+// checks them. Not for other rooms.
+
+struct Buffer {
+  std::uint64_t size = 0;  ///< [bytes]
+  std::optional<std::string> uri = {};
+};
+
+struct BufferView {
+  std::size_t buffer = 0;
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;
+  std::uint64_t stride = 0;  ///< from one element to the next; 0: they are packed. [bytes]
+};
+
+/// Elements that stand in the place of some of an accessor's.
+struct Sparse {
+  std::uint64_t count = 0;
+  std::size_t index_view = 0;
+  std::uint64_t index_offset = 0;
+  std::uint64_t index_type = 0;  ///< a `componentType`
+  std::size_t value_view = 0;
+  std::uint64_t value_offset = 0;
+};
+
+struct Accessor {
+  std::optional<std::size_t> view = {};  ///< none: all elements are zeros
+  std::uint64_t offset = 0;
+  std::uint64_t component_type = 0;
+  bool is_normalized = false;
+  std::uint64_t count = 0;
+  std::string type = {};  ///< SCALAR, VEC2, …
+  std::optional<Sparse> sparse = {};
+};
+
+struct Primitive {
+  std::uint64_t mode = 4;
+  std::optional<std::size_t> positions = {};
+  std::optional<std::size_t> normals = {};
+  std::array<std::optional<std::size_t>, max_uv_sets> uvs = {};
+  std::optional<std::size_t> indices = {};
+  std::optional<std::size_t> material = {};
+};
+
+struct MeshEntry {
+  std::string name;  ///< `meshes[3]` where the file gives none
+  std::vector<Primitive> primitives = {};
+};
+
+struct Node {
+  std::string name;  ///< `nodes[3]` where the file gives none
+  Eigen::Matrix4d to_parent = Eigen::Matrix4d::Identity();
+  std::optional<std::size_t> mesh = {};
+  std::vector<std::size_t> children = {};
+};
+
+struct Document {
+  std::vector<Buffer> buffers;
+  std::vector<BufferView> views;
+  std::vector<Accessor> accessors;
+  std::vector<MeshEntry> meshes;
+  std::vector<std::string> materials;  ///< their names, which may be empty
+  std::vector<Node> nodes;
+  std::vector<std::size_t> roots;  ///< nodes of the scene that the file shows
+};
+
+/// How deep the brackets of the JSON may lie within each other, how many values it may hold, so
+/// that its size bounds the memory that it takes, and how many files it may refer to.
+inline constexpr std::size_t deepest_json = 200;
+inline constexpr std::size_t most_json_values = 4'000'000;
+inline constexpr std::size_t most_buffers = 1000;
+
+/// Errors: no sound JSON, with the line, quoting nothing of what may be any file; no glTF 2; an
+/// extension that is required and not known, by its name; a member of the wrong kind or out of
+/// range, by its place.
+Result<Document> read_document(std::string_view json);
+
+}  // namespace pliant::gltf

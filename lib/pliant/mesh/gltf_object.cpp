@@ -1,0 +1,258 @@
+#include "pliant/mesh/gltf_object.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "pliant/core/transform.hpp"
+#include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/normals.hpp"
+
+namespace pliant::gltf {
+namespace {
+
+using Eigen::Matrix4d;
+
+// How far the last row of a transform may be from 0 0 0 1: exporters work in float.
+constexpr double affine_tolerance = 1e-5;
+
+constexpr std::uint64_t most = std::numeric_limits<int>::max();  // that can be counted in int
+
+tl::unexpected<Error> broken(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+enum Mode : std::uint64_t { Triangles = 4, Strip = 5, Fan = 6 };
+
+// Corners of a primitive's triangles, by place in its list of vertices. Those of a strip turn one
+// way. Requires: `count` >= 3.
+template <class Add>
+void for_each_triangle(std::uint64_t mode, std::size_t count, const Add& add) {
+  if (mode == Triangles)
+    for (std::size_t k = 0; k + 2 < count; k += 3) add(k, k + 1, k + 2);
+  if (mode == Strip) {
+    for (std::size_t k = 0; k + 2 < count; ++k) {
+      const std::size_t turn = k % 2;
+      add(k + turn, k + 1 - turn, k + 2);
+    }
+  }
+  if (mode == Fan)
+    for (std::size_t k = 1; k + 1 < count; ++k) add(0, k, k + 1);
+}
+
+// Where the vertices of a primitive begin in what the whole mesh has of each.
+struct Place {
+  int vertex = 0;
+  std::size_t count = 0;
+  int uv = -1;      // -1: none
+  int normal = -1;  // likewise
+};
+
+class Merger {
+ public:
+  Merger(const Document& document, const Object& object, AccessorReader& accessors, int uv_set)
+      : document_(document), object_(object), accessors_(accessors), uv_set_(uv_set) {}
+
+  Result<Mesh> merge() {
+    for (const std::size_t k : object_.primitives)
+      if (auto checked = check_sets(primitive(k)); !checked) return fail(checked.error());
+    for (const std::size_t k : object_.primitives)
+      if (auto added = add(k); !added) return fail(added.error());
+    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    if (mesh_.materials.names.empty()) mesh_.materials.of_faces.clear();
+    mesh_.object = object_.node_name;
+    if (auto checked = check_mesh(mesh_); !checked) return fail(checked.error());
+    mesh_.corner_normals = shared_normals(mesh_, shading_);
+    return std::move(mesh_);
+  }
+
+ private:
+  const Primitive& primitive(std::size_t k) const {
+    return document_.meshes[object_.mesh].primitives[k];
+  }
+
+  std::string name_of(std::size_t k) const {
+    return fmt::format("meshes[{}].primitives[{}]", object_.mesh, k);
+  }
+
+  Result<void> check_sets(const Primitive& primitive) const {
+    if (primitive.uvs[static_cast<std::size_t>(uv_set_)]) return {};
+    const auto count =
+        std::count_if(primitive.uvs.begin(), primitive.uvs.end(),
+                      [](const std::optional<std::size_t>& set) { return set.has_value(); });
+    if (auto checked = check_uv_set(uv_set_, static_cast<int>(count)); !checked) return checked;
+    if (count > 0)  // a file may leave out its first set
+      return broken(fmt::format("the object has no UV set {}, but others", uv_set_));
+    return {};
+  }
+
+  Result<void> add(std::size_t k) {
+    const auto place = place_of(k);
+    if (!place) return fail(place.error());
+    return add_faces(k, *place);
+  }
+
+  // Where the vertices of a primitive are, read once for all that share them.
+  Result<Place> place_of(std::size_t k) {
+    const Primitive& from = primitive(k);
+    const auto uvs = from.uvs[static_cast<std::size_t>(uv_set_)];
+    const std::tuple key(*from.positions, from.normals, uvs);
+    if (const auto known = places_.find(key); known != places_.end()) return known->second;
+    const auto positions = accessors_.vectors(*from.positions, 3);
+    if (!positions) return fail(positions.error());
+    Place place{static_cast<int>(coordinates_.size() / 3), positions->size() / 3};
+    if (coordinates_.size() / 3 + place.count > most)
+      return broken(fmt::format("the object has more than {} vertices", most));
+    coordinates_.insert(coordinates_.end(), positions->begin(), positions->end());
+    if (uvs) {
+      if (auto added = add_uvs(k, *uvs, place); !added) return fail(added.error());
+    }
+    if (from.normals) {
+      if (auto added = add_normals(k, *from.normals, place); !added) return fail(added.error());
+    }
+    places_.emplace(key, place);
+    return place;
+  }
+
+  // One vector for each vertex.
+  Result<std::vector<double>> vectors(std::size_t k, std::size_t accessor, int width,
+                                      const char* thing, const Place& place) {
+    auto numbers = accessors_.vectors(accessor, width);
+    if (!numbers) return numbers;
+    const std::size_t count = numbers->size() / static_cast<std::size_t>(width);
+    if (count == place.count) return numbers;
+    return broken(
+        fmt::format("{} has {} vertices, but {} {}", name_of(k), place.count, count, thing));
+  }
+
+  Result<void> add_uvs(std::size_t k, std::size_t accessor, Place& place) {
+    const auto numbers = vectors(k, accessor, 2, "(u,v)", place);
+    if (!numbers) return fail(numbers.error());
+    place.uv = static_cast<int>(mesh_.uvs.size());
+    for (std::size_t n = 0; n < numbers->size(); n += 2)
+      mesh_.uvs.push_back({(*numbers)[n], 1 - (*numbers)[n + 1]});
+    return {};
+  }
+
+  Result<void> add_normals(std::size_t k, std::size_t accessor, Place& place) {
+    const auto numbers = vectors(k, accessor, 3, "normals", place);
+    if (!numbers) return fail(numbers.error());
+    place.normal = static_cast<int>(shading_.normals.size());
+    for (std::size_t n = 0; n < numbers->size(); n += 3) {
+      std::array normal = {(*numbers)[n], (*numbers)[n + 1], (*numbers)[n + 2]};
+      if (!std::all_of(normal.begin(), normal.end(), [](double x) { return std::isfinite(x); }))
+        normal = {};
+      shading_.normals.push_back(normal);
+    }
+    return {};
+  }
+
+  // The vertices of a primitive in the order in which its mode strings them together.
+  Result<std::vector<std::uint32_t>> list_of(std::size_t k, const Place& place) {
+    const Primitive& from = primitive(k);
+    if (!from.indices) {
+      if (auto charged = accessors_.charge(*from.positions); !charged) return fail(charged.error());
+      std::vector<std::uint32_t> all(place.count);
+      std::iota(all.begin(), all.end(), 0u);
+      return all;
+    }
+    auto indices = accessors_.indices(*from.indices);
+    if (!indices) return indices;
+    for (std::size_t n = 0; n < indices->size(); ++n) {
+      if ((*indices)[n] < place.count) continue;
+      return broken(fmt::format("{}: index {} is of vertex {}, but there are {} (from 0)",
+                                name_of(k), n, (*indices)[n], place.count));
+    }
+    return indices;
+  }
+
+  Result<void> add_faces(std::size_t k, const Place& place) {
+    const Primitive& from = primitive(k);
+    const auto list = list_of(k, place);
+    if (!list) return fail(list.error());
+    if (from.mode == Triangles && list->size() % 3 != 0) {
+      return broken(fmt::format("{} has {} corners of triangles, no multiple of 3", name_of(k),
+                                list->size()));
+    }
+    const std::size_t face_count = from.mode == Triangles ? list->size() / 3 : list->size() - 2;
+    if (mesh_.corner_vertices.size() + 3 * face_count > most)
+      return broken(fmt::format("the object's faces have more than {} corners", most));
+    for_each_triangle(from.mode, list->size(), [&](std::size_t a, std::size_t b, std::size_t c) {
+      mesh_.face_sizes.push_back(3);
+      for (const std::size_t corner : {a, b, c}) add_corner((*list)[corner], place);
+    });
+    shading_.smoothing.resize(shading_.smoothing.size() + face_count,
+                              place.normal < 0 ? Shading::flat : Shading::unsaid);
+    add_material(from.material ? document_.materials[*from.material] : std::string(), face_count);
+    return {};
+  }
+
+  void add_corner(std::uint32_t vertex, const Place& place) {
+    const auto index = static_cast<int>(vertex);
+    mesh_.corner_vertices.push_back(place.vertex + index);
+    mesh_.corner_uvs.push_back(place.uv < 0 ? -1 : place.uv + index);
+    shading_.corner_normals.push_back(place.normal < 0 ? -1 : place.normal + index);
+  }
+
+  void add_material(const std::string& name, std::size_t face_count) {
+    FaceNames& materials = mesh_.materials;
+    int index = -1;
+    if (!name.empty()) {
+      const auto [known, is_new] =
+          materials_.try_emplace(name, static_cast<int>(materials.names.size()));
+      if (is_new) materials.names.push_back(name);
+      index = known->second;
+    }
+    materials.of_faces.resize(materials.of_faces.size() + face_count, index);
+  }
+
+  const Document& document_;
+  const Object& object_;
+  AccessorReader& accessors_;
+  int uv_set_;
+  Mesh mesh_;
+  std::vector<double> coordinates_;  // x y z of each vertex
+  Shading shading_;
+  using Index = std::optional<std::size_t>;
+  std::map<std::tuple<std::size_t, Index, Index>, Place> places_;  // by accessors
+  std::map<std::string, int> materials_;                           // by name
+};
+
+Result<void> apply(const Matrix4d& to_file, Field& positions) {
+  if (to_file == Matrix4d::Identity()) return {};  // -0 would become 0
+  const Eigen::RowVector4d last_row = to_file.row(3);
+  if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
+    return broken(
+        fmt::format("the object's transform is not affine: its last row is "
+                    "{} {} {} {}, not 0 0 0 1",
+                    last_row[0], last_row[1], last_row[2], last_row[3]));
+  }
+  positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
+  return {};
+}
+
+}  // namespace
+
+Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
+                     int uv_set) {
+  auto mesh = Merger(document, object, accessors, uv_set).merge();
+  if (!mesh) return mesh;
+  if (auto applied = apply(object.to_file, mesh->positions); !applied) return fail(applied.error());
+  if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
+  return mesh;
+}
+
+}  // namespace pliant::gltf

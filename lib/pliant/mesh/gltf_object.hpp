@@ -1,0 +1,16 @@
+#pragma once
+
+#include "pliant/core/result.hpp"
+#include "pliant/mesh/gltf_accessor.hpp"
+#include "pliant/mesh/gltf_document.hpp"
+#include "pliant/mesh/gltf_scene.hpp"
+#include "pliant/mesh/mesh.hpp"
+
+namespace pliant::gltf {
+
+/// The mesh of an object, its primitives as one, moved to where its node is in the file. Errors: as
+/// `parse_gltf`, without the file.
+Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
+                     int uv_set);
+
+}  // namespace pliant::gltf

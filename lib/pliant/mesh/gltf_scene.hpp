@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pliant/core/result.hpp"
+#include "pliant/mesh/gltf_document.hpp"
+
+namespace pliant::gltf {
+
+/// A node of the scene that carries faces.
+struct Object {
+  std::string node_name;
+  std::string mesh_name;
+  Eigen::Matrix4d to_file;  ///< the product of the transforms down to the node
+  std::size_t mesh = 0;
+  std::vector<std::size_t> primitives;  ///< those of the mesh that have faces
+};
+
+/// Whether a primitive is made of triangles and has the vertices for one.
+bool has_faces(const Document& document, const Primitive& primitive);
+
+/// The objects of the scene that the file shows, each node ahead of its children and these in the
+/// order of the file. Errors: a node that stands twice in it, be it within itself.
+Result<std::vector<Object>> objects_of(const Document& document);
+
+/// The one that `name` means: by the names of the nodes, and by those of the meshes where no node
+/// has it. Errors: no faces at all; those of `choose_object`.
+Result<Object> choose(std::vector<Object> objects, const std::string& name);
+
+}  // namespace pliant::gltf
