@@ -57,9 +57,7 @@ Result<Frames> read_frames(const std::string& file) {
     const auto frame = to_number(word);
     if (!frame) {
       return fail(ErrorCode::InvalidInput,
-                  fmt::format("\"{}\" is not a frame: one finite number a line is required",
-                              word.substr(0, 40)),
-                  file, line);
+                  "this is not a frame: one finite number a line is required", file, line);
     }
     frames.listed.push_back(*frame);
   }

@@ -129,6 +129,19 @@ TEST_CASE("a byte order mark is no part of the first statement", "[mesh][read_ob
         4);
 }
 
+TEST_CASE("a file that is no OBJ is refused without quoting it", "[mesh][read_obj]") {
+  for (const std::string text : {"\n# a\nroot:secret:0\nsecret\n", "\n\n{\"secret\":1}",
+                                 "\n\n\x7f"
+                                 "ELF secret\nv x"}) {
+    const auto mesh = parse_obj(text, "m.obj");
+    REQUIRE_FALSE(mesh);
+    CHECK(to_lines(mesh.error()) ==
+          std::vector<std::string>{"m.obj:3: error: the file is no OBJ: no statement of one begins "
+                                   "like this line"});
+  }
+  CHECK(parse_obj("mtllib a.mtl\nsomething else\n" + quad + "f 1 2 3\n", "m.obj"));
+}
+
 TEST_CASE("all problems of an OBJ file come in one run, up to a limit", "[mesh][read_obj]") {
   const auto two = parse_obj(obj_quad + "v x 0 0\nf 1/1 2/2\nf 1/1 2/2 7/3\n", "m.obj");
   REQUIRE_FALSE(two);

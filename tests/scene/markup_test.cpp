@@ -20,7 +20,8 @@ TEST_CASE("each malformed document is told in one line", "[scene][markup]") {
       {"\xEF\xBB\xBF", 1, {"the file is empty"}},
       {"<?xml version=\"1.0\"?>\n", 2, {"holds no element", "<scene>"}},
       {"<!-- only a comment -->", 1, {"holds no element"}},
-      {"just text", 1, {"the text \"just text\" stands outside"}},
+      {"just text", 1, {"text stands ahead of the <scene>; a scene file holds one <scene>"}},
+      {"<html>\n<p class=secret>", 2, {"malformed XML, and the root element is not <scene>"}},
       {root + "</scene>\n\nmore", 4, {"the text \"more\" stands outside"}},
       {root + "</scene>\n<scene/>", 3, {"<scene> stands outside the root element"}},
       {root + "</scene>\n</scene>", 3, {"</scene> closes nothing"}},
@@ -102,13 +103,23 @@ TEST_CASE("all malformed values of a well-nested document are told in one run", 
   CHECK_THAT(problems[2], contains_text("3: malformed XML: <scene> has the attribute"));
 }
 
+TEST_CASE("of a file that is no scene nothing is quoted", "[scene][markup]") {
+  for (const std::string text :
+       {"root:secret:0:0", "\n\nsecret <scene/>", "</secret>", "<secret>", "<html><secret></html>",
+        "<html secret=x secret=\"1\">&secret;</html>", "<x>&secret;&secret;"}) {
+    const std::vector<std::string> problems = problems_of(text);
+    REQUIRE(problems.size() == 1);
+    CHECK(problems[0].find("ecret") == std::string::npos);
+  }
+}
+
 TEST_CASE("sizes that would take gigabytes or hours are refused early", "[scene][markup]") {
   const auto repeated = [](std::string_view text, int count) {
     std::string result;
     for (int k = 0; k < count; ++k) result += text;
     return result;
   };
-  CHECK(problems_of(repeated("<a>", 100'000)) ==
+  CHECK(problems_of("<scene>" + repeated("<a>", 100'000)) ==
         std::vector<std::string>{"1: malformed XML: <a> is nested deeper than 50 elements"});
   std::string many = "<scene";
   for (int k = 0; k < 100'000; ++k) many += " a" + std::to_string(k) + "=\"\"";

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,18 @@ std::string_view next_word(std::string_view& text) {
   const std::string_view word = text.substr(begin, end - begin);
   text.remove_prefix(end);
   return word;
+}
+
+// Whether a statement of the format begins so, be it one that is passed over.
+bool is_keyword(std::string_view word) {
+  constexpr std::string_view keywords[] = {
+      "v",    "vt",    "vn",    "vp",     "p",          "l",        "f",        "o",
+      "g",    "s",     "mg",    "usemtl", "mtllib",     "usemap",   "maplib",   "cstype",
+      "deg",  "bmat",  "step",  "curv",   "curv2",      "surf",     "parm",     "trim",
+      "hole", "scrv",  "sp",    "end",    "con",        "bevel",    "c_interp", "d_interp",
+      "lod",  "ctech", "stech", "call",   "csh",        "bzp",      "bsp",      "res",
+      "cdc",  "cdp",   "fo",    "cstech", "shadow_obj", "trace_obj"};
+  return std::find(std::begin(keywords), std::end(keywords), word) != std::end(keywords);
 }
 
 // The faces that follow one `o` statement.
@@ -82,7 +96,7 @@ class ObjReader {
     std::string joined;  // a statement whose lines end in a backslash
     int line = 0;
     int first_line = 1;
-    while (!text.empty() && errors_.size() < max_errors) {
+    while (!text.empty() && errors_.size() < max_errors && !is_refused_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       std::string_view statement = trim(text.substr(0, end), blanks);
       text.remove_prefix(std::min(end + 1, text.size()));
@@ -119,6 +133,11 @@ class ObjReader {
   void read_statement(std::string_view statement) {
     statement = statement.substr(0, statement.find('#'));
     const std::string_view keyword = next_word(statement);
+    // Ahead of quoting anything of what may be any file.
+    if (!is_obj_ && !keyword.empty()) {
+      is_obj_ = is_keyword(keyword);
+      if (!is_obj_) return refuse("the file is no OBJ: no statement of one begins like this line");
+    }
     if (keyword == "v") {
       const auto numbers = read_numbers(statement, "vertex", 3, 7);
       coordinates_.insert(coordinates_.end(), numbers.begin(), numbers.begin() + 3);
@@ -140,6 +159,11 @@ class ObjReader {
       const auto group = word == "off" ? Shading::flat : to_integer(word).value_or(-1);
       smoothing_ = group >= 0 ? group : Shading::unsaid;
     }
+  }
+
+  void refuse(std::string message) {
+    add_error(line_, std::move(message));
+    is_refused_ = true;
   }
 
   // Zeros where it cannot be read.
@@ -362,6 +386,8 @@ class ObjReader {
 
   std::string name_;
   int line_ = 0;
+  bool is_obj_ = false;      // the first statement is one of the format
+  bool is_refused_ = false;  // and nothing more is read
   Mesh mesh_;
   std::vector<double> coordinates_;  // x y z of each vertex
   std::vector<int> face_lines_;

@@ -77,8 +77,13 @@ class MarkupScanner {
   /// What is ahead of `end`, which is passed over; stops at the end of the file.
   std::string_view take_until(std::string_view end, std::string_view what);
 
+  // Of a file that is no scene in all likelihood nothing is quoted.
   void add(int line, std::string_view message) {
-    findings_.add_problem(line, fmt::format("malformed XML: {}", message));
+    const bool is_other = has_root_ && !is_scene_;
+    if (is_other && is_stopped_) return;
+    findings_.add_problem(line, is_other ? "malformed XML, and the root element is not <scene>"
+                                         : fmt::format("malformed XML: {}", message));
+    is_stopped_ = is_stopped_ || is_other;
   }
   /// Adds a problem after which the rest cannot be understood.
   void stop(int line, std::string_view message) {
@@ -93,6 +98,7 @@ class MarkupScanner {
   int line_ = 1;
   std::vector<Open> open_;  // from the root inwards
   bool has_root_ = false;
+  bool is_scene_ = false;    // the root is a <scene>
   bool is_prologue_ = true;  // nothing but the declaration and other instructions so far
   std::size_t markup_count_ = 0;
   bool is_stopped_ = false;
@@ -168,7 +174,8 @@ void MarkupScanner::scan_text() {
   if (open_.empty() && !trimmed(text).empty()) {
     const auto ahead = text.substr(0, text.find_first_not_of(blanks));
     stop(line + static_cast<int>(std::count(ahead.begin(), ahead.end(), '\n')),
-         fmt::format("the text {} stands outside the <scene>", in_quotes(trimmed(text))));
+         has_root_ ? fmt::format("the text {} stands outside the <scene>", in_quotes(trimmed(text)))
+                   : fmt::format("text stands ahead of the <scene>{}", one_scene));
   }
 }
 
@@ -226,7 +233,10 @@ void MarkupScanner::scan_closing_tag() {
     return stop(line, fmt::format("a closing tag is </name>, not {}",
                                   in_quotes(fmt::format("</{}{}", name, next()))));
   take(1);
-  if (open_.empty()) return stop(line, fmt::format("</{}> closes nothing that is open", name));
+  if (open_.empty()) {
+    return stop(line, has_root_ ? fmt::format("</{}> closes nothing that is open", name)
+                                : std::string("a closing tag stands ahead of the <scene>"));
+  }
   if (open_.back().name != name)
     return stop(line, fmt::format("</{}> stands where <{}> of line {} has to be closed first", name,
                                   open_.back().name, open_.back().line));
@@ -245,6 +255,7 @@ void MarkupScanner::scan_opening_tag() {
   if (open_.empty() && has_root_)
     return stop(line, fmt::format("<{}> stands outside the root element; a file holds one <scene>",
                                   element.name));
+  if (!has_root_) is_scene_ = element.name == "scene";
   has_root_ = true;
   if (open_.size() >= deepest)
     return stop(line, fmt::format("<{}> is nested deeper than {} elements", element.name, deepest));
