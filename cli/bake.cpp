@@ -268,6 +268,7 @@ void print_profile(const Profile& profile, double elapsed) {
 
 void add_bake(CLI::App& app, BakeOptions& options) {
   CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
+  add_root(*bake, options.root);
   bake->add_option("SCENE", options.scene, "Scene file")->required();
   bake->add_option(
           "-o,--out", options.out,
@@ -311,7 +312,7 @@ int run_bake(const BakeOptions& options) {
     auto there = check_output_folder("--regions", *options.regions);
     if (!there) return report(there.error());
   }
-  auto scene = read_scene(options.scene);
+  auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());

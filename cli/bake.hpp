@@ -7,6 +7,7 @@
 
 #include "cache.hpp"
 #include "resources.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
@@ -22,6 +23,7 @@ struct BakeOptions {
   bool resume = false;
   bool is_quiet = false;
   bool is_profiled = false;
+  Root root = {};
   CacheOptions cache;
   ResourceOptions resources;
 };

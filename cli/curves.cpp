@@ -261,7 +261,7 @@ int run_curves(const CurvesOptions& options) {
                                options.out, ending)});
   }
   if (auto there = check_output_folder("-o", options.out); !there) return report(there.error());
-  const auto scene = read_scene(options.scene);
+  const auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   const auto channels = choose_channels(*scene, options.channels);
   if (!channels) return report(channels.error());

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "root.hpp"
+
 namespace pliant::cli {
 
 /// What `pliant curves` was asked to do.
@@ -16,6 +18,7 @@ struct CurvesOptions {
   std::string at;                     ///< file with a frame in each line; empty: none
   std::string out;                    ///< .csv or .svg; empty: CSV on stdout
   bool has_sides = false;
+  Root root = {};
 };
 
 void add_curves(CLI::App& app, CurvesOptions& options);

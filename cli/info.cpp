@@ -123,12 +123,13 @@ void print_channels(const Scene& scene) {
 void add_info(CLI::App& app, InfoOptions& options) {
   CLI::App* info = app.add_subcommand("info", "Tell what is in a scene, to choose numbers by");
   info->add_option("SCENE", options.scene, "Scene file")->required();
+  add_root(*info, options.root);
   add_memory(*info, options.resources);
 }
 
 int run_info(const InfoOptions& options) {
   catch_interrupts();
-  auto scene = read_scene(options.scene);
+  auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   print_notes(*scene);
   const SimulationOptions run = simulation_options(options.resources);

@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 
 #include "resources.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
 /// What `pliant info` was asked to do.
 struct InfoOptions {
   std::string scene;
+  Root root = {};
   ResourceOptions resources;
 };
 

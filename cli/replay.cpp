@@ -33,6 +33,7 @@ template <class Work>
 auto with_progress(const ReplayCommandOptions& options, const Work& work) {
   std::optional<Progress> progress;
   ReplayOptions replay;
+  replay.root = options.root.value_or("");
   replay.simulation = simulation_options(options.resources);
   replay.last_frame = options.last_frame;
   replay.states_every = options.states_every;
@@ -151,6 +152,7 @@ void add_replay(CLI::App& app, ReplayCommandOptions& options) {
                                                "Name all differences, not only the first");
   }
   for (const char* simulates : {"record", "verify"}) {
+    add_root(*replay->get_subcommand(simulates), options.root);
     add_threads(*replay->get_subcommand(simulates), options.resources);
     add_memory(*replay->get_subcommand(simulates), options.resources);
   }
@@ -161,6 +163,7 @@ void add_replay(CLI::App& app, ReplayCommandOptions& options) {
 }
 
 int run_replay(const CLI::App& app, const ReplayCommandOptions& options) {
+  if (const auto folder = folder_of(options.root); !folder) return report(folder.error());
   const CLI::App* const replay = app.get_subcommand("replay");
   if (replay->got_subcommand("record")) return record(options);
   if (replay->got_subcommand("verify")) return verify(options);

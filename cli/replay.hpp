@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "resources.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
@@ -18,6 +19,7 @@ struct ReplayCommandOptions {
   int states_every = 0;
   bool keeps_going = false;
   bool is_quiet = false;
+  Root root = {};
   ResourceOptions resources;
 };
 

@@ -44,9 +44,9 @@ Result<std::string> read_standard_input() {
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
-Result<Scene> read_scene(const std::string& scene) {
+Result<Scene> read_scene(const std::string& scene, const Root& root) {
   if (!is_standard_input(scene)) {
-    auto loaded = load_scene(scene);
+    auto loaded = load_scene(scene, root);
     if (!loaded && was_interrupted()) return interrupted();  // a pipe was waited for
     return loaded;
   }
@@ -54,9 +54,11 @@ Result<Scene> read_scene(const std::string& scene) {
     return fail(ErrorCode::InvalidInput,
                 "SCENE -: the standard input is a terminal; give a file, or a pipe: … | pliant");
   }
+  const auto folder = folder_of(root);
+  if (!folder) return fail(folder.error());
   const auto text = read_standard_input();
   if (!text) return fail(text.error());
-  return parse_scene(*text, name, {});
+  return parse_scene(*text, name, {}, *folder);
 }
 
 Result<void> check_scene_is_file(std::string_view scene, std::string_view reason) {

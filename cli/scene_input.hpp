@@ -5,6 +5,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/scene.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
@@ -14,7 +15,7 @@ bool is_standard_input(std::string_view scene);
 /// `load_scene`, or for "-" the same from the standard input: its meshes are relative to the
 /// current folder. Errors: those of `load_scene`; InvalidInput where the standard input is a
 /// terminal; Interrupted.
-Result<Scene> read_scene(const std::string& scene);
+Result<Scene> read_scene(const std::string& scene, const Root& root);
 
 /// For commands that read the scene again later. Errors: InvalidInput for "-", with the reason.
 Result<void> check_scene_is_file(std::string_view scene, std::string_view reason);

@@ -17,7 +17,7 @@ std::string counted(std::size_t count, std::string_view thing) {
 }
 
 int validate(const std::string& file, const ValidateOptions& options) {
-  const auto scene = read_scene(file);
+  const auto scene = read_scene(file, options.root);
   if (!scene) return report(scene.error());
   print_notes(*scene);
   if (const auto checked = Simulation::check(*scene, simulation_options(options.resources));
@@ -38,6 +38,7 @@ void add_validate(CLI::App& app, ValidateOptions& options) {
   CLI::App* validate = app.add_subcommand("validate", "Read and check scenes without running them");
   validate->add_option("SCENE", options.scenes, "Scene files")->required();
   validate->add_flag("--quiet", options.is_quiet, "Say nothing of scenes that are all right");
+  add_root(*validate, options.root);
   add_memory(*validate, options.resources);
 }
 

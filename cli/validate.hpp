@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "resources.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
@@ -13,6 +14,7 @@ namespace pliant::cli {
 struct ValidateOptions {
   std::vector<std::string> scenes;
   bool is_quiet = false;
+  Root root = {};
   ResourceOptions resources;
 };
 

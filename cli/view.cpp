@@ -41,7 +41,7 @@ int page_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
   const std::string out = options.out.value_or("view.html");
   if (auto there = check_output_folder("-o", out); !there) return report(there.error());
-  auto scene = read_scene(options.scene);
+  auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   if (const auto input = input_named(out, *scene); !input.empty()) {
     return report({ErrorCode::InvalidInput,
@@ -100,6 +100,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
                    "How the picture looks, as the page's address says it: "
                    "\"turn=30&tilt=20&colour=velocity&theme=dark\"")
       ->needs(png);
+  add_root(*view, options.root);
   add_threads(*view, options.resources);
   add_memory(*view, options.resources);
   view->add_flag("--quiet", options.is_quiet, "No progress and no summary");

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "resources.hpp"
+#include "root.hpp"
 
 namespace pliant::cli {
 
@@ -21,6 +22,7 @@ struct ViewOptions {
   std::string size = "1280x800";           ///< of the picture, or of each in a sheet [px]
   std::string look;                        ///< of the picture, as the page's address has it
   bool is_quiet = false;
+  Root root = {};
   ResourceOptions resources;
 };
 

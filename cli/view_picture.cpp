@@ -194,7 +194,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
   if (auto there = check_output_folder("--png", *options.png); !there) return there;
-  auto scene = read_scene(options.scene);
+  auto scene = read_scene(options.scene, options.root);
   if (!scene) return fail(scene.error());
   if (const auto input = input_named(*options.png, *scene); !input.empty()) {
     return fail(ErrorCode::InvalidInput,

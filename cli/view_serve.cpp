@@ -103,7 +103,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
   // Watched from before it is read, so that no save is missed.
   auto watch = std::make_unique<Watch>(inputs_of(options.scene, nullptr));
   server.tell_working();
-  auto scene = load_scene(options.scene);
+  auto scene = load_scene(options.scene, options.root);
   if (!scene) {
     report(scene.error());
     server.tell_failure(to_json(scene.error()));

@@ -35,15 +35,16 @@ struct FoundScene {
 };
 
 Result<FoundScene> find_scene(const std::filesystem::path& log_file, const ReplayHeader& header,
-                              const std::optional<std::filesystem::path>& given) {
+                              const std::optional<std::filesystem::path>& given,
+                              const std::filesystem::path& root) {
   const std::filesystem::path file = given ? *given : log_file.parent_path() / header.scene_file;
   std::error_code ignored;
   if (!given && !std::filesystem::exists(file, ignored)) {
-    return FoundScene{{file, header.scene_text},
+    return FoundScene{{file, header.scene_text, root},
                       fmt::format("the scene {} is not there; its text in the log is simulated",
                                   printable(header.scene_file))};
   }
-  auto written = read_scene_text(file);
+  auto written = read_scene_text(file, root);
   if (!written) return fail(written.error());
   return FoundScene{*std::move(written)};
 }
@@ -104,7 +105,7 @@ Result<void> read_on(ReplayLogReader& log) {
 Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
                                    const std::filesystem::path& log_file,
                                    const ReplayOptions& options) {
-  const auto written = read_scene_text(scene_file);
+  const auto written = read_scene_text(scene_file, options.root);
   if (!written) return fail(written.error());
   auto simulation = simulation_of(*written, options.simulation);
   if (!simulation) return fail(simulation.error());
@@ -136,7 +137,7 @@ Result<ReplayVerdict> verify_replay(const std::filesystem::path& log_file,
   const ReplayHeader& then = log->header();
   const auto solver = solver_of(then, log_file);
   if (!solver) return fail(solver.error());
-  const auto found = find_scene(log_file, then, scene_file);
+  const auto found = find_scene(log_file, then, scene_file, options.root);
   if (!found) return fail(found.error());
   ReplayVerdict verdict;
   if (found->remark) verdict.causes.push_back(*found->remark);

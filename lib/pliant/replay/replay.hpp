@@ -17,6 +17,9 @@ struct ReplayOptions {
   /// A log is verified by the solver that it was recorded with, whatever this says.
   SimulationOptions simulation = {};
 
+  /// Where what meshes refer to lies, as `load_scene` takes it.
+  std::filesystem::path root = {};
+
   /// Records no further than to this frame; none: to the scene's last one.
   std::optional<int> last_frame = {};
 

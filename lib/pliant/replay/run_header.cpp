@@ -51,15 +51,15 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 }
 
 Result<Scene> scene_of(const WrittenScene& written) {
-  return parse_scene(written.text, written.file.string(), written.file.parent_path());
+  return parse_scene(written.text, written.file.string(), written.file.parent_path(), written.root);
 }
 
 }  // namespace
 
-Result<WrittenScene> read_scene_text(const fs::path& file) {
+Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root) {
   auto text = read_file(file, std::size_t{256} << 20);  // as `load_scene`
   if (!text) return fail(text.error());
-  return WrittenScene{file, *std::move(text)};
+  return WrittenScene{file, *std::move(text), root};
 }
 
 Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path& log_file,

@@ -14,10 +14,12 @@ namespace pliant {
 struct WrittenScene {
   std::filesystem::path file;
   std::string text;
+  std::filesystem::path root = {};  ///< as `load_scene` takes it
 };
 
 /// Errors: as `read_file`.
-Result<WrittenScene> read_scene_text(const std::filesystem::path& file);
+Result<WrittenScene> read_scene_text(const std::filesystem::path& file,
+                                     const std::filesystem::path& root);
 
 /// What a log of this scene says ahead of simulating it: all but its frames and surfaces. A file
 /// that cannot be read is left out. Errors: as `parse_scene`.

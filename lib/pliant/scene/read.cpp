@@ -83,16 +83,20 @@ std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneF
 
 }  // namespace
 
-Result<Scene> load_scene(const std::filesystem::path& file) {
+Result<Scene> load_scene(const std::filesystem::path& file, const std::filesystem::path& root) {
   const Result<std::string> text = read_file(file, largest_file);
   if (!text) return fail(text.error());
-  return parse_scene(*text, file.string(), file.parent_path());
+  return parse_scene(*text, file.string(), file.parent_path(), root);
 }
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name,
-                          const std::filesystem::path& folder) {
-  SceneFile file{
-      .folder = folder, .origin = {.file = name, .lines = {}}, .findings = Findings(name)};
+                          const std::filesystem::path& folder, const std::filesystem::path& root) {
+  // An empty root would be each mesh's own folder.
+  const std::filesystem::path own = folder.empty() ? "." : folder;
+  SceneFile file{.folder = folder,
+                 .root = root.empty() ? own : root,
+                 .origin = {.file = name, .lines = {}},
+                 .findings = Findings(name)};
   if (text.size() > largest_file)
     return fail(ErrorCode::InvalidInput, fmt::format("is larger than {} MiB", largest_file >> 20U),
                 name);

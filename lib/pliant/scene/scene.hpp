@@ -27,6 +27,8 @@ struct MeshFile {
   std::filesystem::path path = {};  ///< as it is to be opened; its ending picks the format
   std::string object = {};  ///< the one to take when the file holds several; empty: the only one
   int uv_set = 0;           ///< which set of (u,v) is the grid, counted from 0, < max_uv_sets
+  /// What the file refers to is read in this folder and below only; empty: in the file's own.
+  std::filesystem::path root = {};
 };
 
 /// Where a surface's rest shape comes from; a `Mesh` is one that a program made.

@@ -28,6 +28,7 @@ struct NamedMesh {
 /// A scene file while it is read: where it is, and what has been found in it.
 struct SceneFile {
   std::filesystem::path folder;  ///< that mesh paths are relative to
+  std::filesystem::path root;    ///< that what meshes refer to lies in
   SceneOrigin origin;
   Findings findings;
   std::vector<Targets> targets = {};

@@ -117,6 +117,7 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
 void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
+  mesh.root = file_.root;
   Table table = attributes_of(mesh, file_.folder);
   read_attributes(element, table, file_.findings);
   read_children(element, {}, file_.findings);

@@ -17,7 +17,7 @@ namespace {
 struct MakeMesh {
   Result<Mesh> operator()(const GridSheet& sheet) const { return make_mesh(sheet); }
   Result<Mesh> operator()(const MeshFile& file) const {
-    return read_mesh(file.path, file.object, file.uv_set);
+    return read_mesh(file.path, file.object, file.uv_set, file.root);
   }
   Result<Mesh> operator()(const Mesh& mesh) const {
     if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
@@ -32,12 +32,19 @@ struct BytesToMake {
     return bytes_of(sheet) + bytes_to_run(vertex_count);
   }
   std::size_t operator()(const MeshFile& file) const {
-    // The file and the mesh read from it; a reader may need it twice more on the way.
-    std::error_code unknown;  // of a file that is not there: reading it says so
-    const std::uintmax_t bytes = std::filesystem::file_size(file.path, unknown);
-    return unknown ? 0 : 4 * static_cast<std::size_t>(bytes);
+    // The file, what it refers to and the mesh read from them; a reader may need it twice more.
+    std::size_t bytes = size_of(file.path);
+    for (const auto& reference : mesh_references(file.path, file.root)) bytes += size_of(reference);
+    return 4 * bytes;
   }
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
+
+ private:
+  static std::size_t size_of(const std::filesystem::path& file) {
+    std::error_code unknown;  // of a file that is not there: reading it says so
+    const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
+    return unknown ? 0 : static_cast<std::size_t>(bytes);
+  }
 };
 
 }  // namespace
