@@ -7,7 +7,6 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_folder.hpp"
-#include "pliant/core/file_ending.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
@@ -83,34 +81,16 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
   return plan;
 }
 
-// Those of the scene's file and its mesh files that a bake could write, by their endings: its own,
-// and those of what stands beside some formats.
-std::vector<std::filesystem::path> inputs_at_risk(const AnimationPlan& plan, const Scene& scene) {
-  std::vector<std::filesystem::path> files = {scene.origin.file};
-  for (const Surface& surface : scene.surfaces)
-    if (const auto* file = std::get_if<MeshFile>(&surface.shape)) files.push_back(file->path);
-  std::erase_if(files, [&](const std::filesystem::path& file) {
-    const std::string ending = ending_of(file);
-    return ending != ending_of(plan.file) && ending != ".obj" && ending != ".bin";
-  });
-  return files;
-}
-
 // Whether no file to be written is one that the scene is made from: head.obj, baked to head.pc2.
 Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
-  const std::vector<std::filesystem::path> inputs = inputs_at_risk(plan, scene);
-  if (inputs.empty()) return {};
+  const InputsByName inputs(scene);
   for (const std::filesystem::path& output : files_of(plan)) {
-    for (const std::filesystem::path& input : inputs) {
-      std::error_code unknown;  // of a file that is not there: nothing is overwritten
-      if (output.filename() != input.filename() ||
-          !std::filesystem::equivalent(output, input, unknown))
-        continue;
-      return fail(ErrorCode::InvalidInput,
-                  fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
-                              "another name",
-                              printable(plan.file.string()), printable(input.string())));
-    }
+    const auto input = inputs.find(output);
+    if (!input) continue;
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
+                            "another name",
+                            printable(plan.file.string()), printable(input->string())));
   }
   return {};
 }
@@ -268,7 +248,6 @@ void print_profile(const Profile& profile, double elapsed) {
 
 void add_bake(CLI::App& app, BakeOptions& options) {
   CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
-  add_root(*bake, options.root);
   bake->add_option("SCENE", options.scene, "Scene file")->required();
   bake->add_option(
           "-o,--out", options.out,
@@ -289,6 +268,7 @@ void add_bake(CLI::App& app, BakeOptions& options) {
       ->capture_default_str();
   bake->add_flag("--resume", options.resume,
                  "Go on after the last whole frame of an interrupted .obj or .ply sequence");
+  add_root(*bake, options.root);
   add_cache(*bake, options.cache);
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);

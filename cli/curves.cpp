@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 
 #include "curve_plot.hpp"
+#include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_folder.hpp"
 #include "pliant/core/file_ending.hpp"
@@ -230,6 +231,16 @@ Result<void> write_plot(Output& output, std::span<const NamedChannel> channels,
   return output.write(curve_plot(channels, first, last, title));
 }
 
+// Whether the output is none of the files that it is made from.
+Result<void> check_place(const CurvesOptions& options, const Scene& scene) {
+  if (options.out.empty()) return {};
+  std::string input = input_named(options.out, scene);
+  if (!options.at.empty() && name_one_file(options.out, options.at)) input = "it is that of --at";
+  if (input.empty()) return {};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("-o {}: {}; choose another name", printable(options.out), input));
+}
+
 }  // namespace
 
 void add_curves(CLI::App& app, CurvesOptions& options) {
@@ -248,6 +259,7 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
       ->excludes(step);
   curves->add_option("-o,--out", options.out,
                      "A .csv table or an .svg plot; CSV on stdout by default");
+  add_root(*curves, options.root);
   curves->add_flag("--sides", options.has_sides,
                    "Left value, velocity and left velocity (per frame) too");
 }
@@ -268,6 +280,7 @@ int run_curves(const CurvesOptions& options) {
   const auto frames = options.at.empty() ? parse_frames(options, *scene) : read_frames(options.at);
   if (!frames) return report(frames.error());
 
+  if (auto free = check_place(options, *scene); !free) return report(free.error());
   auto output = Output::open(options.out);
   if (!output) return report(output.error());
   auto written = ending == ".svg" ? write_plot(*output, *channels, *frames, options)

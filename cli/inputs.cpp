@@ -1,7 +1,10 @@
 #include "inputs.hpp"
 
 #include <system_error>
-#include <variant>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/inputs.hpp"
 
 namespace pliant::cli {
 
@@ -14,13 +17,27 @@ bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& 
   return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
 }
 
-std::string_view input_named(const std::filesystem::path& file, const Scene& scene) {
-  if (name_one_file(file, scene.origin.file)) return "it is the scene";
-  for (const Surface& surface : scene.surfaces) {
-    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (mesh && name_one_file(file, mesh->path)) return "it is a mesh of the scene";
-  }
+std::string input_named(const std::filesystem::path& file, const Scene& scene) {
+  for (const SceneInput& input : inputs_of(scene))
+    if (name_one_file(file, input.file)) return fmt::format("it is {}", input.role);
   return {};
+}
+
+InputsByName::InputsByName(const Scene& scene) {
+  for (const SceneInput& input : inputs_of(scene)) {
+    std::error_code unknown;
+    const auto real = std::filesystem::canonical(input.file, unknown);
+    for (const auto& file : {input.file, unknown ? input.file : real})
+      files_.emplace(file.filename().string(), input.file);
+  }
+}
+
+// Looking at the disk for each of a million frames would take long.
+std::optional<std::filesystem::path> InputsByName::find(const std::filesystem::path& output) const {
+  const auto [first, last] = files_.equal_range(output.filename().string());
+  for (auto each = first; each != last; ++each)
+    if (name_one_file(output, each->second)) return each->second;
+  return std::nullopt;
 }
 
 }  // namespace pliant::cli

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <thread>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +16,7 @@
 
 #include "cache.hpp"
 #include "interrupt.hpp"
+#include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 #include "report.hpp"
 #include "view_scene.hpp"
@@ -68,13 +68,10 @@ class Watch {
   std::atomic<bool> has_changed_ = false;
 };
 
-std::vector<std::filesystem::path> inputs_of(const std::string& file, const Scene* scene) {
-  std::vector<std::filesystem::path> inputs = {file};
-  if (scene == nullptr) return inputs;
-  for (const Surface& surface : scene->surfaces) {
-    if (const auto* mesh = std::get_if<MeshFile>(&surface.shape)) inputs.push_back(mesh->path);
-  }
-  return inputs;
+std::vector<std::filesystem::path> files_to_watch(const Scene& scene) {
+  std::vector<std::filesystem::path> files;
+  for (SceneInput& input : inputs_of(scene)) files.push_back(std::move(input.file));
+  return files;
 }
 
 std::string to_json(const Error& error) {
@@ -101,7 +98,7 @@ std::size_t store_bytes(const ResourceOptions& resources) {
 std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
                                  MemoryFrameStore& store) {
   // Watched from before it is read, so that no save is missed.
-  auto watch = std::make_unique<Watch>(inputs_of(options.scene, nullptr));
+  auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
   server.tell_working();
   auto scene = load_scene(options.scene, options.root);
   if (!scene) {
@@ -109,7 +106,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
     server.tell_failure(to_json(scene.error()));
     return watch;
   }
-  auto all = std::make_unique<Watch>(inputs_of(options.scene, &*scene));
+  auto all = std::make_unique<Watch>(files_to_watch(*scene));
   if (watch->has_changed()) return watch;
   const auto should_stop = [&] { return was_interrupted() || all->has_changed(); };
   auto baked = bake_scene(*std::move(scene), options, should_stop, &store);

@@ -117,7 +117,7 @@ Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
                             *options.last_frame, scene.start, scene.end),
                 scene_file.string());
   }
-  if (auto free = check_log_place(log_file, *written, scene); !free) return fail(free.error());
+  if (auto free = check_log_place(log_file, scene); !free) return fail(free.error());
   auto header = header_of_text(*written, log_file, options.simulation.solver);
   if (!header) return header;
   complete(*header, *simulation, options.last_frame);

@@ -5,11 +5,11 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 
 namespace pliant {
@@ -27,22 +27,20 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
       .generic_string();
 }
 
-std::vector<fs::path> mesh_files(const Scene& scene) {
-  std::vector<fs::path> files;
-  for (const Surface& surface : scene.surfaces) {
-    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (mesh && std::find(files.begin(), files.end(), mesh->path) == files.end()) {
-      files.push_back(mesh->path);
-    }
-  }
-  return files;
-}
-
 std::string name_of(SolverChoice solver) {
   for (const std::string_view name : {"auto", "spectral", "cholmod", "eigen"}) {
     if (solver_choice(name) == solver) return std::string(name);
   }
   return {};
+}
+
+// Relative to the scene's folder: to where links lead, if that is how the file is known.
+std::string name_of(const SceneInput& input, const WrittenScene& written) {
+  const fs::path folder = written.file.parent_path();
+  std::error_code unknown;
+  const fs::path real = fs::canonical(folder.empty() ? "." : folder, unknown);
+  const bool is_real = !unknown && fs::weakly_canonical(input.file, unknown) == input.file;
+  return name_from(is_real ? real : folder, input.file);
 }
 
 bool is_one_file(const fs::path& a, const fs::path& b) {
@@ -70,10 +68,12 @@ Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path&
   header.version = PLIANT_VERSION;
   header.scene_file = name_from(log_file.parent_path(), written.file);
   header.scene_text = written.text;
-  for (const fs::path& file : mesh_files(*scene)) {
-    const auto bytes = read_file(file);
-    if (bytes)
-      header.files.push_back({name_from(written.file.parent_path(), file), hash_of(*bytes)});
+  for (const SceneInput& input : inputs_of(*scene)) {
+    // The scene is there as text. A pipe or a device would make us wait, or never end.
+    std::error_code ignored;
+    if (input.file == written.file || !fs::is_regular_file(input.file, ignored)) continue;
+    const auto bytes = read_file(input.file);
+    if (bytes) header.files.push_back({name_of(input, written), hash_of(*bytes)});
   }
   header.solver = name_of(solver);
   header.factors = name_of(available_solvers().front());
@@ -95,8 +95,7 @@ Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOp
   return Simulation::make(*std::move(scene), options);
 }
 
-Result<void> check_log_place(const fs::path& log_file, const WrittenScene& written,
-                             const Scene& scene) {
+Result<void> check_log_place(const fs::path& log_file, const Scene& scene) {
   std::error_code ignored;
   const auto refuse = [&](std::string_view reason) {
     return fail(ErrorCode::InvalidInput, fmt::format("the log would take the place of {}", reason),
@@ -105,9 +104,8 @@ Result<void> check_log_place(const fs::path& log_file, const WrittenScene& writt
   if (fs::exists(log_file, ignored) && !fs::is_regular_file(log_file, ignored)) {
     return refuse("what is no regular file");
   }
-  if (is_one_file(log_file, written.file)) return refuse("the scene");
-  for (const fs::path& file : mesh_files(scene)) {
-    if (is_one_file(log_file, file)) return refuse("a mesh of the scene");
+  for (const SceneInput& input : inputs_of(scene)) {
+    if (is_one_file(log_file, input.file)) return refuse(input.role);
   }
   return {};
 }

@@ -33,7 +33,6 @@ void complete(ReplayHeader& header, const Simulation& simulation, std::optional<
 Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOptions& options);
 
 /// Whether a log may be written there. Errors: InvalidInput.
-Result<void> check_log_place(const std::filesystem::path& log_file, const WrittenScene& written,
-                             const Scene& scene);
+Result<void> check_log_place(const std::filesystem::path& log_file, const Scene& scene);
 
 }  // namespace pliant

@@ -31,15 +31,20 @@ struct BytesToMake {
     const auto vertex_count = static_cast<std::size_t>(sheet.columns) * sheet.rows;
     return bytes_of(sheet) + bytes_to_run(vertex_count);
   }
-  std::size_t operator()(const MeshFile& file) const {
-    // The file, what it refers to and the mesh read from them; a reader may need it twice more.
-    std::size_t bytes = size_of(file.path);
-    for (const auto& reference : mesh_references(file.path, file.root)) bytes += size_of(reference);
-    return 4 * bytes;
-  }
+  std::size_t operator()(const MeshFile& file) const { return bytes_per_byte * size_of(file.path); }
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
 
+  // What a mesh file refers to, which is known once there is memory for the file itself.
+  static std::size_t of_references(const MeshFile& file) {
+    std::size_t bytes = 0;
+    for (const auto& reference : mesh_references(file.path, file.root)) bytes += size_of(reference);
+    return bytes_per_byte * bytes;
+  }
+
  private:
+  // A file and the mesh read from it; a reader may need it twice more on the way.
+  static constexpr std::size_t bytes_per_byte = 4;
+
   static std::size_t size_of(const std::filesystem::path& file) {
     std::error_code unknown;  // of a file that is not there: reading it says so
     const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
@@ -78,8 +83,12 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
   if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
     if (auto readable = check_mesh_file(file->path); !readable) return at_scene(readable.error());
   }
-  const std::size_t ahead = std::visit(BytesToMake{}, surface.shape);
+  std::size_t ahead = std::visit(BytesToMake{}, surface.shape);
   if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
+  if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
+    ahead += BytesToMake::of_references(*file);
+    if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
+  }
   auto mesh = std::visit(MakeMesh{}, surface.shape);
   if (!mesh) return at_scene(mesh.error());
   const std::size_t bytes =

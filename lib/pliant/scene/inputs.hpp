@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// A file that a scene is made from.
+struct SceneInput {
+  std::filesystem::path file;
+  std::string_view role;  ///< "the scene", "a mesh of the scene", "…that a mesh … refers to"
+};
+
+/// All files that reading a scene and its meshes opens: the scene's own, if it came from one, its
+/// meshes, and what these refer to, each once. A mesh that cannot be read refers to nothing.
+/// Cost: a mesh that may refer to files is read for their names.
+std::vector<SceneInput> inputs_of(const Scene& scene);
+
+}  // namespace pliant

@@ -1,0 +1,181 @@
+"""The files that a scene is made from: which are read, and that no command overwrites one."""
+
+import json
+import os
+import selectors
+import shutil
+import subprocess
+
+from command import Command, GRID, PLIANT, SCENE, main
+
+# Without a viewer's page the command says so (1) before it misses the scene (2).
+HAS_PAGE = subprocess.run([PLIANT, "view", "no-such-scene.xml"], capture_output=True, check=False,
+                          timeout=60).returncode == 2
+
+
+class Inputs(Command):
+    def setUp(self):
+        """head.gltf with its numbers in buffers.bin, and mesh.xml, which is made from them."""
+        super().setUp()
+        self.run_pliant("bake", self.scene(end=1), "-o", "head.gltf")
+        with open(self.path("head.gltf"), encoding="utf-8") as file:
+            self.gltf = json.load(file)
+        os.rename(self.path("head.bin"), self.path("buffers.bin"))
+        self.refer_to("buffers.bin")
+        os.remove(self.path("scene.xml"))
+        self.write("mesh.xml", SCENE.format(end=3).replace(GRID, '<mesh file="head.gltf"/>'))
+
+    def refer_to(self, uri, name="head.gltf"):
+        self.gltf["buffers"][0]["uri"] = uri
+        self.write(name, json.dumps(self.gltf))
+
+    def refused(self, *arguments, says):
+        """The run is wrong usage, for that reason, and changes nothing."""
+        before = {name: self.read(name) for name in self.files()
+                  if os.path.isfile(self.path(name))}
+        result = self.run_pliant(*arguments, code=2)
+        self.assertRegex(result.stderr, says)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertEqual({name: self.read(name) for name in before}, before)
+
+    def test_no_output_takes_the_place_of_what_a_mesh_refers_to(self):
+        made_from = r"would overwrite \S*buffers\.bin, which the scene is made from"
+        refers = "it is a file that a mesh of the scene refers to; choose another name"
+        self.refused("bake", "mesh.xml", "-o", "buffers.gltf", says=made_from)
+        self.refused("bake", "mesh.xml", "-o", "a.npy", "--regions", "buffers.bin",
+                     says="--regions buffers.bin: it is a file that a mesh of the scene refers to")
+        self.refused("replay", "record", "mesh.xml", "-o", "buffers.bin",
+                     says="would take the place of a file that a mesh of the scene refers to")
+        if HAS_PAGE:
+            self.refused("view", "mesh.xml", "-o", "buffers.bin", says=refers)
+            self.refused("view", "mesh.xml", "--png", "buffers.bin", says=refers)
+        for ending in ("npy", "pc2", "mdd", "glb", "usda", "csv", "svg"):
+            os.rename(self.path("buffers.bin"), self.path("n." + ending))
+            self.refer_to("n." + ending)
+            if ending in ("csv", "svg"):
+                self.refused("curves", "mesh.xml", "-o", "n." + ending,
+                             says=f"-o n.{ending}: {refers}")
+            else:
+                self.refused("bake", "mesh.xml", "-o", "n." + ending,
+                             says=rf"would overwrite \S*n\.{ending}, which")
+            os.rename(self.path("n." + ending), self.path("buffers.bin"))
+        os.rename(self.path("buffers.bin"), self.path("s.0002.obj"))
+        self.refer_to("s.0002.obj")
+        self.refused("bake", "mesh.xml", "-o", "s.obj", says=r"would overwrite \S*s\.0002\.obj")
+
+    def test_an_input_is_known_under_the_name_that_a_link_hides(self):
+        os.rename(self.path("buffers.bin"), self.path("real.bin"))
+        os.symlink("real.bin", self.path("buffers.bin"))
+        self.refused("bake", "mesh.xml", "-o", "real.gltf", says=r"would overwrite \S*real\.bin")
+        os.rename(self.path("head.gltf"), self.path("a.gltf"))
+        os.symlink("a.gltf", self.path("head.gltf"))
+        self.refused("bake", "mesh.xml", "-o", "a.gltf", says=r"would overwrite \S*head\.gltf")
+
+    def test_curves_overwrite_neither_the_scene_nor_the_frames(self):
+        os.rename(self.path("mesh.xml"), self.path("mesh.csv"))
+        self.refused("curves", "mesh.csv", "-o", "mesh.csv", says="it is the scene")
+        self.write("frames.csv", "1\n2\n")
+        self.refused("curves", "mesh.csv", "--at", "frames.csv", "-o", "frames.csv",
+                     says="it is that of --at")
+
+    def test_what_a_mesh_refers_to_lies_in_the_scenes_folder(self):
+        self.run_pliant("validate", "mesh.xml")
+        outside = r"head\.gltf: error: the file refers to \"%s\", which lies outside \S*"
+        os.mkdir(self.path("shot"))
+        shutil.copy(self.path("mesh.xml"), self.path("shot/mesh.xml"))
+        shutil.copy(self.path("head.gltf"), self.path("shot/head.gltf"))
+        self.assertIn("No such file", self.run_pliant("validate", "shot/mesh.xml", code=2).stderr)
+        self.refer_to("../buffers.bin", "shot/head.gltf")
+        commands = [["validate"], ["info"], ["bake", "-o", "a.npy"],
+                    ["replay", "record", "-o", "a.replay"]]
+        if HAS_PAGE:
+            commands.append(["view", "-o", "a.html"])
+        for command in commands:
+            self.refused(*command, "shot/mesh.xml", says=outside % r"\.\./buffers\.bin")
+            self.run_pliant(*command, "shot/mesh.xml", "--root", ".")
+        self.run_pliant("replay", "verify", "a.replay", "--root", ".")
+        self.assertIn("lies outside", self.run_pliant("replay", "verify", "a.replay", code=2).stderr)
+        self.run_pliant("curves", "shot/mesh.xml", "--root", ".")
+        os.symlink("../buffers.bin", self.path("shot/near.bin"))
+        self.refer_to("near.bin", "shot/head.gltf")
+        self.refused("validate", "shot/mesh.xml", says=outside % r"near\.bin")
+        self.run_pliant("validate", "shot/mesh.xml", "--root", self.folder)
+        for uri, says in (("/etc/passwd", "which is an absolute path"),
+                          ("file:///etc/passwd", 'the scheme "file"'),
+                          ("http://localhost/a.bin", 'the scheme "http"'),
+                          ("%2Fetc%2Fpasswd", "which is an absolute path"),
+                          ("../../../../../../etc/passwd", "which lies outside")):
+            self.refer_to(uri)
+            self.refused("bake", "mesh.xml", "-o", "a.npy", says=says)
+
+    def test_a_mesh_itself_may_lie_anywhere(self):
+        os.mkdir(self.path("shot"))
+        text = self.read("mesh.xml").decode("utf-8")
+        self.write("shot/mesh.xml", text.replace("head.gltf", "../head.gltf"))
+        self.refused("validate", "shot/mesh.xml", says="which lies outside")
+        self.run_pliant("validate", "shot/mesh.xml", "--root", ".")
+        self.run_pliant("bake", "mesh.xml", "-o", "a.obj", "--frames", "1")
+        self.write("shot/obj.xml", text.replace("head.gltf", "../a.0001.obj"))
+        self.run_pliant("validate", "shot/obj.xml")
+
+    def test_a_root_is_a_folder(self):
+        commands = [["validate"], ["info"], ["bake", "-o", "a.npy"], ["curves"],
+                    ["replay", "record", "-o", "a.replay"]]
+        if HAS_PAGE:
+            commands.append(["view"])
+        for command in commands:
+            for root in ("none", "mesh.xml"):
+                self.refused(*command, "mesh.xml", "--root", root, says=f"--root {root}: is no folder")
+
+    def test_a_replay_knows_what_a_mesh_refers_to(self):
+        self.run_pliant("replay", "record", "mesh.xml", "-o", "run.replay")
+        head = json.loads(self.read("run.replay").splitlines()[0])
+        self.assertEqual([file["name"] for file in head["files"]], ["head.gltf", "buffers.bin"])
+        with open(self.path("buffers.bin"), "ab") as file:
+            file.write(b"more")  # behind what is read
+        told = self.run_pliant("replay", "verify", "run.replay")
+        self.assertEqual(told.stderr, "run.replay: note: the file buffers.bin was changed\n")
+        with open(self.path("buffers.bin"), "wb") as file:
+            file.write(b"cut")
+        told = self.run_pliant("replay", "verify", "run.replay", code=2)
+        self.assertRegex(told.stderr, r"buffers\[0\] has 3 of its \d+ bytes")
+        self.assertIn("the file buffers.bin was changed", told.stderr)
+
+    def test_a_save_of_what_a_mesh_refers_to_is_seen(self):
+        if not HAS_PAGE:
+            self.skipTest("this build has no page")
+        server = subprocess.Popen([PLIANT, "view", "mesh.xml", "--serve"], cwd=self.folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.kill)
+        told = b""
+        with selectors.DefaultSelector() as ready:
+            ready.register(server.stdout, selectors.EVENT_READ)
+            for bakes in (1, 2):
+                while told.count(b" frames, ") < bakes:
+                    self.assertTrue(ready.select(timeout=60), told)
+                    told += os.read(server.stdout.fileno(), 4096)
+                with open(self.path("buffers.bin"), "ab") as file:
+                    file.write(b"more")
+
+    def test_a_file_that_is_something_else_is_not_quoted(self):
+        secret = "root:secret:0:0:the secret:/root\n"
+        for name in ("scene.xml", "a.obj", "a.ply", "a.gltf", "a.glb", "a.replay", "frames"):
+            self.write(name, secret)
+        text = self.read("mesh.xml").decode("utf-8")
+        commands = [["validate", "scene.xml"], ["replay", "verify", "a.replay"],
+                    ["curves", "mesh.xml", "--at", "frames"]]
+        for mesh in ("a.obj", "a.ply", "a.gltf", "a.glb"):
+            self.write(mesh + ".xml", text.replace("head.gltf", mesh))
+            commands.append(["validate", mesh + ".xml"])
+        self.write("page.xml", "<html><p class=secret>secret</html>")
+        commands.append(["validate", "page.xml"])
+        for command in commands:
+            told = self.run_pliant(*command, code=2)
+            self.assertNotIn("secret", told.stdout + told.stderr, command)
+            self.assertEqual(len(told.stderr.splitlines()), 1, told.stderr)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,81 @@
+#include "pliant/scene/inputs.hpp"
+
+#include <string>
+#include <vector>
+
+#include "pliant/scene/read.hpp"
+#include "support/catch.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+
+namespace {
+
+// A glTF that refers to these, be there anything in them or not.
+std::string gltf_with(const std::vector<std::string>& uris) {
+  std::string buffers;
+  for (const std::string& uri : uris)
+    buffers += (buffers.empty() ? "" : ",") + (R"({"byteLength":0,"uri":")" + uri + "\"}");
+  return R"({"asset":{"version":"2.0"},"scenes":[{}],"buffers":[)" + buffers + "]}";
+}
+
+std::string scene_with(const std::vector<std::string>& meshes) {
+  std::string surfaces;
+  for (const std::string& mesh : meshes) {
+    surfaces += "<surface name=\"s" + std::to_string(surfaces.size()) + "\"><mesh file=\"" + mesh +
+                "\"/></surface>";
+  }
+  return "<scene version=\"1\">" + surfaces + "</scene>";
+}
+
+}  // namespace
+
+TEST_CASE("a scene's inputs are all files that reading it opens", "[scene][inputs]") {
+  const ScratchFolder folder;
+  const auto real = std::filesystem::canonical(folder.path());
+  folder.write("a.gltf", gltf_with({"a.bin", "more.bin", "a.bin", "data:;base64,", "../out.bin"}));
+  folder.write("b.GLTF", gltf_with({"more.bin"}));
+  folder.write("c.gltf", "rubbish");
+  const auto file = folder.write(
+      "scene.xml", scene_with({"a.gltf", "b.GLTF", "a.gltf", "c.gltf", "none.glb", "d.obj"}));
+  const auto inputs = inputs_of(load_scene(file).value());
+  struct Expected {
+    std::filesystem::path file;
+    std::string_view role;
+  };
+  const std::string_view mesh = "a mesh of the scene";
+  const std::string_view reference = "a file that a mesh of the scene refers to";
+  const std::vector<Expected> expected = {{file, "the scene"},
+                                          {folder.file("a.gltf"), mesh},
+                                          {real / "a.bin", reference},
+                                          {real / "more.bin", reference},
+                                          {folder.file("b.GLTF"), mesh},
+                                          {folder.file("c.gltf"), mesh},
+                                          {folder.file("none.glb"), mesh},
+                                          {folder.file("d.obj"), mesh}};
+  REQUIRE(inputs.size() == expected.size());
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    CHECK(inputs[k].file == expected[k].file);
+    CHECK(inputs[k].role == expected[k].role);
+  }
+}
+
+TEST_CASE("a scene's root is its folder, another one, or each mesh's own", "[scene][inputs]") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.file("shot"));
+  folder.write("near.bin", "");
+  const auto mesh = folder.write("shot/a.gltf", gltf_with({"../near.bin", "own.bin"}));
+  const auto file = folder.write("shot/scene.xml", scene_with({"a.gltf"}));
+  CHECK(inputs_of(load_scene(file).value()).size() == 3);
+  CHECK(inputs_of(load_scene(file, folder.path()).value()).size() == 4);
+  CHECK(inputs_of(parse_scene(scene_with({"a.gltf"}), "x", folder.file("shot")).value()).size() ==
+        3);
+  Scene scene;
+  scene.surfaces.push_back({.name = "s", .shape = MeshFile{.path = mesh}});
+  CHECK(inputs_of(scene).size() == 2);
+  CHECK(inputs_of(Scene{}).empty());
+  // In the current folder: not that of a mesh elsewhere.
+  const auto parsed = parse_scene(scene_with({mesh.string()}), "x", "").value();
+  CHECK(std::get<MeshFile>(parsed.surfaces.front().shape).root == ".");
+}
