@@ -7,7 +7,7 @@
 
 #include "cache.hpp"
 #include "resources.hpp"
-#include "root.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 

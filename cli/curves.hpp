@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "root.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -42,11 +43,26 @@ Result<std::string> read_standard_input() {
 
 }  // namespace
 
+void add_root(CLI::App& command, Root& root) {
+  command.add_option("--root", root,
+                     "Folder that the files which meshes refer to lie in, or below; that of the "
+                     "scene by default");
+}
+
+Result<std::filesystem::path> folder_of(const Root& root) {
+  if (!root) return std::filesystem::path();
+  std::error_code ignored;
+  if (std::filesystem::is_directory(*root, ignored)) return std::filesystem::path(*root);
+  return fail(ErrorCode::InvalidInput, fmt::format("--root {}: is no folder", printable(*root)));
+}
+
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
 Result<Scene> read_scene(const std::string& scene, const Root& root) {
+  const auto folder = folder_of(root);
+  if (!folder) return fail(folder.error());
   if (!is_standard_input(scene)) {
-    auto loaded = load_scene(scene, root);
+    auto loaded = load_scene(scene, *folder);
     if (!loaded && was_interrupted()) return interrupted();  // a pipe was waited for
     return loaded;
   }
@@ -54,8 +70,6 @@ Result<Scene> read_scene(const std::string& scene, const Root& root) {
     return fail(ErrorCode::InvalidInput,
                 "SCENE -: the standard input is a terminal; give a file, or a pipe: … | pliant");
   }
-  const auto folder = folder_of(root);
-  if (!folder) return fail(folder.error());
   const auto text = read_standard_input();
   if (!text) return fail(text.error());
   return parse_scene(*text, name, {}, *folder);

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "resources.hpp"
-#include "root.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 

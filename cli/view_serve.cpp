@@ -17,8 +17,8 @@
 #include "cache.hpp"
 #include "interrupt.hpp"
 #include "pliant/scene/inputs.hpp"
-#include "pliant/scene/read.hpp"
 #include "report.hpp"
+#include "scene_input.hpp"
 #include "view_scene.hpp"
 #include "view_server.hpp"
 
@@ -100,7 +100,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
   // Watched from before it is read, so that no save is missed.
   auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
   server.tell_working();
-  auto scene = load_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root);
   if (!scene) {
     report(scene.error());
     server.tell_failure(to_json(scene.error()));
