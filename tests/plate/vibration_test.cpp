@@ -1,7 +1,9 @@
 #include "pliant/plate/vibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "support/catch.hpp"
@@ -14,7 +16,7 @@ namespace {
 double smallest(const Grid& grid, const Stiffness& stiffness,
                 SolverKind kind = available_solvers().front()) {
   const auto solver = make_solver(kind);
-  return smallest_eigenvalue(*solver, grid, stiffness).value();
+  return smallest_eigenvalue(*solver, {grid, stiffness, 0}).value();
 }
 
 // The slow way: all eigenvalues of the full matrix.
@@ -59,4 +61,68 @@ TEST_CASE("a sliver's close eigenvalues do not stop the search", "[plate][vibrat
   const double strip = smallest({25, 601, h, h}, {});
   CHECK(strip > 0.97 * 22.373 * 22.373);
   CHECK(strip < 1.03 * 22.373 * 22.373);
+}
+
+TEST_CASE("a plate of another outline vibrates as its full matrix says", "[plate][vibration]") {
+  // An L: the square without its upper right quarter.
+  const Grid grid{13, 13, 1.0 / 12, 1.0 / 12};
+  InteriorMask interior(static_cast<std::size_t>(grid.node_count()), 0);
+  for (int j = 1; j < 12; ++j) {
+    for (int i = 1; i < 12; ++i) {
+      if (i < 6 || j < 6) interior[static_cast<std::size_t>(grid.node(i, j))] = 1;
+    }
+  }
+  const PlateSystem system{grid, {1, 2, 3}, 0, interior};
+  const Eigen::MatrixXd matrix = assemble_upper(system);
+  const double expected =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>())
+          .eigenvalues()(0);
+  const auto solver = make_solver();
+  CHECK_THAT(smallest_eigenvalue(*solver, system).value(), WithinRel(expected, 1e-6));
+}
+
+TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate][vibration]") {
+  const SolverKind kind = GENERATE(from_range(available_solvers()));
+  const auto solver = make_solver(kind);
+  for (const Grid& grid : {Grid{15, 12, 0.07, 0.1}, Grid{4, 3, 1, 1}, Grid{3, 3, 1, 1}}) {
+    const PlateSystem system{grid, {1, 2, 2}, 0};
+    const Eigen::MatrixXd matrix = assemble_upper(system);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
+        matrix.selfadjointView<Eigen::Upper>());
+    // What a load on a few nodes, off the middle, holds.
+    const Eigen::Index size = unknown_count(system);
+    Eigen::VectorXd load = Eigen::VectorXd::Zero(size);
+    load(size / 3) = 2;
+    load(size / 2) = 1;
+    const Eigen::VectorXd shape =
+        matrix.selfadjointView<Eigen::Upper>().toDenseMatrix().ldlt().solve(load);
+    const Eigen::Index node = size / 3;
+    const auto modes = excited_modes(*solver, system, shape, node).value();
+    double shares = 0;
+    for (const ExcitedMode& mode : modes) shares += mode.share;
+    CHECK_THAT(shares, WithinRel(1.0, 1e-9));
+    CHECK(std::is_sorted(modes.begin(), modes.end(),
+                         [](const auto& a, const auto& b) { return a.lambda < b.lambda; }));
+    // The slowest ones, each by itself.
+    const std::size_t compared = std::min<std::size_t>(modes.size(), size == 130 ? 4 : 1);
+    for (std::size_t k = 0; k < compared; ++k) {
+      const auto vector = all.eigenvectors().col(static_cast<Eigen::Index>(k));
+      CAPTURE(grid.columns, k);
+      CHECK_THAT(modes[k].lambda, WithinRel(all.eigenvalues()(static_cast<Eigen::Index>(k)), 1e-6));
+      CHECK_THAT(modes[k].share, WithinAbs(vector.dot(shape) * vector(node) / shape(node), 1e-6));
+    }
+  }
+}
+
+TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[plate][vibration]") {
+  const Grid grid{21, 21, 0.05, 0.05};
+  Eigen::VectorXd shape(unknown_count(grid));
+  for (Eigen::Index k = 0; k < shape.size(); ++k) {
+    const double x = static_cast<double>(k % 19 + 1) / 20, y = static_cast<double>(k / 19 + 1) / 20;
+    shape(k) = x * (1 - x) * y * (1 - y) * (x - 0.5);
+  }
+  const auto solver = make_solver();
+  const PlateSystem system{grid, {}, 0};
+  const auto modes = excited_modes(*solver, system, shape, 3).value();
+  CHECK(modes[0].lambda > 2 * smallest_eigenvalue(*solver, system).value());
 }

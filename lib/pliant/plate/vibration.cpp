@@ -1,5 +1,6 @@
 #include "pliant/plate/vibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,40 +14,44 @@ namespace {
 
 // Shapes that meet the clamped rim: a bump, and the bump odd along u and along v. Whatever the
 // symmetry of the slowest vibration, one of them has a part in it.
-Field starting_shapes(const Grid& grid) {
-  Field shapes(unknown_count(grid), 3);
-  Eigen::Index row = 0;
-  for (int j = 1; j < grid.rows - 1; ++j) {
+Field starting_shapes(const PlateSystem& system) {
+  const Grid& grid = system.grid;
+  Field shapes(grid.node_count(), 3);
+  for (int j = 0; j < grid.rows; ++j) {
     const double y = static_cast<double>(j) / (grid.rows - 1);
-    for (int i = 1; i < grid.columns - 1; ++i, ++row) {
+    for (int i = 0; i < grid.columns; ++i) {
       const double x = static_cast<double>(i) / (grid.columns - 1);
       const double bump = x * (1 - x) * y * (1 - y);
       // A little off the middle, so that no shape is orthogonal to one that it should find.
-      shapes.row(row) << bump, bump * (x - 0.49), bump * (y - 0.51);
+      shapes.row(grid.node(i, j)) << bump, bump * (x - 0.49), bump * (y - 0.51);
     }
   }
-  return shapes;
+  return interior_of(grid, system.interior, shapes);
+}
+
+Result<void> make_ready(LinearSolver& solver, const PlateSystem& system) {
+  PLIANT_EXPECTS(system.shift == 0 && unknown_count(system) >= 1);
+  return solver.factor(system);
 }
 
 }  // namespace
 
-Result<double> smallest_eigenvalue(LinearSolver& solver, const Grid& grid,
-                                   const Stiffness& stiffness, const StopRequest& should_stop) {
-  PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
-  if (auto factored = solver.factor({grid, stiffness, 0}); !factored) return fail(factored.error());
+Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& system,
+                                   const StopRequest& should_stop) {
+  if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
   // Inverse iteration on three shapes at once. In their span the eigenvalues mu of the inverse are
   // those of x^T x = mu x^T (L x) for the solutions x of L x = shapes; the largest mu is 1 /
   // lambda.
-  Field shapes = starting_shapes(grid);
+  Field shapes = starting_shapes(system);
   double lambda = std::numeric_limits<double>::infinity();
   constexpr int most_passes = 500;
   for (int pass = 0; pass < most_passes; ++pass) {
     if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
     auto solutions = solver.solve(shapes);
     if (!solutions) return fail(solutions.error());
-    if (grid.node_count() == 9) return shapes(0, 0) / (*solutions)(0, 0);  // one unknown
-    const Eigen::Matrix3d energy = solutions->transpose() * shapes;        // x^T L x
+    if (shapes.rows() == 1) return shapes(0, 0) / (*solutions)(0, 0);
+    const Eigen::Matrix3d energy = solutions->transpose() * shapes;  // x^T L x
     const Eigen::Matrix3d mass = solutions->transpose() * *solutions;
     // Fewer than three unknowns leave the shapes dependent; the diagonal is then shifted by less
     // than what counts.
@@ -61,6 +66,48 @@ Result<double> smallest_eigenvalue(LinearSolver& solver, const Grid& grid,
     for (int k = 0; k < 3; ++k) shapes.col(k) /= shapes.col(k).norm();
   }
   return lambda;
+}
+
+Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const PlateSystem& system,
+                                               const Eigen::VectorXd& shape, Eigen::Index node,
+                                               const StopRequest& should_stop) {
+  PLIANT_EXPECTS(shape.size() == unknown_count(system) && shape(node) != 0);
+  if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
+
+  // Q^T inverse(L) Q = T is tridiagonal, the first column of Q being the shape's direction. Each
+  // new direction is taken apart from all before it, twice, so that none comes again by rounding.
+  constexpr Eigen::Index most = 24;
+  const Eigen::Index size = std::min<Eigen::Index>(most, shape.size());
+  Eigen::MatrixXd basis(shape.size(), size);
+  Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(size, size);
+  basis.col(0) = shape / shape.norm();
+  Eigen::Index count = 1;
+  for (;; ++count) {
+    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    Field right_hand_side = Field::Zero(shape.size(), 3);
+    right_hand_side.col(0) = basis.col(count - 1);
+    auto solved = solver.solve(right_hand_side);
+    if (!solved) return fail(solved.error());
+    Eigen::VectorXd next = solved->col(0);
+    projected(count - 1, count - 1) = basis.col(count - 1).dot(next);
+    const auto known = basis.leftCols(count);
+    for (int pass = 0; pass < 2; ++pass) next -= known * (known.transpose() * next).eval();
+    const double rest = next.norm();
+    // The shape is a sum of few modes, and all are found.
+    if (count == size || rest <= 1e-12 * projected(0, 0)) break;
+    projected(count, count - 1) = projected(count - 1, count) = rest;
+    basis.col(count) = next / rest;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(projected.topLeftCorner(count, count));
+  std::vector<ExcitedMode> excited;
+  for (Eigen::Index k = count - 1; k >= 0; --k) {
+    const double inverse = modes.eigenvalues()(k);
+    if (!(inverse > 0)) continue;  // by rounding; as fast as nothing else
+    const double at_node = basis.row(node).head(count).dot(modes.eigenvectors().col(k));
+    excited.push_back(
+        {1 / inverse, shape.norm() * at_node * modes.eigenvectors()(0, k) / shape(node)});
+  }
+  return excited;
 }
 
 }  // namespace pliant

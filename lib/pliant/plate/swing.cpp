@@ -1,0 +1,139 @@
+#include "pliant/plate/swing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+using Complex = std::complex<double>;
+
+// The roots s of rho s^2 + eta s + lambda = 0, the slower one first; without inertia the second is
+// minus infinity. Eq. (38). The larger one of two real roots comes from their product: nothing
+// cancels.
+struct Roots {
+  Complex slow;
+  Complex fast;
+};
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Roots roots_of(double lambda, const Dynamics& dynamics) {
+  const auto& [rho, eta] = dynamics;
+  if (rho == 0) return {eta > 0 ? -lambda / eta : -infinite, -infinite};
+  const double half = eta / (2 * rho);
+  const double square = half * half - lambda / rho;
+  if (square < 0) return {{-half, std::sqrt(-square)}, {-half, -std::sqrt(-square)}};
+  const double fast = -(half + std::sqrt(square));
+  return {lambda / (rho * fast), fast};
+}
+
+// What a root is from frame to frame: eq. (39) [1/s].
+Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
+  if (std::isinf(root.real())) return -infinite;
+  return -static_cast<double>(steps.count) * std::log(1.0 - root * steps.length) / frame_length;
+}
+
+// Eq. (40).
+Swing swing_of(const Complex& slow, const Complex& fast) {
+  if (std::isinf(fast.real())) return {0, infinite};
+  const double omega = std::sqrt((slow * fast).real());
+  return {std::abs(slow.imag()) / (2 * std::numbers::pi), -(slow + fast).real() / (2 * omega)};
+}
+
+// e of eq. (41): how far a mode is from where it will be, from frame to frame, the load's
+// displacement being 1: (q, q of a step ago).
+class Deviation {
+ public:
+  Deviation(double lambda, const Dynamics& dynamics, const TimeSteps& steps) {
+    const double h = steps.length;
+    const double inertia = dynamics.density, drag = dynamics.damping * h;
+    const double whole = inertia + drag + lambda * h * h;
+    Matrix power = {(2 * inertia + drag) / whole, -inertia / whole, 1, 0};
+    for (int left = steps.count; left > 0; left /= 2) {
+      if (left % 2 == 1) frame_ = product(power, frame_);
+      power = product(power, power);
+    }
+  }
+
+  double now() const { return now_; }
+  void advance() {
+    const double next = frame_[0] * now_ + frame_[1] * before_;
+    before_ = frame_[2] * now_ + frame_[3] * before_;
+    now_ = next;
+  }
+
+ private:
+  using Matrix = std::array<double, 4>;
+
+  static Matrix product(const Matrix& a, const Matrix& b) {
+    return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
+            a[2] * b[1] + a[3] * b[3]};
+  }
+
+  Matrix frame_ = {1, 0, 0, 1};
+  double now_ = 1, before_ = 1;  // at rest, away from where the load will hold it
+};
+
+}  // namespace
+
+Swing natural_swing(double lambda, const Dynamics& dynamics) {
+  PLIANT_EXPECTS(lambda > 0);
+  const auto& [rho, eta] = dynamics;
+  if (rho == 0) return {0, infinite};
+  return {std::sqrt(lambda / rho) / (2 * std::numbers::pi), eta / (2 * std::sqrt(lambda * rho))};
+}
+
+Swing stepped_swing(double lambda, const Dynamics& dynamics, const TimeSteps& steps,
+                    double frame_length) {
+  PLIANT_EXPECTS(lambda > 0 && frame_length > 0);
+  const Roots roots = roots_of(lambda, dynamics);
+  return swing_of(seen(roots.slow, steps, frame_length), seen(roots.fast, steps, frame_length));
+}
+
+Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamics,
+                     const TimeSteps& steps, double frame_length, double part) {
+  PLIANT_EXPECTS(!modes.empty() && part > 0 && part < 1 && frame_length > 0);
+  double shares = 0, slowest = infinite;  // [1/s]
+  for (const ExcitedMode& mode : modes) {
+    shares += std::abs(mode.share);
+    const double rate =
+        -seen(roots_of(mode.lambda, dynamics).slow, steps, frame_length).real() * frame_length;
+    if (std::abs(mode.share) > 1e-6) slowest = std::min(slowest, rate);
+  }
+  // Envelopes: by twice the time that the slowest takes, all have come down, also near a double
+  // root, where one lasts a little longer than its rate says.
+  const double envelope = std::log(std::max(1.0, shares) / part) / slowest;
+  constexpr double most_frames = 100'000;
+  if (2 * envelope + 10 > most_frames) {
+    return {envelope * frame_length, static_cast<int>(std::min(std::ceil(envelope), 1e9)), false};
+  }
+  std::vector<Deviation> deviations;
+  for (const ExcitedMode& mode : modes) deviations.emplace_back(mode.lambda, dynamics, steps);
+  const auto deviation_now = [&] {
+    double sum = 0;
+    for (std::size_t k = 0; k < modes.size(); ++k) sum += modes[k].share * deviations[k].now();
+    return sum;
+  };
+  Settling settling;
+  double before = deviation_now();
+  for (int frame = 1; frame <= 2 * envelope + 10; ++frame) {
+    for (Deviation& deviation : deviations) deviation.advance();
+    const double now = deviation_now();
+    if (std::abs(before) > part && std::abs(now) <= part) {
+      const double way = (std::abs(before) - part) / std::abs(before - now);
+      settling = {(frame - 1 + way) * frame_length, frame, true};
+    }
+    before = now;
+  }
+  return settling;
+}
+
+}  // namespace pliant

@@ -1,0 +1,148 @@
+#include "pliant/plate/swing.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+
+namespace {
+
+constexpr double frame_length = 1.0 / 24;
+
+// The slow way: eq. (8) with a single unknown, a load of lambda that would hold it at 1, from rest.
+// The unknown at each frame.
+std::vector<double> played(double lambda, const Dynamics& dynamics, const TimeSteps& steps,
+                           int frames) {
+  const auto& [rho, eta] = dynamics;
+  const double h = steps.length;
+  const double shift = rho / (h * h) + eta / h;
+  double w = 0, v = 0;
+  std::vector<double> shown = {w};
+  for (int frame = 0; frame < frames; ++frame) {
+    for (int step = 0; step < steps.count; ++step) {
+      const double next = (lambda + shift * w + rho / h * v) / (lambda + shift);
+      v = (next - w) / h;
+      w = next;
+    }
+    shown.push_back(w);
+  }
+  return shown;
+}
+
+// Frames from which on all that is played stays within 5 % of 1.
+int settled_frames(const std::vector<double>& shown) {
+  int settled = static_cast<int>(shown.size());
+  while (settled > 0 && std::abs(shown[static_cast<std::size_t>(settled) - 1] - 1) <= 0.05) {
+    --settled;
+  }
+  return settled;
+}
+
+}  // namespace
+
+TEST_CASE("a vibration in frames is what the steps make of it", "[plate][swing]") {
+  // Crossings of the place of rest are half a period apart, and tops next to each other tell the
+  // damping.
+  for (const double lambda : {400.0, 2000.0}) {
+    for (const double eta : {0.0, 3.0}) {
+      for (const TimeSteps& steps : {TimeSteps{1, frame_length}, TimeSteps{5, frame_length / 5},
+                                     TimeSteps{5, 0.01}, TimeSteps{100, frame_length / 100}}) {
+        const Dynamics dynamics{2, eta};
+        CAPTURE(lambda, eta, steps.count, steps.length);
+        const Swing swing = stepped_swing(lambda, dynamics, steps, frame_length);
+        REQUIRE(swing.damping_ratio > 0);
+        REQUIRE(swing.damping_ratio < 1);
+        // w - 1 = exp(-decay t) (p cos(omega t) + q sin(omega t)) in frames: three of them in a row
+        // obey a recurrence with just these coefficients.
+        const double omega = 2 * std::numbers::pi * swing.frequency;
+        const double decay =
+            omega * swing.damping_ratio / std::sqrt(1 - swing.damping_ratio * swing.damping_ratio);
+        const double middle = 2 * std::exp(-decay * frame_length) * std::cos(omega * frame_length);
+        const double last = std::exp(-2 * decay * frame_length);
+        const auto shown = played(lambda, dynamics, steps, 12);
+        for (std::size_t k = 2; k < shown.size(); ++k) {
+          CHECK_THAT(shown[k] - 1,
+                     WithinAbs(middle * (shown[k - 1] - 1) - last * (shown[k - 2] - 1), 1e-11));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("short steps leave a vibration as nature has it", "[plate][swing]") {
+  const Dynamics dynamics{3, 20};
+  const Swing natural = natural_swing(500, dynamics);
+  CHECK_THAT(natural.damping_ratio, WithinRel(20 / (2 * std::sqrt(1500.0)), 1e-14));
+  const Swing stepped = stepped_swing(500, dynamics, {40'000, frame_length / 40'000}, frame_length);
+  CHECK_THAT(stepped.damping_ratio, WithinRel(natural.damping_ratio, 1e-4));
+  const double damped =
+      natural.frequency * std::sqrt(1 - natural.damping_ratio * natural.damping_ratio);
+  CHECK_THAT(stepped.frequency, WithinRel(damped, 1e-4));
+  // Each step of backward Euler takes energy away: half of omega dt is what it adds at first.
+  const Swing coarse = stepped_swing(500, {3, 0}, {100, frame_length / 100}, frame_length);
+  CHECK_THAT(coarse.damping_ratio, WithinRel(std::sqrt(500.0 / 3) * frame_length / 100 / 2, 0.01));
+}
+
+TEST_CASE("what does not swing has no frequency", "[plate][swing]") {
+  const TimeSteps steps{5, frame_length / 5};
+  for (const double eta : {100.0, 1e6}) {
+    const Swing creeping = stepped_swing(500, {3, eta}, steps, frame_length);
+    CHECK(creeping.frequency == 0);
+    CHECK(creeping.damping_ratio > 1);
+  }
+  CHECK(natural_swing(500, {0, 4}).frequency == 0);
+  for (const double eta : {0.0, 4.0}) {  // without inertia
+    const Swing massless = stepped_swing(500, {0, eta}, steps, frame_length);
+    CHECK(massless.frequency == 0);
+    CHECK(massless.damping_ratio == std::numeric_limits<double>::infinity());
+  }
+}
+
+TEST_CASE("settling is counted as it is played", "[plate][swing]") {
+  for (const double lambda : {30.0, 400.0, 2000.0}) {
+    for (const Dynamics& dynamics : {Dynamics{2, 1}, Dynamics{2, 40}, Dynamics{2, 2000},
+                                     Dynamics{0, 300}, Dynamics{0, 0}, Dynamics{2, 0}}) {
+      for (const TimeSteps& steps : {TimeSteps{1, frame_length}, TimeSteps{5, frame_length / 5},
+                                     TimeSteps{5, 0.01}, TimeSteps{1, 1}}) {
+        CAPTURE(lambda, dynamics.density, dynamics.damping, steps.count, steps.length);
+        const auto shown = played(lambda, dynamics, steps, 20'000);
+        const int frames = settled_frames(shown);
+        REQUIRE(frames < 10'000);
+        const std::vector<ExcitedMode> modes = {{lambda, 1}};
+        const Settling settling = settling_of(modes, dynamics, steps, frame_length);
+        CHECK(settling.is_counted);
+        CHECK(settling.frames == frames);
+        CHECK(settling.time <= frames * frame_length);
+        CHECK(settling.time >= (frames - 1) * frame_length);
+      }
+    }
+  }
+}
+
+TEST_CASE("several vibrations settle together", "[plate][swing]") {
+  const Dynamics dynamics{2, 5};
+  const TimeSteps steps{5, frame_length / 5};
+  const auto slow = played(100, dynamics, steps, 5000);
+  const auto fast = played(3000, dynamics, steps, 5000);
+  for (const double share : {0.03, 0.5, 1.3}) {  // the last one: they are against each other
+    std::vector<double> shown;
+    for (std::size_t k = 0; k < slow.size(); ++k) {
+      shown.push_back(share * slow[k] + (1 - share) * fast[k]);
+    }
+    const std::vector<ExcitedMode> modes = {{100, share}, {3000, 1 - share}};
+    CHECK(settling_of(modes, dynamics, steps, frame_length).frames == settled_frames(shown));
+  }
+}
+
+TEST_CASE("what takes years to settle is told by its envelope", "[plate][swing]") {
+  const std::vector<ExcitedMode> modes = {{1e-6, 1}};
+  const Settling settling = settling_of(modes, {0, 4}, {1, frame_length}, frame_length);
+  CHECK_FALSE(settling.is_counted);
+  CHECK_THAT(settling.time, WithinRel(4e6 * std::log(20), 1e-3));
+  CHECK(settling.frames >= settling.time * 24);
+}
