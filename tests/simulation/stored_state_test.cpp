@@ -28,7 +28,8 @@ StoredState some_state(const Field& rest, bool has_marks, double share, unsigned
   stored.facts.is_solved = with_chance(0.5);
   for (int k = 0; k < 3; ++k) {
     stored.facts.forces.push_back({with_chance(0.5), with_chance(0.5), with_chance(0.5),
-                                   with_chance(0.5), with_chance(0.5), with_chance(0.5)});
+                                   with_chance(0.5), with_chance(0.5), with_chance(0.5),
+                                   with_chance(0.5)});
   }
   return stored;
 }

@@ -1,5 +1,7 @@
 #include "pliant/simulation/warnings.hpp"
 
+#include <string>
+
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 
@@ -180,4 +182,86 @@ TEST_CASE("tangents that no force ever selects are a warning", "[simulation][war
   CHECK(warnings_of(s, 5).empty());
   s.surfaces[0].enabled = false;
   CHECK(warnings_of(s, 5).empty());  // nothing is solved on purpose
+}
+
+TEST_CASE("forces far apart in one box are a warning that names them", "[simulation][warnings]") {
+  Scene s =
+      scene({sheet("a", 61)},
+            {poke("right", {20, 0, 0}), poke("left", {-20, 0, 0}), poke("beside", {-14, 0, 2})}, 6);
+  const auto apart = warnings_of(s, 6);
+  REQUIRE(apart.size() == 1);
+  CHECK(apart[0].kind == Warning::Kind::ForcesApart);
+  CHECK(apart[0].surface == "a");
+  CHECK_THAT(
+      apart[0].message(),
+      Contains("\"beside\", \"left\" and \"right\" select boxes of \"a\" that do not meet, at "
+               "frames 1-5:") &&
+          Contains("combine=\"islands\""));
+  for (const Combine combine : {Combine::Islands, Combine::Union}) {
+    s.surfaces[0].solver.combine = combine;
+    CHECK(warnings_of(s, 6).empty());
+  }
+  s.surfaces[0].solver.combine = Combine::Box;
+  Scene told = s;
+  told.origin.lines["a.combine"] = 4;  // combine="box" is written out: it is meant
+  CHECK(warnings_of(told, 6).empty());
+  s.forces[0].enabled = switch_at({{1, true}, {4, false}});
+  REQUIRE(warnings_of(s, 6).size() == 1);
+  CHECK_THAT(warnings_of(s, 6)[0].message(), Contains("at frames 1-3:"));
+  // Once all meet, here by a group's sphere, nothing is apart.
+  s.forces[0].enabled = true;
+  Group hand;
+  hand.name = "hand";
+  hand.deformation_radius = 40;
+  s.groups = {hand};
+  CHECK(warnings_of(s, 6).empty());
+}
+
+TEST_CASE("boxes that meet by a chain, or once others have met, are not apart",
+          "[simulation][warnings]") {
+  // Boxes of 9 x 9 nodes. The chain stands in the scene from its ends to its middle.
+  Scene s = scene({sheet("a", 61)}, {}, 3);
+  for (const double x : {-20.0, 20.0, -13.0, 13.0, 6.0, -6.0, 0.0}) {
+    s.forces.push_back(poke("f" + std::to_string(s.forces.size()), {x, 0, 0}));
+  }
+  CHECK(warnings_of(s, 3).empty());
+  s.forces.pop_back();  // the middle of it
+  const auto apart = warnings_of(s, 3);
+  REQUIRE(apart.size() == 1);
+  CHECK(apart[0].others.size() == 5);
+  // "inside" meets neither of the others, but the box that these two make: islands would be one.
+  s.forces = {poke("inside", {6, 0, -9}), poke("low", {0, 0, -9}), poke("high", {4, 0, -1})};
+  s.forces[0].deformation_radius = s.forces[0].force_radius = 1.5;
+  CHECK(warnings_of(s, 3).empty());
+  s.forces[0].shape = PointChannels{.center = Value<3>{11, 0, -9}};
+  CHECK(warnings_of(s, 3).size() == 1);
+}
+
+TEST_CASE("many frames and many names do not make an endless line", "[simulation][warnings]") {
+  Warning warning{Warning::Kind::ForcesApart, "sheet", "f0", {}};
+  for (int frame = 0; frame < 4000; frame += 2) warning.frames.add(frame);
+  for (int k = 1; k < 300; ++k) warning.others.push_back("f" + std::to_string(k));
+  CHECK_THAT(warning.message(),
+             Contains("\"f0\", \"f1\", \"f2\", \"f3\", \"f4\", \"f5\" and 294 more "
+                      "select boxes"));
+  CHECK_THAT(warning.message(), Contains("more ranges to 3998"));
+  CHECK(warning.message().size() < 500);
+  warning.kind = Warning::Kind::LostNodes;
+  CHECK(warning.message().size() < 300);
+}
+
+TEST_CASE("a group's region is called a group", "[simulation][warnings][group]") {
+  Scene s = scene({sheet("a")}, {poke("palm", {0, 0, 0})}, 5);
+  Group hand;
+  hand.name = "hand";
+  hand.center = Value<3>{0, 50, 0};
+  s.groups = {hand};
+  s.forces[0].group = "hand";
+  const auto missed = warnings_of(s, 5);
+  REQUIRE(missed.size() == 1);
+  CHECK_THAT(missed[0].message(), Contains("group \"hand\" selects no node of any surface"));
+  s.groups.clear();
+  s.forces[0].group.clear();
+  s.forces[0].shape = PointChannels{.center = Value<3>{0, 50, 0}};
+  CHECK_THAT(warnings_of(s, 5)[0].message(), Contains("force \"palm\" selects no node"));
 }

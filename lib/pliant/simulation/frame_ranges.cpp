@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
+
 namespace pliant {
 
 void FrameRanges::add(int frame) {
@@ -24,13 +26,33 @@ void FrameRanges::add(int frame) {
   }
 }
 
-std::string FrameRanges::to_string() const {
+void FrameRanges::add(const FrameRanges& other) {
+  std::vector<std::pair<int, int>> all = ranges_;
+  all.insert(all.end(), other.ranges_.begin(), other.ranges_.end());
+  std::sort(all.begin(), all.end());
+  ranges_.clear();
+  for (const auto& [first, last] : all) {
+    if (ranges_.empty() || ranges_.back().second + 1 < first) {
+      ranges_.emplace_back(first, last);
+    } else {
+      ranges_.back().second = std::max(ranges_.back().second, last);
+    }
+  }
+}
+
+std::string FrameRanges::to_string(std::size_t most) const {
+  PLIANT_EXPECTS(most >= 1);
+  // One that is left out would take as much to say.
+  const std::size_t told = ranges_.size() <= most + 1 ? ranges_.size() : most;
   std::string text;
-  for (const auto& [first, last] : ranges_) {
+  for (std::size_t k = 0; k < told; ++k) {
+    const auto& [first, last] = ranges_[k];
     if (!text.empty()) text += ", ";
     text += first == last ? fmt::to_string(first) : fmt::format("{}-{}", first, last);
   }
-  return text;
+  if (told == ranges_.size()) return text;
+  return text +
+         fmt::format(" and {} more ranges to {}", ranges_.size() - told, ranges_.back().second);
 }
 
 }  // namespace pliant

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,8 +14,12 @@ class FrameRanges {
   /// Adds a frame; adding one twice changes nothing.
   void add(int frame);
 
-  /// As an author reads it: "3", "3-7, 12".
-  std::string to_string() const;
+  /// Adds all frames of `other`.
+  void add(const FrameRanges& other);
+
+  /// As an author reads it: "3", "3-7, 12". Of more than `most` ranges only so many, and what is
+  /// left out: "3-7, 12 and 80 more ranges to 960". Requires: most >= 1.
+  std::string to_string(std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   const std::vector<std::pair<int, int>>& ranges() const { return ranges_; }
 

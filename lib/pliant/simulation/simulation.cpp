@@ -384,7 +384,17 @@ std::vector<Warning> Simulation::warnings() const {
   const bool is_complete =
       scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
                                      ranges.front().second == scene_.end - 1);
-  return warnings_.warnings(is_complete);
+  std::vector<Warning> warnings = warnings_.warnings(is_complete);
+  // Who writes combine="box" out knows what it does.
+  std::erase_if(warnings, [&](const Warning& warning) {
+    return warning.kind == Warning::Kind::ForcesApart &&
+           scene_.origin.lines.contains(warning.surface + ".combine");
+  });
+  for (Warning& warning : warnings) {
+    warning.is_group = std::any_of(scene_.groups.begin(), scene_.groups.end(),
+                                   [&](const Group& group) { return group.name == warning.force; });
+  }
+  return warnings;
 }
 
 // Back to a kept frame, or to the start, where all is at rest.

@@ -19,6 +19,46 @@ bool moves_any(std::span<const Patch> patches, const Box& box) {
   return false;
 }
 
+// Whether any two of the boxes meet; the one then takes the other in.
+bool merge_two(std::vector<Box>& boxes) {
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+      if (intersection(boxes[a], boxes[b]).is_empty()) continue;
+      boxes[a].include(boxes[b]);
+      boxes[b] = boxes.back();
+      boxes.pop_back();
+      return true;
+    }
+  }
+  return false;
+}
+
+// Whether what the forces select would be several islands; as `merged` has it, in memory that
+// stays.
+bool falls_apart(const Selection& selection, std::vector<Box>& room) {
+  // Most often all boxes meet the first one, or what has met it.
+  Box met;
+  for (bool grows = true; grows && met != selection.region;) {
+    grows = false;
+    for (const ForceSelection& force : selection.forces) {
+      const Box& box = force.deformation;
+      if (box.is_empty() || (!met.is_empty() && intersection(met, box).is_empty())) continue;
+      const Box before = met;
+      met.include(box);
+      grows = grows || met != before;
+    }
+  }
+  if (met == selection.region) return false;
+  room.assign(1, met);
+  for (const ForceSelection& force : selection.forces) {
+    const Box& box = force.deformation;
+    if (!box.is_empty() && intersection(met, box).is_empty()) room.push_back(box);
+  }
+  while (merge_two(room)) {
+  }
+  return room.size() > 1;
+}
+
 ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport& report,
                     Combine combine) {
   const ForceSelection& selected = report.selection.forces[k];
@@ -53,6 +93,11 @@ StepFacts facts_of(const SurfaceInputs& inputs, const StepReport& report, Combin
   for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
     facts.forces.push_back(facts_of(k, inputs, report, combine));
   }
+  if (combine == Combine::Box && report.is_solved && falls_apart(report.selection, facts.room)) {
+    for (std::size_t k = 0; k < facts.forces.size(); ++k) {
+      facts.forces[k].is_apart = !report.selection.forces[k].deformation.is_empty();
+    }
+  }
   return facts;
 }
 
@@ -66,6 +111,7 @@ void add_facts(WarningLog& log, std::string_view surface, int frame, const Surfa
     if (of_force.is_too_small) log.add(RegionTooSmall, surface, force, frame);
     if (of_force.is_outside) log.add(OutsideRegion, surface, force, frame);
     if (of_force.is_lost) log.add(LostNodes, surface, force, frame);
+    if (of_force.is_apart) log.add(ForcesApart, surface, force, frame);
     // A force that names its targets is expected to touch each; one for all surfaces, some of them.
     const std::string_view place = source.targets.empty() ? std::string_view() : surface;
     if (source.selects) {

@@ -20,14 +20,19 @@ struct ForceFacts {
   bool pushes = false;           ///< it moves a node
   bool is_lost = false;          ///< it holds nodes of the rest mesh, but none as it stands
 
+  bool is_apart = false;  ///< boxes that do not meet make one region, and its own is one of them
+
   friend bool operator==(const ForceFacts&, const ForceFacts&) = default;
 };
 
 struct StepFacts {
   bool is_solved = false;
   std::vector<ForceFacts> forces = {};
+  std::vector<Box> room = {};  ///< to work in, no fact
 
-  friend bool operator==(const StepFacts&, const StepFacts&) = default;
+  friend bool operator==(const StepFacts& a, const StepFacts& b) {
+    return a.is_solved == b.is_solved && a.forces == b.forces;
+  }
 };
 
 /// In the memory of `reuse`, facts of an earlier step or none.

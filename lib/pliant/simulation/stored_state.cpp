@@ -67,9 +67,11 @@ std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) 
 }
 
 unsigned char bits_of(const ForceFacts& facts) {
-  const auto& [is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost] = facts;
+  const auto& [is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost, is_apart] =
+      facts;
   unsigned bits = 0;
-  for (const bool fact : {is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost}) {
+  for (const bool fact :
+       {is_apart, is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost}) {
     bits = bits << 1 | (fact ? 1u : 0u);
   }
   return static_cast<unsigned char>(bits);
@@ -77,7 +79,7 @@ unsigned char bits_of(const ForceFacts& facts) {
 
 ForceFacts facts_of(unsigned bits) {
   const auto bit = [bits](int place) { return (bits >> place & 1u) != 0; };
-  return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0)};
+  return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
 }
 
 // The runs that follow, as far as they lie within the nodes and in order; else none and unsound.

@@ -4,28 +4,48 @@
 
 namespace pliant {
 
+namespace {
+
+// `"a", "b" and "c"`, or `"a", "b", … and 7 more`.
+std::string names_text(const std::string& first, const std::vector<std::string>& others) {
+  constexpr std::size_t most = 6;
+  const bool is_long = others.size() + 1 > most;
+  const std::size_t told = is_long ? most - 1 : others.size();
+  std::string text = fmt::format("\"{}\"", first);
+  for (std::size_t k = 0; k < told; ++k) {
+    const bool is_last = !is_long && k + 1 == told;
+    text += fmt::format("{}\"{}\"", is_last ? " and " : ", ", others[k]);
+  }
+  return is_long ? text + fmt::format(" and {} more", others.size() - told) : text;
+}
+
+// More than this no line of text is read through.
+constexpr std::size_t most_ranges = 8;
+
+}  // namespace
+
 std::string Warning::message() const {
+  const std::string_view noun = is_group ? "group" : "force";
   const bool is_single = frames.ranges().size() == 1 &&
                          frames.ranges().front().first == frames.ranges().front().second;
-  const std::string when = (is_single ? "at frame " : "at frames ") + frames.to_string();
+  const std::string when = (is_single ? "at frame " : "at frames ") + frames.to_string(most_ranges);
   switch (kind) {
     case Kind::RegionTooSmall:
-      return fmt::format(
-          "force \"{}\" selects fewer than 3 x 3 nodes of \"{}\", too few to solve, {}", force,
-          surface, when);
+      return fmt::format("{} \"{}\" selects fewer than 3 x 3 nodes of \"{}\", too few to solve, {}",
+                         noun, force, surface, when);
     case Kind::LostNodes:
       return fmt::format(
-          "force \"{}\" lost its own nodes on \"{}\" {}: they are out of its reach; "
+          "{} \"{}\" lost its own nodes on \"{}\" {}: they are out of its reach; "
           "measure=\"rest\" measures on the rest mesh",
-          force, surface, when);
+          noun, force, surface, when);
     case Kind::OutsideRegion:
       return fmt::format(
           "the force box of \"{}\" lies outside the region solved on \"{}\" {}: it pushes nothing",
           force, surface, when);
     case Kind::SelectsNothing:
       return fmt::format(
-          "force \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", force,
-          surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+          "{} \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", noun,
+          force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
     case Kind::PushesNothing:
       return fmt::format(
           "the magnitude of \"{}\" has no effect on {} {}: no node that moves is in its force box, "
@@ -37,6 +57,14 @@ std::string Warning::message() const {
     case Kind::TangentsUnused:
       return fmt::format("the tangents of \"{}\" have no effect {}: no force selects a region",
                          surface, when);
+    case Kind::ForcesApart:
+      return fmt::format(
+          "{} select boxes of \"{}\" that do not meet, {}: one region around all of them is "
+          "solved, "
+          "in which each moves more than it would alone; combine=\"islands\" solves each by "
+          "itself, "
+          "and combine=\"box\" written out says that this is meant",
+          names_text(force, others), surface, when);
   }
   return {};
 }
@@ -71,6 +99,12 @@ std::vector<Warning> WarningLog::warnings(bool is_range_complete) const {
   }
   std::vector<Warning> warnings;
   for (const auto& [cause, frames] : all) {
+    if (cause.kind == Warning::Kind::ForcesApart && !warnings.empty() &&
+        warnings.back().kind == cause.kind && warnings.back().surface == cause.surface) {
+      warnings.back().others.push_back(cause.force);
+      warnings.back().frames.add(frames);
+      continue;
+    }
     warnings.push_back({cause.kind, cause.surface, cause.force, frames});
   }
   return warnings;

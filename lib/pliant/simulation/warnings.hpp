@@ -21,11 +21,14 @@ struct Warning {
     PushesNothing,   ///< a force with a magnitude pushes no node that moves, in the whole range
     NeverStarts,     ///< the surface's start frame is behind the last frame that is solved
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
+    ForcesApart,     ///< boxes that do not meet make one region, since `combine` is box
   };
   Kind kind = Kind::RegionTooSmall;
   std::string surface;  ///< empty: any, of a force that selects nothing anywhere
-  std::string force;    ///< empty: the surface itself is meant
+  std::string force;    ///< or group; empty: the surface itself is meant
   FrameRanges frames;
+  std::vector<std::string> others = {};  ///< of forces that are apart: those besides `force`
+  bool is_group = false;                 ///< whether `force` is the region of a group
 
   /// One line for an author, frames included.
   std::string message() const;
@@ -42,6 +45,8 @@ class WarningLog {
   void happened(Warning::Kind kind, std::string_view surface, std::string_view force);
 
   /// In order of kind, surface and force. What never happened is told once the range is complete.
+  /// Forces that are apart on one surface come as one warning. Which names are groups is not known
+  /// here.
   std::vector<Warning> warnings(bool is_range_complete) const;
 
  private:
