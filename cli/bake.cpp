@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "counted.hpp"
 #include "frame_range.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -322,9 +323,10 @@ int run_bake(const BakeOptions& options) {
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {} frames, {} vertices, {:.2f} s, peak displacement {:.6g}{}\n",
-                              printable(options.out), summary->frame_count, summary->vertex_count,
-                              elapsed.count(), summary->peak_displacement,
+    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, peak displacement {:.6g}{}\n",
+                              printable(options.out), counted(summary->frame_count, "frame"),
+                              counted(summary->vertex_count, "vertex", "vertices"), elapsed.count(),
+                              summary->peak_displacement,
                               *store ? cache_summary(simulation->frame_counts()) : ""));
   }
   if (options.is_profiled) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "counted.hpp"
 #include "report.hpp"
 #include "resources.hpp"
 
@@ -56,7 +57,7 @@ void print_cache_notes(const FolderFrameStore* store, const CacheOptions& option
 }
 
 std::string cache_summary(const FrameCounts& counts) {
-  return fmt::format(", {} frames solved, {} read", counts.solved, counts.read);
+  return fmt::format(", {} solved, {} read", counted(counts.solved, "frame"), counts.read);
 }
 
 }  // namespace pliant::cli

@@ -13,6 +13,7 @@ namespace pliant::cli {
 struct InfoOptions {
   std::string scene;
   Root root = {};
+  bool is_json = false;
   ResourceOptions resources;
 };
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "counted.hpp"
 #include "interrupt.hpp"
 #include "output_folder.hpp"
 #include "pliant/core/number.hpp"
@@ -58,8 +59,9 @@ int record(const ReplayCommandOptions& options) {
   });
   if (!recorded) return report(with_kept(recorded.error(), "no log is written"));
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {} frames, {} surfaces recorded\n", printable(options.log),
-                              recorded->frame_count(), recorded->surfaces.size()));
+    print(stdout, fmt::format("{}: {}, {} recorded\n", printable(options.log),
+                              counted(recorded->frame_count(), "frame"),
+                              counted(recorded->surfaces.size(), "surface")));
   }
   return exit_done;
 }
@@ -84,7 +86,8 @@ int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdi
   }
   if (!verdict->holds()) return exit_failed;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {} frames, all {}\n", log, verdict->frame_count, done));
+    print(stdout,
+          fmt::format("{}: {}, all {}\n", log, counted(verdict->frame_count, "frame"), done));
   }
   return exit_done;
 }

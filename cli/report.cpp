@@ -21,13 +21,17 @@ void print(std::FILE* stream, std::string_view text) {
   std::fflush(stream);
 }
 
+int exit_code(const Error& error) {
+  const bool is_input =
+      error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
+  return is_input ? exit_usage : exit_failed;
+}
+
 int report(const Error& error) {
   for (const std::string& line : to_lines(error)) {
     print(stderr, (line.starts_with("error: ") ? "pliant: " : "") + line + '\n');
   }
-  const bool is_input =
-      error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
-  return is_input ? exit_usage : exit_failed;
+  return exit_code(error);
 }
 
 void print_notes(const Scene& scene) {

@@ -17,6 +17,9 @@ inline constexpr int exit_usage = 2;   ///< wrong usage, or a scene that cannot 
 /// not be said is not worth more than the work.
 void print(std::FILE* stream, std::string_view text);
 
+/// The exit code that an error ends with.
+int exit_code(const Error& error);
+
 /// Prints every problem on stderr, one line each, and gives the exit code.
 int report(const Error& error);
 

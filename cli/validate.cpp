@@ -1,9 +1,13 @@
 #include "validate.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "counted.hpp"
 #include "interrupt.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
@@ -12,22 +16,71 @@
 namespace pliant::cli {
 namespace {
 
-std::string counted(std::size_t count, std::string_view thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+using Json = nlohmann::ordered_json;
+
+// What comes of all scenes, for `--json`.
+struct Findings {
+  Json scenes = Json::array();
+  Json problems = Json::array();
+};
+
+std::string_view kind_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::InvalidInput:
+      return "invalid";
+    case ErrorCode::Unreadable:
+      return "unreadable";
+    case ErrorCode::OutOfMemory:
+      return "memory";
+    case ErrorCode::Interrupted:
+      return "interrupted";
+    case ErrorCode::Unwritable:
+    case ErrorCode::SolverFailed:
+    case ErrorCode::NotFinite:
+      break;
+  }
+  return "failed";
 }
 
-int validate(const std::string& file, const ValidateOptions& options) {
+void add_problem(Findings& findings, const std::string& file, int line, std::string_view kind,
+                 const std::string& message) {
+  findings.problems.push_back({{"file", file},
+                               {"line", line > 0 ? Json(line) : Json(nullptr)},
+                               {"kind", kind},
+                               {"message", message}});
+}
+
+// An error of a scene: on stderr, or among the findings. Gives the exit code.
+int tell(const Error& error, const std::string& file, Findings* findings) {
+  if (!findings) return report(error);
+  std::vector<Error> all = error.others;
+  all.insert(all.begin(), error);
+  for (const Error& one : all) {
+    add_problem(*findings, one.file.empty() ? file : one.file, one.line, kind_of(one.code),
+                one.message);
+  }
+  return exit_code(error);
+}
+
+// `findings`: where to tell of it, in place of the streams.
+int validate(const std::string& file, const ValidateOptions& options, Findings* findings) {
   const auto scene = read_scene(file, options.root);
-  if (!scene) return report(scene.error());
-  print_notes(*scene);
+  if (!scene) return tell(scene.error(), file, findings);
+  if (!findings) print_notes(*scene);
+  if (findings) {
+    for (const SceneNote& note : scene->notes) {
+      add_problem(*findings, scene->origin.file, note.line, "note", note.message);
+    }
+  }
   if (const auto checked = Simulation::check(*scene, simulation_options(options.resources));
       !checked) {
-    return report(checked.error());
+    return tell(checked.error(), file, findings);
   }
-  if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: all right: {}, {}, frames {} to {}\n", scene->origin.file,
-                              counted(scene->surfaces.size(), "surface"),
-                              counted(scene->forces.size(), "force"), scene->start, scene->end));
+  if (!options.is_quiet && !findings) {
+    print(stdout,
+          fmt::format("{}: all right: {}, {}, frames {} to {}\n", printable(scene->origin.file),
+                      counted(scene->surfaces.size(), "surface"),
+                      counted(scene->forces.size(), "force"), scene->start, scene->end));
   }
   return exit_done;
 }
@@ -39,16 +92,27 @@ void add_validate(CLI::App& app, ValidateOptions& options) {
   validate->add_option("SCENE", options.scenes, "Scene files")->required();
   validate->add_flag("--quiet", options.is_quiet, "Say nothing of scenes that are all right");
   add_root(*validate, options.root);
+  validate->add_flag("--json", options.is_json, "List all problems as JSON: docs/info.md");
   add_memory(*validate, options.resources);
 }
 
 int run_validate(const ValidateOptions& options) {
   catch_interrupts();
   int worst = exit_done;
+  Findings findings;
   for (const std::string& file : options.scenes) {
-    worst = std::max(worst, validate(file, options));
-    if (!was_interrupted()) continue;
-    return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
+    const int code = validate(file, options, options.is_json ? &findings : nullptr);
+    worst = std::max(worst, code);
+    if (was_interrupted()) {
+      return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
+    }
+    findings.scenes.push_back({{"file", file}, {"valid", code == exit_done}});
+  }
+  if (options.is_json) {
+    const Json json = {{"format", "pliant-validate-1"},
+                       {"scenes", std::move(findings.scenes)},
+                       {"problems", std::move(findings.problems)}};
+    print(stdout, json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
   }
   return worst;
 }

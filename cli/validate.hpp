@@ -15,6 +15,7 @@ struct ValidateOptions {
   std::vector<std::string> scenes;
   bool is_quiet = false;
   Root root = {};
+  bool is_json = false;
   ResourceOptions resources;
 };
 

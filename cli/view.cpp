@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "counted.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_folder.hpp"
@@ -54,8 +55,9 @@ int page_view(const ViewOptions& options, std::string_view page) {
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   print(stdout,
-        fmt::format("{}: {} frames, {} vertices, {}, {:.2f} s, peak displacement {:.6g}\n",
-                    printable(out), baked->frames.count(), baked->bake.vertex_count,
+        fmt::format("{}: {}, {}, {}, {:.2f} s, peak displacement {:.6g}\n", printable(out),
+                    counted(baked->frames.count(), "frame"),
+                    counted(baked->bake.vertex_count, "vertex", "vertices"),
                     bytes_text(made.size()), elapsed.count(), baked->bake.peak_displacement));
   return exit_done;
 }

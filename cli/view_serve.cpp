@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cache.hpp"
+#include "counted.hpp"
 #include "interrupt.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "report.hpp"
@@ -117,10 +118,10 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
     return all;
   }
   if (!options.is_quiet) {
-    print(stdout,
-          fmt::format("{}: {} frames, {} vertices, peak displacement {:.6g}{}\n",
-                      printable(options.scene), baked->frames.count(), baked->bake.vertex_count,
-                      baked->bake.peak_displacement, cache_summary(baked->counts)));
+    print(stdout, fmt::format("{}: {}, {}, peak displacement {:.6g}{}\n", printable(options.scene),
+                              counted(baked->frames.count(), "frame"),
+                              counted(baked->bake.vertex_count, "vertex", "vertices"),
+                              baked->bake.peak_displacement, cache_summary(baked->counts)));
   }
   server.publish(std::move(baked->bake.packed));
   return all;

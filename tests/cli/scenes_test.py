@@ -1,5 +1,6 @@
 """`pliant validate` and `pliant info`."""
 
+import json
 import os
 import signal
 import subprocess
@@ -19,6 +20,23 @@ class Validate(Command):
                                         r"frames 1 to 12\n$")
         self.assertRegex(result.stderr, r"bad\.xml:2: error: .*\n\S*m\.xml:3: error: .*none\.obj")
         self.assertEqual(self.run_pliant("validate", good, "--quiet").stdout, "")
+
+    def test_json_lists_every_problem(self):
+        good = self.scene()
+        bad = self.write("bad.xml", SCENE.format(end=9).replace("magnitude", "magnitud").replace(
+            'columns="13"', 'columns="2"'))
+        noted = self.write("n.xml", SCENE.format(end=9).replace(' magnitude="3000"/>', """>
+    <animate attribute="magnitude">
+      <key frame="1" value="0" out="1" outLength="-2"/><key frame="9" value="5"/></animate></point>"""))
+        result = self.run_pliant("validate", good, bad, noted, "none.xml", "--json", code=2)
+        told = json.loads(result.stdout)
+        self.assertEqual(result.stderr, "")
+        self.assertEqual(told["scenes"], [{"file": good, "valid": True}, {"file": bad, "valid": False},
+                                          {"file": noted, "valid": True}, {"file": "none.xml", "valid": False}])
+        self.assertEqual([(p["file"], p["line"], p["kind"]) for p in told["problems"]],
+                         [(bad, 3, "invalid"), (bad, 4, "invalid"), (noted, 6, "note"),
+                          ("none.xml", None, "unreadable")])
+        self.assertEqual(json.loads(self.run_pliant("validate", good, "--json").stdout)["problems"], [])
 
     def test_a_scene_without_a_surface_is_legal(self):
         scene = self.write("curves.xml", '<scene version="1" start="1" end="9"><point name="p"/></scene>')
@@ -65,10 +83,11 @@ class Info(Command):
       <key frame="1" value="0"/><key frame="9" value="-4000"/></animate></point>"""))
         told = self.run_pliant("info", scene).stdout
         for words in ("frames 1 to 48 at 24 frames/s",
-                      "sheet  sheet, grid 13 x 11, 143 vertices",
-                      "poke (point) on sheet: from frame 1 it selects 9 x 9 nodes, columns 2 to 10, "
-                      "rows 1 to 9",
-                      "at magnitude -4000 (frame 9)", " Hz, damping ratio",
+                      "sheet  sheet, grid 13 x 11, 143 vertices\n    bounding box -6 0 -5 to 6 0 5\n",
+                      "poke (point) on sheet: at frame 9, at magnitude -4000, it selects 9 x 9 nodes, "
+                      "columns 2 to 10, rows 1 to 9",
+                      "static peak displacement", "; in the animation", " Hz, damping ratio",
+                      "with what backward Euler adds", "settles to 5 % in",
                       "poke.magnitude  2 keys: 1 = 0, 9 = -4000", "memory"):
             self.assertIn(words, told)
 
@@ -84,10 +103,13 @@ class Info(Command):
         scene = self.write("l.xml", SCENE.format(end=1000000).replace('"13"', '"601"').replace(
             '"11"', '"601"').replace('"4.5"', '"100"'))
         self.assertIn("too many to preview", self.run_pliant("info", scene).stdout)
-        scene = self.write("f.xml", SCENE.format(end=1000000).replace('"0 0 0"', '"0 4.6 0"').replace(
-            '"13"', '"201"').replace('"11"', '"201"').replace('magnitude="3000"/>', """>
-    <animate attribute="magnitude"><key frame="1" value="0"/><key frame="9" value="9"/></animate></point>"""))
-        self.assertIn("selects nothing at rest", self.run_pliant("info", scene).stdout)
+        scene = self.write("f.xml", SCENE.format(end=1000000).replace('"13"', '"201"').replace(
+            '"11"', '"201"').replace('center="0 0 0"', "").replace('magnitude="3000"/>', """>
+    <animate attribute="center"><key frame="1" value="0 60 0"/><key frame="1000000" value="0 5 0"/></animate></point>"""))
+        told = self.run_pliant("info", scene).stdout
+        self.assertIn("it selects nothing", told)
+        scene = self.write("p.xml", SCENE.format(end=1000000))
+        self.assertIn("too many frames and nodes to play", self.run_pliant("info", scene).stdout)
 
     def test_groups_and_paths(self):
         scene = self.write("g.xml", SCENE.format(end=9).replace(
@@ -96,9 +118,11 @@ class Info(Command):
             '<point name="palm" magnitude="3000"/><uniform name="weight"/></group>' +
             '<group name="empty"/><inertia name="jiggle"/>'))
         told = self.run_pliant("info", scene).stdout
-        for words in ("palm (point in hand) on sheet: from frame 1 it selects 9 x 9 nodes",
-                      "weight (uniform in hand) on sheet: from frame 1 it selects 9 x 9 nodes",
-                      "jiggle (inertia) on sheet: from frame 1 it selects 13 x 11 nodes",
+        for words in ("palm (point in hand) on sheet: at frame 1, at magnitude 3000, it selects 9 x 9 nodes",
+                      "weight (uniform in hand) on sheet: at frame 1, at magnitude 0, it selects 9 x 9 nodes",
+                      "jiggle (inertia) on sheet: at frame 1, at magnitude 1, it selects 13 x 11 nodes",
+                      "  hand on sheet: at frame 1 it selects 9 x 9 nodes", "    of which palm 100 %, weight 0 %",
+                      "together on sheet: at frame 1 they select 13 x 11 nodes",
                       "empty (group): no force in it",
                       "hand.center.progress  2 keys: 1 = 0, 9 = 0.25"):
             self.assertIn(words, told)
@@ -110,8 +134,62 @@ class Info(Command):
             "curves", scene, "--channel", "hand.center", code=2).stderr)
 
     def test_a_force_out_of_reach(self):
-        scene = self.write("far.xml", SCENE.format(end=9).replace('"0 0 0"', '"0 90 0"'))
-        self.assertIn("poke (point) on sheet: selects nothing at rest", self.run_pliant("info", scene).stdout)
+        scene = self.write("far.xml", SCENE.format(end=9).replace('"0 0 0"', '"3 90 4"'))
+        told = self.run_pliant("info", scene).stdout
+        self.assertIn("poke (point) on sheet: it selects nothing\n    nearest at frame 1: 90 to the nearest "
+                      "vertex, 90.14 to the middle of the bounding box, deformationRadius 4.5\n", told)
+        self.assertIn("its largest magnitude is 3000 (frame 1)", told)
+
+    def test_a_box_that_is_placed_is_told_both_ways(self):
+        scene = self.write("t.xml", SCENE.format(end=9).replace(
+            "</surface>", '<transform translate="100 0 0" scale="2 1 1"/></surface>'))
+        self.assertIn("bounding box 88 0 -5 to 112 0 5\n    -6 0 -5 to 6 0 5 before its transform\n",
+                      self.run_pliant("info", scene).stdout)
+
+    def test_one_is_no_plural(self):
+        told = self.run_pliant("info", self.scene()).stdout
+        self.assertNotRegex(told, r"\b1 (frames|vertices|keys|surfaces|forces)\b")
+        one = self.write("one.xml", SCENE.format(end=1))
+        for command in (("info", one), ("validate", one), ("bake", one, "-o", "a.npy"),
+                        ("replay", "record", one, "-o", "a.replay"), ("replay", "verify", "a.replay"),
+                        ("bake", one, "-o", "b.npy", "--cache", "kept")):
+            told = self.run_pliant(*command)
+            self.assertNotRegex(told.stdout + told.stderr, r"\b1 (frames|vertices|keys|surfaces|forces)\b")
+
+    def test_json_has_what_the_text_has(self):
+        scene = self.write("i.xml", SCENE.format(end=48).replace(' magnitude="3000"/>', """>
+    <animate attribute="magnitude">
+      <key frame="1" value="0"/><key frame="9" value="-4000"/></animate></point>
+  <group name="hand" deformationRadius="4.5"><point name="palm" magnitude="0.1"/></group>
+  <point name="off" enabled="false"/><point name="far" center="0 50 0"/>"""))
+        told = json.loads(self.run_pliant("info", scene, "--json").stdout)
+        self.assertEqual((told["format"], told["start"], told["end"], told["fps"]),
+                         ("pliant-info-1", 1, 48, 24))
+        self.assertEqual(told["surfaces"][0]["boundingBox"], {"low": [-6, 0, -5], "high": [6, 0, 5]})
+        poke, palm, off, far = told["forces"]
+        self.assertEqual(poke["previews"][0]["frame"], 9)
+        self.assertEqual(poke["previews"][0]["selected"], {"columns": [2, 10], "rows": [1, 9]})
+        self.assertEqual(palm["previews"][0]["magnitude"], 0.1)  # the same float64
+        self.assertEqual((palm["group"], off["idle"], off["previews"]), ("hand", "never enabled", []))
+        self.assertEqual(far["previews"][0]["gap"],
+                         {"frame": 1, "toVertex": 50, "toCentre": 50, "deformationRadius": 1})
+        self.assertEqual([one["force"] for one in told["groups"][0]["previews"][0]["shares"]], ["palm"])
+        self.assertEqual(told["channels"], [{"path": "poke.magnitude", "keys": [
+            {"frame": 1, "value": 0}, {"frame": 9, "value": -4000}]}])
+        vibration = told["together"][0]["regions"][0]["vibration"]
+        self.assertGreater(vibration["dampingRatio"], vibration["naturalDampingRatio"])
+        text = self.run_pliant("info", scene).stdout
+        self.assertIn(f"{told['together'][0]['animation']['peak']:.4g} at frame", text)
+        self.assertEqual(self.run_pliant("info", "none.xml", "--json", code=2).stdout, "")
+
+    def test_json_of_a_name_that_is_no_text(self):
+        scene = os.path.join(os.fsencode(self.folder), b'a"\n\xff.xml')
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write(SCENE.format(end=3))
+        for command in ("info", "validate"):
+            told = subprocess.run([os.fsencode(PLIANT), command.encode(), scene, b"--json"], check=True,
+                                  capture_output=True, timeout=60).stdout
+            self.assertEqual(json.loads(told)["format"], f"pliant-{command}-1")
 
 
 if __name__ == "__main__":

@@ -3,199 +3,310 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
-#include <span>
-#include <string>
+#include <map>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "pliant/plate/plate_solver.hpp"
-#include "pliant/plate/vibration.hpp"
-#include "pliant/region/region.hpp"
-#include "pliant/simulation/sampling.hpp"
+#include "pliant/simulation/acting_forces.hpp"
+#include "pliant/simulation/preview_body.hpp"
 
 namespace pliant {
 namespace {
 
-// A sphere around all nodes at rest, in object space: distances to forces are 1-Lipschitz, so a
-// force further from its centre than radius and reach together holds no node.
-struct Ball {
-  Vector3d centre;
-  double radius = 0;
+constexpr double searched_nodes = 1.5e8;  // by the search for frames of greatest effect, in all
+constexpr double played_nodes = 3e8;      // steps of nodes, in all
+constexpr double shared_nodes = 1e8;      // solved for shares, for each preview
+
+// A preview in the making, with the forces that it is of.
+struct Case {
+  Preview preview;
+  ActingForces acting;
 };
 
-Ball ball_around(const Field& nodes) {
-  const Vector3d centre =
-      0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
-  return {centre, (nodes.rowwise() - centre.transpose()).rowwise().norm().maxCoeff()};
-}
-
-// Whether the distances to a force may change over time.
-struct HasMovingDistance {
-  bool operator()(const PointChannels& point) const { return point.center.is_animated(); }
-  bool operator()(const RadialChannels& radial) const { return radial.center.is_animated(); }
-  bool operator()(const LineChannels& line) const {
-    return line.from.is_animated() || line.to.is_animated();
-  }
-  bool operator()(const UniformChannels&) const { return false; }
-  bool operator()(const VortexChannels& vortex) const {
-    return vortex.center.is_animated() || vortex.axis.is_animated();
-  }
-  bool operator()(const NoiseChannels& noise) const { return noise.center.is_animated(); }
-  bool operator()(const InertiaChannels&) const { return false; }
-  bool operator()(const CustomForce&) const { return true; }
-};
-
-// Whether what a force, or the group that it is in, selects on a surface at rest is the same at all
-// frames.
-bool is_still(const Force& force, const Group* group, const Surface& surface) {
-  const auto& [translate, rotate, scale, order] = surface.transform;
-  if (translate.is_animated() || rotate.is_animated() || scale.is_animated()) return false;
-  if (group) return !group->center.is_animated() && !group->deformation_radius.is_animated();
-  return !force.deformation_radius.is_animated() && !std::visit(HasMovingDistance{}, force.shape);
-}
-
-class Previewer {
+// What comes of one surface.
+class SurfacePreviewer {
  public:
-  Previewer(const Simulation& simulation, const SimulationOptions& options)
+  SurfacePreviewer(const Simulation& simulation, std::size_t surface, double most_searched,
+                   const StopRequest& should_stop, MemoryBudget& memory)
       : scene_(simulation.scene()),
-        rest_shapes_(simulation.rest_shapes()),
-        should_stop_(options.should_stop),
-        memory_(options.max_memory - std::min(options.max_memory, simulation.surface_memory())) {}
+        surface_(scene_.surfaces[surface]),
+        body_(simulation.rest_shapes()[surface].mapping, surface_.solver, should_stop, memory),
+        first_(std::max(scene_.start, surface_.solver.start_frame.value_or(scene_.start))),
+        last_(std::max(first_, scene_.end - 1)),
+        most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
 
-  Result<std::vector<ForcePreview>> preview() {
-    std::vector<ForcePreview> previews;
-    for (std::size_t surface = 0; surface < scene_.surfaces.size(); ++surface) {
-      if (!scene_.surfaces[surface].enabled) continue;
-      ball_ = ball_around(rest_shapes_[surface].mapping.rest);
-      for (std::size_t force = 0; force < scene_.forces.size(); ++force) {
-        const Group* group = group_of(scene_, scene_.forces[force]);
-        if (!targets(scene_.forces[force], group, scene_.surfaces[surface].name)) continue;
-        auto previewed = preview(surface, force);
-        if (!previewed) return fail(previewed.error());
-        if (*previewed) previews.push_back(**previewed);
+  Result<void> look(Case& one) {
+    Preview& preview = one.preview;
+    if (auto sized = body_.reserve(); !sized) return sized;
+    const std::vector<int> frames = frames_of(one);
+    for (const int frame : frames) {
+      if (auto looked = look_at(one, frame); !looked) return located(looked.error(), frame);
+    }
+    if (!preview.frame) {
+      if (preview.of == Preview::Of::All) return {};
+      for (const int frame : frames) {
+        const BodyInputs inputs = inputs_of(one, frame);
+        if (inputs.forces.empty()) continue;
+        // The last one selects: a group's region stands behind its forces.
+        const auto [to_vertex, to_centre] = body_.distances(inputs, inputs.forces.back());
+        const double radius = inputs.forces.back().deformation_radius;
+        const bool is_nearer =
+            !preview.gap ||
+            to_vertex - radius < preview.gap->to_vertex - preview.gap->deformation_radius;
+        if (is_nearer) preview.gap = {frame, to_vertex, to_centre, radius};
+        if (auto sound = body_.check_faults(); !sound) return located(sound.error(), frame);
       }
+      return {};
     }
-    return previews;
-  }
-
- private:
-  // Nothing of a force that is never enabled.
-  Result<std::optional<ForcePreview>> preview(std::size_t surface_index, std::size_t force_index) {
-    const Surface& surface = scene_.surfaces[surface_index];
-    const Force& force = scene_.forces[force_index];
-    const Group* group = group_of(scene_, force);
-    ForcePreview result;
-    result.surface = surface_index;
-    result.force = force_index;
-    bool is_ever_enabled = false;
-    distances_left_ = 1'000'000'000;
-    const int first = std::max(scene_.start, surface.solver.start_frame.value_or(scene_.start));
-    for (int frame = first; frame <= scene_.end; ++frame) {
-      if (!is_enabled(force, group, frame)) continue;
-      if (should_stop_ && should_stop_()) return fail(ErrorCode::Interrupted, "interrupted");
-      const double magnitude = force.magnitude.at(frame)[0];
-      if (!is_ever_enabled || std::abs(magnitude) > std::abs(result.magnitude)) {
-        result.magnitude = magnitude;
-        result.magnitude_frame = frame;
-      }
-      is_ever_enabled = true;
-      if (!result.frame) look(surface, force, frame, result);
-      if (auto sound = check_faults(surface, frame); !sound) return fail(sound.error());
-    }
-    if (!is_ever_enabled) return std::optional<ForcePreview>();
-    result.is_solvable = result.region.columns() >= 3 && result.region.rows() >= 3;
-    result.is_solved = result.is_solvable &&
-                       (result.region.columns() - 2) * std::int64_t{result.region.rows() - 2} <=
-                           most_previewed_unknowns;
-    if (!result.is_solved) return result;
-    if (auto solved = solve(result); !solved) return fail(solved.error());
-    return result;
-  }
-
-  // Whether the force, or the group that it is in, selects something at this frame.
-  void look(const Surface& surface, const Force& force, int frame, ForcePreview& result) {
-    if (distances_left_ < 0) return;
-    const Group* group = group_of(scene_, force);
-    const Transform transform = sample_transform(surface.transform, frame);
-    const SampledForce sampled =
-        group ? sample_group(*group, frame) : sample_force(scene_, force, surface, frame, faults_);
-    // Where nothing moves, one look tells of all frames.
-    if (is_still(force, group, surface)) distances_left_ = 0;
-    const Vector3d centre = transform.linear * ball_.centre + transform.translation;
-    const double reach = ball_.radius * transform.linear.norm() + sampled.deformation_radius;
-    // Nothing is known of how a custom force's distance grows.
-    const bool is_custom = std::holds_alternative<FunctionForce>(sampled.shape);
-    if (!is_custom && distance(sampled.shape, centre) > 1.001 * reach) return;
-    const GridMapping& mapping = rest_shapes_[result.surface].mapping;
-    distances_left_ -= mapping.grid.node_count();
-    const Box region =
-        select_region(mapping.grid, to_world(transform, mapping.rest), {&sampled, 1}).region;
-    if (region.is_empty()) return;
-    result.frame = frame;
-    result.region = region;
-  }
-
-  Result<void> solve(ForcePreview& result) {
-    const Surface& surface = scene_.surfaces[result.surface];
-    const BodyInputs body = sample_body(scene_, surface, *result.frame);
-    const GridMapping& mapping = rest_shapes_[result.surface].mapping;
-    const Grid region{result.region.columns(), result.region.rows(), mapping.grid.hu,
-                      mapping.grid.hv};
-    const Force& force = scene_.forces[result.force];
-    std::vector<SampledForce> acting = {
-        sample_force(scene_, force, surface, *result.frame, faults_)};
-    acting.front().magnitude = result.magnitude;
-    if (const Group* group = group_of(scene_, force)) {
-      acting.push_back(sample_group(*group, *result.frame));
-    }
-    const Field nodes = to_world(body.transform, mapping.rest);
-    const Selection selection = select_region(mapping.grid, nodes, acting);
-    const Field load =
-        vectors_to_object(body.transform, assemble_load(mapping.grid, nodes, acting, selection));
-    if (auto sound = check_faults(surface, *result.frame); !sound) return sound;
-
-    // The one that a run takes for such a region.
-    const bool is_spectral = worth_transforming(region, body.stiffness);
-    const auto solver =
-        make_solver(is_spectral ? SolverKind::Spectral : available_solvers().front(), &memory_);
-    const auto lambda = smallest_eigenvalue(*solver, region, body.stiffness, should_stop_);
-    if (!lambda) return fail(lambda.error());
-    const auto settled = solver->solve(interior_of(region, load));
-    if (!settled) return fail(settled.error());
-    result.static_peak = vectors_to_world(body.transform, *settled).rowwise().norm().maxCoeff();
-    const auto& [density, damping] = body.dynamics;
-    if (density > 0) {
-      // rho q'' + eta q' + lambda q = 0 for the slowest vibration.
-      result.frequency = std::sqrt(*lambda / density) / (2 * std::numbers::pi);
-      result.damping_ratio = damping / (2 * std::sqrt(*lambda * density));
-    }
-    result.solver_memory = solver->memory();
+    if (auto told = tell(one); !told) return located(told.error(), *preview.frame);
     return {};
   }
 
-  Result<void> check_faults(const Surface& surface, int frame) const {
-    const std::string fault = faults_->first();
-    if (fault.empty()) return {};
-    return fail(ErrorCode::NotFinite,
-                fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, fault),
-                scene_.origin.file, scene_.origin.line_of(surface.name));
+  // Plays the case, unless that would take more steps of nodes than there are left.
+  Result<void> play(Case& one, double& nodes_left) {
+    if (nodes_left <= 0) return {};
+    PlayedPeak played{0, scene_.start};
+    const bool is_plain = one.preview.of != Preview::Of::All;
+    body_.begin(is_plain);
+    for (int frame = first_; frame < scene_.end; ++frame) {
+      const BodyInputs inputs = inputs_of(one, frame);
+      auto stepped = body_.step(inputs);
+      if (!stepped) return located(stepped.error(), frame);
+      nodes_left -= *stepped;
+      if (nodes_left <= 0) return {};
+      const Transform shown = sample_transform(surface_.transform, frame + 1);
+      const double peak = body_.peak(shown).size;
+      if (peak > played.peak) played = {peak, frame + 1};
+    }
+    one.preview.played = played;
+    return {};
+  }
+
+ private:
+  BodyInputs inputs_of(const Case& one, int frame) { return one.acting.at(frame, body_.faults()); }
+
+  // The frames at which the case may have its greatest effect, evenly spaced where they are many.
+  std::vector<int> frames_of(Case& one) {
+    Preview& preview = one.preview;
+    const bool is_force = preview.of == Preview::Of::Force;
+    std::vector<int> enabled;
+    bool has_magnitude = false;
+    for (int frame = first_; frame <= last_; ++frame) {
+      if (is_force ? !one.acting.is_enabled(preview.index, frame) : !one.acting.selects_at(frame)) {
+        continue;
+      }
+      enabled.push_back(frame);
+      if (!is_force) continue;
+      const double magnitude = scene_.forces[preview.index].magnitude.at(frame)[0];
+      if (!has_magnitude || std::abs(magnitude) > std::abs(preview.largest_magnitude)) {
+        preview.largest_magnitude = magnitude;
+        preview.largest_magnitude_frame = frame;
+      }
+      has_magnitude = true;
+    }
+    if (enabled.empty()) return {};
+    if (is_force && one.acting.stand_still()) return {preview.largest_magnitude_frame};
+    const auto count = static_cast<double>(enabled.size());
+    preview.is_every_frame = count <= most_frames_;
+    if (preview.is_every_frame) return enabled;
+    std::vector<int> frames;
+    const double step = count / std::floor(most_frames_);
+    for (double place = 0; place < count; place += step) {
+      frames.push_back(enabled[static_cast<std::size_t>(place)]);
+    }
+    frames.push_back(is_force ? preview.largest_magnitude_frame : enabled.back());
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+  }
+
+  // Takes the frame where its effect is the greatest so far.
+  Result<void> look_at(Case& one, int frame) {
+    Preview& preview = one.preview;
+    const BodyInputs inputs = inputs_of(one, frame);
+    const bool is_plain = preview.of != Preview::Of::All;
+    const auto step = body_.look(inputs, is_plain);
+    if (!step) return fail(step.error());
+    if (step->selection.regions.empty()) return {};
+    double peak = 0;
+    const int unknowns = step->unknown_count();
+    if (unknowns > 0 && unknowns <= most_previewed_unknowns) {
+      if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
+      peak = body_.peak(inputs.transform).size;
+    }
+    if (!preview.frame || peak > preview.static_peak) {
+      preview.frame = frame;
+      preview.static_peak = peak;
+    }
+    return {};
+  }
+
+  // All that is told of the frame of greatest effect.
+  Result<void> tell(Case& one) {
+    Preview& preview = one.preview;
+    const BodyInputs inputs = inputs_of(one, *preview.frame);
+    const bool is_plain = preview.of != Preview::Of::All;
+    auto step = body_.look(inputs, is_plain);
+    if (!step) return fail(step.error());
+    if (preview.of == Preview::Of::Force) {
+      preview.magnitude = scene_.forces[preview.index].magnitude.at(*preview.frame)[0];
+    }
+    preview.selected = step->selection.region;
+    const int unknowns = step->unknown_count();
+    preview.is_solvable = unknowns > 0;
+    preview.is_solved = preview.is_solvable && unknowns <= most_previewed_unknowns;
+    if (preview.is_solved) {
+      if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
+    }
+    for (std::size_t k = 0; k < step->selection.regions.size(); ++k) {
+      RegionPreview region;
+      region.region = step->selection.regions[k];
+      region.is_solvable = !step->patches[k].empty();
+      if (preview.is_solved && region.is_solvable) {
+        auto vibrations = body_.vibrations(inputs, step->patches[k], std::move(region));
+        if (!vibrations) return fail(vibrations.error());
+        region = *std::move(vibrations);
+      }
+      preview.regions.push_back(std::move(region));
+    }
+    if (preview.is_solved && preview.of != Preview::Of::Force) {
+      return share(one, inputs, unknowns);
+    }
+    return {};
+  }
+
+  // What each force has to do with the peak. Requires: the body is settled under all of them.
+  Result<void> share(Case& one, const BodyInputs& inputs, int unknowns) {
+    Preview& preview = one.preview;
+    const std::vector<std::size_t> enabled = one.acting.enabled_at(*preview.frame);
+    if (preview.static_peak == 0 || static_cast<double>(enabled.size()) * unknowns > shared_nodes)
+      return {};
+    const PreviewBody::Peak peak = body_.peak(inputs.transform);
+    for (std::size_t k = 0; k < enabled.size(); ++k) {
+      BodyInputs alone = inputs;
+      for (std::size_t other = 0; other < alone.forces.size(); ++other) {
+        if (other != k) alone.forces[other].magnitude = 0;
+      }
+      if (auto settled = body_.settle(alone, true); !settled) return fail(settled.error());
+      const Vector3d way = body_.displacement(inputs.transform, peak.node);
+      preview.shares.push_back({enabled[k], way.dot(peak.way) / (peak.size * peak.size)});
+    }
+    return {};
+  }
+
+  tl::unexpected<Error> located(Error error, int frame) const {
+    if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
+    error.message =
+        fmt::format("surface \"{}\", frame {}: {}", surface_.name, frame, error.message);
+    error.file = scene_.origin.file;
+    error.line = scene_.origin.line_of(surface_.name);
+    return fail(std::move(error));
   }
 
   const Scene& scene_;
-  std::span<const RestShape> rest_shapes_;
-  StopRequest should_stop_;
-  MemoryBudget memory_;
-  Ball ball_;                        // around the surface in hand
-  std::int64_t distances_left_ = 0;  // that may be measured for a pair
-  std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
+  const Surface& surface_;
+  PreviewBody body_;
+  int first_, last_;  // frames whose solve is shown
+  double most_frames_;
 };
+
+// The cases of a surface, in the order in which they are told.
+std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
+  const Surface& surface = scene.surfaces[index];
+  std::vector<std::size_t> all_forces, all_groups;
+  std::vector<Case> cases;
+  const auto add = [&](Preview::Of of, std::size_t which, std::vector<std::size_t> forces,
+                       std::vector<std::size_t> groups) {
+    Preview preview;
+    preview.surface = index;
+    preview.of = of;
+    preview.index = which;
+    cases.push_back({std::move(preview), {scene, surface, std::move(forces), std::move(groups)}});
+  };
+  std::map<std::string_view, std::size_t> group_named;
+  for (std::size_t k = 0; k < scene.groups.size(); ++k) {
+    group_named.emplace(scene.groups[k].name, k);
+    const auto& targets = scene.groups[k].targets;
+    if (targets.empty() ||
+        std::find(targets.begin(), targets.end(), surface.name) != targets.end()) {
+      all_groups.push_back(k);
+    }
+  }
+  std::vector<std::vector<std::size_t>> members(scene.groups.size());
+  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
+    const Force& force = scene.forces[k];
+    const auto group = group_named.find(force.group);
+    const bool has_group = group != group_named.end();
+    if (!targets(force, has_group ? &scene.groups[group->second] : nullptr, surface.name)) continue;
+    all_forces.push_back(k);
+    if (has_group) members[group->second].push_back(k);
+    add(Preview::Of::Force, k, {k},
+        has_group ? std::vector<std::size_t>{group->second} : std::vector<std::size_t>{});
+  }
+  for (const std::size_t group : all_groups) {
+    if (!members[group].empty()) add(Preview::Of::Group, group, members[group], {group});
+  }
+  if (!all_forces.empty() || !all_groups.empty()) {
+    add(Preview::Of::All, 0, std::move(all_forces), std::move(all_groups));
+  }
+  return cases;
+}
+
+// Whether the case acts at some frame.
+bool has_frames(const Case& one, const Scene& scene) {
+  const int first = std::max(
+      scene.start, scene.surfaces[one.preview.surface].solver.start_frame.value_or(scene.start));
+  for (int frame = first; frame <= scene.end; ++frame) {
+    if (one.preview.of == Preview::Of::All ? one.acting.selects_at(frame)
+                                           : !one.acting.enabled_at(frame).empty()) {
+      return true;
+    }
+  }
+  return false;
+}
 
 }  // namespace
 
-Result<std::vector<ForcePreview>> preview_forces(const Simulation& simulation,
-                                                 const SimulationOptions& options) {
-  return Previewer(simulation, options).preview();
+Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
+                                            const SimulationOptions& options) {
+  const Scene& scene = simulation.scene();
+  MemoryBudget memory(options.max_memory -
+                      std::min(options.max_memory, simulation.surface_memory()));
+  std::vector<std::vector<Case>> cases;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
+    cases.emplace_back();
+    if (!scene.surfaces[k].enabled) continue;
+    for (Case& one : cases_of(scene, k)) {
+      if (has_frames(one, scene)) cases[k].push_back(std::move(one));
+    }
+    count += cases[k].size();
+  }
+  double nodes_left = played_nodes;
+  const double surfaces = static_cast<double>(scene.surfaces.size());
+  std::vector<Preview> previews;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    if (cases[k].empty()) continue;
+    SurfacePreviewer previewer(simulation, k, searched_nodes / static_cast<double>(count),
+                               options.should_stop, memory);
+    for (Case& one : cases[k]) {
+      if (auto looked = previewer.look(one); !looked) return fail(looked.error());
+    }
+    // Each surface has its part of the steps; what it leaves is the next one's. All forces come
+    // first, being what the animation shows.
+    double part = nodes_left / (surfaces - static_cast<double>(k));
+    nodes_left -= part;
+    std::vector<Case*> order = {&cases[k].back()};
+    for (std::size_t one = 0; one + 1 < cases[k].size(); ++one) order.push_back(&cases[k][one]);
+    for (Case* const one : order) {
+      if (auto played = previewer.play(*one, part); !played) return fail(played.error());
+    }
+    nodes_left += std::max(0.0, part);
+    for (Case& one : cases[k]) previews.push_back(std::move(one.preview));
+  }
+  return previews;
 }
 
 }  // namespace pliant

@@ -1,0 +1,168 @@
+#include "info_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <variant>
+
+#include <nlohmann/json.hpp>
+
+namespace pliant::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
+
+Json to_json(const BoundingBox& box) {
+  return {{"low", to_json(box.low)}, {"high", to_json(box.high)}};
+}
+
+Json to_json(const Box& box) {
+  if (box.is_empty()) return nullptr;
+  return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};
+}
+
+Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
+  Json json = {{"name", surface.name}, {"enabled", surface.enabled}};
+  const auto* file = std::get_if<MeshFile>(&surface.shape);
+  json["mesh"] = file ? Json(file->path.string()) : Json(nullptr);
+  json["columns"] = facts.grid.columns;
+  json["rows"] = facts.grid.rows;
+  json["vertices"] = facts.vertex_count;
+  json["boundingBox"] = to_json(facts.placed);
+  json["ownBoundingBox"] = to_json(facts.own);
+  return json;
+}
+
+Json region_json(const RegionPreview& region) {
+  Json parts = Json::array();
+  for (const Box& part : region.region.parts) parts.push_back(to_json(part));
+  Json json = {{"box", to_json(region.region.box)},
+               {"parts", parts},
+               {"solvable", region.is_solvable},
+               {"staticPeak", region.static_peak}};
+  if (!region.has_vibration) {
+    json["vibration"] = nullptr;
+    return json;
+  }
+  // Numbers that are not finite become null.
+  json["vibration"] = {{"naturalFrequency", region.first_frequency},
+                       {"naturalDampingRatio", region.damping_ratio},
+                       {"frequency", region.animated.frequency},
+                       {"dampingRatio", region.animated.damping_ratio},
+                       {"settlingTime", region.settling.time},
+                       {"settlingFrames", region.settling.frames},
+                       {"settlingIsCounted", region.settling.is_counted}};
+  return json;
+}
+
+Json preview_json(const Preview& preview, const Scene& scene) {
+  Json json = {{"surface", scene.surfaces[preview.surface].name}};
+  const bool is_force = preview.of == Preview::Of::Force;
+  if (is_force) {
+    json["largestMagnitude"] = preview.largest_magnitude;
+    json["largestMagnitudeFrame"] = preview.largest_magnitude_frame;
+  }
+  json["frame"] = preview.frame ? Json(*preview.frame) : Json(nullptr);
+  json["everyFrame"] = preview.is_every_frame;
+  if (is_force) json["magnitude"] = preview.magnitude;
+  json["selected"] = to_json(preview.selected);
+  json["solvable"] = preview.is_solvable;
+  json["staticPeak"] = preview.is_solved ? Json(preview.static_peak) : Json(nullptr);
+  json["animation"] = nullptr;
+  if (preview.played) {
+    json["animation"] = {{"peak", preview.played->peak}, {"frame", preview.played->frame}};
+  }
+  if (!is_force) {
+    json["shares"] = Json::array();
+    for (const ForceShare& one : preview.shares) {
+      json["shares"].push_back({{"force", scene.forces[one.force].name}, {"share", one.share}});
+    }
+  }
+  json["regions"] = Json::array();
+  for (const RegionPreview& region : preview.regions) {
+    json["regions"].push_back(region_json(region));
+  }
+  if (preview.gap) {
+    json["gap"] = {{"frame", preview.gap->frame},
+                   {"toVertex", preview.gap->to_vertex},
+                   {"toCentre", preview.gap->to_centre},
+                   {"deformationRadius", preview.gap->deformation_radius}};
+  }
+  return json;
+}
+
+Json previews_json(const SceneFacts& facts, Preview::Of of, std::size_t index) {
+  Json json = Json::array();
+  for (const Preview& preview : facts.previews) {
+    if (preview.of != of || preview.index != index) continue;
+    json.push_back(preview_json(preview, facts.scene));
+  }
+  return json;
+}
+
+template <int D>
+Json keys_json(const Channel<D>& channel, bool is_switch = false) {
+  Json json = Json::array();
+  for (const auto& key : channel.curve().keys().keys) {
+    Json value;
+    if constexpr (D == 1) {
+      value = is_switch ? Json(key.value[0] != 0) : Json(key.value[0]);
+    } else {
+      value = key.value;
+    }
+    json.push_back({{"frame", key.frame}, {"value", value}});
+  }
+  return json;
+}
+
+struct KeysJson {
+  Json operator()(const Channel<1>* channel) const { return keys_json(*channel); }
+  Json operator()(const Channel<3>* channel) const { return keys_json(*channel); }
+  Json operator()(const Switch* channel) const { return keys_json(channel->channel(), true); }
+};
+
+}  // namespace
+
+std::string info_json(const SceneFacts& facts) {
+  const Scene& scene = facts.scene;
+  Json json = {{"format", "pliant-info-1"}, {"file", facts.file},
+               {"start", scene.start},      {"end", scene.end},
+               {"fps", scene.fps},          {"seconds", (scene.end - scene.start) / scene.fps}};
+  json["surfaces"] = Json::array();
+  for (std::size_t k = 0; k < facts.surfaces.size(); ++k) {
+    json["surfaces"].push_back(surface_json(scene.surfaces[k], facts.surfaces[k]));
+  }
+  json["forces"] = Json::array();
+  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
+    const Force& force = scene.forces[k];
+    Json previews = previews_json(facts, Preview::Of::Force, k);
+    const Json idle = previews.empty() ? Json(idle_reason(force, scene)) : Json(nullptr);
+    json["forces"].push_back({{"name", force.name},
+                              {"kind", kind_of(force)},
+                              {"group", force.group.empty() ? Json(nullptr) : Json(force.group)},
+                              {"idle", idle},
+                              {"previews", std::move(previews)}});
+  }
+  json["groups"] = Json::array();
+  for (std::size_t k = 0; k < scene.groups.size(); ++k) {
+    Json members = Json::array();
+    for (const Force& force : scene.forces) {
+      if (force.group == scene.groups[k].name) members.push_back(force.name);
+    }
+    json["groups"].push_back({{"name", scene.groups[k].name},
+                              {"forces", std::move(members)},
+                              {"previews", previews_json(facts, Preview::Of::Group, k)}});
+  }
+  json["together"] = previews_json(facts, Preview::Of::All, 0);
+  json["channels"] = Json::array();
+  for (const NamedChannel& channel : channels_of(scene)) {
+    if (!channel.is_animated()) continue;
+    json["channels"].push_back(
+        {{"path", channel.path}, {"keys", std::visit(KeysJson{}, channel.channel)}});
+  }
+  json["memory"] = {{"surfaces", facts.surface_memory}, {"solver", facts.solver_memory}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace pliant::cli

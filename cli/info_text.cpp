@@ -1,0 +1,286 @@
+#include "info_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "counted.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// `palm (point in hand)`.
+std::string title(const Force& force) {
+  return fmt::format("{} ({}{})", force.name, kind_of(force),
+                     force.group.empty() ? "" : " in " + force.group);
+}
+
+std::string shape_text(const SurfaceShape& shape) {
+  if (const auto* file = std::get_if<MeshFile>(&shape)) {
+    return "mesh " + printable(file->path.string());
+  }
+  return std::holds_alternative<GridSheet>(shape) ? "sheet" : "mesh";
+}
+
+std::string box_text(const BoundingBox& box) {
+  // + 0.0: no minus in front of a 0.
+  const auto corner = [](const Vector3d& p) {
+    return fmt::format("{:.5g} {:.5g} {:.5g}", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0);
+  };
+  return corner(box.low) + " to " + corner(box.high);
+}
+
+std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
+  std::string text =
+      fmt::format("  {}  {}, grid {} x {}, {}{}\n    bounding box {}\n", surface.name,
+                  shape_text(surface.shape), facts.grid.columns, facts.grid.rows,
+                  counted(facts.vertex_count, "vertex", "vertices"),
+                  surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
+  if (facts.own.low != facts.placed.low || facts.own.high != facts.placed.high) {
+    text += fmt::format("    {} before its transform\n", box_text(facts.own));
+  }
+  return text;
+}
+
+std::string frequency_text(double frequency) {
+  return frequency >= 0.001 ? fmt::format("{:.4g} Hz", frequency)
+                            : fmt::format("{:.3e} Hz", frequency);
+}
+
+// The two lines on how a region vibrates.
+std::string vibration_text(const RegionPreview& region, double fps) {
+  std::string text = region.first_frequency > 0
+                         ? fmt::format("    first natural frequency {}, damping ratio {:.3g}\n",
+                                       frequency_text(region.first_frequency), region.damping_ratio)
+                         : "    first natural frequency: none, the density is 0\n";
+  const auto& [frequency, ratio] = region.animated;
+  text += "    in the animation, with what backward Euler adds: ";
+  if (frequency > 0) {
+    text += fmt::format("{}, damping ratio {:.3g}{}, it {}", frequency_text(frequency), ratio,
+                        frequency > fps / 2 ? ", faster than frames can show" : "",
+                        ratio < 0.7 ? "rings" : "hardly swings");
+  } else {
+    text += std::isinf(ratio) ? "it creeps" : fmt::format("damping ratio {:.3g}, it creeps", ratio);
+  }
+  const Settling& settling = region.settling;
+  text += fmt::format("; settles to 5 % in {}{:.3g} s ({})\n", settling.is_counted ? "" : "about ",
+                      settling.time, counted(settling.frames, "frame"));
+  return text;
+}
+
+std::string region_text(const RegionPreview& region) {
+  const Box& box = region.region.box;
+  return fmt::format("{} x {} nodes, columns {} to {}, rows {} to {}", box.columns(), box.rows(),
+                     box.i0, box.i1, box.j0, box.j1);
+}
+
+// Of several regions each one; the largest peaks first, and of many only these.
+std::string regions_text(const Preview& preview, double fps) {
+  std::vector<const RegionPreview*> regions;
+  for (const RegionPreview& region : preview.regions) regions.push_back(&region);
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const auto* a, const auto* b) { return a->static_peak > b->static_peak; });
+  if (regions.size() == 1) {
+    return regions[0]->has_vibration ? vibration_text(*regions[0], fps) : "";
+  }
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(regions.size(), most); ++k) {
+    text += fmt::format("    region of {}: {}\n", region_text(*regions[k]),
+                        regions[k]->is_solvable
+                            ? fmt::format("static peak {:.4g}", regions[k]->static_peak)
+                            : "too few to solve");
+    if (regions[k]->has_vibration) text += vibration_text(*regions[k], fps);
+  }
+  if (regions.size() > most) text += fmt::format("    and {} more\n", regions.size() - most);
+  return text;
+}
+
+std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
+
+// "palm 98 %, weight 2 %": the largest first, and of many only these.
+std::string shares_text(const Preview& preview, const Scene& scene) {
+  if (preview.shares.size() < 2) return {};
+  std::vector<ForceShare> shares = preview.shares;
+  std::stable_sort(shares.begin(), shares.end(), [](const ForceShare& a, const ForceShare& b) {
+    return std::abs(a.share) > std::abs(b.share);
+  });
+  constexpr std::size_t most = 8;
+  std::string text = "    of which";
+  for (std::size_t k = 0; k < std::min(shares.size(), most); ++k) {
+    text += fmt::format("{} {} {}", k > 0 ? "," : "", scene.forces[shares[k].force].name,
+                        percent(shares[k].share));
+  }
+  if (shares.size() > most) {
+    double others = 0;
+    for (std::size_t k = most; k < shares.size(); ++k) others += shares[k].share;
+    text += fmt::format(", the {} others {}", shares.size() - most, percent(others));
+  }
+  return text + '\n';
+}
+
+std::string gap_text(const Preview& preview) {
+  std::string text = "it selects nothing";
+  if (!preview.gap) return text;
+  const auto& [frame, to_vertex, to_centre, radius] = *preview.gap;
+  text += fmt::format(
+      "\n    nearest at frame {}: {:.4g} to the nearest vertex, {:.4g} to the middle of the "
+      "bounding box, deformationRadius {:.4g}\n",
+      frame, to_vertex, to_centre, radius);
+  return text;
+}
+
+// What comes of the forces, in as many lines as there is something to say; `who` says whose.
+std::string preview_text(const Preview& preview, const std::string& who, const Scene& scene) {
+  std::string text = fmt::format("  {} on {}: ", who, scene.surfaces[preview.surface].name);
+  const bool is_force = preview.of == Preview::Of::Force;
+  if (!preview.frame) {
+    text += gap_text(preview);
+    if (!is_force) return text.ends_with('\n') ? text : text + '\n';
+    return text + fmt::format("    its largest magnitude is {:g} (frame {})\n",
+                              preview.largest_magnitude, preview.largest_magnitude_frame);
+  }
+  const Box& box = preview.selected;
+  text += fmt::format("at frame {}{} {} {} x {} nodes, columns {} to {}, rows {} to {}\n",
+                      *preview.frame,
+                      is_force ? fmt::format(", at magnitude {:g},", preview.magnitude) : "",
+                      preview.of == Preview::Of::All ? "they select" : "it selects", box.columns(),
+                      box.rows(), box.i0, box.i1, box.j0, box.j1);
+  if (!preview.is_every_frame) text += "    not every frame was looked at, the range is long\n";
+  if (!preview.is_solvable) {
+    text += "    fewer than 3 x 3 nodes: too few to solve\n";
+  } else if (!preview.is_solved) {
+    text += "    too many to preview the static peak and the natural frequency\n";
+  } else {
+    text += fmt::format("    static peak displacement {:.4g}", preview.static_peak);
+  }
+  if (preview.played) {
+    text += fmt::format("{}in the animation {:.4g} at frame {}\n",
+                        preview.is_solved ? "; " : "    peak displacement ", preview.played->peak,
+                        preview.played->frame);
+  } else if (preview.is_solved) {
+    text += "; too many frames and nodes to play the animation here\n";
+  }
+  if (!preview.is_solved) return text;
+  return text + shares_text(preview, scene) + regions_text(preview, scene.fps);
+}
+
+// Whether all forces of a surface come to what its only one does alone.
+bool is_told_already(const Preview& all, const std::vector<Preview>& previews) {
+  const Preview* only = nullptr;
+  for (const Preview& preview : previews) {
+    if (preview.surface != all.surface || preview.of != Preview::Of::Force) continue;
+    if (only) return false;
+    only = &preview;
+  }
+  if (!only || only->frame != all.frame || only->static_peak != all.static_peak) return false;
+  return only->played.has_value() == all.played.has_value() &&
+         (!only->played || only->played->peak == all.played->peak);
+}
+
+std::string forces_text(const SceneFacts& facts) {
+  const Scene& scene = facts.scene;
+  std::string text =
+      "forces, each alone, at the frame of greatest effect, on the surface at rest\n";
+  for (const Preview& preview : facts.previews) {
+    if (preview.of != Preview::Of::Force) continue;
+    text += preview_text(preview, title(scene.forces[preview.index]), scene);
+  }
+  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
+    const bool is_previewed =
+        std::any_of(facts.previews.begin(), facts.previews.end(), [&](const Preview& preview) {
+          return preview.of == Preview::Of::Force && preview.index == k;
+        });
+    if (is_previewed) continue;
+    text += fmt::format("  {}: {}\n", title(scene.forces[k]), idle_reason(scene.forces[k], scene));
+  }
+  if (scene.forces.empty()) text += "  none\n";
+  if (!scene.groups.empty()) text += "groups, with what their forces do together\n";
+  for (std::size_t k = 0; k < scene.groups.size(); ++k) {
+    const Group& group = scene.groups[k];
+    bool is_told = false;
+    for (const Preview& preview : facts.previews) {
+      if (preview.of != Preview::Of::Group || preview.index != k) continue;
+      text += preview_text(preview, group.name, scene);
+      is_told = true;
+    }
+    const bool is_empty =
+        std::none_of(scene.forces.begin(), scene.forces.end(),
+                     [&](const Force& force) { return force.group == group.name; });
+    if (is_empty) text += fmt::format("  {} (group): no force in it\n", group.name);
+    if (!is_told && !is_empty) {
+      text += fmt::format("  {} (group): no force that acts\n", group.name);
+    }
+  }
+  std::string together;
+  for (const Preview& preview : facts.previews) {
+    if (preview.of != Preview::Of::All || is_told_already(preview, facts.previews)) continue;
+    together += preview_text(preview, "together", scene);
+  }
+  if (!together.empty()) text += "all that acts, together\n" + together;
+  return text;
+}
+
+template <int D>
+std::string value_text(const Value<D>& value) {
+  return fmt::format("{:g}", fmt::join(value, " "));
+}
+
+template <int D>
+std::string keys_text(const Channel<D>& channel, bool is_switch = false) {
+  const auto& keys = channel.curve().keys().keys;
+  std::string text = counted(keys.size(), "key") + ':';
+  // The ends of a long curve say enough.
+  constexpr std::size_t most = 12, at_each_end = 5;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys.size() > most && k == at_each_end) {
+      text += " …";
+      k = keys.size() - at_each_end;
+    }
+    const std::string value =
+        is_switch ? (keys[k].value[0] != 0 ? "true" : "false") : value_text<D>(keys[k].value);
+    text += fmt::format("{} {:g} = {}", k > 0 ? "," : "", keys[k].frame, value);
+  }
+  return text;
+}
+
+struct KeysText {
+  std::string operator()(const Channel<1>* channel) const { return keys_text(*channel); }
+  std::string operator()(const Channel<3>* channel) const { return keys_text(*channel); }
+  std::string operator()(const Switch* channel) const {
+    return keys_text(channel->channel(), true);
+  }
+};
+
+std::string channels_text(const Scene& scene) {
+  std::string text;
+  for (const NamedChannel& channel : channels_of(scene)) {
+    if (!channel.is_animated()) continue;
+    text += fmt::format("  {}  {}\n", channel.path, std::visit(KeysText{}, channel.channel));
+  }
+  return "channels with keys\n" + (text.empty() ? "  none\n" : text);
+}
+
+}  // namespace
+
+std::string info_text(const SceneFacts& facts) {
+  const Scene& scene = facts.scene;
+  std::string text =
+      fmt::format("{}\nframes {} to {} at {:g} frames/s, {:.4g} s\n", printable(facts.file),
+                  scene.start, scene.end, scene.fps, (scene.end - scene.start) / scene.fps);
+  if (facts.surfaces.empty()) return text + "no surface\n" + channels_text(scene);
+  text += "surfaces\n";
+  for (std::size_t k = 0; k < facts.surfaces.size(); ++k) {
+    text += surface_text(scene.surfaces[k], facts.surfaces[k]);
+  }
+  text += forces_text(facts) + channels_text(scene);
+  return text + fmt::format(
+                    "memory\n  {} for the surfaces, {} for the solver of the largest region "
+                    "above\n",
+                    bytes_text(facts.surface_memory), bytes_text(facts.solver_memory));
+}
+
+}  // namespace pliant::cli
