@@ -66,7 +66,7 @@ class SurfacePreviewer {
 
   // Plays the case, unless that would take more steps of nodes than there are left.
   Result<void> play(Case& one, double& nodes_left) {
-    if (nodes_left <= 0) return {};
+    if (nodes_left < body_.least_cost() * (scene_.end - first_)) return {};
     PlayedPeak played{0, scene_.start};
     const bool is_plain = one.preview.of != Preview::Of::All;
     body_.begin(is_plain);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
@@ -26,10 +27,10 @@ double slowest_seen(std::span<const ExcitedMode> modes, double first) {
 }  // namespace
 
 PreviewBody::PreviewBody(const GridMapping& mapping, const SolverSettings& settings,
-                         const StopRequest& should_stop, MemoryBudget& memory)
+                         StopRequest should_stop, MemoryBudget& memory)
     : mapping_(mapping),
       settings_(settings),
-      should_stop_(should_stop),
+      should_stop_(std::move(should_stop)),
       memory_(memory),
       share_(&memory) {}
 
@@ -99,8 +100,7 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   if (auto sound = check_faults(); !sound) return fail(sound.error());
   if (!report) return fail(report.error());
   report_ = *std::move(report);
-  return static_cast<double>(node_count()) +
-         static_cast<double>(report_.unknown_count()) * report_.steps.count;
+  return least_cost() + static_cast<double>(report_.unknown_count()) * report_.steps.count;
 }
 
 // Of the nodes of a box, row by row; object space.

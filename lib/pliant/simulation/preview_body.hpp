@@ -18,9 +18,9 @@ namespace pliant {
 // tangents, so that nothing but forces moves it.
 class PreviewBody {
  public:
-  /// All of them outlive it.
-  PreviewBody(const GridMapping& mapping, const SolverSettings& settings,
-              const StopRequest& should_stop, MemoryBudget& memory);
+  /// Mapping, settings and memory outlive it.
+  PreviewBody(const GridMapping& mapping, const SolverSettings& settings, StopRequest should_stop,
+              MemoryBudget& memory);
 
   /// Makes it, if it is not there yet. Errors: OutOfMemory.
   Result<void> reserve();
@@ -41,7 +41,10 @@ class PreviewBody {
   /// Starts an animation at rest.
   void begin(bool is_plain);
 
-  /// Moves it on by a frame. Gives how many steps of nodes that took.
+  /// About what a frame costs at least, in steps of nodes.
+  double least_cost() const { return node_count() + 5000.0; }
+
+  /// Moves it on by a frame. Gives what that took, in steps of nodes.
   Result<double> step(BodyInputs inputs);
 
   struct Peak {
@@ -70,7 +73,7 @@ class PreviewBody {
 
   const GridMapping& mapping_;
   const SolverSettings& settings_;
-  const StopRequest& should_stop_;
+  StopRequest should_stop_;
   MemoryBudget& memory_;
   MemoryShare share_;
   std::optional<Body> real_;   // as the scene has it
