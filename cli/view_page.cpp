@@ -32,6 +32,9 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
+constexpr std::string_view policy_begin = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
+constexpr std::string_view asks_own_server = "connect-src 'self'";
+
 // What stands between the two marks of the page goes, `text` comes.
 void put(std::string& page, std::string_view begin, std::string_view end, std::string_view text) {
   const std::size_t from = page.find(begin);
@@ -52,8 +55,18 @@ Result<std::string_view> page_template() {
               "script/bootstrap && script/build puts it in");
 }
 
+std::string policy_of(std::string_view page) {
+  const std::size_t from = page.find(policy_begin);
+  if (from == std::string_view::npos) return "default-src 'none'";
+  const std::string_view rest = page.substr(from + policy_begin.size());
+  return std::string(rest.substr(0, rest.find('"')));
+}
+
 std::string page_with(std::string_view page, std::string_view title, std::string_view packed) {
   std::string result(page);
+  if (const auto at = result.find(asks_own_server); at != std::string::npos) {
+    result.replace(at, asks_own_server.size(), "connect-src 'none'");
+  }
   put(result, "<title>", "</title>", escaped(title) + " – pliant");
   put(result, "<script id=\"bake\" type=\"text/plain\">", "</script>", base64(packed));
   return result;

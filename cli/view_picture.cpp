@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -134,20 +135,15 @@ class Browser {
   pid_t id_;
 };
 
-struct Size {
-  int width = 0;
-  int height = 0;
-};
-
 // WxH in pixels, as large as a canvas may be.
-Result<Size> parse_size(const std::string& text) {
+Result<PictureSize> parse_size(const std::string& text) {
   constexpr int most = 8192;
   const std::size_t cross = text.find('x');
   const auto width = to_integer(text.substr(0, cross));
   const auto height =
       cross == std::string::npos ? std::nullopt : to_integer(text.substr(cross + 1));
   if (width && height && std::min(*width, *height) >= 16 && std::max(*width, *height) <= most) {
-    return Size{static_cast<int>(*width), static_cast<int>(*height)};
+    return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
   }
   return fail(ErrorCode::InvalidInput,
               fmt::format("--size {}: not of the form WxH, from 16x16 to {}x{}", text, most, most));
@@ -171,17 +167,49 @@ Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRa
   return chosen;
 }
 
+// A page that leads on to `address`: what a program is called with everyone may see, and the token
+// in the address is for this browser only.
+Result<std::string> write_way(const std::string& folder, const std::string& address) {
+  const std::string path = folder + "/way.html";
+  std::ofstream file(path);
+  file << fmt::format("<!doctype html>\n<meta http-equiv=\"refresh\" content=\"0;url={}\">\n",
+                      address);
+  file.close();
+  if (!file) return fail(ErrorCode::Unwritable, "cannot write " + path);
+  return "file://" + path;
+}
+
+// What the page makes of the frames: a table of them, each with its number under it, or one alone.
+PictureOrder order_of(const ViewOptions& options, PictureSize size,
+                      const std::vector<int>& frames) {
+  constexpr int most_columns = 4;
+  const int count = static_cast<int>(frames.size());
+  const int label = count > 1 ? 28 : 0;
+  const int columns = std::min(most_columns, count);
+  const int rows = (count + columns - 1) / columns;
+  const nlohmann::json job = {{"width", size.width}, {"height", size.height},
+                              {"frames", frames},    {"columns", columns},
+                              {"label", label},      {"look", options.look}};
+  return {job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+          {columns * size.width, rows * (size.height + label)}};
+}
+
 Result<std::string> draw(ViewServer& server) {
   auto folder = ScratchFolder::make();
   if (!folder) return fail(folder.error());
-  auto browser =
-      Browser::open(fmt::format("http://127.0.0.1:{}/take", server.port()), folder->path());
+  const auto way = write_way(folder->path(), server.address() + "take");
+  if (!way) return fail(way.error());
+  auto browser = Browser::open(*way, folder->path());
   if (!browser) return fail(browser.error());
   constexpr auto patience = 120s;
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < patience) {
     if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
-    if (auto picture = server.take_picture()) return *std::move(picture);
+    if (auto picture = server.take_picture()) {
+      if (*picture) return *std::move(picture);
+      return fail(ErrorCode::Unwritable,
+                  "Chromium sent no picture that can be used: " + picture->error().message);
+    }
     if (!browser->is_running()) {
       return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
     }
@@ -210,13 +238,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 
   auto server = ViewServer::start(std::string(page), 0);
   if (!server) return fail(server.error());
-  constexpr int sheet_columns = 4;
-  const nlohmann::json job = {{"width", size->width},
-                              {"height", size->height},
-                              {"frames", *frames},
-                              {"columns", sheet_columns},
-                              {"look", options.look}};
-  server->order_picture(job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  server->order_picture(order_of(options, *size, *frames));
   server->publish(std::move(baked->bake.packed));
   const auto picture = draw(*server);
   if (!picture) return fail(picture.error());

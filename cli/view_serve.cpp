@@ -78,14 +78,21 @@ std::vector<std::filesystem::path> files_to_watch(const Scene& scene) {
 std::string to_json(const Error& error) {
   using Json = nlohmann::ordered_json;
   Json messages = Json::array();
+  constexpr std::size_t longest_text = 2000;
   const auto add = [&](const Error& each) {
     messages.push_back({{"kind", "error"},
                         {"file", std::filesystem::path(each.file).filename().string()},
                         {"line", each.line},
-                        {"text", each.message}});
+                        {"text", each.message.substr(0, longest_text)}});
   };
   add(error);
-  for (const Error& other : error.others) add(other);
+  // A page shows some and tells how many more there are; the terminal has them all.
+  constexpr std::size_t most_shown = 100;
+  const std::size_t shown = std::min(error.others.size(), most_shown);
+  for (std::size_t k = 0; k < shown; ++k) add(error.others[k]);
+  if (const std::size_t left = error.others.size() - shown; left > 0) {
+    add({error.code, fmt::format("{} more; see the terminal", left)});
+  }
   return messages.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -132,7 +139,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
 int serve_view(const ViewOptions& options, std::string_view page) {
   auto server = ViewServer::start(std::string(page), *options.port);
   if (!server) return report(server.error());
-  print(stdout, fmt::format("http://127.0.0.1:{}/\n", server->port()));
+  print(stdout, server->address() + '\n');
   MemoryFrameStore store(store_bytes(options.resources));
   while (!was_interrupted()) {
     const auto watch = bake_once(options, *server, store);

@@ -5,12 +5,19 @@
 #include <string>
 
 #include "pliant/core/result.hpp"
+#include "png_check.hpp"
 
 namespace pliant::cli {
 
+/// What the page at `address()`take is asked for.
+struct PictureOrder {
+  std::string job;   ///< a JSON object
+  PictureSize size;  ///< of the picture that has to come of it
+};
+
 /// Serves the viewer's page to browsers of this machine, and tells it what happens to the scene.
-/// Who asks by another name than this machine's own gets nothing, so that no page from elsewhere
-/// can read a scene through a name of its own (DNS rebinding).
+/// Whoever asks without the address's token, from another page, or by another name than this
+/// machine's own gets nothing; see `ViewGate`.
 class ViewServer {
  public:
   /// Takes requests from now on. `port` 0: any that is free. Errors: Unwritable where the port is
@@ -21,7 +28,8 @@ class ViewServer {
   ViewServer& operator=(ViewServer&&) = delete;
   ~ViewServer();  ///< ends all connections
 
-  int port() const;
+  /// Of the page, with the token that all its requests need, and with a slash at its end.
+  std::string address() const;
 
   /// Pages show this bake (see `ViewBake::packed`) from now on, those that are open too.
   void publish(std::string packed);
@@ -31,10 +39,11 @@ class ViewServer {
   /// {kind, file, line, text}.
   void tell_failure(std::string messages);
 
-  /// Page /take asks for `job`, a JSON object, and sends a picture back.
-  void order_picture(std::string job);
-  /// The picture, a PNG file, once it is there; takes it.
-  std::optional<std::string> take_picture();
+  /// Page `address()`take asks for the job, and sends one picture back.
+  void order_picture(PictureOrder order);
+  /// The picture, a PNG file, once it is there; takes it. Errors: InvalidInput where what came is
+  /// not the one that was ordered (see `check_png`).
+  std::optional<Result<std::string>> take_picture();
 
  private:
   struct State;

@@ -237,7 +237,9 @@ function goLive(): void {
   let isConnected = false;
   follow({
     baked(bake) {
+      const isFirst = viewer.bake === null;
       load(bake);
+      if (isFirst) apply(readLook(location.hash));
       showLive("live", "ready");
     },
     failed(messages: Message[]) {
@@ -261,7 +263,8 @@ async function sendPicture(): Promise<void> {
   load(await fetchBake());
   apply({ theme: "light", ...defined(readLook(job.look)) });
   const picture = await takePicture(viewer, themes, job);
-  await fetch("picture", { method: "POST", body: picture });
+  const answer = await fetch("picture", { method: "POST", body: picture });
+  if (!answer.ok) throw new Error(`the command answers ${answer.status} to its picture`);
 }
 
 function defined(look: Look): Look {
@@ -274,7 +277,7 @@ async function begin(): Promise<void> {
     load(await unpack(bytesOf(text)));
     element("bake").remove();
     apply(readLook(location.hash));
-  } else if (location.pathname === "/take") {
+  } else if (location.pathname.endsWith("/take")) {
     await sendPicture();
   } else {
     goLive();

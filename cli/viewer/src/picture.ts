@@ -8,12 +8,13 @@ export interface PictureJob {
   height: number;
   frames: number[];
   columns: number;
+  /** Pixels under each frame of a sheet for its number; 0: none. */
+  label: number;
 }
 
 /** A PNG of width x height pixels for one frame; several stand in a table, each that large. */
 export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob> {
-  const { width, height, frames, columns } = job;
-  const label = frames.length > 1 ? 28 : 0;
+  const { width, height, frames, columns, label } = job;
   const rows = Math.ceil(frames.length / columns);
   const sheet = document.createElement("canvas");
   [sheet.width, sheet.height] = [width * Math.min(columns, frames.length), (height + label) * rows];
