@@ -42,10 +42,9 @@ class Serving(Command):
 
     @classmethod
     def tearDownClass(cls):
-        cls.server.process.send_signal(signal.SIGINT)
-        _, errors = cls.server.process.communicate(timeout=60)
+        code, _, errors = cls.server.close()
         cls.home.cleanup()
-        assert (cls.server.process.returncode, errors) == (0, ""), (cls.server.process.returncode, errors)
+        assert (code, errors) == (0, ""), (code, errors)
 
     def tearDown(self):
         self.assertEqual(statuses(self.ask())[:1], [200], "it answers nobody any more")

@@ -6,6 +6,7 @@ import re
 import signal
 import socket
 import subprocess
+import tempfile
 import time
 
 from command import PLIANT
@@ -56,8 +57,10 @@ class Server:
     """The command, and a listener to its events."""
 
     def __init__(self, scene):
+        # A file: a pipe that nobody reads would stop a command with much to say.
+        self.errors = tempfile.TemporaryFile("w+", encoding="utf-8")
         self.process = subprocess.Popen([PLIANT, "view", scene, "--serve"], stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True)
+                                        stderr=self.errors, text=True)
         self.address = self.process.stdout.readline().rstrip("\n")
         port, self.token = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([0-9a-f]{32})/", self.address).groups()
         self.port = int(port)
@@ -120,13 +123,17 @@ class Server:
         self.events.close()
 
     def close(self):
-        self.process.send_signal(signal.SIGINT)
-        out, err = self.process.communicate(timeout=120)
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        out, _ = self.process.communicate(timeout=120)
         self.stop_listening()
-        return self.process.returncode, out, err
+        with self.errors:
+            self.errors.seek(0)
+            return self.process.returncode, out, self.errors.read()
 
     def kill(self):
         if self.process.poll() is None:
             self.process.kill()
             self.process.communicate()
             self.stop_listening()
+            self.errors.close()
