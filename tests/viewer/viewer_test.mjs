@@ -7,6 +7,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
+import { createServer } from "node:http";
 import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
@@ -626,6 +627,106 @@ test("a save changes the page in place", async () => {
       await page.waitForFunction(() => document.querySelectorAll(".message.error").length === 0);
     });
   } finally {
+    await server.stop();
+  }
+});
+
+test("the address sets the look under --serve too, once", async () => {
+  const scene = inFolder("address.xml");
+  const text = readFileSync(example("sheet"), "utf8");
+  writeFileSync(scene, text);
+  const server = await serve(scene);
+  try {
+    await withPage(`${server.url}#frame=45&theme=light&colour=velocity&gizmos=off&turn=90&tilt=0`, {}, async (page) => {
+      await page.waitForFunction(() => window.pliant.viewer.bake !== null);
+      const look = () =>
+        page.evaluate(() => ({
+          theme: document.documentElement.dataset.theme,
+          display: [window.pliant.viewer.display.colour, window.pliant.viewer.display.hasGizmos],
+          camera: window.pliant.stage.camera.position.clone().sub(window.pliant.stage.controls.target).normalize().toArray(),
+        }));
+      const { theme, display, camera } = await look();
+      assert.equal(await frameOf(page), 45);
+      assert.deepEqual([theme, ...display], ["light", "velocity", false]);
+      near(camera[0], 1, 1e-3, "camera");
+      // A save leaves what was chosen since.
+      await goTo(page, 12);
+      await page.evaluate(() => (window.before = window.pliant.viewer.bake));
+      writeFileSync(scene, text.replace('value="8000"', 'value="12000"'));
+      await page.waitForFunction(() => window.pliant.viewer.bake !== window.before);
+      assert.equal(await frameOf(page), 12);
+    });
+  } finally {
+    await server.stop();
+  }
+});
+
+test("a served page runs nothing but its own, and stands in no frame", async () => {
+  const server = await serve(example("sheet"));
+  try {
+    const page = await open(server.url);
+    await page.waitForFunction(() => window.pliant.viewer.bake !== null);
+    assert.deepEqual(page.complaints, []);
+    const ran = await page.evaluate(async () => {
+      const script = document.createElement("script");
+      script.textContent = "window.ran = true";
+      const image = document.createElement("img");
+      image.setAttribute("onerror", "window.ran = true");
+      image.src = "data:,";
+      document.body.append(script, image);
+      await new Promise((done) => setTimeout(done, 300));
+      return window.ran ?? false;
+    });
+    assert.equal(ran, false);
+    assert.equal(await page.evaluate(() => fetch("http://localhost:1/").then(() => "asked", (error) => error.name)), "TypeError");
+    assert.ok(page.complaints.some((each) => each.includes("Content Security Policy")), page.complaints.join());
+    await page.context().close();
+  } finally {
+    await server.stop();
+  }
+});
+
+test("a page from elsewhere gets nothing, not even with the address", async () => {
+  const server = await serve(example("sheet"));
+  const elsewhere = createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end("<!doctype html><title>elsewhere</title>"));
+  await new Promise((ready) => elsewhere.listen(0, "127.0.0.1", ready));
+  try {
+    const { port } = new URL(server.url);
+    for (const site of [`http://127.0.0.1:${elsewhere.address().port}/`, `http://localhost:${elsewhere.address().port}/`]) {
+      const context = await browser.newContext();
+      const page = await context.newPage();
+      await page.goto(site);
+      const got = await page.evaluate(async ([address, root, path]) => {
+        const results = {};
+        const ask = (name, ...how) => fetch(...how).then(async (answer) => (results[name] = answer.type === "opaque" ? "opaque" : await answer.text()), () => (results[name] = null));
+        await ask("read", `${address}bake`);
+        await ask("root", root);
+        await ask("blind", `${address}bake`, { mode: "no-cors" });
+        // The body is a request of its own.
+        const inner = `GET ${path}bake HTTP/1.1\r\nHost: ${new URL(root).host}\r\n\r\n`;
+        await ask("smuggled", root, { method: "POST", mode: "no-cors", body: inner });
+        const frame = document.createElement("iframe");
+        frame.src = address;
+        document.body.append(frame);
+        await new Promise((done) => (frame.onload = done));
+        results.framed = (() => { try { return frame.contentDocument?.title ?? null; } catch { return null; } })();
+        const events = new EventSource(`${address}events`);
+        results.events = await new Promise((tell) => { events.onopen = () => tell("open"); events.onerror = () => tell("error"); });
+        events.close();
+        return results;
+      }, [server.url, `http://127.0.0.1:${port}/`, new URL(server.url).pathname]);
+      assert.equal(got.read, null);
+      assert.equal(got.root, null);
+      assert.ok([null, "opaque"].includes(got.blind));
+      assert.equal(got.framed, null);
+      assert.equal(got.events, "error");
+      for (const frame of page.frames().slice(1)) assert.equal(await frame.evaluate(() => document.getElementById("viewer")), null);
+      await context.close();
+    }
+    // And the person in front of it still sees it.
+    await withPage(server.url, {}, async (page) => page.waitForFunction(() => window.pliant.viewer.bake !== null));
+  } finally {
+    elsewhere.close();
     await server.stop();
   }
 });

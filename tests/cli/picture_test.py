@@ -1,0 +1,196 @@
+"""From whom `pliant view --png` takes its picture: a program stands in for Chromium, and does what an
+attacker does. What Chromium draws is tested by tests/viewer.
+"""
+
+import json
+import os
+import stat
+import struct
+import unittest
+import zlib
+
+from command import Command, SANITIZED, SCENE, main
+from view_server import HAS_PAGE
+
+# Called as Chromium is. What each test does with it is appended; its results go to a file.
+BROWSER = """#!/usr/bin/python3
+import json, os, re, resource, socket, struct, sys, time, zlib
+way = sys.argv[-1].removeprefix("file://")
+with open(way, encoding="utf-8") as file:
+    address = re.search("url=([^\\"]*)", file.read()).group(1)
+port, token = re.fullmatch(r"http://127\\.0\\.0\\.1:(\\d+)/([0-9a-f]{32})/take", address).groups()
+own = f"127.0.0.1:{port}"
+folder = os.path.dirname(os.path.abspath(__file__))
+results = {"arguments": sys.argv[1:], "way": oct(os.stat(os.path.dirname(way)).st_mode), "token": token}
+
+def send(text, body=b""):
+    with socket.create_connection(("127.0.0.1", int(port)), timeout=20) as link:
+        try:
+            link.sendall(text.encode() + body)
+            link.shutdown(socket.SHUT_WR)
+        except OSError:  # closed while we were sending
+            pass
+        answer = b""
+        try:
+            while piece := link.recv(65536):
+                answer += piece
+        except ConnectionResetError:
+            pass
+    return answer
+
+def ask(method, place, *lines, body=b"", host=own, secret=token):
+    head = "\\r\\n".join([f"{method} /{secret}/{place} HTTP/1.1", f"Host: {host}", *lines, "", ""])
+    return [int(word) for word in re.findall(rb"HTTP/1\\.1 (\\d+) ", send(head, body))]
+
+def post(body, *lines, **options):
+    return ask("POST", "picture", f"Content-Length: {len(body)}", *lines, body=body, **options)
+
+def chunk(kind, content):
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+def png(width, height, value=0):
+    rows = (b"\\0" + bytes([value]) * (4 * width)) * height
+    return (b"\\x89PNG\\r\\n\\x1a\\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows, 1)) + chunk(b"IEND", b""))
+
+def note():  # ahead of the picture, which ends us
+    with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:
+        json.dump(results, file)
+
+"""
+
+
+def size_of(png):
+    return struct.unpack(">II", png[16:24])
+
+
+@unittest.skipUnless(HAS_PAGE, "this build has no page")
+class Picture(Command):
+    def draw(self, work, *options, code=0):
+        """The run, with what the program in Chromium's place found out."""
+        scene = self.write("scene.xml", SCENE.format(end=30))
+        program = self.write("chromium", BROWSER + work + "\ntime.sleep(60)\n")
+        os.chmod(program, stat.S_IRWXU)
+        path = self.folder + os.pathsep + os.environ["PATH"]
+        result = self.run_pliant("view", scene, "--png", "out.png", "--quiet", *(options if "--size" in options else ("--size", "64x48", *options)),
+                                 code=code, env={**os.environ, "PATH": path})
+        try:
+            with open(self.path("results.json"), encoding="utf-8") as file:
+                return result, json.load(file)
+        except FileNotFoundError:  # it noted nothing
+            return result, None
+
+    def test_a_whole_picture_is_taken_as_it_is(self):
+        self.draw('good = png(64, 48, 7)\nopen(os.path.join(folder, "sent.png"), "wb").write(good)\npost(good)')
+        self.assertEqual(self.read("out.png"), self.read("sent.png"))
+
+    def test_a_sheet_has_the_size_of_all_its_frames(self):
+        self.draw("job = json.loads(send(f'GET /{token}/job HTTP/1.1\\r\\nHost: {own}\\r\\n\\r\\n').split(b'\\r\\n\\r\\n')[1])\n"
+                  "rows = -(-len(job['frames']) // job['columns'])\n"
+                  "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label'])))", "--contact-sheet")
+        self.assertEqual(size_of(self.read("out.png")), (4 * 64, 3 * (48 + 28)))
+
+    def test_no_list_of_processes_shows_the_token(self):
+        work = "note()\npost(png(64, 48))"
+        _, results = self.draw(work)
+        self.assertNotIn(results["token"], " ".join(results["arguments"]))
+        self.assertEqual(results["way"][-3:], "700")
+
+    def test_from_elsewhere_nothing_is_taken(self):
+        work = """
+bad = png(64, 48, 1)
+results["answers"] = [
+    post(bad, secret="0" * 32), post(bad, secret=token[:-1]), post(bad, secret=""), post(bad, host="evil.example"),
+    post(bad, "Origin: http://evil.example"), post(bad, "Origin: null"), post(bad, "Sec-Fetch-Site: cross-site"),
+    post(bad, "Sec-Fetch-Site: none"), post(bad, "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"),
+    ask("GET", "take", "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: iframe"),
+    ask("GET", "take", "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: no-cors", "Sec-Fetch-Dest: script"),
+]
+inner = f"POST /{token}/picture HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: {len(bad)}\\r\\n\\r\\n".encode() + bad
+results["smuggled"] = [post(inner, host="evil.example"), post(inner, secret="0" * 32),
+                       ask("POST", "picture", "Transfer-Encoding: chunked", body=b"0\\r\\n\\r\\n" + inner)]
+results["own"] = [ask("GET", "take", "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"),
+                  ask("GET", "job", "Sec-Fetch-Site: same-origin"), ask("PUT", "picture"), ask("GET", "picture")]
+note()
+post(png(64, 48, 9), f"Origin: http://{own}", "Sec-Fetch-Site: same-origin")
+"""
+        _, results = self.draw(work)
+        self.assertEqual(results["answers"], [[403]] * 11)
+        self.assertEqual(results["smuggled"], [[403], [403], [501]])
+        self.assertEqual(results["own"], [[200], [200], [405], [405]])
+        self.assertIn(zlib.compress((b"\0" + b"\x09" * 256) * 48, 1), self.read("out.png"))
+
+    def test_a_body_has_a_length_and_a_bound(self):
+        work = """
+length = lambda value, *lines: ask("POST", "picture", f"Content-Length: {value}", *lines, body=b"x" * 1000)
+results["answers"] = [
+    length(10**6), length(2**63), length(2**64 - 1), length("0, 0"), length(-1), length(7, "Expect: 100-continue"),
+    ask("POST", "picture", "Content-Length: 7", "Content-Length: 7", body=b"1234567"),
+    ask("POST", "picture", "Transfer-Encoding: chunked", body=b"ffffffffffffffff\\r\\n" + b"x" * 1000),
+    ask("POST", "picture", "Transfer-Encoding: chunked", "Content-Length: 7", body=b"1234567")]
+half = ask("POST", "picture", "Content-Length: 5000", body=b"x" * 100)  # and gone
+results["answers"].append(half)
+note()
+post(png(64, 48))
+"""
+        _, results = self.draw(work)
+        self.assertEqual(results["answers"], [[413]] * 3 + [[400]] * 2 + [[417], [400], [501], [400], []])
+
+    def test_only_one_body_is_received_at_a_time(self):
+        work = """
+slow = socket.create_connection(("127.0.0.1", int(port)))
+slow.sendall(f"POST /{token}/picture HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: 5000\\r\\n\\r\\nx".encode())
+time.sleep(0.3)
+results["second"] = post(png(64, 48))
+slow.close()
+time.sleep(0.3)
+note()
+post(png(64, 48))
+"""
+        _, results = self.draw(work)
+        self.assertEqual(results["second"], [503])
+
+    def test_what_is_no_such_picture_ends_the_run(self):
+        for work, words in (("b'<html>'", "it does not begin as a PNG"), ("b''", "it does not begin as a PNG"),
+                            ("png(64, 48)[:-1]", "it breaks off"), ("png(64, 48) + b'x'", "behind its end"),
+                            ("png(48, 64)", "it has 48 x 64 pixels, not 64 x 48"),
+                            ("b'GIF89a' + png(64, 48)", "it does not begin as a PNG"),
+                            ("png(64, 48).replace(b'IDAT', b'IDAU')", "checksum")):
+            with self.subTest(work):
+                result, _ = self.draw(f"post({work})", code=1)
+                self.assertIn("no picture that can be used: ", result.stderr)
+                self.assertIn(words, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertNotIn("out.png", self.files())
+
+    def test_a_second_picture_is_refused(self):
+        # Together, so that the command cannot end between them.
+        work = """
+good = png(64, 48, 3)
+one = f"POST /{token}/picture HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: {len(good)}\\r\\n\\r\\n".encode() + good
+other = png(64, 48, 4)
+two = f"POST /{token}/picture HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: {len(other)}\\r\\n\\r\\n".encode() + other
+answer = send("", one + two)
+"""
+        self.draw(work)
+        self.assertIn(zlib.compress((b"\0" + b"\x03" * 256) * 48, 1), self.read("out.png"))
+
+    @unittest.skipIf(SANITIZED, "a sanitizer takes all of the address space")
+    def test_too_little_memory_is_answered(self):
+        work = """
+pid = os.getppid()
+pages = int(open(f"/proc/{pid}/statm").read().split()[0]) * resource.getpagesize()
+whole = resource.prlimit(pid, resource.RLIMIT_AS)
+resource.prlimit(pid, resource.RLIMIT_AS, (pages + 20_000_000, whole[1]))
+results["scarce"] = post(b"x" * 200_000_000)
+results["after"] = ask("GET", "job")
+resource.prlimit(pid, resource.RLIMIT_AS, whole)
+note()
+post(b"no picture")
+"""
+        _, results = self.draw(work, "--size", "8192x8192", code=1)
+        self.assertEqual((results["scarce"], results["after"]), ([503], [200]))
+
+
+if __name__ == "__main__":
+    main()
