@@ -3,29 +3,29 @@
 function __pliant_complete
     set -l words (commandline -opc)
     set -l word (commandline -ct)
-    set -l lines ($words[1] __complete $words[2..-1] $word 2>/dev/null)
+    set -l lines ($words[1] __complete $words[2..-1] "$word" 2>/dev/null)
     set -l kind (string split ' ' -- $lines[1])
     # --name=value: what stands ahead of the value stays.
-    set -l ahead (string match -r -- '^--[^=]*=' $word)
-    set -l part (string replace -r -- '^--[^=]*=' '' $word)
+    set -l ahead (string match -r -- '^--[^=]*=' "$word")
+    set -l part (string replace -r -- '^--[^=]*=' '' "$word")
     switch $kind[1]
         case words
             for line in $lines[2..-1]
-                echo $ahead$line
+                echo "$ahead$line"
             end
         case folders
             for file in (__fish_complete_directories $part)
-                echo $ahead$file
+                echo "$ahead$file"
             end
         case files
-            for file in $part*
+            for file in "$part"*
                 if test -d $file
-                    echo $ahead$file/
+                    echo "$ahead$file/"
                 else if test (count $kind) -eq 1
-                    echo $ahead$file
+                    echo "$ahead$file"
                 else
                     for ending in $kind[2..-1]
-                        string match -q -- "*$ending" $file; and echo $ahead$file
+                        string match -q -- "*$ending" $file; and echo "$ahead$file"
                     end
                 end
             end
