@@ -1,11 +1,21 @@
 # A script: writes a header with a digest of everything that decides the bits of a state, so that no
 # number has to be raised by hand when the engine changes. Runs at each build, and touches the
 # header only where the digest is another.
-#   cmake -DROOMS=<folders> -DLIBRARIES=<headers> -DARCHITECTURE=<name> -DOUT=<header>
+#   cmake -DROOMS=<folders> -DLIBRARIES=<headers and library files> -DARCHITECTURE=<name>
+#         -DCOMPILER=<name and version> -DFLAGS=<words> -DVERSIONS=<words> -DOUT=<header>
 #         -P EngineDigest.cmake
-set(digests "${ARCHITECTURE}\n")
+# It is part of what states are kept under (docs/caching.md), not of replay logs, which are compared
+# across compilers.
+set(digests "${ARCHITECTURE}\n${COMPILER}\n${VERSIONS}\n")
+foreach(flag IN LISTS FLAGS)
+  # Warnings decide no bits, nor does where the project lies.
+  if(NOT flag MATCHES "^(-W|SHELL:-include)")
+    string(APPEND digests "${flag}\n")
+  endif()
+endforeach()
 foreach(room IN LISTS ROOMS)
-  file(GLOB sources LIST_DIRECTORIES false "${room}/*.cpp" "${room}/*.hpp")
+  file(GLOB sources LIST_DIRECTORIES false "${room}/*.cpp" "${room}/*.hpp"
+       "${room}/CMakeLists.txt")
   list(SORT sources)
   foreach(source IN LISTS sources)
     file(SHA256 "${source}" digest)
@@ -13,9 +23,9 @@ foreach(room IN LISTS ROOMS)
     string(APPEND digests "${name} ${digest}\n")
   endforeach()
 endforeach()
-foreach(header IN LISTS LIBRARIES)
-  if(EXISTS "${header}")
-    file(SHA256 "${header}" digest)
+foreach(file IN LISTS LIBRARIES)
+  if(EXISTS "${file}")
+    file(SHA256 "${file}" digest)
     string(APPEND digests "${digest}\n")
   endif()
 endforeach()

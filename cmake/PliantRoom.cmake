@@ -1,5 +1,8 @@
 # What every target of the project is built with, and how a room (one folder, one library) is made.
 
+include("${CMAKE_CURRENT_LIST_DIR}/StrictMath.cmake")
+pliant_refuse_fast_math_of_the_build()
+
 add_library(pliant_settings INTERFACE)
 add_library(pliant::settings ALIAS pliant_settings)
 target_compile_features(pliant_settings INTERFACE cxx_std_20)

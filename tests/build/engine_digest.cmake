@@ -1,0 +1,67 @@
+# Whatever decides the bits of a state gives another digest, and so other keys; what does not, does not.
+cmake_minimum_required(VERSION 3.25)
+file(REMOVE_RECURSE "${WORK}")
+file(MAKE_DIRECTORY "${WORK}/room")
+file(WRITE "${WORK}/room/a.cpp" "1\n")
+file(WRITE "${WORK}/room/CMakeLists.txt" "flags of a file\n")
+file(WRITE "${WORK}/library.h" "version 1\n")
+
+# digest_of(OUT ARGUMENT=VALUE...): with these in place of what is below.
+function(digest_of out)
+  set(ROOMS "${WORK}/room")
+  set(LIBRARIES "${WORK}/library.h")
+  set(ARCHITECTURE x86_64)
+  set(COMPILER "GNU 12.2.0")
+  set(FLAGS -O3 "-Wall" "SHELL:-include \"/here/strict_math.hpp\"" Release)
+  set(VERSIONS "Eigen 3.4.0")
+  foreach(argument IN LISTS ARGN)
+    string(REGEX MATCH "^([A-Z]+)=(.*)$" matched "${argument}")
+    string(REPLACE "|" ";" ${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+  endforeach()
+  execute_process(COMMAND "${CMAKE_COMMAND}" "-DROOMS=${ROOMS}" "-DLIBRARIES=${LIBRARIES}"
+    "-DARCHITECTURE=${ARCHITECTURE}" "-DCOMPILER=${COMPILER}" "-DFLAGS=${FLAGS}"
+    "-DVERSIONS=${VERSIONS}" "-DOUT=${WORK}/digest.hpp" -P "${SOURCE}/cmake/EngineDigest.cmake"
+    COMMAND_ERROR_IS_FATAL ANY)
+  file(READ "${WORK}/digest.hpp" text)
+  if(NOT text MATCHES "#define PLIANT_ENGINE_DIGEST \"[0-9a-f]+\"")
+    message(SEND_ERROR "no digest in: ${text}")
+  endif()
+  set(${out} "${text}" PARENT_SCOPE)
+endfunction()
+
+digest_of(before)
+set(all "${before}")
+foreach(change ARCHITECTURE=aarch64 "COMPILER=GNU 12.2.1" "COMPILER=Clang 12.2.0" FLAGS=-O2|Release
+               FLAGS=-O3|-march=native|Release FLAGS=-O3|Debug "VERSIONS=Eigen 3.4.1"
+               "VERSIONS=Eigen 3.4.0|CHOLMOD ON" "LIBRARIES=")
+  digest_of(after "${change}")
+  if(after IN_LIST all)
+    message(SEND_ERROR "${change} gives the digest of another engine")
+  endif()
+  list(APPEND all "${after}")
+endforeach()
+foreach(file room/a.cpp room/CMakeLists.txt library.h)
+  file(READ "${WORK}/${file}" text)
+  file(WRITE "${WORK}/${file}" "another\n")
+  digest_of(after)
+  if(after IN_LIST all)
+    message(SEND_ERROR "another ${file} gives the same digest")
+  endif()
+  file(WRITE "${WORK}/${file}" "${text}")
+endforeach()
+foreach(change "FLAGS=-O3|-Wall|-Werror|Release" "FLAGS=-O3|SHELL:-include \"/there/x.hpp\"|Release")
+  digest_of(after "${change}")
+  if(NOT after STREQUAL before)
+    message(SEND_ERROR "${change} gives another digest")
+  endif()
+endforeach()
+
+# The project hands all of it over.
+file(READ "${SOURCE}/lib/pliant/simulation/CMakeLists.txt" text)
+foreach(word "CMAKE_CXX_COMPILER_ID} \${CMAKE_CXX_COMPILER_VERSION}" "CMAKE_CXX_FLAGS" "CHOLMOD_LIBRARY"
+             "Sleef_LIBRARY" "Eigen3_VERSION" "-DCOMPILER=" "-DFLAGS=" "-DVERSIONS=")
+  string(FIND "${text}" "${word}" place)
+  if(place EQUAL -1)
+    message(SEND_ERROR "the build does not hand over ${word}")
+  endif()
+endforeach()
