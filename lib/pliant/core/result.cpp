@@ -1,5 +1,8 @@
 #include "pliant/core/result.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace pliant {
 namespace {
 
@@ -13,18 +16,62 @@ std::string to_line(const Error& error) {
   return printable(line + "error: " + error.message);
 }
 
+// Bytes of the first character; 0 where that is no UTF-8 (RFC 3629).
+std::size_t length_of_character(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t size = first >= 0xc2 && first < 0xe0   ? 2
+                           : first >= 0xe0 && first < 0xf0 ? 3
+                           : first >= 0xf0 && first < 0xf5 ? 4
+                                                           : 0;
+  if (size == 0 || text.size() < size) return 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if ((byte(k) & 0xc0) != 0x80) return 0;
+  // Longer than need be, a surrogate, beyond U+10FFFF.
+  const bool is_wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
+                        (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
+  return is_wrong ? 0 : size;
+}
+
+// Requires: one character of UTF-8.
+char32_t code_point(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  if (character.size() == 1) return first;
+  char32_t code = first & (0x7fu >> character.size());
+  for (const char c : character.substr(1))
+    code = code << 6 | (static_cast<unsigned char>(c) & 0x3f);
+  return code;
+}
+
+bool acts_on_terminal(char32_t code) {
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) ||       // C0, DEL, C1
+         code == 0x61c || code == 0x200e || code == 0x200f ||  // marks of direction
+         (code >= 0x2028 && code <= 0x202e) ||  // line, paragraph, embeddings, overrides
+         (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;
+}
+
+void append_escaped(std::string_view bytes, std::string& line) {
+  constexpr const char* digits = "0123456789abcdef";
+  for (const char c : bytes) {
+    const auto code = static_cast<unsigned char>(c);
+    line += {'\\', 'x', digits[code >> 4], digits[code & 15]};
+  }
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
-  constexpr const char* digits = "0123456789abcdef";
   std::string line;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code >= 0x20 && code != 0x7f) {
-      line += c;
+  while (!text.empty()) {
+    const std::size_t size = length_of_character(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(size, 1));
+    if (size > 0 && !acts_on_terminal(code_point(character))) {
+      line += character;
     } else {
-      line += {'\\', 'x', digits[code >> 4], digits[code & 15]};
+      append_escaped(character, line);
     }
+    text.remove_prefix(character.size());
   }
   return line;
 }

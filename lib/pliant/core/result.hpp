@@ -49,8 +49,8 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::stri
 /// Hands an error on as it is.
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
 
-/// The text with each control character as `\xHH`: what an author or a file wrote must not break a
-/// line or reach a terminal.
+/// The text with what would break a line or act on a terminal, and what is no UTF-8, as `\xHH`: C0
+/// and C1 controls, separators of lines, marks of writing direction. Done twice it changes nothing.
 std::string printable(std::string_view text);
 
 /// The first problem and all others, one line each: `FILE:LINE: error: MESSAGE`, without the parts
