@@ -124,6 +124,8 @@ std::vector<float> GltfSurface::normals_at(const Field& positions) const {
 
 Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& buffer) {
   if (is_placed_) {
+    auto held = check_placement(pose.placement, PlacementNumbers::Single, name_, frame);
+    if (!held) return held;
     append(pose.placement.translate, keys_[0].numbers);
     append(rotation_of(pose.placement), keys_[1].numbers);
     append(pose.placement.scale, keys_[2].numbers);

@@ -98,6 +98,7 @@ Result<std::unique_ptr<SurfaceWriter>> make_pc2_writer(const SurfacePlan& plan) 
 }
 
 Result<std::unique_ptr<SurfaceWriter>> make_mdd_writer(const SurfacePlan& plan) {
+  if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());
   constexpr std::endian order = std::endian::big;
   std::string header;
   append<order>(header, std::int32_t{plan.frame_count()});

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/transform.hpp"
 
 namespace pliant {
 
@@ -15,5 +17,17 @@ Result<std::vector<float>> to_single(const Field& positions, int frame);
 /// The same of the rows from `first` on that fill `numbers`.
 Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
                        std::span<float> numbers);
+
+/// How a format holds translation and scale of a placement.
+enum class PlacementNumbers { Single, Double };
+
+/// Whether a format can hold a placement. Errors: NotFinite, naming surface, frame and value, where
+/// one of its numbers is not finite or beyond the range of the format's.
+Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
+                             std::string_view surface, int frame);
+
+/// Seconds from the first to the last of `frame_count` frames, rounded to float.
+/// Errors: NotFinite where that is beyond its range.
+Result<float> to_single_seconds(int frame_count, double fps);
 
 }  // namespace pliant

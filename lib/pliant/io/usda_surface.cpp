@@ -106,6 +106,10 @@ Result<UsdaSurface> UsdaSurface::make(const AnimationPlan& plan, const AnimatedS
 }
 
 Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
+  if (is_placed_) {
+    auto held = check_placement(pose.placement, PlacementNumbers::Double, name_, frame);
+    if (!held) return held;
+  }
   const auto numbers = to_single(pose.positions, frame);
   if (!numbers) return fail(numbers.error());
   std::string text = sample_head(frame);
