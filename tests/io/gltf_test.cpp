@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
@@ -10,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/animated_meshes.hpp"
+#include "pliant/core/hash.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/read_assimp.hpp"
 #include "support/catch.hpp"
@@ -288,11 +292,120 @@ TEST_CASE("an unfinished glTF leaves nothing", "[io][gltf]") {
   }
 }
 
+namespace {
+
+/// Names of the files that hold numbers of STEM.gltf.
+std::vector<std::string> numbers_of(const ScratchFolder& folder, const std::string& stem) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    const std::string name = entry.path().filename().string();
+    const std::string digits = name.substr(std::min(name.size(), stem.size() + 1));
+    if (name.starts_with(stem + '.') && digits.size() == 20 && digits.ends_with(".bin") &&
+        digits.find_first_not_of("0123456789abcdef") == 16) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
 TEST_CASE("a name that has to be escaped finds its numbers", "[io][gltf]") {
   const ScratchFolder folder;
   const Mesh mesh = make_mesh({});
   const auto file = written(folder, "a b%20ü.gltf", mesh, bump(mesh.positions, 4, 2));
   const json root = json::parse(read_file(file).value());
-  CHECK(root["buffers"][0]["uri"] == "a%20b%2520%C3%BC.bin");
-  CHECK(std::filesystem::exists(folder.file("a b%20ü.bin")));
+  const auto numbers = numbers_of(folder, "a b%20ü");
+  REQUIRE(numbers.size() == 1);
+  CHECK(root["buffers"][0]["uri"] ==
+        "a%20b%2520%C3%BC" + numbers.front().substr(std::string("a b%20ü").size()));
+}
+
+TEST_CASE("a glTF's numbers are named by what they are", "[io][gltf]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({});
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
+  const auto first = numbers_of(folder, "a");
+  REQUIRE(first.size() == 1);
+  const std::string bytes = read_file(folder.file(first.front())).value();
+  CHECK(first.front() == "a." + to_text(hash_of(bytes)).substr(0, 16) + ".bin");
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
+  CHECK(numbers_of(folder, "a") == first);
+}
+
+TEST_CASE("numbers that no glTF names any more are removed, others stay", "[io][gltf]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({});
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
+  const std::string first = numbers_of(folder, "a").front();
+  folder.write("a.0123456789abcdef.bin", "of a bake that was killed");
+  const std::vector<std::string> others = {"a.bin", "a.0123456789ABCDEF.bin",
+                                           "a.123456789abcdef.bin", "b.0123456789abcdef.bin",
+                                           "a.0123456789abcdef.binary"};
+  for (const std::string& other : others) folder.write(other, "not ours");
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 3));
+  const std::string second = numbers_of(folder, "a").front();
+  CHECK(numbers_of(folder, "a").size() == 1);
+  CHECK(second != first);
+  for (const std::string& other : others) CHECK(std::filesystem::exists(folder.file(other)));
+
+  // A copy goes on referring to what it was made with.
+  std::filesystem::copy(folder.file("a.gltf"), folder.file("copy.GLTF"));
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 4));
+  CHECK(numbers_of(folder, "a").size() == 2);
+  CHECK(std::filesystem::exists(folder.file(second)));
+  std::filesystem::remove(folder.file("copy.GLTF"));
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 4));
+  CHECK(numbers_of(folder, "a").size() == 1);
+}
+
+TEST_CASE("a placement that glTF cannot hold is an error with its place", "[io][gltf]") {
+  const Mesh mesh = make_mesh({});
+  const double inf = std::numeric_limits<double>::infinity();
+  struct Case {
+    Placement placement;
+    const char* single;  // what glTF says
+    const char* twice;   // what USD says; none: it holds it
+  };
+  const std::vector<Case> cases = {
+      {{{0, 1e300, 0}}, "translate of 1e+300, which is beyond the single precision", nullptr},
+      {{{0, 0, 0}, {0, 0, 0}, {1, 1, 3.5e38}}, "scale of 3.5e+38, which is beyond", nullptr},
+      {{{0, 0, 0}, {0, 1e300, 0}}, nullptr, nullptr},
+      {{{-inf, 0, 0}}, "translate of -inf, which is no finite", "translate of -inf, which is no"},
+      {{{0, 0, 0}, {0, 0, inf}}, "rotate of inf, which is no finite", "rotate of inf, which is no"},
+      {{{0, 0, 0}, {0, 0, 0}, {1, inf, 1}}, "scale of inf", "scale of inf"}};
+  for (const Case& each : cases) {
+    for (const char* name : {"a.gltf", "a.glb", "a.usda"}) {
+      const ScratchFolder folder;
+      AnimationPlan plan = plan_of(folder.file(name), mesh);
+      plan.is_placed = true;
+      plan.first_frame = 6;
+      plan.last_frame = 7;
+      auto writer = make_writer(plan).value();
+      REQUIRE(writer->write(6, std::vector<SurfacePose>{{mesh.positions}}));
+      const auto moved =
+          writer->write(7, std::vector<SurfacePose>{{mesh.positions, each.placement}});
+      const char* const words = std::string(name) == "a.usda" ? each.twice : each.single;
+      CAPTURE(name, words == nullptr ? "" : words);
+      CHECK(static_cast<bool>(moved) == (words == nullptr));
+      if (moved || words == nullptr) continue;
+      CHECK(moved.error().code == ErrorCode::NotFinite);
+      CHECK_THAT(moved.error().message,
+                 contains_text(std::string("surface \"sheet\" at frame 7 has a ") + words));
+    }
+  }
+}
+
+TEST_CASE("times beyond single precision are refused ahead", "[io][gltf]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({});
+  for (const char* name : {"a.gltf", "a.glb", "a.mdd"}) {
+    AnimationPlan plan = plan_of(folder.file(name), mesh);
+    plan.last_frame = 2;
+    plan.fps = 1e-39;
+    const auto writer = make_writer(plan);
+    REQUIRE_FALSE(writer);
+    CHECK_THAT(writer.error().message, contains_text("beyond the single precision"));
+  }
+  CHECK(folder.entry_count() == 0);
 }

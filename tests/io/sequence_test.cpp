@@ -1,5 +1,7 @@
 #include "pliant/io/sequence.hpp"
 
+#include <sys/stat.h>
+
 #include "io/animated_meshes.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
@@ -29,48 +31,113 @@ TEST_CASE("a sequence is probed ahead, and the probe leaves nothing", "[io][sequ
   CHECK(probe.error().code == ErrorCode::Unwritable);
 }
 
-TEST_CASE("a sequence is resumed after its last whole frame", "[io][sequence]") {
+namespace {
+
+/// Writes frames 1, 2, … and gives what became of their files.
+FileCounts resumed(AnimationPlan plan, const std::vector<std::vector<Field>>& frames) {
+  plan.resume = true;
+  plan.first_frame = 1;
+  plan.last_frame = static_cast<int>(frames.front().size());
+  auto writer = make_writer(plan).value();
+  for (std::size_t k = 0; k < frames.front().size(); ++k) {
+    std::vector<SurfacePose> poses;
+    for (const auto& of_surface : frames) poses.push_back({of_surface[k]});
+    REQUIRE(writer->write(static_cast<int>(k) + 1, poses));
+  }
+  REQUIRE(writer->finish());
+  return writer->file_counts();
+}
+
+}  // namespace
+
+TEST_CASE("a sequence that is resumed keeps what would be written, and nothing else",
+          "[io][sequence]") {
+  const ScratchFolder folder, whole;
+  const Mesh mesh = make_mesh({});
+  const auto frames = bump(mesh.positions, 4, 12);
+  const std::string name = GENERATE("a.obj", "a.ply");
+  AnimationPlan plan = plan_of(whole.file(name), mesh);
+  REQUIRE(write_all(plan, {frames}));
+  plan.file = folder.file(name);
+  const auto file = [&](int frame) { return sequence_file(name, frame).string(); };
+  const auto bytes_of = [&](int frame) { return read_file(whole.file(file(frame))).value(); };
+  for (const int kept : {1, 2, 9, 12}) folder.write(file(kept), bytes_of(kept));
+  folder.write(file(3), "");
+  folder.write(file(4), bytes_of(4).substr(0, bytes_of(4).size() - 1));
+  folder.write(file(5), bytes_of(5) + "\n");
+  std::string flipped = bytes_of(6);
+  flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
+  folder.write(file(6), flipped);
+  folder.write(file(7), bytes_of(8));             // whole, of another frame
+  folder.write(file(13), "beyond the last one");  // is none of this bake's
+  // 8, 10 and 11 are not there.
+  const auto before = std::filesystem::last_write_time(folder.file(file(2)));
+
+  const FileCounts counts = resumed(plan, {frames});
+  CHECK(counts.kept == 4);
+  CHECK(counts.written == 8);
+  CHECK(std::filesystem::last_write_time(folder.file(file(2))) == before);
+  for (int frame = 1; frame <= 12; ++frame) {
+    CAPTURE(frame);
+    CHECK(read_file(folder.file(file(frame))).value() == bytes_of(frame));
+  }
+  CHECK(folder.entry_count() == 13);
+  CHECK(resumed(plan, {frames}).kept == 12);
+}
+
+TEST_CASE("what another scene or mesh wrote is written again", "[io][sequence]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({}), other = dressed_sheet();
+  AnimationPlan plan = plan_of(folder.file("a.obj"), mesh);
+  auto frames = bump(mesh.positions, 4, 6);
+  REQUIRE(write_all(plan, {frames}));
+  frames[3](4, 1) += 1e-9;  // a key in the middle; the first and the last frame are as they were
+  FileCounts counts = resumed(plan, {frames});
+  CHECK(counts.kept == 5);
+  CHECK(counts.written == 1);
+  counts = resumed(plan_of(folder.file("a.obj"), other), {bump(other.positions, 4, 6)});
+  CHECK(counts.kept == 0);
+  CHECK(counts.written == 6);
+}
+
+TEST_CASE("files of several surfaces are kept each by itself", "[io][sequence]") {
   const ScratchFolder folder;
   const Mesh mesh = make_mesh({});
-  const auto frames = bump(mesh.positions, 4, 6);
-  const std::string name = GENERATE("a.obj", "a.ply");
-  AnimationPlan plan = plan_of(folder.file(name), mesh);
-  REQUIRE(write_all(plan, {{frames[0], frames[1], frames[2]}}));
-  folder.write(sequence_file(name, 2).string(),
-               "touched");  // only the first and the last are looked at
-  folder.write(sequence_file(name, 5).string(), "stale");  // behind a gap
-  plan.resume = true;
-  REQUIRE(write_all(plan, {frames}));
-  CHECK(folder.entry_count() == 6);
-  CHECK(read_file(folder.file(sequence_file(name, 2).string())).value() == "touched");
-
-  const ScratchFolder whole;
-  plan.file = whole.file(name);
-  REQUIRE(write_all(plan, {frames}));
-  for (const int frame : {1, 3, 4, 5, 6}) {
-    const std::string file = sequence_file(name, frame).string();
-    CHECK(read_file(folder.file(file)).value() == read_file(whole.file(file)).value());
+  AnimationPlan plan = plan_of(folder.file("a.##.ply"), mesh);
+  plan.surfaces.push_back({"other", &mesh, mesh.positions});
+  const auto frames = bump(mesh.positions, 4, 4);
+  REQUIRE(write_all(plan, {frames, frames}));
+  folder.write("a-other.02.ply", "");
+  std::filesystem::remove(folder.file("a-sheet.03.ply"));
+  const FileCounts counts = resumed(plan, {frames, frames});
+  CHECK(counts.kept == 6);
+  CHECK(counts.written == 2);
+  for (const char* frame : {"02", "03"}) {
+    CHECK(read_file(folder.file(std::string("a-other.") + frame + ".ply")).value() ==
+          read_file(folder.file(std::string("a-sheet.") + frame + ".ply")).value());
   }
 }
 
-TEST_CASE("what another scene wrote is not resumed", "[io][sequence]") {
-  const ScratchFolder folder;
+TEST_CASE("what is no regular file in the place of a frame is refused ahead", "[io][sequence]") {
   const Mesh mesh = make_mesh({});
-  const auto frames = bump(mesh.positions, 4, 6);
+  const std::string in_the_way = GENERATE("folder", "link", "dangling", "pipe");
+  const ScratchFolder folder;
   AnimationPlan plan = plan_of(folder.file("a.obj"), mesh);
-  REQUIRE(write_all(plan, {{frames[0], frames[1], frames[2]}}));
+  const auto frames = bump(mesh.positions, 4, 4);
+  REQUIRE(write_all(plan, {frames}));
   const auto third = folder.file("a.0003.obj");
-  const std::string bytes = read_file(third).value();
-  for (const std::string& other :
-       {bytes + "\n", bytes.substr(0, bytes.size() - 1), std::string()}) {
-    folder.write("a.0003.obj", other);
-    plan.resume = true;
-    const auto resumed = write_all(plan, {frames});
-    REQUIRE_FALSE(resumed);
-    CHECK(resumed.error().file == third.string());
-    CHECK_THAT(resumed.error().message, contains_text("cannot be resumed"));
-    CHECK(folder.entry_count() == 3);
-  }
+  std::filesystem::rename(third, folder.file("kept.obj"));
+  if (in_the_way == "folder") std::filesystem::create_directory(third);
+  if (in_the_way == "link") std::filesystem::create_symlink("kept.obj", third);
+  if (in_the_way == "dangling") std::filesystem::create_symlink("none.obj", third);
+  if (in_the_way == "pipe") REQUIRE(mkfifo(third.c_str(), 0600) == 0);
+  plan.resume = true;
+  plan.first_frame = 1;
+  plan.last_frame = 4;
+  const auto writer = make_writer(plan);
+  REQUIRE_FALSE(writer);
+  CHECK(writer.error().code == ErrorCode::InvalidInput);
+  CHECK(writer.error().file == third.string());
 }
 
 TEST_CASE("one file cannot be resumed", "[io][sequence]") {

@@ -1,6 +1,8 @@
 #include "pliant/io/writer.hpp"
 
 #include <cctype>
+#include <string>
+#include <string_view>
 
 #include "io/animated_meshes.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
@@ -54,7 +56,11 @@ TEST_CASE("what will be written is known ahead", "[io][writer]") {
       }
       REQUIRE(write_all(plan, frames));
       CAPTURE(ending, count);
-      CHECK(static_cast<int>(files_of(plan).size()) == inner.entry_count());
+      int unnamed = 0;
+      for (const auto& entry : std::filesystem::directory_iterator(inner.path()))
+        unnamed += is_named_at_the_end(plan, entry.path().filename().string()) ? 1 : 0;
+      CHECK(unnamed == (ending == ".gltf" ? 1 : 0));
+      CHECK(static_cast<int>(files_of(plan).size()) + unnamed == inner.entry_count());
       for (const auto& file : files_of(plan)) CHECK(std::filesystem::exists(file));
     }
   }
@@ -68,10 +74,41 @@ TEST_CASE("a folder in the way is told ahead", "[io][writer]") {
     std::filesystem::create_directory(folder.file(is_sequence ? "a.0001" + ending : "a" + ending));
     const auto writer = make_writer(plan(folder.file("a" + ending), mesh));
     REQUIRE_FALSE(writer);
-    CHECK(writer.error().code == ErrorCode::Unwritable);
+    CHECK(writer.error().code == ErrorCode::InvalidInput);
     CHECK_THAT(writer.error().message, Contains("it is a folder"));
     // A path below a file: nobody may write there, not even root.
     folder.write("file", "");
     CHECK_FALSE(make_writer(plan(folder.file("file") / ("a" + ending), mesh)));
   }
+}
+
+TEST_CASE("what is in the way of any file is told ahead", "[io][writer]") {
+  const Mesh mesh = make_mesh({});
+  const auto refused = [&](const AnimationPlan& plan, const char* words) {
+    const auto writer = make_writer(plan);
+    REQUIRE_FALSE(writer);
+    CHECK(writer.error().code == ErrorCode::InvalidInput);
+    CHECK_THAT(writer.error().message, Contains(words));
+  };
+  for (const char* name : {"a.0003.obj", "a.0003.ply", "a.npy", "a.pc2", "a.mdd", "a.obj", "a.glb",
+                           "a.gltf", "a.usda"}) {
+    const ScratchFolder folder;
+    std::filesystem::create_symlink(folder.file("nowhere"), folder.file(name));
+    std::string ending = std::filesystem::path(name).extension().string();
+    if (std::string_view(name) == "a.obj") ending = ".pc2";  // the mesh beside
+    AnimationPlan in_the_way = plan(folder.file("a" + ending), mesh);
+    in_the_way.last_frame = 5;
+    refused(in_the_way, "symbolic link");
+    CHECK(folder.entry_count() == 1);
+  }
+  // The digits beside and behind the stem count too.
+  const ScratchFolder folder;
+  const std::string stem(250, 'n');
+  refused(plan(folder.file(stem + ".gltf"), mesh), "the folder allows 255");
+  refused(plan(folder.file(stem + ".obj"), mesh), "the folder allows 255");
+  AnimationPlan two = plan(folder.file(stem + ".npy"), mesh);
+  two.surfaces.push_back({"other", &mesh, mesh.positions});
+  refused(two, "the folder allows 255");
+  two.surfaces.pop_back();
+  CHECK(write_all(two, {bump(mesh.positions, 4, 2)}));
 }

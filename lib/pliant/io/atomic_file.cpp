@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/io/open_folder.hpp"
+#include "pliant/io/output_place.hpp"
 #include "pliant/io/raw_bytes.hpp"
 
 namespace pliant {
@@ -18,17 +20,19 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "the formats written here are little endian");
 
-tl::unexpected<Error> cannot_write(const std::filesystem::path& file, const std::string& reason) {
-  return fail(ErrorCode::Unwritable, "cannot write the file: " + reason, file.string());
+tl::unexpected<Error> cannot_write(const std::filesystem::path& file, int error_number) {
+  return fail(ErrorCode::Unwritable,
+              std::string("cannot write the file: ") + std::strerror(error_number), file.string());
 }
 
-// Opens a new file beside `file`, under a name that nobody else uses; -1 with errno otherwise.
-int open_part(const std::filesystem::path& file, std::filesystem::path& part) {
+// Opens a new file in the folder, under a name that nobody else uses; -1 with errno otherwise.
+int open_part(const OpenFolder& folder, const std::filesystem::path& file, std::string& part) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     // In the same folder, because a rename is atomic only within one file system.
-    part = file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
-                                 "-" + std::to_string(attempt) + ".part");
-    const int descriptor = open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    part = hidden_name(file) + "." + std::to_string(getpid()) + "-" + std::to_string(attempt) +
+           ".part";
+    const int descriptor =
+        openat(folder.descriptor(), part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0 || errno != EEXIST) return descriptor;
   }
   return -1;
@@ -36,31 +40,31 @@ int open_part(const std::filesystem::path& file, std::filesystem::path& part) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path file, std::filesystem::path part, Stream stream)
-    : file_(std::move(file)), part_(std::move(part)), stream_(std::move(stream)) {}
+AtomicFile::AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush)
+    : file_(std::move(file)), part_(std::move(part)), stream_(std::move(stream)), flush_(flush) {}
 
 AtomicFile::~AtomicFile() {
   if (!stream_) return;
   stream_.reset();
-  std::error_code ignored;  // nothing to do about a part that cannot be removed
-  std::filesystem::remove(part_, ignored);
+  // Nothing to do about a part that cannot be removed.
+  if (const OpenFolder folder(file_); folder.error() == 0) folder.remove(part_);
 }
 
-Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file) {
-  std::error_code status_error;
-  if (std::filesystem::is_directory(file, status_error))
-    return cannot_write(file, "it is a folder");
-  std::filesystem::path part;
-  const int descriptor = open_part(file, part);
-  if (descriptor < 0) return cannot_write(file, std::strerror(errno));
+Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file, Flush flush) {
+  if (auto place = check_output_place(file); !place) return fail(place.error());
+  const OpenFolder folder(file);
+  if (folder.error() != 0) return cannot_write(file, folder.error());
+  std::string part;
+  const int descriptor = open_part(folder, file, part);
+  if (descriptor < 0) return cannot_write(file, errno);
   Stream stream(fdopen(descriptor, "wb"));
   if (!stream) {
     const int error_number = errno;
     close(descriptor);
-    unlink(part.c_str());
-    return cannot_write(file, std::strerror(error_number));
+    folder.remove(part);
+    return cannot_write(file, error_number);
   }
-  return AtomicFile(file, part, std::move(stream));
+  return AtomicFile(file, part, std::move(stream), flush);
 }
 
 Result<void> AtomicFile::write(std::string_view bytes) {
@@ -75,22 +79,50 @@ Result<void> AtomicFile::write(std::span<const double> numbers) { return write(b
 
 Result<void> AtomicFile::write(std::span<const float> numbers) { return write(bytes_of(numbers)); }
 
-Result<void> AtomicFile::commit() {
+Result<void> AtomicFile::commit() { return commit_as(file_); }
+
+Result<void> AtomicFile::commit_as(const std::filesystem::path& file) {
   PLIANT_EXPECTS(stream_);
-  // Closing is the last chance of a network file system to say that the disk is full.
+  PLIANT_EXPECTS(file.parent_path() == file_.parent_path());
+  const OpenFolder folder(file_);
+  Result<void> done;
+  if (file != file_) done = check_output_place(file);
+  if (auto finished = finish_bytes(); done) done = std::move(finished);
+  if (done && folder.error() != 0) done = unwritable(folder.error());
+  if (done) {
+    if (const int error = folder.rename(part_, file.filename().string()); error != 0)
+      done = unwritable(error);
+  }
+  if (!done) {
+    if (folder.error() == 0) folder.remove(part_);
+    return done;
+  }
+  if (flush_ != Flush::All) return {};
+  if (const int error = folder.flush(); error != 0) return unwritable(error);
+  return {};
+}
+
+// Hands all bytes over, and closes.
+Result<void> AtomicFile::finish_bytes() {
   std::FILE* const stream = stream_.release();
-  const bool is_flushed = std::fflush(stream) == 0;
-  const int flush_error = errno;
+  int error = std::fflush(stream) == 0 ? 0 : errno;
+  if (error == 0 && flush_ != Flush::Nothing) error = flush_descriptor(fileno(stream));
+  // Closing is the last chance of a network file system to say that the disk is full.
   const bool is_closed = std::fclose(stream) == 0;
-  const int error_number = is_flushed ? errno : flush_error;
-  if (is_flushed && is_closed && std::rename(part_.c_str(), file_.c_str()) == 0) return {};
-  const auto failure = unwritable(is_flushed && is_closed ? errno : error_number);
-  unlink(part_.c_str());
-  return failure;
+  if (error == 0 && !is_closed) error = errno;
+  if (error != 0) return unwritable(error);
+  return {};
 }
 
 tl::unexpected<Error> AtomicFile::unwritable(int error_number) const {
-  return cannot_write(file_, std::strerror(error_number));
+  return cannot_write(file_, error_number);
+}
+
+Result<void> flush_folder(const std::filesystem::path& file) {
+  const OpenFolder folder(file);
+  const int error = folder.error() != 0 ? folder.error() : folder.flush();
+  if (error != 0) return cannot_write(file, error);
+  return {};
 }
 
 }  // namespace pliant

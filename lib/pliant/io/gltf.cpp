@@ -12,9 +12,14 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/file_ending.hpp"
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/io/atomic_file.hpp"
 #include "pliant/io/gltf_buffer.hpp"
+#include "pliant/io/gltf_numbers.hpp"
 #include "pliant/io/gltf_surface.hpp"
+#include "pliant/io/open_folder.hpp"
+#include "pliant/io/output_place.hpp"
+#include "pliant/io/single_precision.hpp"
 #include "pliant/io/spool_file.hpp"
 
 namespace pliant {
@@ -33,11 +38,6 @@ std::string to_uri(const std::string& name) {
     uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri;
-}
-
-// Where the numbers of a .gltf are.
-std::filesystem::path separate_name(const std::filesystem::path& file) {
-  return std::filesystem::path(file).replace_extension(".bin");
 }
 
 void append_number(std::string& bytes, std::uint32_t number) {
@@ -110,7 +110,10 @@ class GltfWriter final : public AnimationWriter {
 
  private:
   Result<void> take(std::string_view bytes) {
-    if (separate_) return separate_->write(bytes);
+    if (separate_) {
+      separate_hash_.add(bytes);
+      return separate_->write(bytes);
+    }
     if (spool_->size() + bytes.size() > most_glb_bytes) return too_large();
     return spool_->write(bytes);
   }
@@ -148,7 +151,7 @@ class GltfWriter final : public AnimationWriter {
     root["accessors"] = buffer_.accessors();
     root["bufferViews"] = buffer_.views();
     Json buffer = {{"byteLength", buffer_.size()}};
-    if (separate_) buffer["uri"] = to_uri(separate_name(file_).filename().string());
+    if (separate_) buffer["uri"] = to_uri(separate_name().filename().string());
     root["buffers"] = Json::array({std::move(buffer)});
     return root;
   }
@@ -164,12 +167,22 @@ class GltfWriter final : public AnimationWriter {
     return animation;
   }
 
+  // Requires: all numbers are written.
+  std::filesystem::path separate_name() const { return numbers_file(file_, separate_hash_.hash()); }
+
+  // The numbers first, under a name of their own: the .gltf that was there keeps its own until the
+  // new one takes its place, in one step.
   Result<void> write_gltf(const std::string& text) {
     auto file = AtomicFile::create(file_);
     if (!file) return fail(file.error());
     if (auto written = file->write(text); !written) return written;
-    if (auto committed = separate_->commit(); !committed) return committed;
-    return file->commit();
+    // Another bake to this name must not take our numbers for old ones before we refer to them.
+    const OpenFolder folder(file_);
+    folder.lock();
+    auto committed = separate_->commit_as(separate_name());
+    if (committed) committed = file->commit();
+    remove_unnamed_numbers(file_);
+    return committed;
   }
 
   // glTF 2.0, 4.4: a header, a chunk of JSON padded with blanks, a chunk of numbers.
@@ -194,6 +207,7 @@ class GltfWriter final : public AnimationWriter {
   std::filesystem::path file_;
   bool is_placed_;
   std::optional<AtomicFile> separate_;  // the numbers of a .gltf
+  HashStream separate_hash_;            // of what went there
   std::optional<SpoolFile> spool_;      // those of a .glb, on their way
   GltfBuffer buffer_;
   std::vector<GltfSurface> surfaces_;
@@ -210,12 +224,18 @@ Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& p
                             "hold more, and --frames takes a part",
                             plan.file.string(), plan.frame_count(), most_gltf_frames));
   }
+  if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());
+  const bool is_separate = ending_of(plan.file) == ".gltf";
+  if (is_separate) {
+    if (auto place = check_output_place(numbers_file(plan.file, {})); !place)
+      return fail(place.error());
+  }
   // A file that cannot be written should not show only after a long run.
   if (auto probe = AtomicFile::create(plan.file); !probe) return fail(probe.error());
   std::optional<AtomicFile> separate;
   std::optional<SpoolFile> spool;
-  if (ending_of(plan.file) == ".gltf") {
-    auto file = AtomicFile::create(separate_name(plan.file));
+  if (is_separate) {
+    auto file = AtomicFile::create(plan.file);  // what it is called shows at the end
     if (!file) return fail(file.error());
     separate.emplace(*std::move(file));
   } else {

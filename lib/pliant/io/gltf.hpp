@@ -10,7 +10,10 @@ namespace pliant {
 /// weight at each frame, which is frames x frames numbers.
 inline constexpr int most_gltf_frames = 8192;
 
-/// glTF 2.0: `.gltf` with its numbers in OUT.bin, or `.glb` with both in one file.
+/// glTF 2.0: `.gltf` with its numbers in OUT.0123456789abcdef.bin, or `.glb` with both in one file.
+/// The digits are of the hash of those numbers. A .gltf takes the place of an older one at once,
+/// with its numbers already there; then those that no .gltf of the folder names any more are
+/// removed.
 ///
 /// A node, a mesh and an animation channel for each surface. The mesh is the surface at rest; each
 /// frame that differs from the one before is a morph target, its offsets sparse where that is

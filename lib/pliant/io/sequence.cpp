@@ -1,80 +1,168 @@
 #include "pliant/io/sequence.hpp"
 
+#include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
+#include <optional>
 #include <string>
+#include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "pliant/io/atomic_file.hpp"
+#include "pliant/io/open_folder.hpp"
+#include "pliant/io/output_place.hpp"
 
 namespace pliant {
+namespace {
+
+// What a sequence calls its files: the frame stands between the two parts.
+class SequenceName {
+ public:
+  explicit SequenceName(const std::filesystem::path& pattern) : head_(pattern.filename().string()) {
+    std::size_t last = head_.rfind('#');
+    if (last == std::string::npos) {
+      const std::size_t dot = head_.rfind('.');
+      tail_ = head_.substr(dot);
+      head_.resize(dot + 1);
+    } else {
+      const std::size_t first = head_.find_last_not_of('#', last) + 1;
+      width_ = last + 1 - first;
+      tail_ = head_.substr(last + 1);
+      head_.resize(first);
+    }
+  }
+
+  std::string of(int frame) const {
+    return fmt::format("{}{}{:0{}}{}", head_, frame < 0 ? "-" : "", std::abs(std::int64_t{frame}),
+                       width_, tail_);
+  }
+
+  // The frame whose file has that name, if it is one of the sequence's.
+  std::optional<int> frame_in(const std::string& name) const {
+    if (name.size() <= head_.size() + tail_.size() || !name.starts_with(head_) ||
+        !name.ends_with(tail_)) {
+      return {};
+    }
+    int frame = 0;
+    const char* const end = name.data() + name.size() - tail_.size();
+    const auto [stop, error] = std::from_chars(name.data() + head_.size(), end, frame);
+    if (error != std::errc() || stop != end || of(frame) != name) return {};
+    return frame;
+  }
+
+ private:
+  std::string head_;
+  std::string tail_;
+  std::size_t width_ = 4;
+};
+
+// What a regular file holds, to be compared from its beginning on.
+class FileBytes {
+ public:
+  explicit FileBytes(const std::filesystem::path& file)
+      : descriptor_(open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)) {
+    struct stat status = {};
+    is_open_ = descriptor_ >= 0 && fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
+  }
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+  ~FileBytes() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+
+  bool is_open() const { return is_open_; }
+
+  bool next_are(std::string_view bytes) {
+    there_.resize(bytes.size());
+    return fill() && there_ == bytes;
+  }
+
+  bool are_all_read() {
+    there_.resize(1);
+    return !fill();
+  }
+
+  bool flush() const { return flush_descriptor(descriptor_) == 0; }
+
+ private:
+  // Whether the file had, and let be read, as many bytes as `there_` takes.
+  bool fill() {
+    std::size_t done = 0;
+    while (done < there_.size()) {
+      const ssize_t count = read(descriptor_, there_.data() + done, there_.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return false;
+      done += static_cast<std::size_t>(count);
+    }
+    return true;
+  }
+
+  int descriptor_;
+  bool is_open_ = false;
+  std::string there_;
+};
+
+}  // namespace
 
 std::filesystem::path sequence_file(const std::filesystem::path& pattern, int frame) {
-  std::string name = pattern.filename().string();
-  std::size_t last = name.rfind('#');
-  std::size_t width = 4;
-  if (last == std::string::npos) {
-    const std::size_t dot = name.rfind('.');
-    name.insert(dot, ".#");
-    last = dot + 1;
-  } else {
-    width = last + 1 - (name.find_last_not_of('#', last) + 1);
-  }
-  const std::size_t first = name.find_last_not_of('#', last) + 1;
-  name.replace(first, last + 1 - first,
-               fmt::format("{}{:0{}}", frame < 0 ? "-" : "", std::abs(std::int64_t{frame}), width));
-  return pattern.parent_path() / name;
+  return pattern.parent_path() / SequenceName(pattern).of(frame);
 }
 
+// The folder is listed once: of a million frames that are not there each would have to be asked
+// for.
 Result<void> check_sequence(const SurfacePlan& plan) {
+  for (const int frame : {plan.first_frame, plan.last_frame}) {  // one has the longest name
+    if (auto place = check_output_place(sequence_file(plan.file, frame)); !place) return place;
+  }
+  const SequenceName name(plan.file);
+  const std::filesystem::path parent = plan.file.parent_path();
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(parent.empty() ? "." : parent, error), end;
+       !error && entry != end; entry.increment(error)) {
+    const auto frame = name.frame_in(entry->path().filename().string());
+    if (!frame || *frame < plan.first_frame || *frame > plan.last_frame) continue;
+    if (auto place = check_output_place(sequence_file(plan.file, *frame)); !place) return place;
+  }
   auto probe = AtomicFile::create(sequence_file(plan.file, plan.first_frame));
   if (!probe) return fail(probe.error());
   return {};
 }
 
 SequenceWriter::SequenceWriter(const SurfacePlan& plan)
-    : pattern_(plan.file), first_frame_(plan.first_frame) {
-  std::error_code unknown;
-  while (plan.resume && frames_there_ < plan.frame_count() &&
-         std::filesystem::is_regular_file(sequence_file(pattern_, first_frame_ + frames_there_),
-                                          unknown)) {
-    ++frames_there_;
-  }
-}
+    : pattern_(plan.file), resumes_(plan.resume) {}
 
 Result<void> SequenceWriter::write(int frame, const Field& positions) {
-  const int place = frame - first_frame_;
-  if (place < frames_there_)
-    return place == 0 || place == frames_there_ - 1 ? compare(frame, positions) : Result<void>();
-  auto file = AtomicFile::create(sequence_file(pattern_, frame));
+  const std::filesystem::path name = sequence_file(pattern_, frame);
+  if (resumes_ && is_there(name, positions)) {
+    ++counts_.kept;
+    return {};
+  }
+  // The names go to the disk at the end: one of them lost costs that frame, which would be so too
+  // if the power went a moment earlier.
+  auto file = AtomicFile::create(name, Flush::Bytes);
   if (!file) return fail(file.error());
   auto written = write_frame(positions, [&](std::string_view bytes) { return file->write(bytes); });
-  return written ? file->commit() : written;
+  if (written) written = file->commit();
+  if (written) ++counts_.written;
+  return written;
 }
 
-// Whether the file that is there is the one that would be written.
-Result<void> SequenceWriter::compare(int frame, const Field& positions) {
-  const std::filesystem::path name = sequence_file(pattern_, frame);
-  std::ifstream file(name, std::ios::binary);
-  const auto differs = [&] {
-    return fail(ErrorCode::Unwritable,
-                fmt::format("cannot be resumed: this is not what the scene gives at frame {}; bake "
-                            "without --resume, or to another name",
-                            frame),
-                name.string());
+Result<void> SequenceWriter::finish() { return flush_folder(pattern_); }
+
+// Whether the file holds what would be written; if it does, it is on the disk.
+bool SequenceWriter::is_there(const std::filesystem::path& file, const Field& positions) {
+  FileBytes bytes(file);
+  if (!bytes.is_open()) return false;
+  const auto is_next = [&](std::string_view part) -> Result<void> {
+    if (bytes.next_are(part)) return {};
+    return fail(ErrorCode::Unreadable, "differs");
   };
-  std::string there;
-  const auto is_next = [&](std::string_view bytes) -> Result<void> {
-    there.resize(bytes.size());
-    file.read(there.data(), static_cast<std::streamsize>(there.size()));
-    if (file.gcount() == static_cast<std::streamsize>(bytes.size()) && there == bytes) return {};
-    return differs();
-  };
-  if (auto same = write_frame(positions, is_next); !same) return same;
-  if (file.peek() != std::ifstream::traits_type::eof()) return differs();
-  return {};
+  return write_frame(positions, is_next) && bytes.are_all_read() && bytes.flush();
 }
 
 }  // namespace pliant

@@ -14,20 +14,21 @@ namespace pliant {
 /// with at least as many digits; without one, four digits go ahead of the ending (`OUT.0001.obj`).
 std::filesystem::path sequence_file(const std::filesystem::path& pattern, int frame);
 
-/// Whether the first file of the plan's sequence can be created: a folder that cannot be written to
-/// should not show only after a long run. Leaves nothing behind. Errors: Unwritable.
+/// Whether the files of the plan's sequence can be written: a folder that cannot be written to
+/// should not show only after a long run, nor a link in the place of a file. Leaves nothing behind.
+/// Errors: those of `check_output_place`; Unwritable.
 Result<void> check_sequence(const SurfacePlan& plan);
 
-/// Writes a file for each frame.
+/// Writes a file for each frame, which is on the disk once `finish` is done.
 ///
-/// A plan that resumes goes on after the files that are there from the first frame on without a
-/// gap: a file is whole where it is there at all. The first and the last of them must hold just
-/// what would be written, so that what is resumed is the same scene, or one that differs only
-/// where both agree. Errors then: Unwritable, naming the file that holds something else.
+/// A plan that resumes keeps a file that holds, byte for byte, what would be written. Any other is
+/// written: one that is not there, that another scene left, or that is cut short, longer or
+/// damaged.
 class SequenceWriter : public SurfaceWriter {
  public:
   Result<void> write(int frame, const Field& positions) final;
-  Result<void> finish() final { return {}; }
+  Result<void> finish() final;
+  FileCounts file_counts() const final { return counts_; }
 
  protected:
   explicit SequenceWriter(const SurfacePlan& plan);
@@ -36,11 +37,11 @@ class SequenceWriter : public SurfaceWriter {
   /// What the file of one frame holds.
   virtual Result<void> write_frame(const Field& positions, const ByteSink& sink) = 0;
 
-  Result<void> compare(int frame, const Field& positions);
+  bool is_there(const std::filesystem::path& file, const Field& positions);
 
   std::filesystem::path pattern_;
-  int first_frame_;
-  int frames_there_ = 0;  // whole files from the first frame on
+  bool resumes_;
+  FileCounts counts_;
 };
 
 }  // namespace pliant

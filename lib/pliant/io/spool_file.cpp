@@ -9,6 +9,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "pliant/io/open_folder.hpp"
+#include "pliant/io/output_place.hpp"
+
 namespace pliant {
 
 SpoolFile::SpoolFile(std::filesystem::path file, Stream stream)
@@ -20,10 +23,20 @@ Result<SpoolFile> SpoolFile::create(const std::filesystem::path& file) {
                 std::string("cannot write the file: ") + std::strerror(error_number),
                 file.string());
   };
-  std::string name = (file.parent_path() / ("." + file.filename().string() + ".XXXXXX")).string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+  const OpenFolder folder(file);
+  if (folder.error() != 0) return cannot_write(folder.error());
+  int descriptor = -1;
+  std::string name;
+  // It has a name for a moment only, which nobody else may have.
+  for (int attempt = 0; descriptor < 0 && attempt < 1000; ++attempt) {
+    name = hidden_name(file) + "." + std::to_string(getpid()) + "-" + std::to_string(attempt) +
+           ".spool";
+    descriptor =
+        openat(folder.descriptor(), name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0 && errno != EEXIST) break;
+  }
   if (descriptor < 0) return cannot_write(errno);
-  unlink(name.c_str());
+  folder.remove(name);
   Stream stream(fdopen(descriptor, "w+b"));
   if (!stream) {
     const int error_number = errno;

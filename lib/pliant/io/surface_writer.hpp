@@ -8,6 +8,12 @@
 
 namespace pliant {
 
+/// How many files of a sequence were there as they had to be, and how many were written.
+struct FileCounts {
+  long kept = 0;
+  long written = 0;
+};
+
 /// Writes the frames of one surface, first to last, in a format that holds one. What was written is
 /// whole or not there: without `finish` a format of one file leaves nothing behind.
 class SurfaceWriter {
@@ -23,6 +29,9 @@ class SurfaceWriter {
 
   /// Gives the result its name. Errors: Unwritable. Requires: every frame has been written.
   virtual Result<void> finish() = 0;
+
+  /// Of a sequence, so far.
+  virtual FileCounts file_counts() const { return {}; }
 };
 
 /// What such a writer needs to know ahead.
@@ -33,7 +42,7 @@ struct SurfacePlan {
   int last_frame = 0;
   double fps = 24;              ///< [1/s]
   const Field* rest = nullptr;  ///< positions at rest in the frames' space; none: those of the mesh
-  bool resume = false;          ///< a sequence goes on after the last whole frame that is there
+  bool resume = false;          ///< files of a sequence that are what would be written are kept
 
   int frame_count() const { return last_frame - first_frame + 1; }
 };

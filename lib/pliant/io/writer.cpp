@@ -9,8 +9,10 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/file_ending.hpp"
 #include "pliant/io/gltf.hpp"
+#include "pliant/io/gltf_numbers.hpp"
 #include "pliant/io/npy.hpp"
 #include "pliant/io/obj.hpp"
+#include "pliant/io/output_place.hpp"
 #include "pliant/io/ply.hpp"
 #include "pliant/io/point_cache.hpp"
 #include "pliant/io/sequence.hpp"
@@ -27,7 +29,7 @@ struct Format {
   bool is_sequence = false;
   MakeSurfaceWriter make_surface_writer = nullptr;  // of one that holds one surface
   MakeWriter make_writer = nullptr;                 // of one that holds all
-  std::string beside = {};  // the ending of what is written next to it, if anything
+  std::string beside = {};  // the ending of what is written next to it under its name, if anything
 };
 
 const std::vector<Format>& formats() {
@@ -38,7 +40,7 @@ const std::vector<Format>& formats() {
       {".pc2", false, &make_pc2_writer, nullptr, ".obj"},
       {".mdd", false, &make_mdd_writer, nullptr, ".obj"},
       {".glb", false, nullptr, &make_gltf_writer},
-      {".gltf", false, nullptr, &make_gltf_writer, ".bin"},
+      {".gltf", false, nullptr, &make_gltf_writer},
       {".usda", false, nullptr, &make_usda_writer},
   };
   return all;
@@ -81,6 +83,16 @@ class SurfaceBySurface final : public AnimationWriter {
       if (auto finished = writer->finish(); !finished) return finished;
     }
     return {};
+  }
+
+  FileCounts file_counts() const override {
+    FileCounts sum;
+    for (const auto& writer : writers_) {
+      const FileCounts counts = writer->file_counts();
+      sum.kept += counts.kept;
+      sum.written += counts.written;
+    }
+    return sum;
   }
 
  private:
@@ -141,9 +153,19 @@ std::vector<std::filesystem::path> files_of(const AnimationPlan& plan) {
   return files;
 }
 
+bool is_named_at_the_end(const AnimationPlan& plan, std::string_view name) {
+  return ending_of(plan.file) == ".gltf" && is_numbers_file(plan.file, name);
+}
+
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) {
   PLIANT_EXPECTS(!plan.surfaces.empty() && plan.first_frame <= plan.last_frame);
   if (auto known = check_ending(plan.file); !known) return fail(known.error());
+  // A sequence looks for itself: its files may be a million.
+  if (!find_format(plan.file)->is_sequence) {
+    for (const std::filesystem::path& file : files_of(plan)) {
+      if (auto place = check_output_place(file); !place) return fail(place.error());
+    }
+  }
   const Format& format = *find_format(plan.file);
   if (plan.resume && !format.is_sequence) {
     return fail(ErrorCode::InvalidInput,

@@ -124,7 +124,7 @@ std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t m
 
 void FolderFrameStore::write(const Hash& key, std::string_view bytes) {
   if (!take_room(on_disk(bytes.size()))) return;
-  auto file = AtomicFile::create(file_of(key));
+  auto file = AtomicFile::create(file_of(key), Flush::Nothing);
   Result<void> written;
   if (file) written = file->write(bytes);
   if (file && written) written = file->commit();

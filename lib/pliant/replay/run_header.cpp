@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/io/output_place.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 
@@ -96,14 +97,11 @@ Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOp
 }
 
 Result<void> check_log_place(const fs::path& log_file, const Scene& scene) {
-  std::error_code ignored;
   const auto refuse = [&](std::string_view reason) {
     return fail(ErrorCode::InvalidInput, fmt::format("the log would take the place of {}", reason),
                 log_file.string());
   };
-  if (fs::exists(log_file, ignored) && !fs::is_regular_file(log_file, ignored)) {
-    return refuse("what is no regular file");
-  }
+  if (auto place = check_output_place(log_file); !place) return place;
   for (const SceneInput& input : inputs_of(scene)) {
     if (is_one_file(log_file, input.file)) return refuse(input.role);
   }
