@@ -16,7 +16,7 @@
 #include "frame_range.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "output_folder.hpp"
+#include "output_file.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "regions_file.hpp"
@@ -84,35 +84,35 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
 
 // Whether no file to be written is one that the scene is made from: head.obj, baked to head.pc2.
 Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
-  const InputsByName inputs(scene);
-  for (const std::filesystem::path& output : files_of(plan)) {
-    const auto input = inputs.find(output);
-    if (!input) continue;
+  const auto refuse = [&](const std::filesystem::path& input) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
                             "another name",
-                            printable(plan.file.string()), printable(input->string())));
+                            printable(plan.file.string()), printable(input.string())));
+  };
+  for (const SceneInput& input : inputs_of(scene)) {
+    if (is_named_at_the_end(plan, input.file.filename().string())) return refuse(input.file);
+  }
+  const InputsByName inputs(scene);
+  for (const std::filesystem::path& output : files_of(plan)) {
+    if (const auto input = inputs.find(output)) return refuse(*input);
   }
   return {};
 }
 
-// The file for the regions must be none that the bake reads or writes, nor a device or a pipe,
-// which the new file would replace.
+// The file for the regions must be none that the bake reads or writes.
 Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
                                 const AnimationPlan& plan) {
   if (!options.regions) return {};
   const std::filesystem::path regions = *options.regions;
+  if (auto place = check_output_file("--regions", *options.regions); !place) return place;
   const auto refuse = [&](std::string_view reason) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("--regions {}: {}", printable(regions.string()), reason));
   };
-  std::error_code ignored;
-  if (regions.empty()) return refuse("names no file");
-  if (std::filesystem::exists(regions, ignored) &&
-      !std::filesystem::is_regular_file(regions, ignored)) {
-    return refuse("it is there, and no regular file");
-  }
   if (const auto input = input_named(regions, scene); !input.empty()) return refuse(input);
+  if (is_named_at_the_end(plan, regions.filename().string()))
+    return refuse("it is named as what -o writes");
   for (const std::filesystem::path& file : files_of(plan)) {
     // Looking at the disk for each of a million frames would take long.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
@@ -149,7 +149,13 @@ struct Summary {
   int frame_count = 0;
   long vertex_count = 0;
   double peak_displacement = 0;
+  FileCounts files = {};
 };
+
+// ", 15 files kept, 25 written" of a bake that goes on.
+std::string resume_summary(const FileCounts& files) {
+  return fmt::format(", {} kept, {} written", counted(files.kept, "file"), files.written);
+}
 
 // One frame of every chosen surface.
 Result<void> write_frame(const Frame& frame, const BakeOptions& options, const Scene& scene,
@@ -210,6 +216,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   StageTimer finishing(options.is_profiled ? &output.profile : nullptr, Stage::Writing);
   if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
   finishing.stop();
+  summary.files = output.writer->file_counts();
   if (regions) {
     if (auto finished = regions->finish(simulation.solver_counts()); !finished) {
       return fail(finished.error());
@@ -268,7 +275,7 @@ void add_bake(CLI::App& app, BakeOptions& options) {
       ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
       ->capture_default_str();
   bake->add_flag("--resume", options.resume,
-                 "Go on after the last whole frame of an interrupted .obj or .ply sequence");
+                 "Keep the files of an .obj or .ply sequence that are what would be written");
   add_root(*bake, options.root);
   add_cache(*bake, options.cache);
   add_threads(*bake, options.resources);
@@ -283,15 +290,14 @@ void add_bake(CLI::App& app, BakeOptions& options) {
 int run_bake(const BakeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
-  outlive_readers();
 
   const auto solver = parse_solver(options.solver);
   if (!solver) return report(solver.error());
   if (auto known = check_ending(options.out); !known) return report(known.error());
   if (auto there = check_output_folder("-o", options.out); !there) return report(there.error());
   if (options.regions) {
-    auto there = check_output_folder("--regions", *options.regions);
-    if (!there) return report(there.error());
+    auto place = check_output_file("--regions", *options.regions);
+    if (!place) return report(place.error());
   }
   auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
@@ -323,10 +329,11 @@ int run_bake(const BakeOptions& options) {
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, peak displacement {:.6g}{}\n",
+    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, peak displacement {:.6g}{}{}\n",
                               printable(options.out), counted(summary->frame_count, "frame"),
                               counted(summary->vertex_count, "vertex", "vertices"), elapsed.count(),
                               summary->peak_displacement,
+                              options.resume ? resume_summary(summary->files) : "",
                               *store ? cache_summary(simulation->frame_counts()) : ""));
   }
   if (options.is_profiled) {

@@ -18,7 +18,7 @@
 #include "curve_plot.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "output_folder.hpp"
+#include "output_file.hpp"
 #include "pliant/core/file_ending.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
@@ -135,15 +135,18 @@ class Output {
 
   Result<void> write(std::string_view text) {
     if (file_) return file_->write(text);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size()) return {};
+    print(stdout, text);
+    if (!is_lost()) return {};
     return fail(ErrorCode::Unwritable, "cannot write to the standard output");
   }
 
   Result<void> finish() {
     if (file_) return file_->commit();
-    if (std::fflush(stdout) == 0) return {};
-    return fail(ErrorCode::Unwritable, "cannot write to the standard output");
+    return {};
   }
+
+  /// Whether stdout took no more, which is told at the end of every command.
+  static bool is_lost() { return std::ferror(stdout) != 0; }
 
  private:
   explicit Output(std::optional<AtomicFile> file) : file_(std::move(file)) {}
@@ -266,13 +269,15 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
 
 int run_curves(const CurvesOptions& options) {
   catch_interrupts();
+  if (!options.out.empty()) {
+    if (auto place = check_output_file("-o", options.out); !place) return report(place.error());
+  }
   const std::string ending = ending_of(options.out);
   if (!options.out.empty() && ending != ".csv" && ending != ".svg") {
     return report({ErrorCode::InvalidInput,
                    fmt::format("{}: no format of curves has the ending \"{}\"; allowed: .csv, .svg",
                                options.out, ending)});
   }
-  if (auto there = check_output_folder("-o", options.out); !there) return report(there.error());
   const auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   const auto channels = choose_channels(*scene, options.channels);
@@ -285,6 +290,7 @@ int run_curves(const CurvesOptions& options) {
   if (!output) return report(output.error());
   auto written = ending == ".svg" ? write_plot(*output, *channels, *frames, options)
                                   : Table(*output, *frames, options.has_sides).write(*channels);
+  if (Output::is_lost()) return exit_failed;
   if (!written) {
     return report(with_kept(written.error(), options.out.empty() ? "the rows written are whole"
                                                                  : "no file is written"));

@@ -4,6 +4,9 @@
 #include <csignal>
 #include <initializer_list>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace pliant::cli {
 namespace {
 
@@ -23,7 +26,14 @@ void catch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
+void own_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // The lowest number that is free is the one. Of stdout every write fails, which is told.
+    if (fcntl(stream, F_GETFD) < 0)
+      open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+}
 
 bool was_interrupted() { return interrupted; }
 

@@ -11,9 +11,10 @@ namespace pliant::cli {
 /// is an error of the write, not the end of the program.
 void catch_interrupts();
 
-/// From now on it is no reason to end that nobody reads what we print: for commands whose product
-/// is a file.
-void outlive_readers();
+/// Ahead of all else: standard streams that are closed are opened to nothing, so that no file of
+/// ours takes their numbers and what we print with them; and that nobody reads what we print is an
+/// error of the write, not the end of the program.
+void own_standard_streams();
 
 bool was_interrupted();
 

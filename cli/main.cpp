@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "complete.hpp"
 #include "curves.hpp"
 #include "info.hpp"
+#include "interrupt.hpp"
 #include "replay.hpp"
 #include "report.hpp"
 #include "usage.hpp"
@@ -19,6 +21,7 @@
 namespace {
 
 using namespace pliant::cli;
+using pliant::printable;
 
 int run(int count, char* arguments[]) {
   CLI::App app(
@@ -49,7 +52,10 @@ int run(int count, char* arguments[]) {
   try {
     app.parse(count, arguments);
   } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
+    std::ostringstream text;
+    const int code = app.exit(success, text, text);
+    print(stdout, text.str());
+    return code;
   } catch (const CLI::ParseError& error) {
     return report_usage(app, error);
   }
@@ -65,12 +71,13 @@ int run(int count, char* arguments[]) {
 }  // namespace
 
 int main(int count, char* arguments[]) {
+  own_standard_streams();
   try {
-    return run(count, arguments);
+    return exit_code_after_output(run(count, arguments));
   } catch (const std::bad_alloc&) {
     print(stderr, "pliant: error: out of memory\n");
   } catch (const std::exception& error) {  // of a library; ours returns its errors
-    print(stderr, fmt::format("pliant: error: {}\n", error.what()));
+    print(stderr, fmt::format("pliant: error: {}\n", printable(error.what())));
   }
   return exit_failed;
 }

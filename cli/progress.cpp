@@ -1,20 +1,29 @@
 #include "progress.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "report.hpp"
-
 namespace pliant::cli {
+namespace {
+
+// In place of the line that is there: the one thing that acts on a terminal.
+void draw(const std::string& line) {
+  const std::string text = "\r\033[K" + line;
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
 
 Progress::Progress(int frame_count, bool is_quiet)
     : frame_count_(frame_count), is_shown_(!is_quiet && isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (is_shown_) print(stderr, "\r\033[K");
+  if (is_shown_) draw("");
 }
 
 void Progress::advance() {
@@ -22,19 +31,19 @@ void Progress::advance() {
   const auto now = Clock::now();
   if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < frame_count_)) return;
   drawn_ = now;
-  draw(now);
+  draw_bar(now);
 }
 
-void Progress::draw(Clock::time_point now) const {
+void Progress::draw_bar(Clock::time_point now) const {
   constexpr int width = 30;
   const int filled = static_cast<int>(static_cast<long>(width) * done_ / frame_count_);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double rate = elapsed > 0 ? done_ / elapsed : 0;
   const double seconds_left = rate > 0 ? std::min((frame_count_ - done_) / rate, 359'999.0) : 0;
   const auto left = static_cast<int>(seconds_left + 0.5);
-  print(stderr, fmt::format("\r\033[K[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left",
-                            std::string(filled, '#'), std::string(width - filled, '.'), done_,
-                            frame_count_, rate, left / 60, left % 60));
+  draw(fmt::format("[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left", std::string(filled, '#'),
+                   std::string(width - filled, '.'), done_, frame_count_, rate, left / 60,
+                   left % 60));
 }
 
 }  // namespace pliant::cli

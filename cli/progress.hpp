@@ -19,7 +19,7 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void draw(Clock::time_point now) const;
+  void draw_bar(Clock::time_point now) const;
 
   int frame_count_;
   int done_ = 0;

@@ -8,7 +8,7 @@
 
 #include "counted.hpp"
 #include "interrupt.hpp"
-#include "output_folder.hpp"
+#include "output_file.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
@@ -48,12 +48,11 @@ auto with_progress(const ReplayCommandOptions& options, const Work& work) {
 
 int record(const ReplayCommandOptions& options) {
   catch_interrupts();
-  outlive_readers();
   if (auto file = check_scene_is_file(options.scene, "a log names the scene that it is of");
       !file) {
     return report(file.error());
   }
-  if (auto there = check_output_folder("-o", options.log); !there) return report(there.error());
+  if (auto place = check_output_file("-o", options.log); !place) return report(place.error());
   const auto recorded = with_progress(options, [&](const ReplayOptions& replay) {
     return record_replay(options.scene, options.log, replay);
   });
@@ -76,10 +75,10 @@ int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdi
   }
   const std::string log = printable(options.log);
   for (const std::string& cause : verdict->causes) {
-    print(stderr, fmt::format("{}: note: {}\n", log, cause));
+    print(stderr, fmt::format("{}: note: {}\n", log, printable(cause)));
   }
   for (const std::string& mismatch : verdict->mismatches) {
-    print(stdout, fmt::format("{}: {}\n", log, mismatch));
+    print(stdout, fmt::format("{}: {}\n", log, printable(mismatch)));
   }
   for (const ReplayDifference& difference : verdict->differences) {
     print(stdout, fmt::format("{}: {}\n", log, difference.message()));

@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include <string>
+
 #include <fmt/format.h>
 
 namespace pliant::cli {
@@ -17,7 +19,15 @@ int line_of(const Warning& warning, const SceneOrigin& origin) {
 }
 
 void print(std::FILE* stream, std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stream);
+  std::string lines;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    lines += printable(text.substr(0, end));
+    if (end == std::string_view::npos) break;
+    lines += '\n';
+    text.remove_prefix(end + 1);
+  }
+  std::fwrite(lines.data(), 1, lines.size(), stream);
   std::fflush(stream);
 }
 
@@ -25,6 +35,13 @@ int exit_code(const Error& error) {
   const bool is_input =
       error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;
   return is_input ? exit_usage : exit_failed;
+}
+
+int exit_code_after_output(int code) {
+  const bool is_flushed = std::fflush(stdout) == 0;
+  if (is_flushed && std::ferror(stdout) == 0) return code;
+  print(stderr, "pliant: error: cannot write to the standard output\n");
+  return code == exit_done ? exit_failed : code;
 }
 
 int report(const Error& error) {
@@ -36,15 +53,16 @@ int report(const Error& error) {
 
 void print_notes(const Scene& scene) {
   for (const SceneNote& note : scene.notes) {
-    print(stderr, fmt::format("{}:{}: note: {}\n", scene.origin.file, note.line, note.message));
+    print(stderr, fmt::format("{}:{}: note: {}\n", printable(scene.origin.file), note.line,
+                              printable(note.message)));
   }
 }
 
 void print_warnings(const Simulation& simulation) {
   const SceneOrigin& origin = simulation.scene().origin;
   for (const Warning& warning : simulation.warnings()) {
-    print(stderr, fmt::format("{}:{}: warning: {}\n", origin.file, line_of(warning, origin),
-                              warning.message()));
+    print(stderr, fmt::format("{}:{}: warning: {}\n", printable(origin.file),
+                              line_of(warning, origin), printable(warning.message())));
   }
 }
 

@@ -13,12 +13,19 @@ inline constexpr int exit_done = 0;
 inline constexpr int exit_failed = 1;  ///< the run failed
 inline constexpr int exit_usage = 2;   ///< wrong usage, or a scene that cannot be read
 
-/// Writes to a standard stream. A stream that is closed or full is no reason to fail: what could
-/// not be said is not worth more than the work.
+/// Writes lines to a standard stream, what would act on a terminal as `\xHH`. A name that may hold
+/// anything, such as a file's, goes through `printable` first: here a line break is one.
+///
+/// A stream that is closed or full does not end the work; what could not be written to stdout makes
+/// the exit code 1 (`exit_code_after_output`).
 void print(std::FILE* stream, std::string_view text);
 
 /// The exit code that an error ends with.
 int exit_code(const Error& error);
+
+/// The exit code of a command that ends with `code`: 1, with a line on stderr, where something
+/// could not be written to stdout.
+int exit_code_after_output(int code);
 
 /// Prints every problem on stderr, one line each, and gives the exit code.
 int report(const Error& error);

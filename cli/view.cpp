@@ -9,7 +9,7 @@
 #include "counted.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "output_folder.hpp"
+#include "output_file.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/io/atomic_file.hpp"
 #include "report.hpp"
@@ -41,7 +41,7 @@ Result<void> write_page(const std::filesystem::path& file, const std::string& pa
 int page_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
   const std::string out = options.out.value_or("view.html");
-  if (auto there = check_output_folder("-o", out); !there) return report(there.error());
+  if (auto place = check_output_file("-o", out); !place) return report(place.error());
   auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   if (const auto input = input_named(out, *scene); !input.empty()) {
@@ -110,7 +110,6 @@ void add_view(CLI::App& app, ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
   catch_interrupts();
-  outlive_readers();
   const auto page = page_template();
   if (!page) return report(page.error());
   if (options.port) {

@@ -22,7 +22,7 @@
 
 #include "inputs.hpp"
 #include "interrupt.hpp"
-#include "output_folder.hpp"
+#include "output_file.hpp"
 #include "pliant/core/number.hpp"
 #include "pliant/io/atomic_file.hpp"
 #include "report.hpp"
@@ -219,9 +219,9 @@ Result<std::string> draw(ViewServer& server) {
 }
 
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
+  if (auto place = check_output_file("--png", *options.png); !place) return place;
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
-  if (auto there = check_output_folder("--png", *options.png); !there) return there;
   auto scene = read_scene(options.scene, options.root);
   if (!scene) return fail(scene.error());
   if (const auto input = input_named(*options.png, *scene); !input.empty()) {

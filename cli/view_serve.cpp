@@ -140,6 +140,7 @@ int serve_view(const ViewOptions& options, std::string_view page) {
   auto server = ViewServer::start(std::string(page), *options.port);
   if (!server) return report(server.error());
   print(stdout, server->address() + '\n');
+  if (std::ferror(stdout) != 0) return exit_failed;  // nobody knows where it is
   MemoryFrameStore store(store_bytes(options.resources));
   while (!was_interrupted()) {
     const auto watch = bake_once(options, *server, store);

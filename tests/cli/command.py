@@ -72,14 +72,18 @@ class Command(unittest.TestCase):
             return False
         return any(target.startswith(self.folder) and "(deleted)" in target for target in targets)
 
-    def interrupt(self, scene, out, number):
-        """Sends a signal once the bake has begun to write; gives its exit code and stderr."""
+    def interrupt(self, scene, out, number, there=None):
+        """Sends a signal once the bake has begun to write, or once the file `there` is; gives its
+        exit code and stderr."""
         before = self.files()
         with subprocess.Popen([PLIANT, "bake", scene, "-o", self.path(out)],
                               stderr=subprocess.PIPE, text=True) as process:
             deadline = time.monotonic() + 60
-            while (self.files() == before and not self.holds_hidden_files(process)
-                   and time.monotonic() < deadline):
+            def has_begun():
+                if there is not None:
+                    return there in self.files()
+                return self.files() != before or self.holds_hidden_files(process)
+            while not has_begun() and time.monotonic() < deadline:
                 time.sleep(0.01)
             process.send_signal(number)
             _, errors = process.communicate(timeout=60)

@@ -98,11 +98,6 @@ class Errors(Command):
         result = self.run_pliant("bake", scene, "-o", "a.npy", code=2)
         self.assertRegex(result.stderr, r"m\.xml:3: error: .*none\.obj.*No such file")
 
-    def test_what_cannot_be_written_is_exit_code_1(self):
-        scene = self.scene()
-        os.mkdir(self.path("folder.npy"))
-        self.assertIn("it is a folder", self.run_pliant("bake", scene, "-o", "folder.npy", code=1).stderr)
-
     def test_a_missing_folder_is_named_ahead_of_any_work(self):
         # What comes first is told of: not even the scene is read.
         for arguments, option in ((["bake", "none.xml", "-o", "no/such/a.npy"], "-o no/such/a.npy"),
@@ -118,8 +113,6 @@ class Errors(Command):
         result = self.run_pliant("bake", scene, "-o", "scene.xml/a.npy", code=1)
         self.assertIn("the folder scene.xml is no folder", result.stderr)
         self.assertEqual(self.files(), ["scene.xml"])
-        os.mkdir(self.path("folder.npy"))
-        self.assertEqual(self.files(), ["folder.npy", "scene.xml"])
 
     def test_a_run_that_fails_leaves_nothing(self):
         text = SCENE.format(end=9).replace("</surface>", '<material density="0" damping="0" b="1e-10" '
@@ -149,7 +142,7 @@ class Errors(Command):
 
     def test_whole_frames_of_an_interrupted_sequence_stay(self):
         scene = self.scene(end=900000)
-        _, errors = self.interrupt(scene, "a.obj", signal.SIGINT)
+        _, errors = self.interrupt(scene, "a.obj", signal.SIGINT, there="a.0002.obj")
         self.assertRegex(errors, r"interrupted at frame \d+; the files written stay, and --resume goes on with them")
         files = self.files()
         self.assertEqual([name for name in files if name.endswith(".part")], [])
@@ -168,9 +161,9 @@ class Errors(Command):
         self.assertIn("error: cannot write the file: File too large", result.stderr)
         self.assertEqual(self.files(), ["scene.xml"])
 
-    def test_streams_that_cannot_be_written_are_no_harm(self):
+    def test_a_stderr_that_cannot_be_written_is_no_harm(self):
         scene = self.scene()
-        for redirection in ("2>/dev/full", "2>&-", ">/dev/full", ">&-"):
+        for redirection in ("2>/dev/full", "2>&-"):
             for name, code in ((scene, 0), ("none.xml", 2)):
                 result = subprocess.run(
                     ["sh", "-c", f'exec "$0" bake "$1" -o a.npy {redirection}', PLIANT, name],

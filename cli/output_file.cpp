@@ -1,8 +1,10 @@
-#include "output_folder.hpp"
+#include "output_file.hpp"
 
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "pliant/io/output_place.hpp"
 
 namespace pliant::cli {
 
@@ -19,6 +21,16 @@ Result<void> check_output_folder(std::string_view option, const std::filesystem:
   if (status.type() == std::filesystem::file_type::not_found) return refuse("does not exist");
   if (!unknown && !std::filesystem::is_directory(status)) return refuse("is no folder");
   return {};
+}
+
+Result<void> check_output_file(std::string_view option, const std::string& file) {
+  if (file == "-") {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{} -: this cannot go to the standard output; name a file (./- is one)",
+                            option));
+  }
+  if (auto there = check_output_folder(option, file); !there) return there;
+  return check_output_place(file);
 }
 
 }  // namespace pliant::cli

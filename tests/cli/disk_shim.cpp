@@ -1,0 +1,65 @@
+// Stands between the command and the system (LD_PRELOAD): writes down, in order, which files and
+// folders are flushed and what is renamed, to PLIANT_SHIM_LOG, and makes flushes fail as
+// PLIANT_SHIM_FAIL says: "file 5" or "folder 22", the errno of every fsync of that kind; EINTR of
+// every second one only. PLIANT_SHIM_KILL=N ends the program, as SIGKILL does, ahead of the Nth.
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+std::string path_of(int descriptor) {
+  char path[4096] = {};
+  const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
+  return readlink(link.c_str(), path, sizeof(path) - 1) > 0 ? path : "?";
+}
+
+void log(const std::string& line) {
+  static int events = 0;
+  const char* const last = std::getenv("PLIANT_SHIM_KILL");
+  if (last != nullptr && ++events == std::atoi(last)) raise(SIGKILL);
+  const char* const file = std::getenv("PLIANT_SHIM_LOG");
+  if (file == nullptr) return;
+  const int descriptor = open(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+  const std::string text = line + '\n';
+  if (write(descriptor, text.data(), text.size()) < 0) std::abort();
+  close(descriptor);
+}
+
+template <class Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" int fsync(int descriptor) {
+  struct stat status = {};
+  fstat(descriptor, &status);
+  const std::string kind = S_ISDIR(status.st_mode) ? "folder" : "file";
+  if (const char* const wish = std::getenv("PLIANT_SHIM_FAIL")) {
+    static int calls = 0;
+    const std::string text = wish;
+    const int error = std::atoi(text.substr(text.find(' ') + 1).c_str());
+    if (text.starts_with(kind + ' ') && (error != EINTR || ++calls % 2 == 1)) {
+      errno = error;
+      return -1;
+    }
+  }
+  log("flush " + kind + ' ' + path_of(descriptor));
+  return next<int (*)(int)>("fsync")(descriptor);
+}
+
+extern "C" int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
+  log("rename " + path_of(from_folder) + '/' + from + " to " + path_of(to_folder) + '/' + to);
+  return next<int (*)(int, const char*, int, const char*)>("renameat")(from_folder, from, to_folder,
+                                                                       to);
+}
