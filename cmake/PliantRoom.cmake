@@ -3,20 +3,26 @@
 include("${CMAKE_CURRENT_LIST_DIR}/StrictMath.cmake")
 pliant_refuse_fast_math_of_the_build()
 
-add_library(pliant_settings INTERFACE)
-add_library(pliant::settings ALIAS pliant_settings)
-target_compile_features(pliant_settings INTERFACE cxx_std_20)
+# Without the sanitizers: for a program that must bear the bounds of a box.
+add_library(pliant_plain_settings INTERFACE)
+add_library(pliant::plain_settings ALIAS pliant_plain_settings)
+target_compile_features(pliant_plain_settings INTERFACE cxx_std_20)
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
-target_compile_options(pliant_settings INTERFACE
+target_compile_options(pliant_plain_settings INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
   -Wcast-qual -Woverloaded-virtual -Wconversion -Wno-sign-conversion
   $<$<BOOL:${PLIANT_WERROR}>:-Werror>
   "SHELL:-include \"${CMAKE_CURRENT_LIST_DIR}/strict_math.hpp\"")
 # GCC 12 warns of overlaps in std::string's operator+ that cannot be (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(pliant_settings INTERFACE -Wno-restrict)
+  target_compile_options(pliant_plain_settings INTERFACE -Wno-restrict)
 endif()
-target_compile_definitions(pliant_settings INTERFACE $<$<BOOL:${PLIANT_CHECKS}>:PLIANT_CHECKS>)
+target_compile_definitions(pliant_plain_settings INTERFACE
+  $<$<BOOL:${PLIANT_CHECKS}>:PLIANT_CHECKS>)
+
+add_library(pliant_settings INTERFACE)
+add_library(pliant::settings ALIAS pliant_settings)
+target_link_libraries(pliant_settings INTERFACE pliant::plain_settings)
 if(PLIANT_SANITIZE)
   target_compile_options(pliant_settings INTERFACE
     -fsanitize=${PLIANT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

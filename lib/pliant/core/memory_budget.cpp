@@ -29,6 +29,10 @@ bool MemoryShare::try_resize(std::size_t bytes) {
   return true;
 }
 
+std::size_t MemoryShare::available() const {
+  return budget_ ? budget_->available() + bytes_ : std::numeric_limits<std::size_t>::max();
+}
+
 void MemoryShare::give_back() {
   const std::size_t bytes = std::exchange(bytes_, 0);
   if (budget_) budget_->free_ += bytes;

@@ -40,6 +40,9 @@ class MemoryShare {
 
   std::size_t bytes() const { return bytes_; }
 
+  /// What `try_resize` could take now. [bytes]
+  std::size_t available() const;
+
   /// "takes 3.2 GB, more than the 1.1 GB left of the 2 GB allowed". Requires: there is a budget.
   std::string complaint(std::size_t bytes) const;
 

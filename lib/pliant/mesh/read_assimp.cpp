@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <exception>
-#include <limits>
-#include <memory>
+#include <cstring>
+#include <future>
 #include <new>
 #include <span>
 #include <string_view>
@@ -14,42 +14,31 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <assimp/BaseImporter.h>
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
-#include <assimp/importerdesc.h>
-#include <assimp/material.h>
-#include <assimp/scene.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/file_ending.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/transform.hpp"
-#include "pliant/mesh/assimp_files.hpp"
-#include "pliant/mesh/assimp_guard.hpp"
 #include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/mesh_message.hpp"
+#include "pliant/mesh/mesh_reader.hpp"
 #include "pliant/mesh/normals.hpp"
+#include "pliant/mesh/read_boxed.hpp"
 
 namespace pliant {
 namespace {
 
 using Eigen::Matrix4d;
 
-static_assert(max_uv_sets == AI_MAX_NUMBER_OF_TEXTURECOORDS);
-
 constexpr std::size_t max_bytes = std::size_t{4} << 30;
 
 // How far the last row of a transform may be from 0 0 0 1: assimp inverts pivots in float.
 constexpr double affine_tolerance = 1e-5;
-
-// A node that carries faces.
-struct Object {
-  std::string node_name;
-  std::string mesh_name;  // of the first mesh with faces
-  Matrix4d to_file;       // the product of the transforms down to the node
-  std::vector<const aiMesh*> meshes;
-};
 
 Error broken(std::string message) { return {ErrorCode::InvalidInput, std::move(message)}; }
 
@@ -66,126 +55,40 @@ std::string in_one_line(std::string_view reason) {
   return reason.size() > longest ? line + "…" : line;
 }
 
-// Leaves assimp the readers of one ending: it would try all of its forty on a file that those
-// refuse.
-void keep_readers(Assimp::Importer& importer, std::string_view ending) {
-  for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
-    const std::string known = fmt::format(" {} ", importer.GetImporterInfo(k)->mFileExtensions);
-    if (known.find(fmt::format(" {} ", ending)) != std::string::npos) continue;
-    const std::unique_ptr<Assimp::BaseImporter> dropped(importer.GetImporter(k));
-    importer.UnregisterLoader(dropped.get());
-  }
-}
-
-// No post-processing: nothing is reordered, joined, split into triangles or dropped.
-// The scene belongs to `importer`.
-Result<const aiScene*> import(Assimp::Importer& importer, const std::filesystem::path& file,
-                              std::string bytes) {
-  keep_readers(importer, ending_of(file).substr(1));
-  auto owned_files = std::make_unique<AssimpFiles>(file, std::move(bytes), max_bytes);
-  const AssimpFiles& files = *owned_files;
-  importer.SetIOHandler(owned_files.release());                                // takes it
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
-  if (scene && scene->mRootNode) return scene;
-  if (importer.GetException()) {
-    try {
-      std::rethrow_exception(importer.GetException());
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (...) {  // its message is the error string
-    }
-  }
-  if (const auto& missing = files.missing()) {
-    return fail(broken(fmt::format("the file refers to {}: {}", missing->file, missing->message)));
-  }
-  return fail(
-      broken(fmt::format("the file cannot be read: {}", in_one_line(importer.GetErrorString()))));
-}
-
-Matrix4d to_matrix(const aiMatrix4x4& m) {
-  Matrix4d matrix;
-  matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2,
-      m.d3, m.d4;
-  return matrix;
-}
-
-bool has_faces(const aiMesh& mesh) {
-  return std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
-                     [](const aiFace& face) { return face.mNumIndices >= 3; });
-}
-
-std::vector<const aiMesh*> meshes_with_faces(const aiScene& scene, const aiNode& node) {
-  std::vector<const aiMesh*> meshes;
-  for (unsigned k = 0; k < node.mNumMeshes; ++k) {
-    if (node.mMeshes[k] >= scene.mNumMeshes) continue;
-    const aiMesh* mesh = scene.mMeshes[node.mMeshes[k]];
-    if (mesh && has_faces(*mesh)) meshes.push_back(mesh);
-  }
-  return meshes;
-}
-
-// Depth first, in the order of the file. A stack of our own: a file may be deep.
-std::vector<Object> objects_of(const aiScene& scene) {
-  struct Visit {
-    const aiNode* node;
-    Matrix4d above;
-  };
-  std::vector<Object> objects;
-  std::vector<Visit> visits = {{scene.mRootNode, Matrix4d::Identity()}};
-  while (!visits.empty()) {
-    const auto [node, above] = visits.back();
-    visits.pop_back();
-    const Matrix4d to_file = above * to_matrix(node->mTransformation);
-    if (auto meshes = meshes_with_faces(scene, *node); !meshes.empty()) {
-      std::string mesh_name = meshes.front()->mName.C_Str();
-      objects.push_back({node->mName.C_Str(), std::move(mesh_name), to_file, std::move(meshes)});
-    }
-    for (unsigned k = node->mNumChildren; k-- > 0;) visits.push_back({node->mChildren[k], to_file});
-  }
-  return objects;
+std::string format_name(const std::string& ending) {
+  return ending == ".fbx" ? "FBX" : ending == ".dae" ? "Collada" : "glTF";
 }
 
 // By the names of the nodes, and by those of the meshes where no node has the name.
-Result<Object> choose(std::vector<Object> objects, const std::string& object) {
-  if (objects.empty()) return fail(broken("the file holds no faces"));
+Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
+  if (message.objects.empty()) return fail(broken("the file holds no faces"));
   std::vector<std::string> nodes, meshes;
-  for (const Object& each : objects) {
-    nodes.push_back(each.node_name.empty() ? each.mesh_name : each.node_name);
-    meshes.push_back(each.mesh_name);
+  for (const ObjectNames& each : message.objects) {
+    nodes.emplace_back(each.node.empty() ? each.mesh : each.node);
+    meshes.emplace_back(each.mesh);
   }
   const bool is_node = std::find(nodes.begin(), nodes.end(), object) != nodes.end();
   const bool is_mesh = std::find(meshes.begin(), meshes.end(), object) != meshes.end();
-  const auto chosen =
-      choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
-  if (!chosen) return fail(chosen.error());
-  return std::move(objects[*chosen]);
+  return choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
 }
 
-int uv_set_count(const aiMesh& mesh) {
-  int count = 0;
-  for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set)
-    count += mesh.HasTextureCoords(set);
-  return count;
-}
-
-Result<void> check_sets(const Object& object, int uv_set) {
-  for (const aiMesh* mesh : object.meshes) {
-    if (mesh->HasTextureCoords(static_cast<unsigned>(uv_set))) continue;
-    if (auto checked = check_uv_set(uv_set, uv_set_count(*mesh)); !checked) return checked;
-    if (uv_set_count(*mesh) > 0)  // a file may leave out its first set
+Result<void> check_sets(const MeshMessage& message, int uv_set) {
+  for (const MeshPart& part : message.parts) {
+    const int set_count = std::popcount(part.uv_sets);
+    if (!part.uvs.empty()) continue;
+    if (auto checked = check_uv_set(uv_set, set_count); !checked) return checked;
+    if (set_count > 0)  // a file may leave out its first set
       return fail(broken(fmt::format("the object has no UV set {}, but others", uv_set)));
   }
   return {};
 }
 
 // Whether vertices and corners can be counted in int.
-Result<void> check_size(const Object& object) {
+Result<void> check_size(const MeshMessage& message) {
   std::uint64_t vertices = 0, corners = 0;
-  for (const aiMesh* mesh : object.meshes) {
-    vertices += mesh->mNumVertices;
-    for (unsigned face = 0; face < mesh->mNumFaces; ++face)
-      corners += mesh->mFaces[face].mNumIndices;
+  for (const MeshPart& part : message.parts) {
+    vertices += part.positions.size() / 3;
+    corners += part.corners.size();
   }
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   if (vertices <= most && corners <= most) return {};
@@ -195,52 +98,42 @@ Result<void> check_size(const Object& object) {
                          vertices, corners, most)));
 }
 
-// Appends the faces of one mesh, whose vertices and (u,v) are numbered from those given.
-Result<void> append_faces(const aiMesh& source, int first_vertex, int first_uv, Mesh& mesh) {
-  for (unsigned k = 0; k < source.mNumFaces; ++k) {
-    const aiFace& face = source.mFaces[k];
-    if (face.mNumIndices < 3) continue;  // a point or a line
-    mesh.face_sizes.push_back(static_cast<int>(face.mNumIndices));
-    for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
-      const unsigned index = face.mIndices[corner];
-      if (index >= source.mNumVertices) {
-        return fail(broken(fmt::format("corner {} of face {} refers to vertex {} of {}", corner + 1,
-                                       k + 1, std::uint64_t{index} + 1, source.mNumVertices)));
-      }
-      mesh.corner_vertices.push_back(first_vertex + static_cast<int>(index));
-      mesh.corner_uvs.push_back(first_uv < 0 ? -1 : first_uv + static_cast<int>(index));
+// Appends the faces of one part, whose vertices and (u,v) are numbered from those given.
+Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, Mesh& mesh) {
+  const std::size_t vertex_count = part.positions.size() / 3;
+  for (std::size_t face = 0; face < part.sizes.size(); ++face)
+    mesh.face_sizes.push_back(static_cast<int>(part.sizes[face]));
+  for (std::size_t corner = 0; corner < part.corners.size(); ++corner) {
+    const std::uint32_t index = part.corners[corner];
+    if (index >= vertex_count) {
+      return fail(broken(fmt::format("corner {} of its faces refers to vertex {} of {}", corner,
+                                     index, vertex_count)));
     }
+    mesh.corner_vertices.push_back(first_vertex + static_cast<int>(index));
+    mesh.corner_uvs.push_back(first_uv < 0 ? -1 : first_uv + static_cast<int>(index));
   }
   return {};
 }
 
-// Appends what a mesh says of the shading of its faces: of `face_count` and of their corners.
-void append_shading(const aiMesh& source, int shading_without, std::size_t face_count,
-                    std::span<const int> corner_vertices, int first_vertex, Shading& shading) {
+// Appends what a part says of the shading of its faces, whose corners are given.
+void append_shading(const MeshPart& part, int shading_without, std::span<const int> corner_vertices,
+                    int first_vertex, Shading& shading) {
   const auto first_normal = static_cast<int>(shading.normals.size());
-  const bool has_normals = source.HasNormals();
+  const bool has_normals = !part.normals.empty();
   for (const int vertex : corner_vertices)
     shading.corner_normals.push_back(has_normals ? first_normal + vertex - first_vertex : -1);
-  shading.smoothing.resize(shading.smoothing.size() + face_count,
+  shading.smoothing.resize(shading.smoothing.size() + part.sizes.size(),
                            has_normals ? Shading::unsaid : shading_without);
-  for (unsigned k = 0; has_normals && k < source.mNumVertices; ++k) {
-    const aiVector3D& normal = source.mNormals[k];
+  for (std::size_t k = 0; k + 3 <= part.normals.size(); k += 3) {
+    const std::array<double, 3> normal = {part.normals[k], part.normals[k + 1],
+                                          part.normals[k + 2]};
     const bool is_finite =
-        std::isfinite(normal.x) && std::isfinite(normal.y) && std::isfinite(normal.z);
-    shading.normals.push_back(is_finite ? std::array<double, 3>{normal.x, normal.y, normal.z}
-                                        : std::array<double, 3>{});
+        std::all_of(normal.begin(), normal.end(), [](double each) { return std::isfinite(each); });
+    shading.normals.push_back(is_finite ? normal : std::array<double, 3>{});
   }
 }
 
-std::string material_name(const aiScene& scene, const aiMesh& mesh) {
-  if (mesh.mMaterialIndex >= scene.mNumMaterials || !scene.mMaterials[mesh.mMaterialIndex])
-    return {};
-  aiString name;
-  scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
-  return name.C_Str();
-}
-
-// Appends the material of faces that one mesh has.
+// Appends the material of faces that one part has.
 void append_material(const std::string& name, std::size_t face_count, FaceNames& materials) {
   int index = -1;
   if (!name.empty()) {
@@ -251,33 +144,32 @@ void append_material(const std::string& name, std::size_t face_count, FaceNames&
   materials.of_faces.resize(materials.of_faces.size() + face_count, index);
 }
 
-Result<Mesh> merged(const aiScene& scene, const Object& object, int uv_set, int shading_without) {
+Result<Mesh> merged(const MeshMessage& message, int uv_set, int shading_without) {
+  if (auto checked = check_sets(message, uv_set); !checked) return fail(checked.error());
+  if (auto checked = check_size(message); !checked) return fail(checked.error());
   Mesh mesh;
   Shading shading;
-  Eigen::Index vertex_count = 0;
-  for (const aiMesh* source : object.meshes) vertex_count += source->mNumVertices;
-  mesh.positions.resize(vertex_count, 3);
+  std::size_t numbers = 0;
+  for (const MeshPart& part : message.parts) numbers += part.positions.size();
+  mesh.positions.resize(static_cast<Eigen::Index>(numbers / 3), 3);
   Eigen::Index row = 0;
-  for (const aiMesh* source : object.meshes) {
-    const aiVector3D* uvs = source->mTextureCoords[uv_set];
-    const int first_uv = uvs ? static_cast<int>(mesh.uvs.size()) : -1;
+  for (const MeshPart& part : message.parts) {
+    const int first_uv = part.uvs.empty() ? -1 : static_cast<int>(mesh.uvs.size());
     const auto first_vertex = static_cast<int>(row);
     const std::size_t first_corner = mesh.corner_vertices.size();
-    const std::size_t first_face = mesh.face_sizes.size();
-    if (auto added = append_faces(*source, first_vertex, first_uv, mesh); !added)
+    if (auto added = append_faces(part, first_vertex, first_uv, mesh); !added)
       return fail(added.error());
-    const std::size_t face_count = mesh.face_sizes.size() - first_face;
-    append_shading(*source, shading_without, face_count,
-                   std::span(mesh.corner_vertices).subspan(first_corner), first_vertex, shading);
-    append_material(material_name(scene, *source), face_count, mesh.materials);
-    for (unsigned k = 0; k < source->mNumVertices; ++k, ++row) {
-      const aiVector3D& position = source->mVertices[k];
-      mesh.positions.row(row) << position.x, position.y, position.z;
-      if (uvs) mesh.uvs.push_back({uvs[k].x, uvs[k].y});
-    }
+    append_shading(part, shading_without, std::span(mesh.corner_vertices).subspan(first_corner),
+                   first_vertex, shading);
+    append_material(std::string(part.material), part.sizes.size(), mesh.materials);
+    for (std::size_t k = 0; k + 3 <= part.positions.size(); k += 3, ++row)
+      mesh.positions.row(row) << part.positions[k], part.positions[k + 1], part.positions[k + 2];
+    for (std::size_t k = 0; k + 2 <= part.uvs.size(); k += 2)
+      mesh.uvs.push_back({part.uvs[k], part.uvs[k + 1]});
   }
   if (mesh.materials.names.empty()) mesh.materials.of_faces.clear();
-  mesh.object = object.node_name.empty() ? object.mesh_name : object.node_name;
+  const ObjectNames& names = message.objects[*message.chosen];
+  mesh.object = names.node.empty() ? names.mesh : names.node;
   if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
   mesh.corner_normals = shared_normals(mesh, shading);
   return mesh;
@@ -296,47 +188,155 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
   return {};
 }
 
-Result<Mesh> read_object(const std::filesystem::path& file, std::string bytes,
-                         const std::string& name, int uv_set) {
-  if (auto checked = check_for_assimp(bytes, ending_of(file).substr(1)); !checked) {
-    checked.error().message = in_one_line(checked.error().message);
-    return fail(checked.error());
+// What is told of a process that gave no answer to trust.
+Error reader_failed(const std::string& format, const std::string& what) {
+  return broken(fmt::format("the {} reader {}: the file is broken or hostile", format, what));
+}
+
+Error out_of_memory(const std::string& format, const BoxLimits& limits, std::size_t file_bytes) {
+  if (limits.memory < box_limits(file_bytes, std::numeric_limits<std::size_t>::max()).memory) {
+    return {ErrorCode::OutOfMemory,
+            fmt::format("the {} reader needs more than the {} of memory that are left for it",
+                        format, bytes_text(limits.memory))};
   }
-  Assimp::Importer importer;
-  const auto scene = import(importer, file, std::move(bytes));
-  if (!scene) return fail(scene.error());
-  const auto object = choose(objects_of(**scene), name);
-  if (!object) return fail(object.error());
-  if (auto checked = check_sets(*object, uv_set); !checked) return fail(checked.error());
-  if (auto checked = check_size(*object); !checked) return fail(checked.error());
-  const std::string ending = ending_of(file);
-  const bool is_gltf = ending == ".gltf" || ending == ".glb";
-  auto mesh = merged(**scene, *object, uv_set, is_gltf ? Shading::flat : Shading::unsaid);
+  return reader_failed(format, fmt::format("needs more than {} of memory for a file of {}",
+                                           bytes_text(limits.memory), bytes_text(file_bytes)));
+}
+
+Result<void> check_end(const BoxedEnd& end, const std::string& format, const BoxLimits& limits,
+                       std::size_t file_bytes) {
+  constexpr int not_loaded = 127;  // by the dynamic linker
+  switch (end.how) {
+    case BoxedEnd::How::Killed:
+      return fail(reader_failed(format, fmt::format("crashed on this file (signal {}, {})",
+                                                    end.number, strsignal(end.number))));
+    case BoxedEnd::How::TimedOut:
+      return fail(
+          reader_failed(format, fmt::format("has not ended after {:.0f} seconds", limits.seconds)));
+    case BoxedEnd::How::TooLong:
+      return fail(reader_failed(
+          format, fmt::format("made more than {} of this file of {}",
+                              bytes_text(limits.answer_bytes), bytes_text(file_bytes))));
+    case BoxedEnd::How::Exited:
+      break;
+  }
+  if (end.number == boxed_done) return {};
+  if (end.number == boxed_out_of_memory) return fail(out_of_memory(format, limits, file_bytes));
+  if (end.number == not_loaded) {
+    return fail(ErrorCode::Unreadable,
+                fmt::format("the {} reader does not start: is libassimp installed?", format));
+  }
+  return fail(reader_failed(format, fmt::format("gave up with exit code {}", end.number)));
+}
+
+Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const std::string& object,
+                     int uv_set) {
+  const auto message = parse_mesh_message(answer);
+  if (!message) return fail(reader_failed(format, "gave an answer that is no mesh"));
+  switch (message->kind) {
+    case MessageKind::OtherFormat:
+      return fail(broken(fmt::format("the file is no {}", format)));
+    case MessageKind::Refused:
+      return fail(broken(fmt::format("the file cannot be read: {}", in_one_line(message->reason))));
+    case MessageKind::TooManyObjects:
+      return fail(broken(fmt::format("the file holds more than {} objects", most_objects)));
+    case MessageKind::Scene:
+      break;
+  }
+  const auto chosen = choose(*message, object);
+  if (!chosen) return fail(chosen.error());
+  if (message->chosen != *chosen)
+    return fail(reader_failed(format, "gave another object than it was asked for"));
+  auto mesh = merged(*message, uv_set, format == "glTF" ? Shading::flat : Shading::unsaid);
   if (!mesh) return mesh;
-  if (auto applied = apply(object->to_file, mesh->positions); !applied)
+  if (auto applied = apply(message->to_file, mesh->positions); !applied)
     return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
 }
 
+class OpenFile {
+ public:
+  explicit OpenFile(const std::filesystem::path& file)
+      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& file,
+                         const std::string& object, int uv_set, const ReadLimits& limits) {
+  if (auto readable = check_readable(file); !readable) return fail(readable.error());
+  const OpenFile opened(file);
+  struct stat status {};
+  if (opened.descriptor() < 0 || fstat(opened.descriptor(), &status) != 0) {
+    return fail(ErrorCode::Unreadable,
+                fmt::format("cannot read the file: {}", std::strerror(errno)));
+  }
+  const auto file_bytes = static_cast<std::size_t>(status.st_size);  // 0: of a pipe
+  if (file_bytes > max_bytes) {
+    return fail(ErrorCode::Unreadable,
+                fmt::format("cannot read the file: it is larger than {} MiB", max_bytes >> 20));
+  }
+  if (!S_ISREG(status.st_mode))
+    return fail(ErrorCode::Unreadable, "cannot read the file: it is not a regular file");
+  const std::string ending = ending_of(file);
+  const auto run = [&](const BoxLimits& box) {
+    return run_boxed(program, {ending.substr(1), object, std::to_string(uv_set)},
+                     opened.descriptor(), box, limits.should_stop);
+  };
+  const BoxLimits box = box_limits(file_bytes, limits.max_memory);
+  BoxLimits other_box = box;
+  other_box.freed = 0x5a;
+  auto other_run = std::async(std::launch::async, [&] { return run(other_box); });
+  const auto end = run(box), other_end = other_run.get();
+  const std::string format = format_name(ending);
+  for (const auto* each : {&end, &other_end}) {
+    if (!*each) return fail(each->error());
+    if (auto checked = check_end(**each, format, box, file_bytes); !checked)
+      return fail(checked.error());
+  }
+  if (end->answer != other_end->answer)
+    return fail(reader_failed(format, "found more in this file than it holds"));
+  return to_mesh(end->answer, format, object, uv_set);
+}
+
 }  // namespace
 
-Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object, int uv_set) {
+BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory) {
+  // The libraries take 60 MB of address space; a number of a text of 8 bytes is a token of 100.
+  constexpr std::size_t least = std::size_t{512} << 20, of_a_byte = 40;
+  const std::size_t memory = std::max(least, std::min(max_memory, least + of_a_byte * file_bytes));
+  // Of the 200 bytes that assimp takes for a corner of a face, 40 are answered.
+  return {memory, 60 + 1e-6 * static_cast<double>(file_bytes), memory / 4};
+}
+
+Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
+                        const std::string& object, int uv_set, const ReadLimits& limits) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
   const auto in_file = [&](Error error) {
     error.file = file.string();
     return fail(std::move(error));
   };
   try {
-    auto bytes = read_file(file, max_bytes);
-    if (!bytes) return fail(bytes.error());
-    auto mesh = read_object(file, *std::move(bytes), object, uv_set);
+    auto mesh = read_opened(program, file, object, uv_set, limits);
     return mesh ? std::move(mesh) : in_file(mesh.error());
   } catch (const std::bad_alloc&) {
     return in_file({ErrorCode::OutOfMemory, "the mesh does not fit in memory"});
-  } catch (const std::exception& trouble) {
-    return in_file(broken(fmt::format("the file cannot be read: {}", in_one_line(trouble.what()))));
   }
+}
+
+Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object, int uv_set,
+                         const ReadLimits& limits) {
+  const std::string_view program(reinterpret_cast<const char*>(mesh_reader_program.data()),
+                                 mesh_reader_program.size());
+  return read_boxed(program, file, object, uv_set, limits);
 }
 
 }  // namespace pliant

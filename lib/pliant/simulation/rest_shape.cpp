@@ -17,12 +17,14 @@ namespace {
 struct MakeMesh {
   Result<Mesh> operator()(const GridSheet& sheet) const { return make_mesh(sheet); }
   Result<Mesh> operator()(const MeshFile& file) const {
-    return read_mesh(file.path, file.object, file.uv_set, file.root);
+    return read_mesh(file.path, file.object, file.uv_set, file.root, limits);
   }
   Result<Mesh> operator()(const Mesh& mesh) const {
     if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
     return mesh;
   }
+
+  ReadLimits limits;
 };
 
 // What making a shape takes, as far as it is known ahead.
@@ -69,7 +71,7 @@ Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& 
 }  // namespace
 
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                                  MemoryShare& memory) {
+                                  MemoryShare& memory, const StopRequest& should_stop) {
   const auto at_scene = [&](Error error) {
     // A file that cannot be opened is the scene's mistake; one with bad contents speaks for itself.
     if (error.code == ErrorCode::Unreadable)
@@ -89,7 +91,7 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     ahead += BytesToMake::of_references(*file);
     if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
   }
-  auto mesh = std::visit(MakeMesh{}, surface.shape);
+  auto mesh = std::visit(MakeMesh{{memory.available(), should_stop}}, surface.shape);
   if (!mesh) return at_scene(mesh.error());
   const std::size_t bytes =
       bytes_of(*mesh) + bytes_to_run(static_cast<std::size_t>(mesh->vertex_count()));
@@ -106,11 +108,11 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
 }
 
 Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                              MemoryShare& memory) {
+                              MemoryShare& memory, const StopRequest& should_stop) {
   if (const auto* sheet = std::get_if<GridSheet>(&surface.shape)) {
     return take(BytesToMake{}(*sheet), surface, origin, memory);
   }
-  const auto made = make_rest_shape(surface, origin, memory);
+  const auto made = make_rest_shape(surface, origin, memory, should_stop);
   return made ? Result<void>() : fail(made.error());
 }
 

@@ -103,7 +103,8 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
   for (const Surface& surface : simulation.scene_.surfaces) {
     if (options.should_stop && options.should_stop()) return interrupted();
     MemoryShare share(simulation.memory_.get());
-    auto rest_shape = make_rest_shape(surface, simulation.scene_.origin, share);
+    auto rest_shape =
+        make_rest_shape(surface, simulation.scene_.origin, share, options.should_stop);
     if (!rest_shape) {
       errors.push_back(std::move(rest_shape.error()));
       continue;
@@ -127,7 +128,7 @@ Result<void> Simulation::check(const Scene& scene, const SimulationOptions& opti
   for (const Surface& surface : scene.surfaces) {
     if (options.should_stop && options.should_stop()) return interrupted();
     shares.emplace_back(&memory);
-    auto checked = check_rest_shape(surface, scene.origin, shares.back());
+    auto checked = check_rest_shape(surface, scene.origin, shares.back(), options.should_stop);
     if (!checked) errors.push_back(std::move(checked.error()));
   }
   if (options.should_stop && options.should_stop()) return interrupted();

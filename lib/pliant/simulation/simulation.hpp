@@ -51,7 +51,8 @@ struct SimulationOptions {
   /// change no bit.
   int most_lanes = widest_lanes;
 
-  /// Asked ahead of every surface that is read and of every time step, by any of the threads;
+  /// Asked ahead of every surface that is read, while assimp reads one, and ahead of every time
+  /// step, by any of the threads;
   /// `make` and `at` then fail with Interrupted.
   StopRequest should_stop = {};
 

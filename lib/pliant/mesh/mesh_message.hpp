@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace pliant {
+
+// What the boxed reader of mesh files answers: numbers as this machine keeps them, since both ends
+// run on it. `mesh/reader/write_message.cpp` writes it. Not for other rooms.
+//
+//   u64 message_begin, u32 kind
+//   Refused:  text (u32 length, bytes)
+//   Scene:    u32 number of objects; of each: text node, text mesh
+//             u32 index of the chosen object, or no_object and then nothing more
+//             16 f64, the transform by rows; u32 number of parts; of each:
+//               text material, u32 sets of (u,v) as bits, u32 is_lit, u32 has_uvs
+//               u32 vertices, u32 faces, u32 corners
+//               f32 3 a vertex; if is_lit f32 3 a vertex; if has_uvs f32 2 a vertex
+//               u32 a face: its corners; u32 a corner: its vertex
+//   u64 message_end
+
+inline constexpr std::uint64_t message_begin = 0x31'48'53'45'4d'49'4c'50;  // "PLIMESH1"
+inline constexpr std::uint64_t message_end = 0x2e'44'4e'45'48'53'45'4d;    // "MESHEND."
+inline constexpr std::uint32_t no_object = 0xffff'ffff;
+inline constexpr std::uint32_t most_objects = 1'000'000;
+
+enum class MessageKind : std::uint32_t {
+  Scene = 0,
+  Refused = 1,      ///< the file is broken, and why
+  OtherFormat = 2,  ///< it is none of its ending
+  TooManyObjects = 3
+};
+
+/// Numbers within a message, which outlives them, at any place.
+template <class T>
+class PackedNumbers {
+ public:
+  PackedNumbers() = default;
+  explicit PackedNumbers(std::string_view bytes) : bytes_(bytes) {}
+
+  std::size_t size() const { return bytes_.size() / sizeof(T); }
+  bool empty() const { return bytes_.empty(); }
+  T operator[](std::size_t k) const {
+    T number;
+    std::memcpy(&number, bytes_.data() + k * sizeof(T), sizeof(T));
+    return number;
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+/// Faces of one material. Sizes agree with each other; indices are those of the file.
+struct MeshPart {
+  std::string_view material;
+  std::uint32_t uv_sets = 0;             ///< bit k: there is a set k
+  PackedNumbers<float> positions;        ///< x, y and z of each vertex
+  PackedNumbers<float> normals;          ///< likewise, or empty
+  PackedNumbers<float> uvs;              ///< of the set that was asked for: u and v, or empty
+  PackedNumbers<std::uint32_t> sizes;    ///< #faces: corners of each
+  PackedNumbers<std::uint32_t> corners;  ///< #corners: a vertex of this part
+};
+
+struct ObjectNames {
+  std::string_view node;
+  std::string_view mesh;  ///< of the first with faces
+};
+
+struct MeshMessage {
+  MessageKind kind = MessageKind::Scene;
+  std::string_view reason;            ///< of Refused
+  std::vector<ObjectNames> objects;   ///< in the order of the file
+  std::optional<std::size_t> chosen;  ///< whose parts these are
+  Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
+  std::vector<MeshPart> parts;
+};
+
+/// The message in bytes that a broken or hostile process may have written, which outlive it.
+/// Nothing where they are anything but one whole message whose numbers agree with each other;
+/// takes no more memory than a few times theirs. Requires of nobody that the mesh be sound.
+std::optional<MeshMessage> parse_mesh_message(std::string_view bytes);
+
+}  // namespace pliant

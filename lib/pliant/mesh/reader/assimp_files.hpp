@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include <assimp/IOSystem.hpp>
+
+namespace pliant {
+
+/// What assimp may open: one file whose bytes we hold, and nothing that it refers to.
+class AssimpFiles final : public Assimp::IOSystem {
+ public:
+  /// `name` is what assimp calls the file.
+  AssimpFiles(std::string name, std::string bytes);
+
+  // What assimp calls.
+  bool Exists(const char* file) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+ private:
+  std::string name_;
+  std::string bytes_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/mesh/mesh_reader.hpp"
+
+namespace pliant::testing {
+
+/// The program of boxed/misbehave.cpp, which does what its second argument says.
+inline const std::string& misbehaving() {
+  static const std::string program = read_file(PLIANT_MISBEHAVING).value();
+  return program;
+}
+
+/// The program that reads FBX and Collada.
+inline std::string_view reader() {
+  return {reinterpret_cast<const char*>(mesh_reader_program.data()), mesh_reader_program.size()};
+}
+
+}  // namespace pliant::testing
