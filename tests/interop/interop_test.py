@@ -1,4 +1,5 @@
-"""Programs that we did not write open what pliant writes, and must find our vertices at every frame.
+"""Programs that we did not write open what pliant writes, and must find our vertices at every frame;
+and pliant opens what Blender writes.
 
 usage: interop_test.py PLIANT [PICTURE_FOLDER]
 
@@ -368,13 +369,60 @@ class Interop(unittest.TestCase):
                 self.assertEqual(set(distance.argmin(axis=1)), set(range(len(first))))
 
 
+# What docs/your-mesh.md says of Blender's exporters: how many times as long, and whether +y is up.
+EXPORTS = {"sheet.obj": (1, True), "sheet.ply": (1, False), "sheet.glb": (1, True), "sheet.fbx": (1, True),
+           "default.fbx": (100, True), "sheet.dae": (1, True)}
+
+# A force at a point of Blender's, said in the file's axes and unit. Its reach is a third of the sheet's.
+POKE = """<scene version="1" fps="24" start="1" end="6"><surface name="s"><mesh file="{file}"/></surface>
+<point name="poke" center="{center}" direction="0 1 0" deformationRadius="{reach}" forceRadius="{half}"
+ magnitude="{magnitude}"/></scene>
+"""
+
+
+class FromBlender(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="pliant-blender-")
+        cls.addClassCleanup(cls.scratch.cleanup)
+        run("blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P",
+            os.path.join(HERE, "blender_export.py"), "--", cls.scratch.name)
+        cls.world = np.load(os.path.join(cls.scratch.name, "world.npy"))
+
+    def bake(self, file, points, size):
+        """The frames of the mesh under a force at the first of the points."""
+        scene = os.path.join(self.scratch.name, "scene.xml")
+        with open(scene, "w", encoding="utf-8") as out:
+            out.write(POKE.format(file=file, center=" ".join(map(str, points[31])), reach=0.8 * size,
+                                  half=0.4 * size, magnitude=2000 * size))
+        frames = os.path.join(self.scratch.name, "frames.npy")
+        run(PLIANT, "bake", scene, "-o", frames, "--quiet")
+        return np.load(frames)
+
+    def test_axes_and_units_are_those_of_the_page(self):
+        for file, (size, is_y_up) in EXPORTS.items():
+            with self.subTest(file):
+                points = size * (self.world @ TO_Y_UP if is_y_up else self.world)
+                frames = self.bake(file, points, size)
+                distance = np.linalg.norm(frames[0][:, None] - points[None], axis=2)
+                source = distance.argmin(axis=1)
+                # Six decimals in the text of an OBJ.
+                self.assertLess(distance.min(axis=1).max(), 1e-6 * np.abs(points).max())
+                self.assertEqual(set(source), set(range(len(points))))
+                # The force finds the vertex that it was placed at, and lifts it along the file's +y.
+                way = frames[-1] - frames[0]
+                self.assertEqual(points[source[way[:, 1].argmax()]].tolist(), points[31].tolist())
+                self.assertGreater(way[:, 1].max(), 1e-3 * size)
+                self.assertLess(np.abs(way[:, [0, 2]]).max(), 1e-9 * size)
+
+
 def main():
     global PLIANT, PICTURES
     PLIANT = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as pictures:
         PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else pictures
         os.makedirs(PICTURES, exist_ok=True)
-        suite = unittest.defaultTestLoader.loadTestsFromTestCase(Interop)
+        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender)))
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     failed = len(result.failures) + len(result.errors)
     # A failure of what all tests need counts once, and none of them has run.

@@ -103,5 +103,5 @@ TEST_CASE("a coordinate beyond float in a later block is named", "[io][row_order
   REQUIRE_FALSE(written);
   CHECK(written.error().code == ErrorCode::NotFinite);
   CHECK_THAT(written.error().message,
-             Catch::Matchers::StartsWith("vertex 8199 at frame 1 has the coordinate -1e+39"));
+             Catch::Matchers::StartsWith("vertex 8198 at frame 1 has the coordinate -1e+39"));
 }

@@ -18,7 +18,7 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   }
   SECTION("corners of a face") {
     mesh.face_sizes[1] = 2;
-    expected = "face 2 has 2";
+    expected = "face 1 has 2";
   }
   SECTION("number of corners") {
     mesh.face_sizes.push_back(3);
@@ -30,23 +30,23 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   }
   SECTION("vertex too large") {
     mesh.corner_vertices[3] = 9;
-    expected = "corner 4 refers to vertex 10 of 9";
+    expected = "corner 3 refers to vertex 9, but there are 9";
   }
   SECTION("vertex negative") {
     mesh.corner_vertices[3] = -1;
-    expected = "vertex 0 of 9";
+    expected = "vertex -1, but there are 9";
   }
   SECTION("uv too large") {
     mesh.corner_uvs[5] = 9;
-    expected = "corner 6 refers to uv 10 of 9";
+    expected = "corner 5 refers to uv 9, but there are 9";
   }
   SECTION("position") {
     mesh.positions(4, 1) = std::numeric_limits<double>::quiet_NaN();
-    expected = "vertex 5 has a coordinate";
+    expected = "vertex 4 has a coordinate";
   }
   SECTION("uv") {
     mesh.uvs[2][1] = std::numeric_limits<double>::infinity();
-    expected = "uv 3";
+    expected = "uv 2 is";
   }
   SECTION("number of normals") {
     mesh.corner_normals = {0, 1};
@@ -55,12 +55,12 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   SECTION("a normal too large") {
     mesh.corner_normals.assign(16, 0);
     mesh.corner_normals[3] = 16;
-    expected = "corner 4 has the normal 17 of at most 16";
+    expected = "corner 3 has the normal 16, but there are 16 at most";
   }
   SECTION("a normal of nobody") {
     mesh.corner_normals.assign(16, 2);
     mesh.corner_normals[3] = 0;
-    expected = "no corner has the normal 2 of 3";
+    expected = "no corner has the normal 1 of the 3";
   }
   SECTION("number of materials") {
     mesh.materials = {{"a"}, {0, 0}};
@@ -68,9 +68,25 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   }
   SECTION("a group too large") {
     mesh.groups = {{"a"}, {0, -1, 1, 0}};
-    expected = "face 3 refers to group 2 of 1";
+    expected = "face 2 refers to group 1, but there are 1";
+  }
+  SECTION("numbers of vertices") {
+    mesh.file_vertices = {4, 5};
+    expected = "2 of the mesh's 9 vertices have a number in the file";
   }
   const auto checked = check_mesh(mesh);
   REQUIRE_FALSE(checked);
   CHECK_THAT(checked.error().message, Contains(expected));
+}
+
+TEST_CASE("messages count as the file of a mesh does", "[mesh]") {
+  Mesh mesh = make_mesh({});
+  mesh.positions(4, 1) = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(check_mesh(mesh).error().message, Contains("vertex 4 has a coordinate"));
+  mesh.first_index = 1;
+  CHECK_THAT(check_mesh(mesh).error().message, Contains("vertex 5 has a coordinate"));
+  mesh.file_vertices = {20, 21, 22, 23, 24, 25, 26, 27, 28};
+  CHECK_THAT(check_mesh(mesh).error().message, Contains("vertex 25 has a coordinate"));
+  mesh.corner_vertices[3] = 9;
+  CHECK_THAT(check_mesh(mesh).error().message, Contains("corner 4 refers to vertex 10"));
 }

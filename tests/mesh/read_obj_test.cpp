@@ -211,3 +211,13 @@ TEST_CASE("normals of an OBJ file that cannot be read are none", "[mesh][read_ob
     CHECK(parse_obj(obj_quad + text, "m.obj"));
   }
 }
+
+TEST_CASE("vertices of an OBJ keep the numbers that the file gives them", "[mesh][read_obj]") {
+  const std::string two =
+      quad + "o a\nf 1/1 2/2 3/3\nv 7 0 0\nv 8 0 0\nv 9 0 1\no b\nf 5/1 6/2 7/3\n";
+  const Mesh first = parse_obj(two, "m.obj", "a").value();
+  CHECK(first.number_of(0) == 1);
+  const Mesh second = parse_obj(two, "m.obj", "b").value();
+  CHECK(second.number_of(0) == 5);
+  CHECK(second.number_of(2) == 7);
+}

@@ -28,7 +28,7 @@ Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
   return fail(ErrorCode::NotFinite,
               fmt::format("vertex {} at frame {} has the coordinate {}, which is beyond the "
                           "single precision of the format; .npy, .obj and .ply hold double",
-                          row + 1, frame, positions(row, place % 3)));
+                          row, frame, positions(row, place % 3)));
 }
 
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,

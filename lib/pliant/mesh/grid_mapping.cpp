@@ -1,20 +1,42 @@
 #include "pliant/mesh/grid_mapping.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace pliant {
 namespace {
 
-constexpr std::string_view way_out =
-    "; a mesh that is no even grid needs uv=\"virtual\", a closed one needs wrap";
+constexpr std::string_view what_is_needed =
+    "; the (u,v) must form an even grid, one pair a vertex (docs/your-mesh.md)";
+constexpr std::string_view no_seams =
+    "; a surface that is closed or meets itself is not taken (docs/your-mesh.md)";
+
+// Border nodes nearer to each other than this times the diagonal of the bounding box are one place.
+constexpr double one_place = 1e-6;
 
 tl::unexpected<Error> not_a_grid(const std::string& reason) {
-  return fail(ErrorCode::InvalidInput, reason + std::string(way_out));
+  return fail(ErrorCode::InvalidInput, reason + std::string(what_is_needed));
+}
+
+// Of a mesh of which some corner has no (u,v); `vertex` is at the first of them.
+tl::unexpected<Error> without_uvs(const Mesh& mesh, int vertex) {
+  const auto missing = std::count(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), -1);
+  if (missing == static_cast<std::ptrdiff_t>(mesh.corner_uvs.size())) {
+    return not_a_grid(
+        "the mesh has no (u,v) (UVs); unwrap it in the program that it comes from, "
+        "and export it with its UVs");
+  }
+  return not_a_grid(fmt::format("vertex {} has no (u,v) (UVs), like {} of the {} corners of faces",
+                                mesh.number_of(vertex), missing, mesh.corner_uvs.size()));
 }
 
 // One direction of the lattice: `count` values from `least` on, `spacing` apart.
@@ -47,6 +69,97 @@ Axis find_axis(std::vector<double> values) {
   return {values.front(), count > 1 ? extent / (count - 1) : 0, count};
 }
 
+tl::unexpected<Error> seam(const std::string& reason) {
+  return fail(ErrorCode::InvalidInput, reason + ": a seam" + std::string(no_seams));
+}
+
+using NodePair = std::array<int, 2>;
+
+// What lies in one place, if anything, has the same key: the first such pair of nodes that
+// `is_one_place` confirms. O(n log n): of nodes with one key only the few are compared that can lie
+// side by side without a pair among them.
+template <class Key, class IsOnePlace>
+std::optional<NodePair> find_pair(const std::vector<int>& nodes, Key key_of,
+                                  IsOnePlace is_one_place) {
+  constexpr std::size_t most_apart = 64;  // more do not fit into a cell of two distances a side
+  std::vector<std::pair<std::uint64_t, int>> keyed;
+  keyed.reserve(nodes.size());
+  for (const int node : nodes) keyed.emplace_back(key_of(node), node);
+  std::sort(keyed.begin(), keyed.end());
+  std::optional<NodePair> found;
+  for (std::size_t k = 1; k < keyed.size(); ++k) {
+    for (std::size_t back = 1; back <= std::min(k, most_apart); ++back) {
+      const auto& [key, node] = keyed[k - back];
+      if (key != keyed[k].first) break;
+      const NodePair pair = {node, keyed[k].second};
+      if (!is_one_place(pair)) continue;
+      if (!found || pair < *found) found = pair;
+      break;
+    }
+  }
+  return found;
+}
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t number) {
+  hash = (hash ^ number) * 0x9e37'79b9'7f4a'7c15;
+  return hash ^ hash >> 32;
+}
+
+std::vector<int> border_nodes(const Grid& grid) {
+  std::vector<int> nodes;
+  for (int j = 0; j < grid.rows; ++j) {
+    const bool is_end = j == 0 || j == grid.rows - 1;
+    for (int i = 0; i < grid.columns; i += is_end ? 1 : grid.columns - 1)
+      nodes.push_back(grid.node(i, j));
+  }
+  return nodes;
+}
+
+// Border nodes nearer than `distance`: such a pair lies in one cell of two distances a side, in one
+// of the eight lattices that are shifted by half a cell.
+std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
+  const Field& rest = mapping.rest;
+  const Eigen::RowVector3d least = rest.colwise().minCoeff();
+  const std::vector<int> nodes = border_nodes(mapping.grid);
+  std::optional<NodePair> found;
+  for (unsigned shift = 0; shift < 8; ++shift) {
+    const auto key_of = [&](int node) {
+      std::uint64_t key = 0;
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const double cell = (rest(node, axis) - least[axis]) / (2 * distance);
+        key = mixed(key, static_cast<std::uint64_t>(cell + 0.5 * (shift >> axis & 1u)));
+      }
+      return key;
+    };
+    const auto pair = find_pair(nodes, key_of, [&](const NodePair& each) {
+      return (rest.row(each[0]) - rest.row(each[1])).norm() <= distance;
+    });
+    if (pair && (!found || *pair < *found)) found = pair;
+  }
+  return found;
+}
+
+// Two nodes that formats which split vertices keep apart, and others do not: the same place to the
+// bit; on the border, within rounding.
+std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
+  const Field& rest = mapping.rest;
+  std::vector<int> all(static_cast<std::size_t>(mapping.grid.node_count()));
+  std::iota(all.begin(), all.end(), 0);
+  const auto key_of = [&](int node) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      key = mixed(key, std::bit_cast<std::uint64_t>(rest(node, axis) + 0.0));  // -0 is 0
+    return key;
+  };
+  const auto same = find_pair(
+      all, key_of, [&](const NodePair& each) { return rest.row(each[0]) == rest.row(each[1]); });
+  if (same) return same;
+  const double distance =
+      one_place * (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  if (!(distance > 0) || !std::isfinite(distance)) return {};
+  return near_pair(mapping, distance);
+}
+
 }  // namespace
 
 Field GridMapping::to_vertices(const Field& nodes, Field reuse) const {
@@ -68,8 +181,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     const int vertex = mesh.corner_vertices[corner];
     const int uv = mesh.corner_uvs[corner];
     if (uv < 0) {
-      return fail(ErrorCode::InvalidInput,
-                  fmt::format("vertex {} has no (u,v); every face corner needs one", vertex + 1));
+      return without_uvs(mesh, vertex);
     }
     if (vertex_uvs[vertex] < 0) vertex_uvs[vertex] = uv;
   }
@@ -79,7 +191,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
     if (vertex_uvs[vertex] < 0) {
       return fail(ErrorCode::InvalidInput,
-                  fmt::format("vertex {} has no (u,v): no face uses it", vertex + 1));
+                  fmt::format("vertex {} has no (u,v): no face uses it", mesh.number_of(vertex)));
     }
     us.push_back(mesh.uvs[vertex_uvs[vertex]][0]);
     vs.push_back(mesh.uvs[vertex_uvs[vertex]][1]);
@@ -95,7 +207,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
         return not_a_grid(fmt::format(
             "vertex {} has {} = {}, which is not within {} of a spacing of the even lattice of {} "
             "values {} apart",
-            vertex + 1, name, value, lattice_tolerance, axis->count, axis->spacing));
+            mesh.number_of(vertex), name, value, lattice_tolerance, axis->count, axis->spacing));
       }
     }
   }
@@ -119,12 +231,13 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     const auto& [u, v] = mesh.uvs[mesh.corner_uvs[corner]];
     if (u_axis.nearest(u) != u_axis.nearest(us[vertex]) ||
         v_axis.nearest(v) != v_axis.nearest(vs[vertex])) {
-      return not_a_grid(fmt::format("vertex {} has several (u,v), ({}, {}) and ({}, {}): a seam",
-                                    vertex + 1, us[vertex], vs[vertex], u, v));
+      return seam(fmt::format("vertex {} has several (u,v), ({}, {}) and ({}, {})",
+                              mesh.number_of(vertex), us[vertex], vs[vertex], u, v));
     }
     if (!u_axis.is_even(u) || !v_axis.is_even(v)) {
-      return not_a_grid(fmt::format(
-          "vertex {} has (u,v) = ({}, {}), which is not on the even lattice", vertex + 1, u, v));
+      return not_a_grid(
+          fmt::format("vertex {} has (u,v) = ({}, {}), which is not on the even lattice",
+                      mesh.number_of(vertex), u, v));
     }
   }
 
@@ -142,7 +255,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
       return not_a_grid(
           fmt::format("vertices {} and {} share the (u,v) ({}, {}) but not the rest "
                       "position",
-                      first + 1, vertex + 1, us[vertex], vs[vertex]));
+                      mesh.number_of(first), mesh.number_of(vertex), us[vertex], vs[vertex]));
     }
   }
   for (int node = 0; node < grid.node_count(); ++node) {
@@ -153,6 +266,14 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
           "{} x {}",
           u_axis.least + i * grid.hu, v_axis.least + j * grid.hv, i, j, grid.columns, grid.rows));
     }
+  }
+  if (const auto pair = nodes_in_one_place(mapping)) {
+    const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
+    return seam(
+        fmt::format("vertices {} and {} are in one place, but have the (u,v) ({}, {}) and "
+                    "({}, {})",
+                    mesh.number_of(first), mesh.number_of(second), us[first], vs[first], us[second],
+                    vs[second]));
   }
   return mapping;
 }

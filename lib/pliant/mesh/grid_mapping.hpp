@@ -27,10 +27,11 @@ struct GridMapping {
 inline constexpr double lattice_tolerance = 1e-2;
 
 /// Finds the grid of a mesh: hu = (u_max - u_min) / (columns - 1), likewise hv; a node is the
-/// lattice point within `lattice_tolerance` spacings. SPEC 1. Errors, naming the vertex, counted
-/// from 1: a vertex without (u,v); one with (u,v) of several nodes (a seam); a lattice that is not
+/// lattice point within `lattice_tolerance` spacings. SPEC 1. Errors, naming the vertex as its file
+/// counts: a vertex without (u,v); one with (u,v) of several nodes (a seam); a lattice that is not
 /// even, has empty nodes, or fewer than 3 of them in a direction; vertices of one node with
-/// different rest positions.
+/// different rest positions; nodes in one place at rest, on the border within 1e-6 of the bounding
+/// box's diagonal, elsewhere exactly, which is how formats that split vertices have a seam.
 Result<GridMapping> find_grid(const Mesh& mesh);
 
 }  // namespace pliant

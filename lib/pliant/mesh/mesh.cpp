@@ -21,8 +21,8 @@ Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* t
   for (std::size_t face = 0; face < names.of_faces.size(); ++face) {
     const int index = names.of_faces[face];
     if (index >= -1 && index < static_cast<std::int64_t>(names.names.size())) continue;
-    return broken(fmt::format("face {} refers to {} {} of {}", face + 1, thing,
-                              std::int64_t{index} + 1, names.names.size()));
+    return broken(fmt::format("face {} refers to {} {}, but there are {}", face + mesh.first_index,
+                              thing, std::int64_t{index} + mesh.first_index, names.names.size()));
   }
   return {};
 }
@@ -37,8 +37,9 @@ Result<void> check_normals(const Mesh& mesh) {
   for (std::size_t corner = 0; corner < mesh.corner_normals.size(); ++corner) {
     const int normal = mesh.corner_normals[corner];
     if (normal < 0 || static_cast<std::size_t>(normal) >= mesh.corner_normals.size()) {
-      return broken(fmt::format("corner {} has the normal {} of at most {}", corner + 1,
-                                std::int64_t{normal} + 1, mesh.corner_normals.size()));
+      return broken(fmt::format("corner {} has the normal {}, but there are {} at most",
+                                corner + mesh.first_index, std::int64_t{normal} + mesh.first_index,
+                                mesh.corner_normals.size()));
     }
     if (static_cast<std::size_t>(normal) >= is_used.size())
       is_used.resize(static_cast<std::size_t>(normal) + 1);
@@ -46,7 +47,8 @@ Result<void> check_normals(const Mesh& mesh) {
   }
   for (std::size_t normal = 0; normal < is_used.size(); ++normal) {
     if (!is_used[normal])
-      return broken(fmt::format("no corner has the normal {} of {}", normal + 1, is_used.size()));
+      return broken(fmt::format("no corner has the normal {} of the {}", normal + mesh.first_index,
+                                is_used.size()));
   }
   return {};
 }
@@ -55,11 +57,17 @@ Result<void> check_normals(const Mesh& mesh) {
 
 Result<void> check_mesh(const Mesh& mesh) {
   if (mesh.face_sizes.empty()) return broken("the mesh has no faces");
+  if (!mesh.file_vertices.empty() &&
+      mesh.file_vertices.size() != static_cast<std::size_t>(mesh.vertex_count())) {
+    return broken(fmt::format("{} of the mesh's {} vertices have a number in the file",
+                              mesh.file_vertices.size(), mesh.vertex_count()));
+  }
   std::int64_t corners = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int size = mesh.face_sizes[face];
     if (size < 3)
-      return broken(fmt::format("face {} has {} of at least 3 corners", face + 1, size));
+      return broken(
+          fmt::format("face {} has {} of at least 3 corners", face + mesh.first_index, size));
     corners += size;
   }
   if (corners != static_cast<std::int64_t>(mesh.corner_vertices.size()) ||
@@ -73,22 +81,25 @@ Result<void> check_mesh(const Mesh& mesh) {
     const int vertex = mesh.corner_vertices[corner];
     const int uv = mesh.corner_uvs[corner];
     if (vertex < 0 || vertex >= mesh.vertex_count()) {
-      return broken(fmt::format("corner {} refers to vertex {} of {}", corner + 1, vertex + 1,
+      return broken(fmt::format("corner {} refers to vertex {}, but there are {}",
+                                corner + mesh.first_index, std::int64_t{vertex} + mesh.first_index,
                                 mesh.vertex_count()));
     }
     if (uv < -1 || uv >= static_cast<std::int64_t>(mesh.uvs.size())) {
-      return broken(
-          fmt::format("corner {} refers to uv {} of {}", corner + 1, uv + 1, mesh.uvs.size()));
+      return broken(fmt::format("corner {} refers to uv {}, but there are {}",
+                                corner + mesh.first_index, std::int64_t{uv} + mesh.first_index,
+                                mesh.uvs.size()));
     }
   }
   for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
     if (!mesh.positions.row(vertex).allFinite()) {
-      return broken(fmt::format("vertex {} has a coordinate that is not finite", vertex + 1));
+      return broken(
+          fmt::format("vertex {} has a coordinate that is not finite", mesh.number_of(vertex)));
     }
   }
   for (std::size_t uv = 0; uv < mesh.uvs.size(); ++uv) {
     if (!std::isfinite(mesh.uvs[uv][0]) || !std::isfinite(mesh.uvs[uv][1])) {
-      return broken(fmt::format("uv {} is not finite", uv + 1));
+      return broken(fmt::format("uv {} is not finite", uv + mesh.first_index));
     }
   }
   if (auto checked = check_normals(mesh); !checked) return checked;

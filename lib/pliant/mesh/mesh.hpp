@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -33,13 +34,24 @@ struct Mesh {
   FaceNames groups = {};
   std::string object = {};  ///< its name in the file that it was read from
 
+  int first_index = 0;  ///< from which its file counts, and so messages do: OBJ from 1
+
+  /// #vertices: which of its file's, from 0, each is; empty: the same one.
+  std::vector<int> file_vertices = {};
+
+  /// A vertex as its author counts.
+  int number_of(int vertex) const {
+    return first_index +
+           (file_vertices.empty() ? vertex : file_vertices[static_cast<std::size_t>(vertex)]);
+  }
+
   int vertex_count() const { return static_cast<int>(positions.rows()); }
 };
 
 /// Whether a mesh that a program made keeps what its members say.
-/// Errors, naming the face, corner or vertex, counted from 1: index arrays of different lengths,
-/// faces with fewer than three corners, indices out of range, coordinates that are not finite, no
-/// faces; numbers of normals with a gap.
+/// Errors, naming the face, corner or vertex, counted from `first_index`: index arrays of different
+/// lengths, faces with fewer than three corners, indices out of range, coordinates that are not
+/// finite, no faces; numbers of normals with a gap; numbers of vertices for a part of them.
 Result<void> check_mesh(const Mesh& mesh);
 
 }  // namespace pliant

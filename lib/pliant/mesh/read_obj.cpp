@@ -325,6 +325,7 @@ class ObjReader {
     const Range& range = ranges[*chosen];
     Mesh mesh = ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
     mesh.object = range.name;
+    mesh.first_index = 1;
     mesh.materials = part_of(materials_.names(), range.first, range.last);
     mesh.groups = part_of(groups_.names(), range.first, range.last);
     return mesh;
@@ -354,6 +355,7 @@ class ObjReader {
     for (int vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
       if (new_index[vertex] >= 0) {
         result.positions.row(new_index[vertex]) = mesh_.positions.row(vertex);
+        result.file_vertices.push_back(vertex);
       }
     }
     result.face_sizes.assign(mesh_.face_sizes.begin() + static_cast<std::ptrdiff_t>(first),

@@ -359,13 +359,13 @@ class PlyReader {
                                   std::size_t property) const {
     if (numbers_.has_run_out()) return ends_within(element, index);
     return broken(fmt::format("{} {} has no finite number where its {} should be", element.name,
-                              index + 1, in_quotes(element.properties[property].name)),
+                              index, in_quotes(element.properties[property].name)),
                   line());
   }
 
   tl::unexpected<Error> ends_within(const Element& element, std::int64_t index) const {
-    return broken(fmt::format("the file ends within {} {} of {}", in_quotes(element.name),
-                              index + 1, element.count),
+    return broken(fmt::format("the file ends within {} {}, counted from 0, of {}",
+                              in_quotes(element.name), index, element.count),
                   line());
   }
 
@@ -386,7 +386,7 @@ class PlyReader {
     const std::vector<double> none;
     const auto& uvs = corner_uvs_ < 0 ? none : values[static_cast<std::size_t>(corner_uvs_)];
     if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
-      return broken(fmt::format("face {} has {} corners, but {} texture coordinates", index + 1,
+      return broken(fmt::format("face {} has {} corners, but {} texture coordinates", index,
                                 corners.size(), uvs.size()),
                     line());
     }
@@ -405,7 +405,7 @@ class PlyReader {
 
   static std::string outside(int vertex, std::size_t count) {
     if (vertex < 0) return "no vertex of the file: they count from 0";
-    return fmt::format("vertex {} (from 0), outside the file, which has {}", vertex, count);
+    return fmt::format("vertex {}, outside the file, which has {}", vertex, count);
   }
 
   // Corners without (u,v) of their own take the vertex's.
@@ -417,7 +417,7 @@ class PlyReader {
       for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
         const int vertex = mesh_.corner_vertices[corner];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
-          return broken(fmt::format("corner {} of face {} refers to {}", k + 1, faces_[face] + 1,
+          return broken(fmt::format("corner {} of face {} refers to {}", k, faces_[face],
                                     outside(vertex, vertex_count)));
         }
         int& uv = mesh_.corner_uvs[corner];

@@ -17,7 +17,7 @@ std::size_t bytes_of(const Mesh& mesh) {
   const std::size_t names = mesh.materials.of_faces.size() + mesh.groups.of_faces.size();
   return bytes_of_mesh(static_cast<std::size_t>(mesh.positions.rows()), mesh.uvs.size(),
                        mesh.face_sizes.size(), mesh.corner_vertices.size()) +
-         (mesh.corner_normals.size() + names) * sizeof(int);
+         (mesh.corner_normals.size() + mesh.file_vertices.size() + names) * sizeof(int);
 }
 
 std::size_t bytes_of(const GridSheet& sheet) {
