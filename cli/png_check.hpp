@@ -7,6 +7,7 @@
 
 namespace pliant::cli {
 
+/// Of a picture. [px]
 struct PictureSize {
   int width = 0;
   int height = 0;

@@ -14,6 +14,7 @@
 #include "pliant/io/atomic_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
+#include "view_movie.hpp"
 #include "view_page.hpp"
 #include "view_picture.hpp"
 #include "view_scene.hpp"
@@ -91,17 +92,27 @@ void add_view(CLI::App& app, ViewOptions& options) {
   auto* png = view->add_option("--png", options.png, "A picture in place of the page")
                   ->excludes(out)
                   ->excludes(serve);
+  auto* movie = view->add_option("--movie", options.movie,
+                                 "A movie in place of the page, .mp4, .gif or .webm; needs ffmpeg")
+                    ->excludes(out)
+                    ->excludes(serve)
+                    ->excludes(png);
   auto* frame = view->add_option("--frame", options.frame, "Frame of the picture")->needs(png);
   view->add_flag("--contact-sheet", options.is_sheet, "Twelve frames in one picture")
       ->needs(png)
       ->excludes(frame);
-  view->add_option("--size", options.size, "Pixels of the picture, or of each in a sheet")
-      ->needs(png)
-      ->capture_default_str();
-  view->add_option("--look", options.look,
-                   "How the picture looks, as the page's address says it: "
-                   "\"turn=30&tilt=20&colour=velocity&theme=dark\"")
-      ->needs(png);
+  auto* size = view->add_option("--size", options.size,
+                                "Pixels of the picture, of each in a sheet, or of the movie")
+                   ->capture_default_str();
+  auto* look = view->add_option("--look", options.look,
+                                "How the picture or movie looks, as the page's address says it: "
+                                "\"turn=30&tilt=20&colour=velocity&theme=dark\"");
+  view->callback([=] {
+    const CLI::Option* given = size->count() > 0 ? size : look;
+    if (given->count() > 0 && png->count() == 0 && movie->count() == 0) {
+      throw CLI::RequiresError(given->get_name(), "--png or --movie");
+    }
+  });
   add_root(*view, options.root);
   add_threads(*view, options.resources);
   add_memory(*view, options.resources);
@@ -120,6 +131,7 @@ int run_view(const ViewOptions& options) {
     return serve_view(options, *page);
   }
   if (options.png) return picture_view(options, *page);
+  if (options.movie) return movie_view(options, *page);
   return page_view(options, *page);
 }
 

@@ -17,10 +17,11 @@ struct ViewOptions {
   std::optional<std::string> frames = {};  ///< A:B; none: all
   std::optional<int> port = {};            ///< to serve the page on, 0: any; none: not served
   std::optional<std::string> png = {};     ///< a picture in place of a page
+  std::optional<std::string> movie = {};   ///< a movie in place of a page
   std::optional<int> frame = {};           ///< of the picture; none: the first
   bool is_sheet = false;                   ///< the picture is one of several frames
-  std::string size = "1280x800";           ///< of the picture, or of each in a sheet [px]
-  std::string look;                        ///< of the picture, as the page's address has it
+  std::string size = "1280x800";  ///< of the picture, of each in a sheet, or of the movie [px]
+  std::string look;               ///< of the picture or movie, as the page's address has it
   bool is_quiet = false;
   Root root = {};
   ResourceOptions resources;

@@ -20,6 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "ffmpeg.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
@@ -35,32 +36,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A folder that is gone with its owner.
-class ScratchFolder {
- public:
-  static Result<ScratchFolder> make() {
-    std::error_code error;
-    std::string name =
-        (std::filesystem::temp_directory_path(error) / "pliant-view-XXXXXX").string();
-    if (error || mkdtemp(name.data()) == nullptr) {
-      return fail(ErrorCode::Unwritable, "no folder for temporary files can be made");
-    }
-    return ScratchFolder(name);
-  }
-  ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  ~ScratchFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
+constexpr std::array<const char*, 4> browsers = {"chromium", "chromium-browser", "google-chrome",
+                                                 "google-chrome-stable"};
 
-  const std::string& path() const { return path_; }
-
- private:
-  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
-
-  std::string path_;
-};
+tl::unexpected<Error> no_browser(std::string_view option) {
+  return fail(ErrorCode::Unwritable,
+              fmt::format("{} needs Chromium, which draws the picture (Debian's package chromium); "
+                          "there is none of {} on the PATH",
+                          option, fmt::join(browsers, ", ")));
+}
 
 // A browser without a window, ended with its owner.
 class Browser {
@@ -77,16 +61,11 @@ class Browser {
     // Chromium's own rule: root has no sandbox. All that it opens is our page.
     if (geteuid() == 0) words.emplace_back("--no-sandbox");
     words.push_back(url);
-    constexpr std::array<const char*, 4> programs = {"chromium", "chromium-browser",
-                                                     "google-chrome", "google-chrome-stable"};
-    for (const char* program : programs) {
+    for (const char* program : browsers) {
       words.front() = program;
       if (const auto id = spawn(words)) return Browser(*id);
     }
-    return fail(ErrorCode::Unwritable,
-                fmt::format("--png needs Chromium, which draws the picture (Debian's package "
-                            "chromium); there is none of {} on the PATH",
-                            fmt::join(programs, ", ")));
+    return no_browser("--png");
   }
   Browser(Browser&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
   Browser& operator=(Browser&&) = delete;
@@ -135,20 +114,6 @@ class Browser {
   pid_t id_;
 };
 
-// WxH in pixels, as large as a canvas may be.
-Result<PictureSize> parse_size(const std::string& text) {
-  constexpr int most = 8192;
-  const std::size_t cross = text.find('x');
-  const auto width = to_integer(text.substr(0, cross));
-  const auto height =
-      cross == std::string::npos ? std::nullopt : to_integer(text.substr(cross + 1));
-  if (width && height && std::min(*width, *height) >= 16 && std::max(*width, *height) <= most) {
-    return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
-  }
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("--size {}: not of the form WxH, from 16x16 to {}x{}", text, most, most));
-}
-
 // One frame, or of a sheet twelve that lie evenly.
 Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRange& frames) {
   if (!options.is_sheet) {
@@ -179,43 +144,22 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
   return "file://" + path;
 }
 
-// What the page makes of the frames: a table of them, each with its number under it, or one alone.
-PictureOrder order_of(const ViewOptions& options, PictureSize size,
-                      const std::vector<int>& frames) {
+// What the page makes of the frames: a table of them, each with its number under it and one legend
+// for all, or one frame alone. The page takes each number once: the next picture is not drawn ahead
+// of its order.
+PictureOrder order_of(int number, const std::vector<int>& frames, PictureSize size,
+                      const std::string& look) {
   constexpr int most_columns = 4;
   const int count = static_cast<int>(frames.size());
   const int label = count > 1 ? 28 : 0;
+  const int strip = count > 1 ? 76 : 0;
   const int columns = std::min(most_columns, count);
   const int rows = (count + columns - 1) / columns;
-  const nlohmann::json job = {{"width", size.width}, {"height", size.height},
-                              {"frames", frames},    {"columns", columns},
-                              {"label", label},      {"look", options.look}};
+  const nlohmann::json job = {{"number", number}, {"width", size.width}, {"height", size.height},
+                              {"frames", frames}, {"columns", columns},  {"label", label},
+                              {"strip", strip},   {"look", look}};
   return {job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-          {columns * size.width, rows * (size.height + label)}};
-}
-
-Result<std::string> draw(ViewServer& server) {
-  auto folder = ScratchFolder::make();
-  if (!folder) return fail(folder.error());
-  const auto way = write_way(folder->path(), server.address() + "take");
-  if (!way) return fail(way.error());
-  auto browser = Browser::open(*way, folder->path());
-  if (!browser) return fail(browser.error());
-  constexpr auto patience = 120s;
-  const auto begin = std::chrono::steady_clock::now();
-  while (std::chrono::steady_clock::now() - begin < patience) {
-    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
-    if (auto picture = server.take_picture()) {
-      if (*picture) return *std::move(picture);
-      return fail(ErrorCode::Unwritable,
-                  "Chromium sent no picture that can be used: " + picture->error().message);
-    }
-    if (!browser->is_running()) {
-      return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
-    }
-    std::this_thread::sleep_for(20ms);
-  }
-  return fail(ErrorCode::Unwritable, "Chromium gave no picture within 120 s");
+          {columns * size.width, rows * (size.height + label) + strip}};
 }
 
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
@@ -236,11 +180,10 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return fail(baked.error());
 
-  auto server = ViewServer::start(std::string(page), 0);
-  if (!server) return fail(server.error());
-  server->order_picture(order_of(options, *size, *frames));
-  server->publish(std::move(baked->bake.packed));
-  const auto picture = draw(*server);
+  auto taker = PictureTaker::start(page, std::move(baked->bake.packed));
+  if (!taker) return fail(taker.error());
+  taker->order(*frames, *size, options.look);
+  const auto picture = taker->take();
   if (!picture) return fail(picture.error());
   auto file = AtomicFile::create(*options.png);
   if (!file) return fail(file.error());
@@ -249,6 +192,89 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 }
 
 }  // namespace
+
+// WxH in pixels, as large as a canvas may be.
+Result<PictureSize> parse_size(const std::string& text) {
+  constexpr int most = 8192;
+  const std::size_t cross = text.find('x');
+  const auto width = to_integer(text.substr(0, cross));
+  const auto height =
+      cross == std::string::npos ? std::nullopt : to_integer(text.substr(cross + 1));
+  if (width && height && std::min(*width, *height) >= 16 && std::max(*width, *height) <= most) {
+    return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
+  }
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--size {}: not of the form WxH, from 16x16 to {}x{}", text, most, most));
+}
+
+Result<void> check_browser(std::string_view option) {
+  if (std::any_of(browsers.begin(), browsers.end(), &is_on_path)) return {};
+  return no_browser(option);
+}
+
+Result<ScratchFolder> ScratchFolder::make() {
+  std::error_code error;
+  std::string name = (std::filesystem::temp_directory_path(error) / "pliant-view-XXXXXX").string();
+  if (error || mkdtemp(name.data()) == nullptr) {
+    return fail(ErrorCode::Unwritable, "no folder for temporary files can be made");
+  }
+  return ScratchFolder(name);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+}
+
+struct PictureTaker::State {
+  ViewServer server;
+  ScratchFolder folder;
+  std::optional<Browser> browser = {};  // from the first order on; ended ahead of what it uses
+  int orders = 0;
+};
+
+PictureTaker::PictureTaker(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PictureTaker::PictureTaker(PictureTaker&&) noexcept = default;
+PictureTaker::~PictureTaker() = default;
+
+Result<PictureTaker> PictureTaker::start(std::string_view page, std::string packed) {
+  auto server = ViewServer::start(std::string(page), 0);
+  if (!server) return fail(server.error());
+  server->publish(std::move(packed));
+  auto folder = ScratchFolder::make();
+  if (!folder) return fail(folder.error());
+  return PictureTaker(std::make_unique<State>(State{*std::move(server), *std::move(folder)}));
+}
+
+void PictureTaker::order(const std::vector<int>& frames, PictureSize size,
+                         const std::string& look) {
+  state_->server.order_picture(order_of(++state_->orders, frames, size, look));
+}
+
+Result<std::string> PictureTaker::take() {
+  if (!state_->browser) {
+    const auto way = write_way(state_->folder.path(), state_->server.address() + "take");
+    if (!way) return fail(way.error());
+    auto browser = Browser::open(*way, state_->folder.path());
+    if (!browser) return fail(browser.error());
+    state_->browser.emplace(*std::move(browser));
+  }
+  constexpr auto patience = 120s;
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < patience) {
+    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (auto picture = state_->server.take_picture()) {
+      if (*picture) return *std::move(picture);
+      return fail(ErrorCode::Unwritable,
+                  "Chromium sent no picture that can be used: " + picture->error().message);
+    }
+    if (!state_->browser->is_running()) {
+      return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
+    }
+    std::this_thread::sleep_for(2ms);
+  }
+  return fail(ErrorCode::Unwritable, "Chromium gave no picture within 120 s");
+}
 
 int picture_view(const ViewOptions& options, std::string_view page) {
   if (auto made = make_picture(options, page); !made) {

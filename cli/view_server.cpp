@@ -170,6 +170,8 @@ void ViewServer::tell_failure(std::string messages) {
 void ViewServer::order_picture(PictureOrder order) {
   const std::lock_guard lock(state_->mutex);
   state_->order = std::move(order);
+  state_->has_picture = false;
+  state_->picture.reset();
 }
 
 std::optional<Result<std::string>> ViewServer::take_picture() {

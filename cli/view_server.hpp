@@ -39,7 +39,8 @@ class ViewServer {
   /// {kind, file, line, text}.
   void tell_failure(std::string messages);
 
-  /// Page `address()`take asks for the job, and sends one picture back.
+  /// Page `address()`take asks for the job, and sends one picture back. The next order stands in
+  /// place of the last.
   void order_picture(PictureOrder order);
   /// The picture, a PNG file, once it is there; takes it. Errors: InvalidInput where what came is
   /// not the one that was ordered (see `check_png`).

@@ -223,6 +223,12 @@ class Page(View):
                 (["view", scene, "--png", "a.png", "--frame", "99"], 2, "--frame 99"),
                 (["view", scene, "--png", "a.png", "--size", "3x99999"], 2, "--size 3x99999"),
                 (["view", scene, "--frame", "3"], 2, "--png"),
+                (["view", scene, "--size", "64x64"], 2, "--png or --movie"),
+                (["view", scene, "--look", "turn=3"], 2, "--png or --movie"),
+                (["view", scene, "--movie", "a.avi"], 2, ".mp4, .gif or .webm"),
+                (["view", scene, "--movie", "a.mp4", "--png", "a.png"], 2, "--png"),
+                (["view", scene, "--movie", "a.mp4", "--size", "641x361"], 2, "even numbers"),
+                (["view", scene, "--movie", "a.mp4", "--frames", "5:99"], 2, "--frames 5:99"),
                 (["view", scene, "--png", "a.png", "--contact-sheet", "--frame", "3"], 2, "--frame")):
             with self.subTest(arguments):
                 result = self.run_pliant(*arguments, code=code)
@@ -230,6 +236,32 @@ class Page(View):
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 self.assertEqual(os.listdir(self.folder), ["scene.xml"])
 
+
+    def test_a_movie_without_its_programs_fails_ahead_of_the_run(self):
+        scene = self.scene(end=3)
+        bare = self.path("bin")
+        os.mkdir(bare)
+        result = self.run_pliant("view", scene, "--movie", "a.mp4", code=1, env={"PATH": bare})
+        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs ffmpeg.*none on the PATH\n\Z")
+        with open(os.path.join(bare, "ffmpeg"), "w", encoding="utf-8") as file:
+            file.write("#!/bin/sh\n")
+        os.chmod(file.name, 0o755)
+        result = self.run_pliant("view", scene, "--movie", "a.mp4", code=1, env={"PATH": bare})
+        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs Chromium.*\n\Z")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["bin", "scene.xml"])
+
+    def test_a_movie_overwrites_no_input_and_its_rate_must_be_one(self):
+        scene = self.scene("scene.mp4", end=3)
+        result = self.run_pliant("view", scene, "--movie", scene, code=2)
+        self.assertIn("it is the scene", result.stderr)
+        for fps, name, words in (("1e-9", "a.webm", "0.01 to 1000"), ("60", "a.gif", "a .gif can show 50")):
+            scene = self.scene(end=3)
+            with open(scene, encoding="utf-8") as file:
+                text = file.read()
+            with open(scene, "w", encoding="utf-8") as file:
+                file.write(text.replace('fps="25"', f'fps="{fps}"'))
+            result = self.run_pliant("view", scene, "--movie", name, code=2)
+            self.assertIn(words, result.stderr)
 
     def test_more_frames_than_memory_holds_are_refused_ahead(self):
         scene = self.scene(end=3000)

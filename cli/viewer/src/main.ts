@@ -257,14 +257,28 @@ function goLive(): void {
   });
 }
 
-/** `pliant view --png` opens the page for this only, and takes the picture from it. */
-async function sendPicture(): Promise<void> {
-  const job = (await (await fetch("job")).json()) as PictureJob & { look: string };
+/** What the command asks for; each order has a number, from 1. */
+type Order = PictureJob & { number?: number; look: string };
+
+async function nextOrder(done: number): Promise<Order> {
+  for (;;) {
+    const order = (await (await fetch("job")).json()) as Order;
+    if ((order.number ?? 0) > done) return order;
+    await new Promise((resume) => setTimeout(resume, 4));
+  }
+}
+
+/** `pliant view --png` and `--movie` open the page for this only, and take pictures from it, one an order. */
+async function sendPictures(): Promise<void> {
   load(await fetchBake());
-  apply({ theme: "light", ...defined(readLook(job.look)) });
-  const picture = await takePicture(viewer, themes, job);
-  const answer = await fetch("picture", { method: "POST", body: picture });
-  if (!answer.ok) throw new Error(`the command answers ${answer.status} to its picture`);
+  for (let done = 0; ; ) {
+    const order = await nextOrder(done);
+    if (done === 0) apply({ theme: "light", ...defined(readLook(order.look)) });
+    const picture = await takePicture(viewer, themes, order);
+    done = order.number!;
+    const answer = await fetch("picture", { method: "POST", body: picture });
+    if (!answer.ok) throw new Error(`the command answers ${answer.status} to its picture`);
+  }
 }
 
 function defined(look: Look): Look {
@@ -278,7 +292,7 @@ async function begin(): Promise<void> {
     element("bake").remove();
     apply(readLook(location.hash));
   } else if (location.pathname.endsWith("/take")) {
-    await sendPicture();
+    await sendPictures();
   } else {
     goLive();
   }

@@ -1,0 +1,170 @@
+#include "movie_writer.hpp"
+
+#include <fstream>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "ffmpeg.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/file_ending.hpp"
+#include "pliant/io/atomic_file.hpp"
+
+namespace pliant::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
+
+// PNG files one behind the other.
+Words pictures_from(const std::string& source, const FrameRate& rate) {
+  return {"-f", "image2pipe", "-c:v", "png", "-framerate", to_text(rate), "-i", source};
+}
+
+// The colours of a screen as BT.709, as players expect them, told in the file too.
+const Words to_yuv = {"-vf",
+                      "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+"
+                      "full_chroma_int,format=yuv420p",
+                      "-colorspace",
+                      "bt709",
+                      "-color_primaries",
+                      "bt709",
+                      "-color_trc",
+                      "bt709",
+                      "-color_range",
+                      "tv"};
+
+// Without the version of ffmpeg and the time of day.
+const Words plain = {"-an", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"};
+
+Words words_for(const MoviePlan& plan, const std::string& out) {
+  Words words = pictures_from("pipe:0", plan.rate);
+  if (plan.threads > 0) append(words, {"-threads", std::to_string(plan.threads)});
+  switch (plan.format) {
+    case MovieFormat::Mp4:
+      append(words, to_yuv);
+      append(words, {"-c:v", "libx264", "-preset", "medium", "-crf", "17"});
+      append(words, plain);
+      append(words, {"-movflags", "+faststart", "-f", "mp4", out});
+      break;
+    case MovieFormat::Webm:
+      append(words, to_yuv);
+      append(words, {"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0", "-row-mt", "1", "-deadline",
+                     "good", "-cpu-used", "4"});
+      append(words, plain);
+      append(words, {"-f", "webm", out});
+      break;
+    case MovieFormat::Gif:
+      // First the 256 colours that suit all frames, which are looked at again with them.
+      append(words, {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-f", "image2",
+                     "-update", "1", out});
+      break;
+  }
+  return words;
+}
+
+Words gif_words(const MoviePlan& plan, const std::string& pictures, const std::string& palette,
+                const std::string& out) {
+  Words words = pictures_from(pictures, plan.rate);
+  append(words, {"-i", palette, "-filter_complex", "[0:v][1:v]paletteuse=dither=sierra2_4a"});
+  append(words, plain);
+  append(words, {"-loop", "0", "-f", "gif", out});
+  return words;
+}
+
+}  // namespace
+
+struct MovieWriter::State {
+  MoviePlan plan;
+  AtomicFile file;
+  Ffmpeg ffmpeg;
+  std::ofstream pictures = {};  // of a GIF, which takes two looks at them
+
+  std::string scratch(std::string_view name) const {
+    return fmt::format("{}/{}", plan.scratch, name);
+  }
+
+  // With the palette that is there now.
+  Result<void> write_gif() {
+    pictures.close();
+    if (!pictures) return fail(ErrorCode::Unwritable, "the folder for temporary files is full");
+    auto second =
+        Ffmpeg::start(gif_words(plan, "file:" + scratch("pictures"),
+                                "file:" + scratch("palette.png"), "file:" + scratch("movie")),
+                      scratch("log"));
+    if (!second) return fail(second.error());
+    return second->finish();
+  }
+
+  // From the folder for temporary files, which may be on another disk, to its place.
+  Result<std::size_t> copy() {
+    std::ifstream movie(scratch("movie"), std::ios::binary);
+    std::string piece(1 << 20, '\0');
+    std::size_t size = 0;
+    while (movie) {
+      if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+      movie.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+      const auto count = static_cast<std::size_t>(movie.gcount());
+      if (auto written = file.write(std::string_view(piece).substr(0, count)); !written) {
+        return fail(written.error());
+      }
+      size += count;
+    }
+    if (size == 0) return fail(ErrorCode::Unwritable, "ffmpeg wrote no movie");
+    return size;
+  }
+};
+
+Result<MovieFormat> movie_format(const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  if (ending == ".mp4") return MovieFormat::Mp4;
+  if (ending == ".gif") return MovieFormat::Gif;
+  if (ending == ".webm") return MovieFormat::Webm;
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--movie {}: its ending picks the format, .mp4, .gif or .webm",
+                          printable(file.string())));
+}
+
+MovieWriter::MovieWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+MovieWriter::MovieWriter(MovieWriter&&) noexcept = default;
+MovieWriter::~MovieWriter() = default;
+
+Result<MovieWriter> MovieWriter::start(const MoviePlan& plan) {
+  auto file = AtomicFile::create(plan.file);
+  if (!file) return fail(file.error());
+  const bool is_gif = plan.format == MovieFormat::Gif;
+  const std::string out = fmt::format("file:{}/{}", plan.scratch, is_gif ? "palette.png" : "movie");
+  auto ffmpeg = Ffmpeg::start(words_for(plan, out), plan.scratch + "/log");
+  if (!ffmpeg) return fail(ffmpeg.error());
+  auto state = std::make_unique<State>(State{plan, *std::move(file), *std::move(ffmpeg)});
+  if (is_gif) state->pictures.open(state->scratch("pictures"), std::ios::binary);
+  return MovieWriter(std::move(state));
+}
+
+Result<void> MovieWriter::write(std::string_view picture) {
+  if (state_->pictures.is_open()) {
+    state_->pictures.write(picture.data(), static_cast<std::streamsize>(picture.size()));
+    if (!state_->pictures) {
+      return fail(ErrorCode::Unwritable, "the folder for temporary files is full");
+    }
+  }
+  return state_->ffmpeg.write(picture);
+}
+
+Result<std::size_t> MovieWriter::finish() {
+  if (auto done = state_->ffmpeg.finish(); !done) return fail(done.error());
+  if (state_->plan.format == MovieFormat::Gif) {
+    if (auto done = state_->write_gif(); !done) return fail(done.error());
+  }
+  const auto size = state_->copy();
+  if (!size) return fail(size.error());
+  if (auto done = state_->file.commit(); !done) return fail(done.error());
+  return *size;
+}
+
+}  // namespace pliant::cli

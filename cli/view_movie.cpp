@@ -1,0 +1,135 @@
+#include "view_movie.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "ffmpeg.hpp"
+#include "inputs.hpp"
+#include "interrupt.hpp"
+#include "movie_writer.hpp"
+#include "output_file.hpp"
+#include "pliant/core/memory_budget.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "scene_input.hpp"
+#include "view_picture.hpp"
+#include "view_scene.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// What can be said of a movie without making it.
+struct Plan {
+  MovieFormat format = MovieFormat::Mp4;
+  PictureSize size;
+  FrameRate rate;
+};
+
+Result<void> check_programs() {
+  if (!is_on_path("ffmpeg")) {
+    return fail(ErrorCode::Unwritable,
+                "--movie needs ffmpeg, which writes the movie (Debian's package ffmpeg); there is "
+                "none on the PATH");
+  }
+  return check_browser("--movie");
+}
+
+Result<Plan> make_plan(const ViewOptions& options, const Scene& scene) {
+  const std::string name = printable(*options.movie);
+  if (const auto input = input_named(*options.movie, scene); !input.empty()) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--movie {}: {}; choose another name", name, input));
+  }
+  const auto format = movie_format(*options.movie);
+  if (!format) return fail(format.error());
+  const auto size = parse_size(options.size);
+  if (!size) return fail(size.error());
+  if (*format != MovieFormat::Gif && (size->width % 2 != 0 || size->height % 2 != 0)) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--size {}: a .mp4 or .webm has even numbers of pixels", options.size));
+  }
+  const auto rate = frame_rate(scene.fps);
+  if (!rate) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--movie {}: the scene has {} frames a second, and a movie {} to {}",
+                            name, scene.fps, least_rate, most_rate));
+  }
+  if (*format == MovieFormat::Gif && scene.fps > 50) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--movie {}: the scene has {} frames a second, and a .gif can show 50; "
+                            ".mp4 and .webm take more",
+                            name, scene.fps));
+  }
+  return Plan{*format, *size, *rate};
+}
+
+Result<std::size_t> write_frames(PictureTaker& taker, MovieWriter& movie, const FrameRange& frames,
+                                 const Plan& plan, const ViewOptions& options) {
+  Progress progress(frames.count(), options.is_quiet);
+  taker.order({frames.first}, plan.size, options.look);
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    const auto picture = taker.take();
+    // The browser draws the next one while ffmpeg takes this.
+    if (frame < frames.last) taker.order({frame + 1}, plan.size, options.look);
+    const auto written = picture ? movie.write(*picture) : fail(picture.error());
+    if (!written && written.error().code == ErrorCode::Interrupted) {
+      return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame));
+    }
+    if (!written) return fail(written.error());
+    progress.advance();
+  }
+  return movie.finish();
+}
+
+// How long it is, in bytes, and of how many frames.
+struct Movie {
+  std::size_t size = 0;
+  int frame_count = 0;
+};
+
+Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
+  // Whatever can be said without running the scene is said first.
+  if (auto place = check_output_file("--movie", *options.movie); !place) return fail(place.error());
+  if (auto format = movie_format(*options.movie); !format) return fail(format.error());
+  auto scene = read_scene(options.scene, options.root);
+  if (!scene) return fail(scene.error());
+  const auto plan = make_plan(options, *scene);
+  if (!plan) return fail(plan.error());
+  const auto range = parse_frames(options.frames, *scene);
+  if (!range) return fail(range.error());
+  if (auto found = check_programs(); !found) return fail(found.error());
+  const auto folder = ScratchFolder::make();
+  if (!folder) return fail(folder.error());
+  auto movie = MovieWriter::start({.file = *options.movie,
+                                   .format = plan->format,
+                                   .rate = plan->rate,
+                                   .threads = options.resources.threads,
+                                   .scratch = folder->path()});
+  if (!movie) return fail(movie.error());
+  auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
+  if (!baked) return fail(baked.error());
+  auto taker = PictureTaker::start(page, std::move(baked->bake.packed));
+  if (!taker) return fail(taker.error());
+  const auto size = write_frames(*taker, *movie, *range, *plan, options);
+  if (!size) return fail(size.error());
+  return Movie{*size, range->count()};
+}
+
+}  // namespace
+
+int movie_view(const ViewOptions& options, std::string_view page) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto movie = make_movie(options, page);
+  if (!movie) return report(movie.error());
+  if (options.is_quiet) return exit_done;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  print(stdout,
+        fmt::format("{}: {} frames, {} pixels, {}, {:.2f} s\n", printable(*options.movie),
+                    movie->frame_count, options.size, bytes_text(movie->size), elapsed.count()));
+  return exit_done;
+}
+
+}  // namespace pliant::cli
