@@ -39,19 +39,21 @@ Json row(double frame, const Value<D>& value) {
   return numbers;
 }
 
-// Between `first` and `last` as many evenly spaced frames as make a smooth line.
-std::vector<double> sampled_frames(double first, double last) {
-  constexpr double most = 2000;
-  const double count = std::clamp(8 * (last - first), 1.0, most);
+// Every frame from `first` to `last`, whose values the page tells, and as many between two as make
+// a smooth line.
+std::vector<double> sampled_frames(int first, int last) {
+  constexpr int most = 2000;
+  const int between = std::clamp(most / std::max(last - first, 1), 1, 8);
   std::vector<double> frames;
-  for (int k = 0; k <= static_cast<int>(count); ++k) {
-    frames.push_back(first + (last - first) * k / static_cast<int>(count));
+  for (int frame = first; frame < last; ++frame) {
+    for (int k = 0; k < between; ++k) frames.push_back(frame + static_cast<double>(k) / between);
   }
+  frames.push_back(last);
   return frames;
 }
 
 template <int D>
-Json points_of(const Curve<D>& curve, double first, double last) {
+Json points_of(const Curve<D>& curve, int first, int last) {
   std::vector<double> frames = sampled_frames(first, last);
   for (const Key<D>& key : curve.keys().keys) {
     if (key.frame >= first && key.frame <= last) frames.push_back(key.frame);

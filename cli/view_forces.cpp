@@ -71,6 +71,7 @@ const Group* group_of(const Scene& scene, const Force& force) {
 
 Json to_json(const Force& force, const Group* group, const FrameRange& frames) {
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
+  if (group != nullptr) json["group"] = group->name;
   json["enabled"] = track(frames, [&](int frame) {
     return Json(force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame)));
   });

@@ -263,6 +263,12 @@ class Page(View):
             result = self.run_pliant("view", scene, "--movie", name, code=2)
             self.assertIn(words, result.stderr)
 
+    def test_every_frame_is_among_the_points_of_a_curve(self):
+        self.run_pliant("view", self.scene(end=399), "--quiet")
+        _, head, _ = read_page(self.path("view.html"))
+        frames = {point[0] for point in head["channels"][0]["points"]}
+        self.assertEqual(frames & set(range(1, 400)), set(range(1, 400)))
+
     def test_more_frames_than_memory_holds_are_refused_ahead(self):
         scene = self.scene(end=3000)
         result = self.run_pliant("view", scene, "--max-memory", "0.006", code=1)

@@ -441,8 +441,12 @@ test("the legend has the peak of the bake", async () => {
     near(Number(await page.locator("#legend-high").textContent()), peak, 1e-3, "legend");
     await page.keyboard.press("d");
     await page.getByText("Velocity", { exact: true }).click();
-    await page.getByText("Velocity, per second").waitFor();
+    await page.getByText("Velocity [scene units/s]").waitFor();
     await page.getByText("Plain", { exact: true }).click();
+    assert.equal(await page.locator("#legend-scale").isVisible(), false);
+    assert.deepEqual(await page.locator("#legend-inks span").allTextContents(), ["deforms", "is pushed", "is solved"]);
+    await page.evaluate(() => document.activeElement.blur()); // fields keep their keys
+    await page.keyboard.press("g");
     assert.equal(await page.locator("#legend").isVisible(), false);
   });
 });
@@ -456,8 +460,8 @@ test("curves are chosen, and go along with the frame", async () => {
     assert.equal(await options.nth(1).getAttribute("aria-selected"), "true");
     assert.match(await page.locator("#curve-view").getAttribute("aria-label"), /finger\.center, 3 keys/);
     const box = await page.locator("#curve-view").boundingBox();
-    const left = 5.2 * 0.82 * (await page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize)));
-    await page.mouse.click(box.x + left + (39 / 71) * (box.width - left - 16), box.y + box.height / 2);
+    const track = await page.locator("#timeline").boundingBox();
+    await page.mouse.click(track.x + 16 + (39 / 71) * (track.width - 32), box.y + box.height / 2);
     assert.equal(await frameOf(page), 40);
     // Drawn with as many colours as there are components.
     const colours = await page.evaluate(() => {
@@ -465,10 +469,247 @@ test("curves are chosen, and go along with the frame", async () => {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       const found = new Set();
       for (let k = 0; k < data.length; k += 4) if (data[k + 3] === 255) found.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
-      return [0x77a8ff, 0xff8078, 0x6fd48f].map((colour) => found.has(colour));
+      return window.pliant.themes.palette.curves.slice(0, 3).map((colour) => found.has(parseInt(colour.slice(1), 16)));
     });
     assert.deepEqual(colours, [true, true, true]);
   });
+});
+
+/** Where columns of a canvas that have the cursor's colour lie in the window. */
+const cursorIn = (page, id) =>
+  page.evaluate((wanted) => {
+    const canvas = document.getElementById(wanted);
+    const copy = Object.assign(document.createElement("canvas"), { width: canvas.width, height: canvas.height }).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+    const colour = parseInt(window.pliant.themes.palette.accent.slice(1), 16);
+    const counts = new Array(canvas.width).fill(0);
+    for (let k = 0; k < data.length; k += 4) {
+      const off = Math.abs(data[k] - (colour >> 16)) + Math.abs(data[k + 1] - ((colour >> 8) & 255)) + Math.abs(data[k + 2] - (colour & 255));
+      if (data[k + 3] > 40 && off < 30) counts[(k / 4) % canvas.width] += data[k + 3] / 255;
+    }
+    // The line is the tallest column; it may lie between two.
+    const most = Math.max(...counts);
+    const columns = counts.map((count, k) => [count, k]).filter(([count]) => count > 0.3 * most);
+    const middle = columns.reduce((sum, [count, k]) => sum + count * (k + 0.5), 0) / columns.reduce((sum, [count]) => sum + count, 0);
+    const box = canvas.getBoundingClientRect();
+    return box.left + (middle * box.width) / canvas.width;
+  }, id);
+
+for (const [width, height, ratio] of [[1280, 800, 1], [1001, 700, 1.5], [733, 800, 2], [420, 800, 1]]) {
+  test(`the curves' frames stand over the timeline's at ${width} x ${height}`, async () => {
+    await withPage(pageOf(example("travelling")), { width, height, deviceScaleFactor: ratio }, async (page) => {
+      await page.keyboard.press("c");
+      await page.waitForTimeout(100);
+      for (const frame of [1, 2, 30, 55, 72]) {
+        await goTo(page, frame);
+        const [above, below] = [await cursorIn(page, "curve-view"), await cursorIn(page, "timeline")];
+        near(above, below, 0.75, `frame ${frame}`);
+      }
+    });
+  });
+}
+
+test("the value at the cursor is the engine's, for each curve", async () => {
+  // Of 400 frames only some were sampled.
+  writeFileSync(inFolder("long.xml"), readFileSync(example("travelling"), "utf8").replace(/end="\d+"/, 'end="400"').replace('file="', `file="${examples}/`));
+  const scene = inFolder("long.xml");
+  const center = curve(scene, "finger.center");
+  await withPage(pageOf(scene, "--frames", "1:400"), {}, async (page) => {
+    await page.keyboard.press("c");
+    await page.getByRole("option", { name: "finger.center" }).click();
+    const told = async () => {
+      const [head, ...rows] = await page.locator("#curve-values").evaluate((place) => [place.children[0].textContent, ...[...place.children].slice(1).map((row) => [row.children[1].textContent, Number(row.children[2].textContent), row.className, row.children[0].style.background])]);
+      return { frame: Number(head.replace("frame ", "")), rows };
+    };
+    const check = ({ frame, rows }) => {
+      assert.deepEqual(rows.map(([name]) => name), ["finger.center x", "finger.center y", "finger.center z"]);
+      rows.forEach(([name, value], k) => near(value, center.get(frame)[k], 1e-6 * Math.max(1, Math.abs(value)), `${name} at frame ${frame}`));
+    };
+    await goTo(page, 37);
+    check(await told());
+    assert.equal((await told()).frame, 37);
+    // As many colours as curves.
+    assert.equal(new Set((await told()).rows.map((row) => row[3])).size, 3);
+    const box = await page.locator("#curve-view").boundingBox();
+    const track = await page.locator("#timeline").boundingBox();
+    for (const frame of [13, 21, 43]) {
+      await page.mouse.move(track.x + 16 + ((frame - 1) / 399) * (track.width - 32), box.y + 20);
+      const now = await told();
+      assert.equal(now.frame, frame);
+      check(now);
+    }
+    // The curve under the cursor is marked: found by going down until one is.
+    let found = "";
+    for (let y = 6; y < box.height - 24 && found === ""; y += 4) {
+      await page.mouse.move(track.x + 16 + (42 / 399) * (track.width - 32), box.y + y);
+      found = (await told()).rows.find((row) => row[2] === "near")?.[0] ?? "";
+    }
+    assert.match(found, /^finger\.center [xyz]$/);
+    await page.mouse.move(5, 5);
+    assert.equal((await told()).frame, 37);
+  });
+});
+
+test("colours of curves differ for every kind of colour vision", async () => {
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    // Machado, Oliveira, Fernandes 2009, at full strength; rows of linear RGB.
+    const eyes = {
+      all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+      protan: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+      deutan: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+      tritan: [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+    };
+    const linear = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
+    const times = (rows, v) => rows.map((row) => row.reduce((sum, each, k) => sum + each * v[k], 0));
+    const oklab = (rgb) => {
+      const lms = times([[0.4122214708, 0.5363325363, 0.0514459929], [0.2119034982, 0.6806995451, 0.1073969566], [0.0883024619, 0.2817188376, 0.6299787005]], rgb.map((v) => Math.min(Math.max(v, 0), 1))).map(Math.cbrt);
+      return times([[0.2104542553, 0.793617785, -0.0040720468], [1.9779984951, -2.428592205, 0.4505937099], [0.0259040371, 0.7827717662, -0.808675766]], lms);
+    };
+    const luminance = (rgb) => 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+    for (const theme of ["light", "dark"]) {
+      const { curves, panel } = await page.evaluate((wanted) => (window.pliant.themes.choose(wanted), window.pliant.themes.palette), theme);
+      for (const [k, colour] of curves.entries()) {
+        const [a, b] = [luminance(linear(colour)), luminance(linear(panel))].sort((x, y) => y - x);
+        // WCAG 1.4.11: graphics want 3 : 1.
+        assert.ok((a + 0.05) / (b + 0.05) >= 3, `${theme} ${colour} on the panel`);
+        for (const other of curves.slice(k + 1)) {
+          for (const [eye, rows] of Object.entries(eyes)) {
+            const [p, q] = [colour, other].map((each) => oklab(times(rows, linear(each))));
+            // In OKLab about 0.02 is seen side by side; five times that where lines stand apart.
+            assert.ok(Math.hypot(...p.map((v, c) => v - q[c])) >= 0.1, `${theme}, ${eye}: ${colour} and ${other}`);
+          }
+        }
+      }
+    }
+  });
+});
+
+test("forces are named, hidden, and shown alone", async () => {
+  const scene = `<scene version="1" start="1" end="6"><surface name="s"><grid columns="21" rows="21" width="20" depth="20"/></surface>
+    <point name="a" center="-6 0 -6" deformationRadius="3" magnitude="50"/><point name="b" center="6 0 -6" deformationRadius="3" magnitude="50"/>
+    <group name="g" center="0 0 4" deformationRadius="6"><point name="c" center="-3 0 4" magnitude="20"/><point name="d" center="3 0 4" magnitude="20"/></group></scene>`;
+  writeFileSync(inFolder("named.xml"), scene);
+  const url = pageOf(inFolder("named.xml"));
+  const shown = (page) => page.evaluate(() => {
+    window.pliant.stage.draw();
+    return [...window.pliant.stage.scene.getObjectByName("gizmos").children].filter((each) => each.visible).map((each) => each.name.replace("force ", "")).sort().join("");
+  });
+  const boxes = (page) => page.evaluate(() => window.pliant.stage.scene.getObjectByName("s force boxes").geometry.attributes.instanceStart?.data.count ?? 0);
+  await withPage(url, {}, async (page) => {
+    assert.equal(await shown(page), "abcdg");
+    assert.deepEqual((await page.evaluate(() => window.pliant.labels())).sort(), ["a", "b", "c", "d", "g"]);
+    const all = await boxes(page);
+    await page.keyboard.press("d");
+    const row = (name) => page.locator("#forces li").filter({ hasText: new RegExp(`^${name}`) });
+    await row("a").getByRole("checkbox").uncheck();
+    assert.equal(await shown(page), "bcdg");
+    assert.ok((await boxes(page)) < all);
+    assert.deepEqual((await page.evaluate(() => window.pliant.labels())).sort(), ["b", "c", "d", "g"]);
+    assert.match(page.url(), /#hide=a$/);
+    await row("g").getByRole("checkbox").uncheck();
+    assert.equal(await shown(page), "b");
+    await page.getByRole("button", { name: "Show g alone" }).click();
+    assert.equal(await shown(page), "cdg");
+    await page.getByRole("button", { name: "Show g alone" }).click();
+    await page.getByRole("button", { name: "Show all forces" }).click();
+    assert.equal(await shown(page), "abcdg");
+    assert.doesNotMatch(page.url(), /#/);
+    // By keys alone: one stop for the tab key, arrows in the list.
+    await row("a").getByRole("checkbox").focus();
+    for (const key of ["ArrowDown", "Space"]) await page.keyboard.press(key);
+    assert.equal(await shown(page), "acdg");
+    for (const key of ["Tab", "Enter"]) await page.keyboard.press(key);
+    assert.equal(await shown(page), "b");
+    assert.equal(await page.locator("#forces [tabindex='0']").count(), 2);
+    await page.keyboard.press("Enter");
+    await page.keyboard.press("n");
+    await page.waitForTimeout(50);
+    assert.deepEqual(await page.evaluate(() => window.pliant.labels()), []);
+  });
+  for (const [words, expected] of [["hide=a,c", "bdg"], ["solo=c", "c"], ["solo=g&hide=c", "cdg"], ["hide=nobody", "abcdg"]]) {
+    await withPage(`${url}#${words}`, {}, async (page) => assert.equal(await shown(page), expected, words));
+  }
+});
+
+test("names of two hundred forces do not cover each other", async () => {
+  await withPage(pageOf(example("rain")), {}, async (page) => {
+    await goTo(page, 40);
+    const names = await page.evaluate(() => (window.pliant.stage.draw(), window.pliant.labels()));
+    const { length } = await page.evaluate(() => window.pliant.viewer.bake.head.forces);
+    assert.ok(length > 200);
+    assert.ok(names.length >= 5 && names.length <= 60, `${names.length} names`);
+    // What pushes now comes ahead of what does not, of which none is named in such a crowd.
+    const idle = await page.evaluate(() => window.pliant.viewer.bake.head.forces.filter((force) => force.magnitude && (force.magnitude[39] ?? force.magnitude[0]) === 0).map((force) => force.name));
+    assert.deepEqual(names.filter((name) => idle.includes(name)), []);
+  });
+});
+
+/** The picture on the stage, of luminances from 0 to 1, with its size; row 0 is the lowest. */
+const luminances = (page) =>
+  page.evaluate(() => {
+    const { stage } = window.pliant;
+    stage.draw();
+    const gl = stage.renderer.getContext();
+    const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+    const bytes = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    const linear = Array.from({ length: 256 }, (_, k) => (k / 255 <= 0.04045 ? k / 255 / 12.92 : ((k / 255 + 0.055) / 1.055) ** 2.4));
+    const values = [];
+    for (let k = 0; k < bytes.length; k += 4) values.push(0.2126 * linear[bytes[k]] + 0.7152 * linear[bytes[k + 1]] + 0.0722 * linear[bytes[k + 2]]);
+    return { width, height, values };
+  });
+
+test("a group's circles lie behind the surface", async () => {
+  writeFileSync(inFolder("behind.xml"), `<scene version="1" start="1" end="2"><surface name="s"><grid columns="9" rows="9" width="8" depth="8"/></surface>
+    <group name="g" center="0 0 0" deformationRadius="2.5"><point name="a" magnitude="0" center="0 0 0"/></group></scene>`);
+  await withPage(`${pageOf(inFolder("behind.xml"))}#boxes=off&regions=off&labels=off&floor=off&turn=0&tilt=80`, {}, async (page) => {
+    const draw = async (isShown) => {
+      await page.evaluate((on) => {
+        for (const each of window.pliant.stage.scene.getObjectByName("force g").children) if (each.name.endsWith("deformationRadius")) each.visible = on;
+      }, isShown);
+      return luminances(page);
+    };
+    const [without, withCircles] = [await draw(false), await draw(true)];
+    // From above all three circles stand over the sheet.
+    const changed = without.values.filter((value, k) => Math.abs(value - withCircles.values[k]) > 0.01).length;
+    assert.equal(changed, 0);
+  });
+});
+
+test("a bulge of a tenth of a sheet is plain to see by light alone", async () => {
+  writeFileSync(inFolder("bulge.xml"), `<scene version="1" start="1" end="2"><surface name="s"><grid columns="61" rows="61" width="20" depth="20"/>
+    <material density="20" damping="400"/></surface><point name="a" center="0 0 0" deformationRadius="5" forceRadius="2" falloff="smooth" magnitude="272000"/></scene>`);
+  for (const colorScheme of ["light", "dark"]) {
+    await withPage(pageOf(inFolder("bulge.xml")), { colorScheme, width: 1000, height: 700 }, async (page) => {
+      await page.evaluate(() => window.pliant.playback.goTo(2));
+      near(await page.evaluate(() => Math.max(...window.pliant.viewer.views[0].displacement)), 2, 0.1, "a tenth of 20");
+      for (const [turn, tilt] of [[32, 28], [0, 90], [0, 60], [-70, 20], [150, 30]]) {
+        await page.evaluate((look) => (location.hash = `colour=plain&gizmos=off&boxes=off&regions=off&floor=off&labels=off&${look}`), `turn=${turn}&tilt=${tilt}`);
+        await page.waitForTimeout(60);
+        const { width, height, values } = await luminances(page);
+        const seen = await page.evaluate(() => {
+          const view = window.pliant.viewer.views[0];
+          return Array.from(view.displacement, (moved, k) => {
+            const place = view.vertex(k).clone();
+            const isRim = Math.max(Math.abs(place.x), Math.abs(place.z)) > 9;
+            return { moved, isRim, at: place.project(window.pliant.stage.camera).toArray() };
+          });
+        });
+        const of = (wanted) => seen.filter(wanted).map(({ at }) => values[Math.round(((at[1] + 1) / 2) * height) * width + Math.round(((at[0] + 1) / 2) * width)]).sort((a, b) => a - b);
+        const share = (sorted, part) => sorted[Math.floor(part * (sorted.length - 1))];
+        const bulge = of(({ moved }) => moved > 0.1);
+        const flat = of(({ moved, isRim }) => moved < 2e-3 && !isRim);
+        const [low, high] = [share(bulge, 0.1), share(bulge, 0.9)];
+        // Michelson's contrast between the flanks. About 0.02 can be seen at all; ten times that is plain, and the old light, from ahead, gave
+        // 0.17 to 0.19 in all these views but from above.
+        assert.ok((high - low) / (high + low) >= 0.25, `${colorScheme}, turned ${turn}, tilted ${tilt}: ${low} to ${high}`);
+        // The flat part lies between the two flanks, and is even.
+        assert.ok(share(flat, 0.5) > low && share(flat, 0.5) < high);
+        assert.ok(share(flat, 0.95) - share(flat, 0.05) < 0.05);
+      }
+    });
+  }
 });
 
 for (const [width, height] of [[360, 640], [768, 1024], [1280, 800], [3840, 2160]]) {
@@ -744,7 +985,91 @@ test("pictures have the size and the frame that was asked for", async () => {
   run("view", example("sheet"), "--png", "again.png", "--frame", "12", "--size", "640x360", "--quiet");
   assert.deepEqual(readFileSync(inFolder("one.png")), readFileSync(inFolder("again.png")));
   run("view", example("sheet"), "--png", "sheet.png", "--contact-sheet", "--size", "200x160", "--quiet");
-  assert.deepEqual(size("sheet.png"), [800, 3 * 188]);
+  assert.deepEqual(size("sheet.png"), [800, 3 * 188 + 76]);
+});
+
+// Pictures by other programs
+
+/** Pixels of a frame of a picture or movie, three bytes each. */
+function pixelsOf(file, frame = 0) {
+  const raw = execFileSync("ffmpeg", ["-v", "error", "-i", inFolder(file), "-vf", `select=eq(n\\,${frame})`, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], { maxBuffer: 1e9 });
+  return new Uint8Array(raw);
+}
+
+const differing = (a, b, least = 24) => {
+  assert.equal(a.length, b.length);
+  let count = 0;
+  for (let k = 0; k < a.length; k += 3) if (Math.max(Math.abs(a[k] - b[k]), Math.abs(a[k + 1] - b[k + 1]), Math.abs(a[k + 2] - b[k + 2])) > least) ++count;
+  return count;
+};
+
+test("pictures have the legend, and the forces' names", async () => {
+  const take = (name, look, ...more) => {
+    run("view", example("sheet"), "--png", name, "--size", "640x400", "--quiet", "--look", look, ...more);
+    return pixelsOf(name);
+  };
+  const [plain, legend, labels] = [take("l0.png", "legend=off&labels=off"), take("l1.png", "labels=off"), take("l2.png", "legend=off")];
+  // What the legend changes lies in the lower left corner, what names change does not lie there only.
+  let [corner, elsewhere] = [0, 0];
+  for (let k = 0; k < plain.length; k += 3) {
+    if (Math.abs(plain[k] - legend[k]) <= 16 && Math.abs(plain[k + 1] - legend[k + 1]) <= 16) continue;
+    const [x, y] = [(k / 3) % 640, Math.floor(k / 3 / 640)];
+    if (x < 240 && y > 300) ++corner;
+    else ++elsewhere;
+  }
+  assert.ok(corner > 800, `${corner} pixels`);
+  assert.equal(elsewhere, 0);
+  assert.ok(differing(plain, labels) > 100);
+  // Another peak, other colours; a force that is hidden, another picture.
+  assert.ok(differing(take("l3.png", "legend=off&labels=off&peak=100", "--frame", "12"), take("l4.png", "legend=off&labels=off", "--frame", "12")) > 500);
+  assert.ok(differing(plain, take("l5.png", "legend=off&labels=off&hide=poke,bulge,crease")) > 500);
+});
+
+const probe = (file) => {
+  const words = ["-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries", "stream=nb_read_frames,r_frame_rate,width,height,pix_fmt", "-of", "json", inFolder(file)];
+  return JSON.parse(execFileSync("ffprobe", words, { encoding: "utf8" })).streams[0];
+};
+
+test("movies have the frames, the size and the rate of the scene", async () => {
+  writeFileSync(inFolder("ntsc.xml"), readFileSync(example("sheet"), "utf8").replace(/fps="\d+"/, 'fps="24000/1001"'));
+  for (const [ending, most] of [["mp4", 24], ["webm", 24], ["gif", 40]]) {
+    const out = `m.${ending}`;
+    const told = run("view", inFolder("ntsc.xml"), "--movie", out, "--frames", "10:16", "--size", "322x242");
+    assert.match(told, new RegExp(`^m\\.${ending}: 7 frames, 322x242 pixels, `));
+    const stream = probe(out);
+    assert.deepEqual([stream.width, stream.height, Number(stream.nb_read_frames)], [322, 242, 7]);
+    if (ending === "gif") {
+      // Hundredths of a second.
+      const [frames, seconds] = stream.r_frame_rate.split("/").map(Number);
+      near(frames / seconds, 24000 / 1001, 1, "rate");
+    } else {
+      assert.equal(stream.pix_fmt, "yuv420p");
+      assert.equal(stream.r_frame_rate, "24000/1001");
+    }
+    // Frames 12 and 16, as the picture has them: within what the codec leaves out beside thin lines.
+    for (const frame of [12, 16]) {
+      run("view", inFolder("ntsc.xml"), "--png", "still.png", "--frames", "10:16", "--frame", String(frame), "--size", "322x242", "--quiet");
+      const [still, shown] = [pixelsOf("still.png"), pixelsOf(out, frame - 10)];
+      const off = still.reduce((sum, value, k) => sum + Math.abs(value - shown[k]), 0) / still.length;
+      assert.ok(off < 4, `${ending}, frame ${frame}: ${off} of 255 in the mean`);
+      assert.ok(differing(still, shown, 3 * most) < 0.02 * (still.length / 3), `${ending}, frame ${frame}`);
+    }
+    assert.notDeepEqual(pixelsOf(out, 0), pixelsOf(out, 6));
+  }
+  assert.deepEqual(readdirSync(folder).filter((name) => name.endsWith(".part")), []);
+});
+
+test("a movie that is interrupted leaves nothing", async () => {
+  const command = spawn(pliant, ["view", example("sheet"), "--movie", inFolder("never.mp4"), "--size", "640x400"], { stdio: ["ignore", "ignore", "pipe"] });
+  let errors = "";
+  command.stderr.on("data", (text) => (errors += text));
+  const scratch = () => readdirSync(tmpdir()).filter((name) => name.startsWith("pliant-view-"));
+  while (command.exitCode === null && !scratch().some((name) => readdirSync(path.join(tmpdir(), name)).includes("movie"))) await new Promise((resume) => setTimeout(resume, 20));
+  assert.equal(command.exitCode, null, errors);
+  const code = await new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); });
+  assert.equal(code, 1);
+  assert.match(errors, /^pliant: error: interrupted at frame \d+\n$/);
+  assert.deepEqual(readdirSync(folder).filter((name) => name.includes("never")), []);
 });
 
 const failures = [];

@@ -47,6 +47,8 @@ interface SurfaceHead {
 export interface Force {
   name: string;
   kind: string;
+  /** Name of the group that it is in. */
+  group?: string;
   targets: string[];
   enabled: Track<boolean>;
   magnitude?: Track<number>;

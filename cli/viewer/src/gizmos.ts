@@ -6,7 +6,8 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
-import { at, between, vectorBetween, type Force, type Vector } from "./bake";
+import { at, between, vectorBetween, type Force, type Track, type Vector } from "./bake";
+import type { Label } from "./labels";
 import type { Palette } from "./theme";
 
 const segments = 64;
@@ -68,7 +69,7 @@ class Ink {
     this.covered.visible = share === 1;
   }
 
-  set colour(colour: string) {
+  dress(colour: string, _palette: Palette): void {
     for (const material of [this.seen, this.covered]) material.color.set(colour);
   }
 
@@ -77,9 +78,33 @@ class Ink {
   }
 }
 
+/** Behind everything, and faint: the region of a group is large, and is not to bury what it holds. */
+class BackgroundInk extends Ink {
+  constructor(
+    linewidth: number,
+    private readonly share: number,
+  ) {
+    super(linewidth, 1);
+    // Among what is opaque, ahead of all of it; the colour is mixed instead.
+    this.seen.transparent = this.seen.depthTest = false;
+  }
+
+  override circles(geometry: LineSegmentsGeometry): LineSegments2 {
+    const circles = this.line(geometry);
+    circles.renderOrder = -1;
+    return circles;
+  }
+
+  override dress(colour: string, palette: Palette): void {
+    super.dress(colour, palette);
+    this.seen.color.lerp(new THREE.Color(palette.background), 1 - this.share);
+  }
+}
+
 interface Inks {
   deformation: Ink;
   force: Ink;
+  arrow: Ink;
   faint: Ink;
 }
 
@@ -127,7 +152,14 @@ class Gizmo {
     private readonly parameters: Force,
     private readonly reach: number,
   ) {
-    this.inks = { deformation: new Ink(1.6, 0.9), force: new Ink(2, 1), faint: new Ink(1, 0.5) };
+    // So do volumes about everything that there is.
+    const isVast = (radius: Track<number> | undefined) => parameters.kind === "group" || Math.max(0, ...(radius ?? [])) > 0.5 * reach;
+    this.inks = {
+      deformation: isVast(parameters.deformationRadius) ? new BackgroundInk(1, 0.45) : new Ink(1.6, 0.9),
+      force: isVast(parameters.forceRadius) ? new BackgroundInk(1, 0.45) : new Ink(2, 1),
+      arrow: new Ink(2, 1),
+      faint: new Ink(1, 0.5),
+    };
     this.group.name = `force ${parameters.name}`;
     this.strongest = Math.max(...(parameters.magnitude ?? [0]).map(Math.abs));
     const { kind } = parameters;
@@ -145,23 +177,35 @@ class Gizmo {
     this.course = this.inks.faint.line(segment);
     const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1 };
     for (let k = 0; k < (arrowCount[kind] ?? 0); ++k) {
-      this.arrows.push(new Arrow(this.inks.force, this.solid));
+      this.arrows.push(new Arrow(this.inks.arrow, this.solid));
       this.arrows[k].group.name = `${parameters.name} vector`;
     }
     this.group.add(...this.deformation, ...this.force, this.middle, this.course, ...this.arrows.map((each) => each.group));
   }
 
   colour(palette: Palette): void {
-    this.inks.deformation.colour = palette.deformation;
-    this.inks.force.colour = palette.force;
-    this.inks.faint.colour = palette.force;
-    this.solid.color.set(palette.force);
+    this.inks.deformation.dress(palette.deformation, palette);
+    this.inks.force.dress(palette.force, palette);
+    this.inks.arrow.dress(palette.force, palette);
+    this.inks.faint.dress(palette.force, palette);
+    this.solid.color.set(this.parameters.kind === "group" ? palette.deformation : palette.force);
+  }
+
+  /** Beside its middle; null: it is not shown. */
+  label(index: number): Label | null {
+    if (!this.group.visible) return null;
+    const { name, kind, magnitude } = this.parameters;
+    const isGroup = kind === "group";
+    const isFaint = !isGroup && (magnitude === undefined || at(magnitude, index) === 0);
+    // What pushes now, then what pushes hardest at any time, so that names do not come and go.
+    const rank = (isFaint ? 0 : 2) + (isGroup ? 0 : this.strongest / (1 + this.strongest));
+    return { text: name, place: this.middle.position, rank, isFaint, isGroup };
   }
 
   /** `middle` is where forces stand that are everywhere; `push` what inertia gives there. */
-  show(index: number, share: number, middle: THREE.Vector3, push: Vector | undefined): void {
+  show(index: number, share: number, isShown: boolean, middle: THREE.Vector3, push: Vector | undefined): void {
     const force = this.parameters;
-    this.group.visible = at(force.enabled, index);
+    this.group.visible = isShown && at(force.enabled, index);
     if (!this.group.visible) return;
     const magnitude = force.magnitude ? between(force.magnitude, index, share) : 0;
     // A force without a magnitude still selects its region, but stays in the background.
@@ -286,8 +330,13 @@ export class Gizmos {
     for (const gizmo of this.gizmos) this.group.add(gizmo.group);
   }
 
-  show(index: number, share: number, pushes: Map<number, Vector>): void {
-    this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, this.middle, pushes.get(k)));
+  show(index: number, share: number, isShown: boolean[], pushes: Map<number, Vector>): void {
+    this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, isShown[k], this.middle, pushes.get(k)));
+  }
+
+  /** Of those that are shown. */
+  labels(index: number): Label[] {
+    return this.gizmos.map((gizmo) => gizmo.label(index)).filter((label) => label !== null);
   }
 
   colour(palette: Palette): void {

@@ -13,7 +13,14 @@ export interface Look {
   gizmos?: boolean;
   regions?: boolean;
   boxes?: boolean;
+  labels?: boolean;
+  legend?: boolean;
   floor?: boolean;
+  /** Names of forces and groups. */
+  hide?: string[];
+  solo?: string[];
+  /** The number at the top of the colours. */
+  peak?: number;
 }
 
 export function readLook(address: string): Look {
@@ -24,6 +31,7 @@ export function readLook(address: string): Look {
   };
   const one = <T extends string>(name: string, allowed: readonly T[]) => allowed.find((each) => each === words.get(name));
   const isOn = (name: string) => ({ on: true, off: false })[words.get(name) ?? ""];
+  const names = (name: string) => (words.has(name) ? words.getAll(name).flatMap((text) => text.split(",")).filter((each) => each !== "") : undefined);
   return {
     frame: number("frame"),
     turn: number("turn"),
@@ -34,6 +42,11 @@ export function readLook(address: string): Look {
     gizmos: isOn("gizmos"),
     regions: isOn("regions"),
     boxes: isOn("boxes"),
+    labels: isOn("labels"),
+    legend: isOn("legend"),
     floor: isOn("floor"),
+    hide: names("hide"),
+    solo: names("solo"),
+    peak: number("peak"),
   };
 }

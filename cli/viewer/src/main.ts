@@ -1,16 +1,21 @@
 // The page: puts what the command baked on the stage, and ties buttons, keys and panels to it.
 
 import { bytesOf, unpack, type Bake, type Message } from "./bake";
-import { CurvePanel, numberText } from "./curves";
+import { numberText } from "./curve_plot";
+import { CurvePanel } from "./curves";
+import { ForceList } from "./force_list";
+import { FrameAxis } from "./frame_axis";
+import { drawLabels } from "./labels";
+import { legendOf, showLegend } from "./legend";
 import { fetchBake, follow } from "./live";
 import { readLook, type Look } from "./look";
 import { showMessages } from "./messages";
 import { takePicture, type PictureJob } from "./picture";
 import { Readout } from "./readout";
 import "./style.css";
-import { ramps, type Colour, type Style } from "./surface_view";
+import type { Colour, Style } from "./surface_view";
 import { ThemeChoice } from "./theme";
-import { Timeline } from "./timeline";
+import { prepare, textSize, Timeline } from "./timeline";
 import { Viewer } from "./viewer";
 
 function element<T extends Element>(id: string): T {
@@ -22,9 +27,13 @@ function element<T extends Element>(id: string): T {
 const themes = new ThemeChoice();
 const viewer = new Viewer(element("view"), themes);
 const { playback, stage, display } = viewer;
-const timeline = new Timeline(element("timeline"), playback, themes);
-const curves = new CurvePanel(element("channels"), element("curve-view"), playback, themes);
+const axis = new FrameAxis(element("timeline"), playback);
+const timeline = new Timeline(element("timeline"), playback, axis, themes);
+const curves = new CurvePanel(element("channels"), element("curve-view"), element("curve-values"), playback, axis, themes);
+const forceList = new ForceList(element("forces"), element("show-all"), viewer.forces);
 const readout = new Readout(stage, element("readout"), themes);
+/** Opened by the command, for a picture. */
+const isPicture = location.pathname.endsWith("/take");
 
 // Playback
 
@@ -84,24 +93,27 @@ function choice<T extends string>(name: string, take: (value: T) => void): (valu
 
 const setStyle = choice<Style>("style", (style) => {
   display.style = style;
-  viewer.redress();
+  redress();
 });
 const setColour = choice<Colour>("colour", (colour) => {
   display.colour = colour;
-  viewer.redress();
-  showLegend();
+  redress();
 });
 const setGizmos = check("show-gizmos", (isOn) => {
   display.hasGizmos = isOn;
-  viewer.redress();
+  redress();
+});
+const setLabels = check("show-labels", (isOn) => {
+  display.hasLabels = isOn;
+  redress();
 });
 const setRegions = check("show-regions", (isOn) => {
   display.hasRegions = isOn;
-  viewer.redress();
+  redress();
 });
 const setBoxes = check("show-boxes", (isOn) => {
   display.hasBoxes = isOn;
-  viewer.redress();
+  redress();
 });
 const setFloor = check("show-floor", (isOn) => (stage.hasFloor = isOn));
 check("interpolate", (isOn) => {
@@ -109,17 +121,29 @@ check("interpolate", (isOn) => {
   playback.goTo(playback.frame);
 });
 
-function showLegend(): void {
-  const { colour } = display;
-  element<HTMLElement>("legend").hidden = colour === "plain";
-  if (colour === "plain") return;
-  const peak = viewer.peak();
-  element("legend-title").textContent = colour === "displacement" ? "Displacement" : "Velocity, per second";
-  element("legend-high").textContent = numberText(peak);
-  const ramp = element<HTMLElement>("legend-ramp");
-  ramp.style.background = ramps[colour].css();
-  ramp.setAttribute("aria-label", `Colours from 0 to ${numberText(peak)}`);
+function redress(): void {
+  viewer.redress();
+  updateLegend();
 }
+
+function updateLegend(): void {
+  showLegend(element("legend"), legendOf(viewer, themes.palette));
+}
+themes.onChange(updateLegend);
+
+const labels = element<HTMLCanvasElement>("labels");
+let labelled: string[] = [];
+stage.onDraw(() => {
+  const place = prepare(labels);
+  if (place) labelled = drawLabels(place.context, viewer.labels(), stage.camera, { ...place, text: textSize() }, [], themes.palette);
+});
+
+/** Into the address, so that it can be handed on, and to --look. */
+viewer.forces.onChange(() => {
+  updateLegend();
+  const words = viewer.forces.writtenTo(location.hash);
+  if (!isPicture) history.replaceState(null, "", words === "" ? location.pathname + location.search : `#${words}`);
+});
 
 function togglePanel(id: string, buttonId: string, attribute: string): void {
   const panel = element<HTMLElement>(id);
@@ -159,6 +183,7 @@ const shortcuts: Record<string, (event: KeyboardEvent) => void> = {
     const isOn = !display.hasGizmos;
     for (const set of [setGizmos, setRegions, setBoxes]) set(isOn);
   },
+  n: () => setLabels(!display.hasLabels),
   c: toggleCurves,
   d: toggleDisplay,
   t: () => themes.toggle(),
@@ -179,18 +204,6 @@ document.addEventListener("keydown", (event) => {
 
 // What is shown
 
-function listForces(bake: Bake): void {
-  element("forces").replaceChildren(
-    ...bake.head.forces.map((force) => {
-      const item = document.createElement("li");
-      const kind = document.createElement("span");
-      kind.textContent = force.kind;
-      item.append(force.name, kind);
-      return item;
-    }),
-  );
-}
-
 function load(bake: Bake): void {
   const { head } = bake;
   const name = head.scene.split("/").pop() ?? head.scene;
@@ -208,22 +221,27 @@ function load(bake: Bake): void {
   viewer.load(bake);
   readout.views = viewer.views;
   curves.load(head.channels);
-  listForces(bake);
-  showLegend();
+  forceList.load(head.forces);
+  updateLegend();
   showMessages(element("messages"), head.messages);
   element("view").setAttribute("aria-label", `${head.surfaces.map((each) => each.name).join(", ")}: ${bake.frameCount} frames, ${head.forces.length} forces`);
 }
 
 function apply(look: Look): void {
   if (look.theme) themes.choose(look.theme);
+  if (look.legend !== undefined) display.hasLegend = look.legend;
+  if (look.peak !== undefined && look.peak > 0) display.peak = look.peak;
   if (look.style) setStyle(look.style);
   if (look.colour) setColour(look.colour);
   if (look.gizmos !== undefined) setGizmos(look.gizmos);
   if (look.regions !== undefined) setRegions(look.regions);
   if (look.boxes !== undefined) setBoxes(look.boxes);
+  if (look.labels !== undefined) setLabels(look.labels);
+  if (look.hide || look.solo) viewer.forces.set(look.hide, look.solo);
   if (look.floor !== undefined) setFloor(look.floor);
   if (look.turn !== undefined || look.tilt !== undefined) stage.look(look.turn, look.tilt);
   if (look.frame !== undefined) playback.goTo(look.frame);
+  redress();
 }
 
 function showLive(text: string, state: string): void {
@@ -291,7 +309,7 @@ async function begin(): Promise<void> {
     load(await unpack(bytesOf(text)));
     element("bake").remove();
     apply(readLook(location.hash));
-  } else if (location.pathname.endsWith("/take")) {
+  } else if (isPicture) {
     await sendPictures();
   } else {
     goLive();
@@ -306,4 +324,4 @@ begin().catch((error: Error) => {
 });
 
 // For tests, and for whoever looks at a page from the console.
-Object.assign(window, { pliant: { viewer, stage, playback, themes } });
+Object.assign(window, { pliant: { viewer, stage, playback, themes, labels: () => labelled } });

@@ -1,7 +1,9 @@
-// Pictures of the stage: one frame, or a sheet of several.
+// Pictures of the stage: one frame, or a sheet of several, with names and legend as the page has them.
 
-import type { Viewer } from "./viewer";
+import { drawLabels, type Area } from "./labels";
+import { drawLegend, legendOf } from "./legend";
 import type { ThemeChoice } from "./theme";
+import type { Viewer } from "./viewer";
 
 export interface PictureJob {
   width: number;
@@ -12,27 +14,48 @@ export interface PictureJob {
   label: number;
 }
 
+/** Smaller pictures have room for the surfaces only. [px] */
+const leastForWords = { width: 240, height: 180 };
+
 /** A PNG of width x height pixels for one frame; several stand in a table, each that large. */
 export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob> {
-  const { width, height, frames, columns, label } = job;
-  const rows = Math.ceil(frames.length / columns);
-  const sheet = document.createElement("canvas");
-  [sheet.width, sheet.height] = [width * Math.min(columns, frames.length), (height + label) * rows];
-  const context = sheet.getContext("2d")!;
+  const { width, height, frames, columns } = job;
+  const isSheet = frames.length > 1;
   const { palette } = themes;
+  const legend = legendOf(viewer, palette);
+  const text = Math.min(Math.max(width / 85, 11), 26);
+  const hasWords = width >= leastForWords.width && height >= leastForWords.height;
+  const label = isSheet ? 28 : 0;
+  const rows = Math.ceil(frames.length / columns);
+  const across = Math.min(columns, frames.length);
+  // Of a sheet, one for all its frames.
+  const strip = isSheet && legend ? 76 : 0;
+  const sheet = document.createElement("canvas");
+  [sheet.width, sheet.height] = [width * across, (height + label) * rows + strip];
+  const context = sheet.getContext("2d")!;
   context.fillStyle = palette.background;
   context.fillRect(0, 0, sheet.width, sheet.height);
-  context.font = "15px system-ui, sans-serif";
-  context.textAlign = "center";
   viewer.stage.pin(width, height);
   frames.forEach((frame, k) => {
     viewer.playback.goTo(frame);
     viewer.stage.draw();
-    const x = (k % columns) * width;
-    const y = Math.floor(k / columns) * (height + label);
-    context.drawImage(viewer.stage.canvas, x, y);
-    context.fillStyle = palette.ink;
-    if (label > 0) context.fillText(`frame ${frame}`, x + width / 2, y + height + 19);
+    context.save();
+    context.translate((k % columns) * width, Math.floor(k / columns) * (height + label));
+    context.beginPath();
+    context.rect(0, 0, width, height + label);
+    context.clip();
+    context.drawImage(viewer.stage.canvas, 0, 0);
+    const taken: Area[] = [];
+    if (legend && hasWords && !isSheet) taken.push(drawLegend(context, legend, text, height - 0.8 * text, text, palette));
+    if (hasWords) drawLabels(context, viewer.labels(), viewer.stage.camera, { width, height, text }, taken, palette);
+    if (isSheet) {
+      context.font = "15px system-ui, sans-serif";
+      context.textAlign = "center";
+      context.fillStyle = palette.ink;
+      context.fillText(`frame ${frame}`, width / 2, height + 19);
+    }
+    context.restore();
   });
+  if (legend && strip > 0) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);
   return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no memory for the picture"))), "image/png"));
 }

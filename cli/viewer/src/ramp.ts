@@ -45,13 +45,16 @@ export class Ramp {
     }
   }
 
+  /** At 0 to 1. */
+  cssAt(share: number): string {
+    const k = 3 * Math.round(255 * Math.min(Math.max(share, 0), 1));
+    return `rgb(${Array.from(this.colours.subarray(k, k + 3), (value) => Math.round(255 * toGamma(value))).join(" ")})`;
+  }
+
   /** As the background of an element. */
   css(): string {
     const stops: string[] = [];
-    for (let k = 0; k < 256; k += 15) {
-      const rgb = Array.from(this.colours.subarray(3 * k, 3 * k + 3), (value) => Math.round(255 * toGamma(value)));
-      stops.push(`rgb(${rgb.join(" ")})`);
-    }
+    for (let k = 0; k < 256; k += 15) stops.push(this.cssAt(k / 255));
     return `linear-gradient(to right, ${stops.join(", ")})`;
   }
 }

@@ -100,11 +100,11 @@ export class RegionView {
     view.group.add(...this.lines.map((lines) => lines.object));
   }
 
-  /** `isIdle` says which of the forces push with a magnitude of 0. */
-  show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[]): void {
+  /** `isIdle` says which of the forces push with a magnitude of 0, `isShown` which are shown. */
+  show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[], isShown: boolean[]): void {
     const { columns, rows } = this.view.surface.head;
     const marks = this.view.surface.marksAt(frame);
-    const wanted = `${marks?.frame} ${hasRegions} ${hasBoxes} ${hasBoxes ? isIdle.map(Number).join("") : ""}`;
+    const wanted = `${marks?.frame} ${hasRegions} ${hasBoxes} ${hasBoxes ? [...isIdle, ...isShown].map(Number).join("") : ""}`;
     if (wanted !== this.shown) {
       this.shown = wanted;
       const rims = (isSolved: boolean) =>
@@ -112,7 +112,7 @@ export class RegionView {
       this.rim.take(rims(true));
       this.small.take(rims(false));
       const boxes = (areIdle: boolean) =>
-        hasBoxes ? (marks?.forces ?? []).filter((each) => isIdle[each.force] === areIdle).flatMap((each) => outline([each.box], columns, rows)) : [];
+        hasBoxes ? (marks?.forces ?? []).filter((each) => isShown[each.force] && isIdle[each.force] === areIdle).flatMap((each) => outline([each.box], columns, rows)) : [];
       this.boxes.take(boxes(false));
       this.idle.take(boxes(true));
     }

@@ -8,22 +8,43 @@ import type { Palette } from "./theme";
 const restTurn = THREE.MathUtils.degToRad(32);
 const restTilt = THREE.MathUtils.degToRad(28);
 
+/** Lamps as a photographer has them, each from where it stands, seen from the camera: x to the right, y up, z towards it. */
+const lamps = [
+  // The key light grazes a sheet that is seen from ahead, or from above: half of what it gives is lost there, so that a slope
+  // towards it is as much brighter as one away from it is darker.
+  { from: [-0.95, 0.55, 0.42], colour: 0xfff6ea, strength: 3.9 },
+  // The rim light, from behind on the other side, draws the edge of what turns away.
+  { from: [0.75, 0.5, -0.7], colour: 0xe4edff, strength: 1.5 },
+  // The fill light opens the shadows of the key light.
+  { from: [0.6, 0.05, 0.8], colour: 0xdde7ff, strength: 0.5 },
+];
+const ambient = 0.75;
+
+const lampsOf = () =>
+  lamps.map(({ from, colour, strength }) => {
+    const light = new THREE.DirectionalLight(colour, strength);
+    light.position.fromArray(from);
+    return light;
+  });
+
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: OrbitControls;
-  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
-  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x7c8796, 1.6);
+  private readonly lights = lampsOf();
   private floor = new THREE.Group();
   private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
   private isStale = true;
   private isPinned = false;
   private floorColours = ["#888888", "#444444"];
+  private readonly listeners: (() => void)[] = [];
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    this.scene.add(this.sun, this.sun.target, this.sky, this.floor);
+    // They come along with the camera, so that no side is ever dark.
+    for (const light of this.lights) this.camera.add(light, light.target);
+    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, ambient), this.floor);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
@@ -44,12 +65,13 @@ export class Stage {
 
   draw(): void {
     this.isStale = false;
-    // The light comes along: over the left shoulder, so that no side is dark.
-    const size = this.box.getSize(new THREE.Vector3()).length();
-    const offset = new THREE.Vector3(-0.6, 0.9, 0.8).applyQuaternion(this.camera.quaternion);
-    this.sun.target.position.copy(this.controls.target);
-    this.sun.position.copy(this.controls.target).addScaledVector(offset.setY(Math.max(offset.y, 0.5)), size);
     this.renderer.render(this.scene, this.camera);
+    for (const listener of this.listeners) listener();
+  }
+
+  /** After each picture. */
+  onDraw(listener: () => void): void {
+    this.listeners.push(listener);
   }
 
   /** What the camera shall see. */

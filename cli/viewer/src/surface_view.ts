@@ -3,6 +3,7 @@
 import * as THREE from "three";
 
 import { at, type BakedSurface } from "./bake";
+import { bends } from "./relief";
 import { displacementRamp, velocityRamp, type Ramp } from "./ramp";
 import type { Palette } from "./theme";
 
@@ -22,6 +23,29 @@ function placement(surface: BakedSurface, index: number, share: number): THREE.M
   return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
 }
 
+/** By how much a bend brightens a ridge and darkens a valley. */
+const reliefShare = 0.35;
+
+/** Colours times 1 + the share of what `relief` has for the vertex. */
+function showRelief(material: THREE.MeshStandardMaterial): void {
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "attribute float relief;\nvarying float vRelief;\n#include <common>")
+      .replace("#include <begin_vertex>", "vRelief = relief;\n#include <begin_vertex>");
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "varying float vRelief;\n#include <common>")
+      // The back is a valley where the front is a ridge.
+      .replace("#include <color_fragment>", `#include <color_fragment>\ndiffuseColor.rgb *= 1.0 + ${reliefShare.toFixed(2)} * (gl_FrontFacing ? vRelief : -vRelief);`);
+  };
+}
+
+/** The longest side of the box around the positions. */
+function sizeOf(positions: Float32Array): number {
+  const box = new THREE.Box3().setFromArray(positions as unknown as number[]);
+  const { x, y, z } = box.getSize(new THREE.Vector3());
+  return Math.max(x, y, z);
+}
+
 export class SurfaceView {
   readonly group = new THREE.Group();
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
@@ -31,6 +55,8 @@ export class SurfaceView {
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
+  private readonly edgeCounts: Uint8Array;
+  private readonly size: number;
   private plain = new THREE.Color();
   private style: Style = "shaded";
 
@@ -43,17 +69,21 @@ export class SurfaceView {
     this.offsetsBefore = new Float32Array(count);
     this.displacement = new Float32Array(count / 3);
     this.speed = new Float32Array(count / 3);
+    this.edgeCounts = new Uint8Array(count / 3);
+    this.size = sizeOf(surface.rest);
 
     const geometry = new THREE.BufferGeometry();
     const changing = () => new THREE.BufferAttribute(new Float32Array(count), 3).setUsage(THREE.DynamicDrawUsage);
     geometry.setAttribute("position", changing());
     geometry.setAttribute("normal", changing());
     geometry.setAttribute("color", changing());
+    geometry.setAttribute("relief", new THREE.BufferAttribute(new Float32Array(count / 3), 1).setUsage(THREE.DynamicDrawUsage));
     geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
     const material = new THREE.MeshStandardMaterial({
-      vertexColors: true, side: THREE.DoubleSide, roughness: 0.62, metalness: 0,
+      vertexColors: true, side: THREE.DoubleSide, roughness: 0.7, metalness: 0,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
+    showRelief(material);
     this.mesh = new THREE.Mesh(geometry, material);
     this.mesh.name = surface.head.name;
 
@@ -155,6 +185,9 @@ export class SurfaceView {
       n[k] /= length; n[k + 1] /= length; n[k + 2] /= length;
     }
     attribute.needsUpdate = true;
+    const relief = this.mesh.geometry.getAttribute("relief") as THREE.BufferAttribute;
+    bends(p, n, this.surface.edges, this.size, relief.array as Float32Array, this.edgeCounts);
+    relief.needsUpdate = true;
   }
 
   // Displacement from where rest would be now; velocity as the mean since the frame before.

@@ -1,5 +1,6 @@
 // The ruler of frames: scrub, keys as diamonds.
 
+import type { FrameAxis } from "./frame_axis";
 import type { Playback } from "./playback";
 import type { ThemeChoice } from "./theme";
 
@@ -16,13 +17,14 @@ export function textSize(): number {
 
 /** Makes a canvas as sharp as the screen; gives its size in CSS pixels, or null without one. */
 export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
-  const { clientWidth: width, clientHeight: height } = canvas;
+  const { width, height } = canvas.getBoundingClientRect();
   const context = canvas.getContext("2d");
   if (!context || width === 0 || height === 0) return null;
   const ratio = devicePixelRatio || 1;
   const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  // Not the ratio itself: the sizes of the window are no whole numbers.
+  context.setTransform(w / width, 0, 0, h / height, 0, 0);
   context.clearRect(0, 0, width, height);
   return { context, width, height };
 }
@@ -36,8 +38,6 @@ export function diamond(context: CanvasRenderingContext2D, x: number, y: number,
   context.closePath();
 }
 
-const margin = 16;
-
 export class Timeline {
   /** Frames with keys, ascending. */
   keyFrames: number[] = [];
@@ -45,6 +45,7 @@ export class Timeline {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly playback: Playback,
+    private readonly axis: FrameAxis,
     private readonly themes: ThemeChoice,
   ) {
     canvas.addEventListener("pointerdown", (event) => {
@@ -75,10 +76,11 @@ export class Timeline {
     this.describe();
     const surface = prepare(this.canvas);
     if (!surface) return;
-    const { context, width, height } = surface;
+    const { context, height } = surface;
     const { palette } = this.themes;
     const { first, last } = this.playback;
-    const x = (frame: number) => this.x(frame, width);
+    const { perFrame } = this.axis;
+    const x = (frame: number) => this.axis.x(frame, this.canvas);
     const text = textSize();
     const base = height - 1.45 * text;
 
@@ -88,7 +90,6 @@ export class Timeline {
     context.textAlign = "center";
     context.textBaseline = "alphabetic";
     context.lineWidth = 1;
-    const perFrame = (width - 2 * margin) / Math.max(last - first, 1);
     const labelStep = Math.max(1, niceStep((4.2 * text) / perFrame));
     const tickStep = Math.max(1, niceStep(5 / perFrame));
     context.beginPath();
@@ -97,8 +98,8 @@ export class Timeline {
       context.moveTo(Math.round(x(frame)) + 0.5, base);
       context.lineTo(Math.round(x(frame)) + 0.5, base - (isLabelled ? 10 : 5));
     }
-    context.moveTo(margin, base + 0.5);
-    context.lineTo(width - margin, base + 0.5);
+    context.moveTo(x(first), base + 0.5);
+    context.lineTo(x(Math.max(last, first + 1)), base + 0.5);
     context.stroke();
     context.globalAlpha = 0.75;
     for (let frame = Math.ceil(first / labelStep) * labelStep; frame <= last; frame += labelStep) {
@@ -137,14 +138,7 @@ export class Timeline {
     this.canvas.setAttribute("aria-valuetext", `frame ${frame}, ${seconds.toFixed(2)} s${isKey ? ", key" : ""}`);
   }
 
-  private x(frame: number, width: number): number {
-    const { first, last } = this.playback;
-    return margin + ((frame - first) / Math.max(last - first, 1)) * (width - 2 * margin);
-  }
-
   private scrub(event: PointerEvent): void {
-    const box = this.canvas.getBoundingClientRect();
-    const share = (event.clientX - box.left - margin) / (box.width - 2 * margin);
-    this.playback.goTo(this.playback.first + share * (this.playback.last - this.playback.first));
+    this.playback.goTo(this.axis.frameAt(event.clientX));
   }
 }

@@ -3,7 +3,9 @@
 import * as THREE from "three";
 
 import { at, type Bake, type Vector } from "./bake";
+import { ForceChoice } from "./force_choice";
 import { Gizmos } from "./gizmos";
+import type { Label } from "./labels";
 import { Playback } from "./playback";
 import { RegionView } from "./region_view";
 import { Stage } from "./stage";
@@ -16,12 +18,17 @@ export interface Display {
   hasGizmos: boolean;
   hasRegions: boolean;
   hasBoxes: boolean;
+  hasLabels: boolean;
+  hasLegend: boolean;
+  /** The number at the top of the colours; null: the largest of the animation. */
+  peak: number | null;
 }
 
 export class Viewer {
   readonly playback = new Playback();
   readonly stage: Stage;
-  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true };
+  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasLabels: true, hasLegend: true, peak: null };
+  readonly forces = new ForceChoice();
   bake: Bake | null = null;
   views: SurfaceView[] = [];
   private regions: RegionView[] = [];
@@ -34,6 +41,7 @@ export class Viewer {
     this.stage = new Stage(canvas);
     this.playback.onChange(() => this.show());
     themes.onChange(() => this.redress());
+    this.forces.onChange(() => this.show());
   }
 
   /** Puts a bake in place of the one before; camera and frame stay if there was one. */
@@ -55,9 +63,17 @@ export class Viewer {
 
   /** The largest number that the colours stand for. */
   peak(): number {
-    const { colour } = this.display;
+    const { colour, peak } = this.display;
+    if (peak !== null) return peak;
     const heads = this.bake?.head.surfaces ?? [];
     return Math.max(0, ...heads.map((head) => (colour === "velocity" ? head.peakSpeed : head.peakDisplacement)));
+  }
+
+  /** Names of the forces that are drawn now. */
+  labels(): Label[] {
+    const { display } = this;
+    if (!this.bake || !display.hasLabels || !display.hasGizmos) return [];
+    return this.gizmos?.labels(this.playback.frame - this.bake.head.first) ?? [];
   }
 
   /** After `display` or the theme has changed. */
@@ -76,16 +92,17 @@ export class Viewer {
     const index = playback.frame - this.bake.head.first;
     const pushes = new Map<number, Vector>();
     const isIdle = this.bake.head.forces.map(({ magnitude }) => magnitude !== undefined && at(magnitude, index) === 0);
+    const isShown = this.bake.head.forces.map((force) => this.forces.isShown(force));
     this.views.forEach((view, k) => {
       view.show(index, playback.share);
       view.paint(display.colour, this.peak());
-      this.regions[k].show(playback.frame, display.hasRegions, display.hasBoxes, isIdle);
+      this.regions[k].show(playback.frame, display.hasRegions, display.hasBoxes, isIdle, isShown);
       for (const { force, push } of view.surface.marksAt(playback.frame)?.forces ?? []) {
         if (push) pushes.set(force, push);
       }
     });
     this.gizmos.group.visible = display.hasGizmos;
-    this.gizmos.show(index, playback.share, pushes);
+    this.gizmos.show(index, playback.share, isShown, pushes);
     this.stage.invalidate();
   }
 

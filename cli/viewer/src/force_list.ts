@@ -1,0 +1,93 @@
+// The list of forces and groups, each with what shows it, hides it, or shows it alone.
+
+import type { Force } from "./bake";
+import type { ForceChoice } from "./force_choice";
+
+/** Groups come after the forces that are in none, each with the forces in it. */
+function ordered(forces: Force[]): Force[] {
+  const within = (group: string | undefined) => forces.filter((force) => force.kind !== "group" && force.group === group);
+  return [...within(undefined), ...forces.filter((force) => force.kind === "group").flatMap((group) => [group, ...within(group.name)])];
+}
+
+export class ForceList {
+  private forces: Force[] = [];
+  private current = 0;
+
+  constructor(
+    private readonly list: HTMLElement,
+    private readonly showAll: HTMLButtonElement,
+    private readonly choice: ForceChoice,
+  ) {
+    choice.onChange(() => this.update());
+    showAll.addEventListener("click", () => choice.showAll());
+    list.addEventListener("keydown", (event) => this.onKey(event));
+    list.addEventListener("focusin", (event) => {
+      const row = this.rows.findIndex((each) => each.contains(event.target as Node));
+      if (row >= 0) this.makeCurrent(row);
+    });
+  }
+
+  load(forces: Force[]): void {
+    this.forces = ordered(forces);
+    this.list.replaceChildren(...this.forces.map((force) => this.row(force)));
+    this.list.parentElement!.hidden = forces.length === 0;
+    this.makeCurrent(Math.min(this.current, Math.max(this.forces.length - 1, 0)));
+    this.update();
+  }
+
+  private get rows(): HTMLElement[] {
+    return [...this.list.children] as HTMLElement[];
+  }
+
+  private row({ name, kind, group }: Force): HTMLElement {
+    const item = document.createElement("li");
+    item.classList.toggle("within", group !== undefined);
+    const label = document.createElement("label");
+    const box = document.createElement("input");
+    box.type = "checkbox";
+    box.addEventListener("change", () => this.choice.hide(name, !box.checked));
+    const word = document.createElement("span");
+    word.textContent = name;
+    label.append(box, word);
+    const kindOf = document.createElement("span");
+    kindOf.textContent = kind;
+    const solo = document.createElement("button");
+    solo.type = "button";
+    solo.textContent = "solo";
+    solo.setAttribute("aria-label", `Show ${name} alone`);
+    solo.title = `Show ${name} alone`;
+    solo.addEventListener("click", () => this.choice.solo(name, !this.choice.isAlone(name)));
+    item.append(label, kindOf, solo);
+    return item;
+  }
+
+  private update(): void {
+    this.rows.forEach((row, k) => {
+      const force = this.forces[k];
+      row.classList.toggle("off", !this.choice.isShown(force));
+      row.querySelector("input")!.checked = !this.choice.isHidden(force.name);
+      row.querySelector("button")!.setAttribute("aria-pressed", String(this.choice.isAlone(force.name)));
+    });
+    this.showAll.disabled = this.choice.isEverythingShown;
+  }
+
+  // One row takes part in the order of the tab key; arrows go from row to row.
+  private makeCurrent(row: number): void {
+    this.current = row;
+    this.rows.forEach((each, k) => {
+      for (const control of each.querySelectorAll<HTMLElement>("input, button")) control.tabIndex = k === row ? 0 : -1;
+    });
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const last = this.forces.length - 1;
+    const target = { ArrowDown: Math.min(this.current + 1, last), ArrowUp: Math.max(this.current - 1, 0), Home: 0, End: last }[event.key];
+    if (target === undefined) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const kind = (event.target as HTMLElement).matches("button") ? "button" : "input";
+    const control = this.rows[target].querySelector<HTMLElement>(kind)!;
+    control.focus();
+    control.scrollIntoView({ block: "nearest" });
+  }
+}

@@ -1,0 +1,105 @@
+// What the colours mean: one text and drawing for the page and for pictures.
+
+import type { Area } from "./labels";
+import { numberText } from "./curve_plot";
+import { ramps } from "./surface_view";
+import type { Palette } from "./theme";
+import type { Viewer } from "./viewer";
+
+/** A scene has no units of its own: lengths are those of its numbers, time is in seconds. */
+const titles = { displacement: "Displacement [scene units]", velocity: "Velocity [scene units/s]" };
+
+interface Ink {
+  colour: string;
+  means: string;
+}
+
+export interface Legend {
+  /** Of the surfaces; null: they are plain. */
+  scale: { title: string; css: string; at: (share: number) => string; high: string } | null;
+  /** Of the lines. */
+  inks: Ink[];
+}
+
+/** Of what is shown; null: it needs none, or is to have none. */
+export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
+  const { display, bake } = viewer;
+  if (!display.hasLegend || !bake) return null;
+  const forces = bake.head.forces.filter((force) => viewer.forces.isShown(force));
+  const inks: Ink[] = [];
+  const add = (isThere: boolean, colour: string, means: string) => isThere && inks.push({ colour, means });
+  add(display.hasGizmos && forces.some((force) => force.deformationRadius), palette.deformation, "deforms");
+  add((display.hasGizmos || display.hasBoxes) && forces.length > 0, palette.force, "is pushed");
+  add(display.hasRegions && bake.head.surfaces.some((surface) => surface.marks.length > 0), palette.rim, "is solved");
+  const { colour } = display;
+  if (colour === "plain") return inks.length > 0 ? { scale: null, inks } : null;
+  const ramp = ramps[colour];
+  return { scale: { title: titles[colour], css: ramp.css(), at: (share) => ramp.cssAt(share), high: numberText(viewer.peak()) }, inks };
+}
+
+/** Into the page. */
+export function showLegend(place: HTMLElement, legend: Legend | null): void {
+  place.hidden = legend === null;
+  if (!legend) return;
+  const part = (name: string) => place.querySelector<HTMLElement>(`#legend-${name}`)!;
+  part("scale").hidden = legend.scale === null;
+  if (legend.scale) {
+    part("title").textContent = legend.scale.title;
+    part("high").textContent = legend.scale.high;
+    part("ramp").style.background = legend.scale.css;
+    part("ramp").setAttribute("aria-label", `Colours from 0 to ${legend.scale.high}`);
+  }
+  part("inks").replaceChildren(
+    ...legend.inks.map(({ colour, means }) => {
+      const item = document.createElement("span");
+      const mark = document.createElement("i");
+      mark.style.background = colour;
+      item.append(mark, means);
+      return item;
+    }),
+  );
+}
+
+/** Into a picture, with its lower left corner there; gives the area that it covers. */
+export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, left: number, bottom: number, text: number, palette: Palette): Area {
+  const width = 15 * text;
+  const line = 1.35 * text;
+  const rows = (legend.scale ? 2.6 : 0) + (legend.inks.length > 0 ? 1.1 : 0);
+  let y = bottom - rows * line;
+  const area: Area = [left - 4, y - 0.4 * text, left + width + 4, bottom];
+  context.save();
+  context.font = `${text}px system-ui, sans-serif`;
+  context.textBaseline = "middle";
+  const put = (words: string, x: number, align: CanvasTextAlign) => {
+    context.textAlign = align;
+    context.strokeStyle = palette.background;
+    context.lineWidth = 0.25 * text;
+    context.lineJoin = "round";
+    context.strokeText(words, x, y);
+    context.fillStyle = palette.ink;
+    context.fillText(words, x, y);
+  };
+  y += 0.5 * text;
+  if (legend.scale) {
+    put(legend.scale.title, left, "left");
+    y += 0.65 * line;
+    const height = Math.round(0.7 * text);
+    for (let x = 0; x < width; ++x) {
+      context.fillStyle = legend.scale.at(x / (width - 1));
+      context.fillRect(Math.round(left) + x, Math.round(y), 1, height);
+    }
+    y += 0.95 * line;
+    put("0", left, "left");
+    put(legend.scale.high, left + width, "right");
+    y += 1.1 * line;
+  }
+  let x = left;
+  for (const { colour, means } of legend.inks) {
+    context.fillStyle = colour;
+    context.fillRect(x, y - 0.1 * text, 0.9 * text, 0.22 * text);
+    put(means, x + 1.2 * text, "left");
+    x += 1.2 * text + context.measureText(means).width + 0.9 * text;
+  }
+  context.restore();
+  return area;
+}
