@@ -1,5 +1,6 @@
 #include "ffmpeg.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>

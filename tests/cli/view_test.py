@@ -254,7 +254,7 @@ class Page(View):
         scene = self.scene("scene.mp4", end=3)
         result = self.run_pliant("view", scene, "--movie", scene, code=2)
         self.assertIn("it is the scene", result.stderr)
-        for fps, name, words in (("1e-9", "a.webm", "0.01 to 1000"), ("60", "a.gif", "a .gif can show 50")):
+        for fps, name, words in (("2000", "a.webm", "0.01 to 1000"), ("60", "a.gif", "a .gif can show 50")):
             scene = self.scene(end=3)
             with open(scene, encoding="utf-8") as file:
                 text = file.read()

@@ -587,7 +587,7 @@ test("colours of curves differ for every kind of colour vision", async () => {
 
 test("forces are named, hidden, and shown alone", async () => {
   const scene = `<scene version="1" start="1" end="6"><surface name="s"><grid columns="21" rows="21" width="20" depth="20"/></surface>
-    <point name="a" center="-6 0 -6" deformationRadius="3" magnitude="50"/><point name="b" center="6 0 -6" deformationRadius="3" magnitude="50"/>
+    <point name="a" center="-6 0 -6" deformationRadius="3" forceRadius="2" magnitude="50"/><point name="b" center="6 0 -6" deformationRadius="3" forceRadius="2" magnitude="50"/>
     <group name="g" center="0 0 4" deformationRadius="6"><point name="c" center="-3 0 4" magnitude="20"/><point name="d" center="3 0 4" magnitude="20"/></group></scene>`;
   writeFileSync(inFolder("named.xml"), scene);
   const url = pageOf(inFolder("named.xml"));

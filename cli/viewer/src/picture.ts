@@ -28,8 +28,8 @@ export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: Pict
   const label = isSheet ? 28 : 0;
   const rows = Math.ceil(frames.length / columns);
   const across = Math.min(columns, frames.length);
-  // Of a sheet, one for all its frames.
-  const strip = isSheet && legend ? 76 : 0;
+  // Of a sheet, room for one legend for all its frames; there in any case, so that its size can be told ahead.
+  const strip = isSheet ? 76 : 0;
   const sheet = document.createElement("canvas");
   [sheet.width, sheet.height] = [width * across, (height + label) * rows + strip];
   const context = sheet.getContext("2d")!;
@@ -56,6 +56,6 @@ export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: Pict
     }
     context.restore();
   });
-  if (legend && strip > 0) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);
+  if (legend && isSheet) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);
   return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no memory for the picture"))), "image/png"));
 }

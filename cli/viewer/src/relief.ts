@@ -5,9 +5,9 @@
  * `edges` are pairs of vertices, `p` positions, `n` unit normals.
  *
  * Along an edge d = p_b - p_a the normal curvature is (n_b - n_a) · d / |d|². The mean over a
- * vertex's edges, times the size, is a number without a unit. What bends with a radius of a third
- * of the size is shaded by about half of what there is: enough for a bulge of a tenth of a sheet, and the ripples of
- * rain do not go black.
+ * vertex's edges, times the size, is a number without a unit. A radius of a sixth of the size gives
+ * half of what there is: enough for a bulge of a tenth of a sheet, while the ripples of rain do not
+ * go black.
  */
 export function bends(p: Float32Array, n: Float32Array, edges: Uint32Array, size: number, out: Float32Array, counts: Uint8Array): void {
   out.fill(0);
