@@ -131,7 +131,8 @@ export class CurvePanel {
         const isShown = this.chosen.has(channel.path);
         option.setAttribute("aria-selected", String(isShown));
         const label = document.createElement("span");
-        label.textContent = channel.path;
+        // A long path breaks behind the name of its element.
+        label.append(...channel.path.split(/(?<=\.)/).flatMap((part, n) => (n === 0 ? [part] : [document.createElement("wbr"), part])));
         option.append(label, ...(isShown ? this.curvesOf(channel).map(swatch) : []));
         option.addEventListener("click", (event) => this.choose(k, event.ctrlKey || event.metaKey || event.shiftKey));
         return option;

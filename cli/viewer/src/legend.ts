@@ -70,6 +70,11 @@ export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, le
   context.save();
   context.font = `${text}px system-ui, sans-serif`;
   context.textBaseline = "middle";
+  // Lines behind it would go through its numbers.
+  context.globalAlpha = 0.8;
+  context.fillStyle = palette.background;
+  context.fillRect(area[0], area[1], area[2] - area[0], area[3] - area[1]);
+  context.globalAlpha = 1;
   const put = (words: string, x: number, align: CanvasTextAlign) => {
     context.textAlign = align;
     context.strokeStyle = palette.background;
