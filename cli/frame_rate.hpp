@@ -18,7 +18,8 @@ inline constexpr double least_rate = 0.01;
 inline constexpr double most_rate = 1000;
 
 /// The simplest fraction whose double quotient is `fps`, 24000/1001 for instance; if it takes
-/// numbers above 10^6, one that is within 10^-6 of it. None: it is not among the rates of movies.
+/// numbers above 10^6, one that is within a millionth of it. None: it is not among the rates of
+/// movies.
 std::optional<FrameRate> frame_rate(double fps);
 
 /// "24", "24000/1001"
