@@ -1069,16 +1069,21 @@ test("movies have the frames, the size and the rate of the scene", async () => {
 });
 
 test("a movie that is interrupted leaves nothing", async () => {
-  const command = spawn(pliant, ["view", example("sheet"), "--movie", inFolder("never.mp4"), "--size", "640x400"], { stdio: ["ignore", "ignore", "pipe"] });
+  const [out, scratch] = [inFolder("never"), inFolder("scratch")];
+  for (const each of [out, scratch]) mkdirSync(each);
+  const words = ["view", example("sheet"), "--movie", path.join(out, "never.mp4"), "--size", "640x400"];
+  const command = spawn(pliant, words, { stdio: ["ignore", "ignore", "pipe"], env: { ...process.env, TMPDIR: scratch } });
   let errors = "";
   command.stderr.on("data", (text) => (errors += text));
-  const scratch = () => readdirSync(tmpdir()).filter((name) => name.startsWith("pliant-view-"));
-  while (command.exitCode === null && !scratch().some((name) => readdirSync(path.join(tmpdir(), name)).includes("movie"))) await new Promise((resume) => setTimeout(resume, 20));
+  // ffmpeg begins its file with the first pictures.
+  const hasBegun = () => readdirSync(scratch).some((name) => name.startsWith("pliant-view-") && readdirSync(path.join(scratch, name)).includes("movie"));
+  while (command.exitCode === null && !hasBegun()) await new Promise((resume) => setTimeout(resume, 20));
   assert.equal(command.exitCode, null, errors);
   const code = await new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); });
   assert.equal(code, 1);
   assert.match(errors, /^pliant: error: interrupted at frame \d+\n$/);
-  assert.deepEqual(readdirSync(folder).filter((name) => name.includes("never")), []);
+  assert.deepEqual(readdirSync(out), []);
+  assert.deepEqual(readdirSync(scratch).filter((name) => name.startsWith("pliant-view-")), []);
 });
 
 const failures = [];
