@@ -12,6 +12,8 @@ export interface PictureJob {
   columns: number;
   /** Pixels under each frame of a sheet for its number; 0: none. */
   label: number;
+  /** Pixels below a sheet for one legend of all its frames; 0: none. */
+  strip: number;
 }
 
 /** Smaller pictures have room for the surfaces only. [px] */
@@ -19,17 +21,14 @@ const leastForWords = { width: 240, height: 180 };
 
 /** A PNG of width x height pixels for one frame; several stand in a table, each that large. */
 export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob> {
-  const { width, height, frames, columns } = job;
+  const { width, height, frames, columns, label, strip } = job;
   const isSheet = frames.length > 1;
   const { palette } = themes;
   const legend = legendOf(viewer, palette);
   const text = Math.min(Math.max(width / 85, 11), 26);
   const hasWords = width >= leastForWords.width && height >= leastForWords.height;
-  const label = isSheet ? 28 : 0;
   const rows = Math.ceil(frames.length / columns);
   const across = Math.min(columns, frames.length);
-  // Of a sheet, room for one legend for all its frames; there in any case, so that its size can be told ahead.
-  const strip = isSheet ? 76 : 0;
   const sheet = document.createElement("canvas");
   [sheet.width, sheet.height] = [width * across, (height + label) * rows + strip];
   const context = sheet.getContext("2d")!;
