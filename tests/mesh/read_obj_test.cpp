@@ -114,7 +114,7 @@ TEST_CASE("a bad OBJ file says what is wrong in which line", "[mesh][read_obj]")
       Case{"", "m.obj: error: the file holds no"},
       Case{"\x7f"
            "ELF\x02\x01",
-           "m.obj: error: the file holds no faces"});
+           "m.obj:1: error: the file is no OBJ"});
   CHECK_THAT(obj_complaint(c.text), StartsWith(c.expected));
 }
 

@@ -26,7 +26,7 @@ std::string scene_with(const std::vector<std::string>& meshes) {
     surfaces += "<surface name=\"s" + std::to_string(surfaces.size()) + "\"><mesh file=\"" + mesh +
                 "\"/></surface>";
   }
-  return "<scene version=\"1\">" + surfaces + "</scene>";
+  return "<scene version=\"1\" start=\"1\" end=\"2\">" + surfaces + "</scene>";
 }
 
 }  // namespace
