@@ -13,6 +13,25 @@
 #include "pliant/io/output_place.hpp"
 
 namespace pliant {
+namespace {
+
+// A new file in the folder that has no name; -1 with errno otherwise.
+int open_nameless(const OpenFolder& folder, const std::filesystem::path& file) {
+  const int nameless = openat(folder.descriptor(), ".", O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+  if (nameless >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return nameless;
+  // A file system that knows no such files: it has a name for a moment, which a kill could leave.
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const std::string name = hidden_name(file) + "." + std::to_string(getpid()) + "-" +
+                             std::to_string(attempt) + ".part";
+    const int descriptor =
+        openat(folder.descriptor(), name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor >= 0) folder.remove(name);
+    if (descriptor >= 0 || errno != EEXIST) return descriptor;
+  }
+  return -1;
+}
+
+}  // namespace
 
 SpoolFile::SpoolFile(std::filesystem::path file, Stream stream)
     : file_(std::move(file)), stream_(std::move(stream)) {}
@@ -25,18 +44,8 @@ Result<SpoolFile> SpoolFile::create(const std::filesystem::path& file) {
   };
   const OpenFolder folder(file);
   if (folder.error() != 0) return cannot_write(folder.error());
-  int descriptor = -1;
-  std::string name;
-  // It has a name for a moment only, which nobody else may have.
-  for (int attempt = 0; descriptor < 0 && attempt < 1000; ++attempt) {
-    name = hidden_name(file) + "." + std::to_string(getpid()) + "-" + std::to_string(attempt) +
-           ".spool";
-    descriptor =
-        openat(folder.descriptor(), name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (descriptor < 0 && errno != EEXIST) break;
-  }
+  const int descriptor = open_nameless(folder, file);
   if (descriptor < 0) return cannot_write(errno);
-  folder.remove(name);
   Stream stream(fdopen(descriptor, "w+b"));
   if (!stream) {
     const int error_number = errno;
