@@ -96,6 +96,13 @@ def held(scene, text, told, preview):
                 value = "true" if float(value) else "false"
             force.set(animate.get("attribute"), value)
             force.remove(animate)
+    # Info tells of the surface at rest. What a force lets go of as the surface moves away from it is
+    # in the animation's peak alone.
+    for surface in root.iter("surface"):
+        solver = surface.find("solver")
+        if solver is None:
+            solver = tree.SubElement(surface, "solver")
+        solver.set("measure", "rest")
     main_region = max(preview["regions"], key=lambda region: region["staticPeak"])
     frames = min(LONGEST, 3 * main_region["vibration"]["settlingFrames"] + 40)
     root.set("end", str(told["start"] + frames))
