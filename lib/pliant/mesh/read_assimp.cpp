@@ -55,9 +55,7 @@ std::string in_one_line(std::string_view reason) {
   return reason.size() > longest ? line + "…" : line;
 }
 
-std::string format_name(const std::string& ending) {
-  return ending == ".fbx" ? "FBX" : ending == ".dae" ? "Collada" : "glTF";
-}
+std::string format_name(const std::string& ending) { return ending == ".fbx" ? "FBX" : "Collada"; }
 
 // By the names of the nodes, and by those of the meshes where no node has the name.
 Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
@@ -116,14 +114,13 @@ Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, 
 }
 
 // Appends what a part says of the shading of its faces, whose corners are given.
-void append_shading(const MeshPart& part, int shading_without, std::span<const int> corner_vertices,
-                    int first_vertex, Shading& shading) {
+void append_shading(const MeshPart& part, std::span<const int> corner_vertices, int first_vertex,
+                    Shading& shading) {
   const auto first_normal = static_cast<int>(shading.normals.size());
   const bool has_normals = !part.normals.empty();
   for (const int vertex : corner_vertices)
     shading.corner_normals.push_back(has_normals ? first_normal + vertex - first_vertex : -1);
-  shading.smoothing.resize(shading.smoothing.size() + part.sizes.size(),
-                           has_normals ? Shading::unsaid : shading_without);
+  shading.smoothing.resize(shading.smoothing.size() + part.sizes.size(), Shading::unsaid);
   for (std::size_t k = 0; k + 3 <= part.normals.size(); k += 3) {
     const std::array<double, 3> normal = {part.normals[k], part.normals[k + 1],
                                           part.normals[k + 2]};
@@ -144,7 +141,7 @@ void append_material(const std::string& name, std::size_t face_count, FaceNames&
   materials.of_faces.resize(materials.of_faces.size() + face_count, index);
 }
 
-Result<Mesh> merged(const MeshMessage& message, int uv_set, int shading_without) {
+Result<Mesh> merged(const MeshMessage& message, int uv_set) {
   if (auto checked = check_sets(message, uv_set); !checked) return fail(checked.error());
   if (auto checked = check_size(message); !checked) return fail(checked.error());
   Mesh mesh;
@@ -159,8 +156,8 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set, int shading_without)
     const std::size_t first_corner = mesh.corner_vertices.size();
     if (auto added = append_faces(part, first_vertex, first_uv, mesh); !added)
       return fail(added.error());
-    append_shading(part, shading_without, std::span(mesh.corner_vertices).subspan(first_corner),
-                   first_vertex, shading);
+    append_shading(part, std::span(mesh.corner_vertices).subspan(first_corner), first_vertex,
+                   shading);
     append_material(std::string(part.material), part.sizes.size(), mesh.materials);
     for (std::size_t k = 0; k + 3 <= part.positions.size(); k += 3, ++row)
       mesh.positions.row(row) << part.positions[k], part.positions[k + 1], part.positions[k + 2];
@@ -247,7 +244,7 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
   if (!chosen) return fail(chosen.error());
   if (message->chosen != *chosen)
     return fail(reader_failed(format, "gave another object than it was asked for"));
-  auto mesh = merged(*message, uv_set, format == "glTF" ? Shading::flat : Shading::unsaid);
+  auto mesh = merged(*message, uv_set);
   if (!mesh) return mesh;
   if (auto applied = apply(message->to_file, mesh->positions); !applied)
     return fail(applied.error());
