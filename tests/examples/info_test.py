@@ -22,7 +22,7 @@ import numpy as np
 PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
 FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia")
 TOLERANCE = 0.1
-LONGEST = 1500  # frames of a held scene
+LONGEST = 3000  # frames of a held scene
 
 MADE = """<scene version="1" fps="{fps}" start="1" end="60">
   <surface name="sheet"><grid columns="{columns}" rows="{rows}" width="20" depth="{depth}"/>
@@ -104,7 +104,7 @@ def held(scene, text, told, preview):
             solver = tree.SubElement(surface, "solver")
         solver.set("measure", "rest")
     main_region = max(preview["regions"], key=lambda region: region["staticPeak"])
-    frames = min(LONGEST, 3 * main_region["vibration"]["settlingFrames"] + 40)
+    frames = min(LONGEST, 6 * main_region["vibration"]["settlingFrames"] + 60)
     root.set("end", str(told["start"] + frames))
     return tree.tostring(root, encoding="unicode"), main_region["vibration"], frames
 
@@ -120,7 +120,7 @@ def check_held(frames, told, preview, vibration, count):
     sizes = np.linalg.norm(displacement[-1], axis=1)
     node = sizes.argmax()
     static = preview["staticPeak"]
-    is_settled = len(frames) > 2 * vibration["settlingFrames"] + 30
+    is_settled = len(frames) > 6 * vibration["settlingFrames"] + 30
     if not is_settled or static == 0:
         return
     assert is_close(static, sizes[node]), ("static peak", static, sizes[node])
@@ -134,11 +134,11 @@ def check_held(frames, told, preview, vibration, count):
     ratio, frequency = vibration["dampingRatio"], vibration["frequency"]
     if ratio is None or ratio > 0.3 or frequency > told["fps"] / 3:
         return
-    # The slowest vibration outlasts the others; what has died away to rounding tells nothing.
+    # The slowest vibration outlasts the others. The last frame, which stands for the place of rest,
+    # is only so near to it: the end of the curve tells nothing.
     period = told["fps"] / frequency
     first = int(0.5 * settled)
-    loud = np.nonzero(np.abs(away[first:]) > 1e-7)[0]
-    way = away[first:first + loud[-1] + 1]
+    way = away[first:4 * settled]
     at = crossings(way)
     if len(at) < 4:
         return
@@ -146,14 +146,17 @@ def check_held(frames, told, preview, vibration, count):
     assert is_close(frequency, measured), ("rings", frequency, measured)
     count["ring frequency"] += 1
     # Three frames in a row of a vibration that dies away: way[k+2] = p way[k+1] - q way[k].
-    if period < 6 or len(way) < 2 * period:
+    way = away[2 * settled:4 * settled]
+    if period < 6 or len(way) < period:
         return
     size = np.abs(way[:-2])
     (p, q), *_ = np.linalg.lstsq(np.stack([way[1:-1], -way[:-2]], axis=1) / size[:, None],
                                  way[2:] / size, rcond=None)
     root = np.log(complex(p, np.sqrt(max(0.0, 4 * q - p * p))) / 2)
     measured = -root.real / abs(root)
-    if abs(abs(root.imag) * told["fps"] / (2 * np.pi) / frequency - 1) < 0.05:  # it is alone by now
+    error = np.abs(p * way[1:-1] - q * way[:-2] - way[2:]) / np.abs(way).max()
+    is_alone = error.max() < 0.02  # others have died away
+    if is_alone and abs(abs(root.imag) * told["fps"] / (2 * np.pi) / frequency - 1) < 0.05:
         assert is_close(ratio, measured), ("damping ratio", ratio, measured)
         count["damping ratio"] += 1
 
@@ -165,7 +168,7 @@ def check(name, scene, folder, count):
     for preview in told["together"]:
         frames = bake(scene, preview["surface"])
         sizes = np.linalg.norm(frames - frames[0], axis=2).max(axis=1)
-        if name != "flag" and preview["animation"]:
+        if preview["animation"]:
             assert is_close(preview["animation"]["peak"], sizes.max()), (
                 name, "peak", preview["animation"], sizes.max())
             assert preview["animation"]["frame"] == told["start"] + sizes.argmax(), (name, preview)

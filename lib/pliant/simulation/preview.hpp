@@ -19,7 +19,7 @@ struct RegionPreview {
   double static_peak = 0;         ///< as in `Preview`
   double first_frequency = 0;     ///< of its slowest vibration, undamped [Hz]; 0 without density
   double damping_ratio = 0;       ///< of that vibration [1]: below 1 it rings; 0 without density
-  Swing animated;                 ///< the slowest vibration that the load excites, as it will be
+  Swing animated;                 ///< the vibration that the load excites most, as it will be
                                   ///< seen: with what backward Euler adds at this dt
   Settling settling;              ///< to 5 % of the node of the static peak, as it will be seen
   bool has_vibration = false;     ///< else it has too many nodes for that, or none that moves, and

@@ -14,14 +14,16 @@ namespace {
 // Patches of other outlines than rectangles have a sparse factor, which takes long for many nodes.
 constexpr int most_masked_unknowns = 50'000;
 
-// A vibration with less of a node's displacement than this is not what the node is seen to do.
-constexpr double least_share = 0.02;
-
-double slowest_seen(std::span<const ExcitedMode> modes, double first) {
-  const auto seen = std::find_if(modes.begin(), modes.end(), [](const ExcitedMode& mode) {
-    return std::abs(mode.share) >= least_share;
-  });
-  return seen != modes.end() ? seen->lambda : first;
+// Of the vibrations that a node shows the one that is seen: share by period. The largest share
+// alone might be that of a bundle of fast ones, which are gone at once.
+double seen_lambda(std::span<const ExcitedMode> modes) {
+  const auto weight = [](const ExcitedMode& mode) {
+    return std::abs(mode.share) / std::sqrt(mode.lambda);
+  };
+  return std::max_element(
+             modes.begin(), modes.end(),
+             [&](const auto& one, const auto& other) { return weight(one) < weight(other); })
+      ->lambda;
 }
 
 }  // namespace
@@ -193,8 +195,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
     region.first_frequency = natural.frequency;
     region.damping_ratio = natural.damping_ratio;
   }
-  region.animated =
-      stepped_swing(slowest_seen(modes, *lambda), dynamics, steps, inputs.frame_length);
+  region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, inputs.frame_length);
   region.settling = settling_of(modes, dynamics, steps, inputs.frame_length);
   region.has_vibration = true;
   region.solver_memory = solver->memory();
