@@ -13,6 +13,7 @@
 
 using namespace pliant;
 using pliant::testing::ell;
+using pliant::testing::random_state;
 using pliant::testing::union_plate;
 using pliant::testing::union_plates;
 using pliant::testing::UnionPlate;

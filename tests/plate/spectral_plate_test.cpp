@@ -8,6 +8,7 @@
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::random_state;
 using pliant::testing::unit_grid;
 
 namespace {
