@@ -130,7 +130,8 @@ Result<int> Simulation::restore(std::string_view bytes) {
                               scene_.start, scene_.end));
   }
   if (count != bodies_.size()) {
-    return refuse(fmt::format("it is of {} surface{}, the scene has {}", count, count == 1 ? "" : "s", bodies_.size()));
+    return refuse(fmt::format("it is of {} surface{}, the scene has {}", count,
+                              count == 1 ? "" : "s", bodies_.size()));
   }
   std::vector<BodyState> states;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
