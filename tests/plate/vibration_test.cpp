@@ -124,5 +124,9 @@ TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[pl
   const auto solver = make_solver();
   const PlateSystem system{grid, {}, 0};
   const auto modes = excited_modes(*solver, system, shape, 3).value();
-  CHECK(modes[0].lambda > 2 * smallest_eigenvalue(*solver, system).value());
+  const double first = smallest_eigenvalue(*solver, system).value();
+  for (const ExcitedMode& mode : modes) {
+    if (mode.lambda < 2 * first) CHECK(std::abs(mode.share) < 1e-9);  // by rounding
+  }
+  CHECK(modes.size() > 2);
 }

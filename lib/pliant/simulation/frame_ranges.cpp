@@ -43,14 +43,15 @@ void FrameRanges::add(const FrameRanges& other) {
 std::string FrameRanges::to_string(std::size_t most) const {
   PLIANT_EXPECTS(most >= 1);
   // One that is left out would take as much to say.
-  const std::size_t told = ranges_.size() <= most + 1 ? ranges_.size() : most;
+  const bool is_all = ranges_.size() <= most || ranges_.size() - 1 == most;
+  const std::size_t told = is_all ? ranges_.size() : most;
   std::string text;
   for (std::size_t k = 0; k < told; ++k) {
     const auto& [first, last] = ranges_[k];
     if (!text.empty()) text += ", ";
     text += first == last ? fmt::to_string(first) : fmt::format("{}-{}", first, last);
   }
-  if (told == ranges_.size()) return text;
+  if (is_all) return text;
   return text +
          fmt::format(" and {} more ranges to {}", ranges_.size() - told, ranges_.back().second);
 }
