@@ -3,9 +3,8 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "cache.hpp"
+#include "command_line.hpp"
 #include "resources.hpp"
 #include "scene_input.hpp"
 

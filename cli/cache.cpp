@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "counted.hpp"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+
 #include "info_json.hpp"
 #include "info_text.hpp"
 #include "interrupt.hpp"

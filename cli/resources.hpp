@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "command_line.hpp"
 #include "pliant/simulation/simulation.hpp"
 
 namespace pliant::cli {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 

@@ -5,8 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
-
+#include "command_line.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/scene/scene.hpp"
 

@@ -9,7 +9,9 @@ add_library(pliant::plain_settings ALIAS pliant_plain_settings)
 target_compile_features(pliant_plain_settings INTERFACE cxx_std_20)
 # -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
 target_compile_options(pliant_plain_settings INTERFACE
-  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  -ffp-contract=off -Wall -Wextra -Wpedantic
+  # Where files are compiled together, a name in one hides what is another's.
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wnon-virtual-dtor -Wold-style-cast
   -Wcast-qual -Woverloaded-virtual -Wconversion -Wno-sign-conversion
   $<$<BOOL:${PLIANT_WERROR}>:-Werror>
   "SHELL:-include \"${CMAKE_CURRENT_LIST_DIR}/strict_math.hpp\"")

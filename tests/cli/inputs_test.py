@@ -13,15 +13,19 @@ HAS_PAGE = subprocess.run([PLIANT, "view", "no-such-scene.xml"], capture_output=
                           timeout=60).returncode == 2
 
 
+# A name that the numbers of a buffers.gltf may get.
+BUFFERS = "buffers.0123456789abcdef.bin"
+
+
 class Inputs(Command):
     def setUp(self):
-        """head.gltf with its numbers in buffers.bin, and mesh.xml, which is made from them."""
+        """head.gltf with its numbers in BUFFERS, and mesh.xml, which is made from them."""
         super().setUp()
         self.run_pliant("bake", self.scene(end=1), "-o", "head.gltf")
         with open(self.path("head.gltf"), encoding="utf-8") as file:
             self.gltf = json.load(file)
-        os.rename(self.path("head.bin"), self.path("buffers.bin"))
-        self.refer_to("buffers.bin")
+        os.rename(self.path(self.gltf["buffers"][0]["uri"]), self.path(BUFFERS))
+        self.refer_to(BUFFERS)
         os.remove(self.path("scene.xml"))
         self.write("mesh.xml", SCENE.format(end=3).replace(GRID, '<mesh file="head.gltf"/>'))
 
@@ -39,18 +43,18 @@ class Inputs(Command):
         self.assertEqual({name: self.read(name) for name in before}, before)
 
     def test_no_output_takes_the_place_of_what_a_mesh_refers_to(self):
-        made_from = r"would overwrite \S*buffers\.bin, which the scene is made from"
+        made_from = r"would overwrite \S*buffers\.\w+\.bin, which the scene is made from"
         refers = "it is a file that a mesh of the scene refers to; choose another name"
         self.refused("bake", "mesh.xml", "-o", "buffers.gltf", says=made_from)
-        self.refused("bake", "mesh.xml", "-o", "a.npy", "--regions", "buffers.bin",
-                     says="--regions buffers.bin: it is a file that a mesh of the scene refers to")
-        self.refused("replay", "record", "mesh.xml", "-o", "buffers.bin",
+        self.refused("bake", "mesh.xml", "-o", "a.npy", "--regions", BUFFERS,
+                     says=f"--regions {BUFFERS}: it is a file that a mesh of the scene refers to")
+        self.refused("replay", "record", "mesh.xml", "-o", BUFFERS,
                      says="would take the place of a file that a mesh of the scene refers to")
         if HAS_PAGE:
-            self.refused("view", "mesh.xml", "-o", "buffers.bin", says=refers)
-            self.refused("view", "mesh.xml", "--png", "buffers.bin", says=refers)
+            self.refused("view", "mesh.xml", "-o", BUFFERS, says=refers)
+            self.refused("view", "mesh.xml", "--png", BUFFERS, says=refers)
         for ending in ("npy", "pc2", "mdd", "glb", "usda", "csv", "svg"):
-            os.rename(self.path("buffers.bin"), self.path("n." + ending))
+            os.rename(self.path(BUFFERS), self.path("n." + ending))
             self.refer_to("n." + ending)
             if ending in ("csv", "svg"):
                 self.refused("curves", "mesh.xml", "-o", "n." + ending,
@@ -58,15 +62,15 @@ class Inputs(Command):
             else:
                 self.refused("bake", "mesh.xml", "-o", "n." + ending,
                              says=rf"would overwrite \S*n\.{ending}, which")
-            os.rename(self.path("n." + ending), self.path("buffers.bin"))
-        os.rename(self.path("buffers.bin"), self.path("s.0002.obj"))
+            os.rename(self.path("n." + ending), self.path(BUFFERS))
+        os.rename(self.path(BUFFERS), self.path("s.0002.obj"))
         self.refer_to("s.0002.obj")
         self.refused("bake", "mesh.xml", "-o", "s.obj", says=r"would overwrite \S*s\.0002\.obj")
 
     def test_an_input_is_known_under_the_name_that_a_link_hides(self):
-        os.rename(self.path("buffers.bin"), self.path("real.bin"))
-        os.symlink("real.bin", self.path("buffers.bin"))
-        self.refused("bake", "mesh.xml", "-o", "real.gltf", says=r"would overwrite \S*real\.bin")
+        os.rename(self.path(BUFFERS), self.path("real.0123456789abcdef.bin"))
+        os.symlink("real.0123456789abcdef.bin", self.path(BUFFERS))
+        self.refused("bake", "mesh.xml", "-o", "real.gltf", says=r"would overwrite \S*real\.\w+\.bin")
         os.rename(self.path("head.gltf"), self.path("a.gltf"))
         os.symlink("a.gltf", self.path("head.gltf"))
         self.refused("bake", "mesh.xml", "-o", "a.gltf", says=r"would overwrite \S*head\.gltf")
@@ -85,18 +89,18 @@ class Inputs(Command):
         shutil.copy(self.path("mesh.xml"), self.path("shot/mesh.xml"))
         shutil.copy(self.path("head.gltf"), self.path("shot/head.gltf"))
         self.assertIn("No such file", self.run_pliant("validate", "shot/mesh.xml", code=2).stderr)
-        self.refer_to("../buffers.bin", "shot/head.gltf")
+        self.refer_to(f"../{BUFFERS}", "shot/head.gltf")
         commands = [["validate"], ["info"], ["bake", "-o", "a.npy"],
                     ["replay", "record", "-o", "a.replay"]]
         if HAS_PAGE:
             commands.append(["view", "-o", "a.html"])
         for command in commands:
-            self.refused(*command, "shot/mesh.xml", says=outside % r"\.\./buffers\.bin")
+            self.refused(*command, "shot/mesh.xml", says=outside % r"\.\./buffers\.\w+\.bin")
             self.run_pliant(*command, "shot/mesh.xml", "--root", ".")
         self.run_pliant("replay", "verify", "a.replay", "--root", ".")
         self.assertIn("lies outside", self.run_pliant("replay", "verify", "a.replay", code=2).stderr)
         self.run_pliant("curves", "shot/mesh.xml", "--root", ".")
-        os.symlink("../buffers.bin", self.path("shot/near.bin"))
+        os.symlink(f"../{BUFFERS}", self.path("shot/near.bin"))
         self.refer_to("near.bin", "shot/head.gltf")
         self.refused("validate", "shot/mesh.xml", says=outside % r"near\.bin")
         self.run_pliant("validate", "shot/mesh.xml", "--root", self.folder)
@@ -130,16 +134,16 @@ class Inputs(Command):
     def test_a_replay_knows_what_a_mesh_refers_to(self):
         self.run_pliant("replay", "record", "mesh.xml", "-o", "run.replay")
         head = json.loads(self.read("run.replay").splitlines()[0])
-        self.assertEqual([file["name"] for file in head["files"]], ["head.gltf", "buffers.bin"])
-        with open(self.path("buffers.bin"), "ab") as file:
+        self.assertEqual([file["name"] for file in head["files"]], ["head.gltf", BUFFERS])
+        with open(self.path(BUFFERS), "ab") as file:
             file.write(b"more")  # behind what is read
         told = self.run_pliant("replay", "verify", "run.replay")
-        self.assertEqual(told.stderr, "run.replay: note: the file buffers.bin was changed\n")
-        with open(self.path("buffers.bin"), "wb") as file:
+        self.assertEqual(told.stderr, f"run.replay: note: the file {BUFFERS} was changed\n")
+        with open(self.path(BUFFERS), "wb") as file:
             file.write(b"cut")
         told = self.run_pliant("replay", "verify", "run.replay", code=2)
         self.assertRegex(told.stderr, r"buffers\[0\] has 3 of its \d+ bytes")
-        self.assertIn("the file buffers.bin was changed", told.stderr)
+        self.assertIn(f"the file {BUFFERS} was changed", told.stderr)
 
     def test_a_save_of_what_a_mesh_refers_to_is_seen(self):
         if not HAS_PAGE:
@@ -156,7 +160,7 @@ class Inputs(Command):
                 while told.count(b" frames, ") < bakes:
                     self.assertTrue(ready.select(timeout=60), told)
                     told += os.read(server.stdout.fileno(), 4096)
-                with open(self.path("buffers.bin"), "ab") as file:
+                with open(self.path(BUFFERS), "ab") as file:
                     file.write(b"more")
 
     def test_a_file_that_is_something_else_is_not_quoted(self):

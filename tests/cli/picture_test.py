@@ -87,8 +87,8 @@ class Picture(Command):
     def test_a_sheet_has_the_size_of_all_its_frames(self):
         self.draw("job = json.loads(send(f'GET /{token}/job HTTP/1.1\\r\\nHost: {own}\\r\\n\\r\\n').split(b'\\r\\n\\r\\n')[1])\n"
                   "rows = -(-len(job['frames']) // job['columns'])\n"
-                  "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label'])))", "--contact-sheet")
-        self.assertEqual(size_of(self.read("out.png")), (4 * 64, 3 * (48 + 28)))
+                  "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))", "--contact-sheet")
+        self.assertEqual(size_of(self.read("out.png")), (4 * 64, 3 * (48 + 28) + 76))
 
     def test_no_list_of_processes_shows_the_token(self):
         work = "note()\npost(png(64, 48))"

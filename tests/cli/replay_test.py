@@ -115,7 +115,7 @@ class Replay(Command):
         self.assertIn("missing.replay", self.replay("verify", "missing.replay", code=2).stderr)
 
     def test_wrong_usage_is_exit_code_2(self):
-        for arguments in ([], ["record"], ["record", "scene.xml"], ["verify"], ["diff", "a"],
+        for arguments in (["record"], ["record", "scene.xml"], ["verify"], ["diff", "a"],
                           ["record", "scene.xml", "-o", "a.replay", "--states", "0"],
                           ["record", "scene.xml", "-o", "a.replay", "--states", "1.5"],
                           ["record", "scene.xml", "-o", "a.replay", "--last", "x"],
@@ -128,11 +128,12 @@ class Replay(Command):
                 told = self.replay(*arguments, code=2)
                 self.assertEqual(told.stderr.count("\n"), 1)
                 self.assertIn("error: ", told.stderr)
+        self.assertIn("record", self.replay(code=2).stderr)  # bare: its help
         self.assertEqual(os.listdir(self.folder), ["scene.xml"])
 
     def test_a_disk_that_refuses_is_exit_code_1(self):
         told = self.replay("record", "scene.xml", "-o", "no/such/folder.replay", code=1)
-        self.assertIn("folder.replay: error: ", told.stderr)
+        self.assertEqual(told.stderr, "pliant: error: -o no/such/folder.replay: the folder no/such does not exist\n")
 
     def test_ctrl_c_leaves_nothing(self):
         self.write("long.xml", SCENE.format(end=10**6))

@@ -37,12 +37,6 @@ std::string changed(std::string text, const std::string& from, const std::string
   return text.replace(text.find(from), from.size(), to);
 }
 
-std::string repeated(const std::string& text, int count) {
-  std::string all;
-  for (int k = 0; k < count; ++k) all += text;
-  return all;
-}
-
 std::string small_glb() {
   Gltf gltf;
   const std::string meshes = gltf_mesh(gltf.primitive(small_sheet(true)));

@@ -63,12 +63,4 @@ inline std::string floats(std::initializer_list<float> numbers) {
   return bytes;
 }
 
-inline void check_equal(const Mesh& mesh, const Mesh& expected) {
-  CHECK(mesh.positions == expected.positions);
-  CHECK(mesh.uvs == expected.uvs);
-  CHECK(mesh.face_sizes == expected.face_sizes);
-  CHECK(mesh.corner_vertices == expected.corner_vertices);
-  CHECK(mesh.corner_uvs == expected.corner_uvs);
-}
-
 }  // namespace pliant::testing

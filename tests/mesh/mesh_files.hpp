@@ -12,6 +12,7 @@
 
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "support/catch.hpp"
 
 namespace pliant::testing {
 
@@ -359,6 +360,21 @@ inline std::string fbx_binary(const Mesh& mesh, const FbxMore& more = {}) {
   const int width = more.version >= 7500 ? 8 : 4;
   for (const FbxNode& node : nodes) bytes += node.bytes(bytes.size(), width);
   return bytes + std::string(25 + 160, '\0');
+}
+
+/// Checks what a mesh is made of; not how it is shaded.
+inline void check_equal(const Mesh& mesh, const Mesh& expected) {
+  CHECK(mesh.positions == expected.positions);
+  CHECK(mesh.uvs == expected.uvs);
+  CHECK(mesh.face_sizes == expected.face_sizes);
+  CHECK(mesh.corner_vertices == expected.corner_vertices);
+  CHECK(mesh.corner_uvs == expected.corner_uvs);
+}
+
+inline std::string repeated(const std::string& text, int count) {
+  std::string all;
+  for (int k = 0; k < count; ++k) all += text;
+  return all;
 }
 
 }  // namespace pliant::testing

@@ -59,25 +59,11 @@ Mesh by_corner(const Mesh& mesh) {
   return corners;
 }
 
-void check_equal(const Mesh& mesh, const Mesh& expected) {
-  CHECK(mesh.positions == expected.positions);
-  CHECK(mesh.uvs == expected.uvs);
-  CHECK(mesh.face_sizes == expected.face_sizes);
-  CHECK(mesh.corner_vertices == expected.corner_vertices);
-  CHECK(mesh.corner_uvs == expected.corner_uvs);
-}
-
 /// A Collada file of the sheet of quads, changed.
 std::string changed_collada(const std::string& from, const std::string& to) {
   std::string text = sheet_collada(collada_node("n", instance));
   REQUIRE(text.find(from) != std::string::npos);
   return text.replace(text.find(from), from.size(), to);
-}
-
-std::string repeated(const std::string& text, int count) {
-  std::string all;
-  for (int k = 0; k < count; ++k) all += text;
-  return all;
 }
 
 }  // namespace

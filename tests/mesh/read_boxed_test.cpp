@@ -21,7 +21,7 @@ Result<Mesh> misread(const std::filesystem::path& file, const std::string& what,
   return read_boxed(misbehaving(), file, what, 0, limits);
 }
 
-std::string complaint(const std::filesystem::path& file, const std::string& what) {
+std::string boxed_complaint(const std::filesystem::path& file, const std::string& what) {
   const auto mesh = misread(file, what);
   if (mesh) return "none";
   CHECK(mesh.error().code == ErrorCode::InvalidInput);
@@ -35,8 +35,8 @@ TEST_CASE("whatever becomes of the reader is one line that names the file", "[me
   const auto file = folder.write("a.fbx", "1234567");
   const auto check = [&](const std::string& what, const std::string& expected) {
     CAPTURE(what);
-    CHECK_THAT(complaint(file, what), EndsWith("a.fbx: error: the FBX reader " + expected +
-                                               ": the file is broken or hostile"));
+    CHECK_THAT(boxed_complaint(file, what), EndsWith("a.fbx: error: the FBX reader " + expected +
+                                                     ": the file is broken or hostile"));
   };
   check("crash", "crashed on this file (signal 11, Segmentation fault)");
   check("abort", "crashed on this file (signal 6, Aborted)");
@@ -46,12 +46,13 @@ TEST_CASE("whatever becomes of the reader is one line that names the file", "[me
   check("nothing", "gave an answer that is no mesh");
   check("allocate", "needs more than 537 MB of memory for a file of 7 B");
   check("flood", "made more than 134 MB of this file of 7 B");
-  CHECK_THAT(complaint(folder.write("b.dae", ""), "crash"), contains_text("the Collada reader"));
+  CHECK_THAT(boxed_complaint(folder.write("b.dae", ""), "crash"),
+             contains_text("the Collada reader"));
 }
 
 TEST_CASE("what the reader says is one short line", "[mesh][read_boxed]") {
   const ScratchFolder folder;
-  const std::string told = complaint(folder.write("a.fbx", ""), "tell lies");
+  const std::string told = boxed_complaint(folder.write("a.fbx", ""), "tell lies");
   CHECK_THAT(told, contains_text("the file cannot be read: ?[2Jgo and \"run\" thisxxx"));
   CHECK(told.find_first_of("\x1b\n") == std::string::npos);
   CHECK(told.size() < 400);

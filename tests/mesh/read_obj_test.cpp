@@ -139,7 +139,7 @@ TEST_CASE("a file that is no OBJ is refused without quoting it", "[mesh][read_ob
           std::vector<std::string>{"m.obj:3: error: the file is no OBJ: no statement of one begins "
                                    "like this line"});
   }
-  CHECK(parse_obj("mtllib a.mtl\nsomething else\n" + quad + "f 1 2 3\n", "m.obj"));
+  CHECK(parse_obj("mtllib a.mtl\nsomething else\n" + obj_quad + "f 1 2 3\n", "m.obj"));
 }
 
 TEST_CASE("all problems of an OBJ file come in one run, up to a limit", "[mesh][read_obj]") {
@@ -214,7 +214,7 @@ TEST_CASE("normals of an OBJ file that cannot be read are none", "[mesh][read_ob
 
 TEST_CASE("vertices of an OBJ keep the numbers that the file gives them", "[mesh][read_obj]") {
   const std::string two =
-      quad + "o a\nf 1/1 2/2 3/3\nv 7 0 0\nv 8 0 0\nv 9 0 1\no b\nf 5/1 6/2 7/3\n";
+      obj_quad + "o a\nf 1/1 2/2 3/3\nv 7 0 0\nv 8 0 0\nv 9 0 1\no b\nf 5/1 6/2 7/3\n";
   const Mesh first = parse_obj(two, "m.obj", "a").value();
   CHECK(first.number_of(0) == 1);
   const Mesh second = parse_obj(two, "m.obj", "b").value();

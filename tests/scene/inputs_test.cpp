@@ -20,7 +20,7 @@ std::string gltf_with(const std::vector<std::string>& uris) {
   return R"({"asset":{"version":"2.0"},"scenes":[{}],"buffers":[)" + buffers + "]}";
 }
 
-std::string scene_with(const std::vector<std::string>& meshes) {
+std::string scene_of_meshes(const std::vector<std::string>& meshes) {
   std::string surfaces;
   for (const std::string& mesh : meshes) {
     surfaces += "<surface name=\"s" + std::to_string(surfaces.size()) + "\"><mesh file=\"" + mesh +
@@ -38,7 +38,7 @@ TEST_CASE("a scene's inputs are all files that reading it opens", "[scene][input
   folder.write("b.GLTF", gltf_with({"more.bin"}));
   folder.write("c.gltf", "rubbish");
   const auto file = folder.write(
-      "scene.xml", scene_with({"a.gltf", "b.GLTF", "a.gltf", "c.gltf", "none.glb", "d.obj"}));
+      "scene.xml", scene_of_meshes({"a.gltf", "b.GLTF", "a.gltf", "c.gltf", "none.glb", "d.obj"}));
   const auto inputs = inputs_of(load_scene(file).value());
   struct Expected {
     std::filesystem::path file;
@@ -66,16 +66,16 @@ TEST_CASE("a scene's root is its folder, another one, or each mesh's own", "[sce
   std::filesystem::create_directory(folder.file("shot"));
   folder.write("near.bin", "");
   const auto mesh = folder.write("shot/a.gltf", gltf_with({"../near.bin", "own.bin"}));
-  const auto file = folder.write("shot/scene.xml", scene_with({"a.gltf"}));
+  const auto file = folder.write("shot/scene.xml", scene_of_meshes({"a.gltf"}));
   CHECK(inputs_of(load_scene(file).value()).size() == 3);
   CHECK(inputs_of(load_scene(file, folder.path()).value()).size() == 4);
-  CHECK(inputs_of(parse_scene(scene_with({"a.gltf"}), "x", folder.file("shot")).value()).size() ==
+  CHECK(inputs_of(parse_scene(scene_of_meshes({"a.gltf"}), "x", folder.file("shot")).value()).size() ==
         3);
   Scene scene;
   scene.surfaces.push_back({.name = "s", .shape = MeshFile{.path = mesh}});
   CHECK(inputs_of(scene).size() == 2);
   CHECK(inputs_of(Scene{}).empty());
   // In the current folder: not that of a mesh elsewhere.
-  const auto parsed = parse_scene(scene_with({mesh.string()}), "x", "").value();
+  const auto parsed = parse_scene(scene_of_meshes({mesh.string()}), "x", "").value();
   CHECK(std::get<MeshFile>(parsed.surfaces.front().shape).root == ".");
 }

@@ -30,7 +30,7 @@ TEST_CASE("all forces act as they do on the surface", "[simulation][acting]") {
   const auto faults = std::make_shared<ForceFaults>();
   for (int frame = 1; frame <= 20; ++frame) {
     const BodyInputs inputs = all.at(frame, faults);
-    const BodyInputs expected = sample_inputs(s, s.surfaces[0], frame).body;
+    const BodyInputs expected = sample_inputs(s, SceneSampling(s), 0, frame).body;
     CAPTURE(frame);
     CHECK(inputs.selectors == expected.selectors);
     REQUIRE(inputs.forces.size() == expected.forces.size());

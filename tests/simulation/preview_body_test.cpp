@@ -14,7 +14,7 @@ TEST_CASE("what is settled is what a massless surface comes to", "[simulation][p
   MemoryBudget memory;
   PreviewBody body(shape.mapping, s.surfaces[0].solver, {}, memory);
   REQUIRE(body.reserve());
-  const BodyInputs inputs = sample_inputs(s, s.surfaces[0], 1).body;
+  const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   const auto settled_peak = [&](bool is_plain) {
     REQUIRE(body.settle(inputs, is_plain));
     return body.peak(inputs.transform).size;
@@ -40,7 +40,7 @@ TEST_CASE("a plain body knows no rest but its own shape", "[simulation][preview]
   MemoryBudget memory;
   PreviewBody body(shape.mapping, s.surfaces[0].solver, {}, memory);
   REQUIRE(body.reserve());
-  const BodyInputs inputs = sample_inputs(s, s.surfaces[0], 1).body;
+  const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   REQUIRE(body.settle(inputs, false));
   CHECK(body.peak(inputs.transform).size > 0.01);
   REQUIRE(body.settle(inputs, true));

@@ -57,6 +57,7 @@ ActingForces::ActingForces(const Scene& scene, const Surface& surface,
   for (const std::size_t force : forces_) {
     const auto found = named.find(scene.forces[force].group);
     group_of_.push_back(found != named.end() ? found->second : nullptr);
+    clocks_.push_back(clock_of(scene.forces[force], scene.start));
   }
   for (const std::size_t group : groups) groups_.push_back(&scene.groups[group]);
 }
@@ -67,7 +68,7 @@ BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& fault
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const Force& force = scene_.forces[forces_[k]];
     if (!pliant::is_enabled(force, group_of_[k], frame)) continue;
-    inputs.forces.push_back(sample_force(scene_, force, surface_, frame, faults));
+    inputs.forces.push_back(sample_force(scene_, force, surface_, frame, faults, clocks_[k].get()));
     inputs.selectors.push_back(static_cast<int>(inputs.selectors.size()));
     selecting.push_back(group_of_[k]);
   }

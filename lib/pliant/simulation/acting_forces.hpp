@@ -39,6 +39,7 @@ class ActingForces {
   std::vector<std::size_t> forces_;
   std::vector<const Group*> group_of_;  // of each force; null: none
   std::vector<const Group*> groups_;
+  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // of each force; null: it needs none
 };
 
 }  // namespace pliant

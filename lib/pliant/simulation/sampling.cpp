@@ -141,12 +141,14 @@ void ForceFaults::clear() {
   first_.clear();
 }
 
-SceneSampling::SceneSampling(const Scene& scene)
-    : targets_(targets_of(scene)), clocks_(scene.forces.size()) {
-  for (std::size_t k = 0; k < clocks_.size(); ++k) {
-    const auto* const noise = std::get_if<NoiseChannels>(&scene.forces[k].shape);
-    if (noise && noise->rate.is_animated()) clocks_[k] = std::make_unique<NoiseClock>(scene.start);
-  }
+std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
+  const auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+  if (!noise || !noise->rate.is_animated()) return nullptr;
+  return std::make_unique<NoiseClock>(start);
+}
+
+SceneSampling::SceneSampling(const Scene& scene) : targets_(targets_of(scene)) {
+  for (const Force& force : scene.forces) clocks_.push_back(clock_of(force, scene.start));
 }
 
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,

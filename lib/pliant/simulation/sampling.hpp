@@ -48,6 +48,10 @@ struct SurfaceInputs {
   std::vector<int> group_selectors = {};  ///< kept for its memory
 };
 
+/// The time of a noise whose rate is keyed, in a scene that starts at that frame; null: of any
+/// other force.
+std::unique_ptr<NoiseClock> clock_of(const Force& force, int start);
+
 /// What is the same in all frames of a scene, found once: who acts on whom, and how far the time of
 /// noises with a keyed rate has come. Holds indices only, so the scene may move, but not change.
 /// Safe from several threads at once.
