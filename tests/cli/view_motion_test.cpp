@@ -156,5 +156,5 @@ TEST_CASE("a position beyond float is an error that names its frame and vertex",
   const auto added = packer.add(positions, 17);
   REQUIRE_FALSE(added);
   CHECK(added.error().code == ErrorCode::NotFinite);
-  CHECK(added.error().message.find("vertex 2 at frame 17") != std::string::npos);
+  CHECK(added.error().message.find("vertex 1 at frame 17") != std::string::npos);
 }

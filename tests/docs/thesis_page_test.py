@@ -31,7 +31,7 @@ def main():
     for path in re.findall(r"\]\((?!https?:)([^)#]+)\)", page):
         assert os.path.exists(os.path.join(SOURCE, "docs", path)), f"docs/thesis.md links to {path}"
     with open(os.path.join(SOURCE, "script", "figures"), encoding="utf-8") as file:
-        drawn = set(re.findall(r"\bbake\(\"([\w-]+)\"\)", file.read()))
+        drawn = set(re.findall(r"\bbake\(thesis\(\"([\w-]+)\"\)\)", file.read()))
     assert {name + ".xml" for name in drawn} == scenes.keys(), "script/figures draws other scenes"
     print(f"ok {len(rows)} scenes")
 
