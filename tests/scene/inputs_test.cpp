@@ -69,8 +69,8 @@ TEST_CASE("a scene's root is its folder, another one, or each mesh's own", "[sce
   const auto file = folder.write("shot/scene.xml", scene_of_meshes({"a.gltf"}));
   CHECK(inputs_of(load_scene(file).value()).size() == 3);
   CHECK(inputs_of(load_scene(file, folder.path()).value()).size() == 4);
-  CHECK(inputs_of(parse_scene(scene_of_meshes({"a.gltf"}), "x", folder.file("shot")).value()).size() ==
-        3);
+  CHECK(inputs_of(parse_scene(scene_of_meshes({"a.gltf"}), "x", folder.file("shot")).value())
+            .size() == 3);
   Scene scene;
   scene.surfaces.push_back({.name = "s", .shape = MeshFile{.path = mesh}});
   CHECK(inputs_of(scene).size() == 2);
