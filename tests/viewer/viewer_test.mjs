@@ -758,7 +758,7 @@ test("everything that can be worked has a name and takes the focus", async () =>
     await page.keyboard.press("d");
     const nameless = await page.evaluate(() =>
       [...document.querySelectorAll("button, input, select, canvas, [role]")]
-        .filter((each) => each.offsetParent !== null)
+        .filter((each) => each.offsetParent !== null && !each.closest("[aria-hidden=true]"))
         .filter((each) => !(each.getAttribute("aria-label") ?? each.labels?.[0]?.textContent ?? each.textContent).trim())
         .map((each) => each.outerHTML),
     );
