@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # A script: writes a header with a digest of everything that decides the bits of a state, so that no
 # number has to be raised by hand when the engine changes. Runs at each build, and touches the
 # header only where the digest is another.
@@ -6,6 +7,9 @@
 #         -P EngineDigest.cmake
 # It is part of what states are kept under (docs/caching.md), not of replay logs, which are compared
 # across compilers.
+if(NOT -ffp-contract=off IN_LIST FLAGS)
+  message(FATAL_ERROR "these are not the flags that the engine is compiled with: ${FLAGS}")
+endif()
 set(digests "${ARCHITECTURE}\n${COMPILER}\n${VERSIONS}\n")
 foreach(flag IN LISTS FLAGS)
   # Warnings decide no bits, nor does where the project lies.

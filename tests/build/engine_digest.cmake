@@ -12,7 +12,7 @@ function(digest_of out)
   set(LIBRARIES "${WORK}/library.h")
   set(ARCHITECTURE x86_64)
   set(COMPILER "GNU 12.2.0")
-  set(FLAGS -O3 "-Wall" "SHELL:-include \"/here/strict_math.hpp\"" Release)
+  set(FLAGS -ffp-contract=off -O3 "-Wall" "SHELL:-include \"/here/strict_math.hpp\"" Release)
   set(VERSIONS "Eigen 3.4.0")
   foreach(argument IN LISTS ARGN)
     string(REGEX MATCH "^([A-Z]+)=(.*)$" matched "${argument}")
@@ -31,8 +31,9 @@ endfunction()
 
 digest_of(before)
 set(all "${before}")
-foreach(change ARCHITECTURE=aarch64 "COMPILER=GNU 12.2.1" "COMPILER=Clang 12.2.0" FLAGS=-O2|Release
-               FLAGS=-O3|-march=native|Release FLAGS=-O3|Debug "VERSIONS=Eigen 3.4.1"
+foreach(change ARCHITECTURE=aarch64 "COMPILER=GNU 12.2.1" "COMPILER=Clang 12.2.0" "FLAGS=-ffp-contract=off|-O2|Release"
+               "FLAGS=-ffp-contract=off|-O3|-march=native|Release"
+               "FLAGS=-ffp-contract=off|-O3|Debug" "VERSIONS=Eigen 3.4.1"
                "VERSIONS=Eigen 3.4.0|CHOLMOD ON" "LIBRARIES=")
   digest_of(after "${change}")
   if(after IN_LIST all)
@@ -49,12 +50,20 @@ foreach(file room/a.cpp room/CMakeLists.txt library.h)
   endif()
   file(WRITE "${WORK}/${file}" "${text}")
 endforeach()
-foreach(change "FLAGS=-O3|-Wall|-Werror|Release" "FLAGS=-O3|SHELL:-include \"/there/x.hpp\"|Release")
+foreach(change "FLAGS=-ffp-contract=off|-O3|-Wall|-Werror|Release"
+               "FLAGS=-ffp-contract=off|-O3|SHELL:-include \"/there/x.hpp\"|Release")
   digest_of(after "${change}")
   if(NOT after STREQUAL before)
     message(SEND_ERROR "${change} gives another digest")
   endif()
 endforeach()
+
+# Flags without the one that every build has are not those of the engine.
+execute_process(COMMAND "${CMAKE_COMMAND}" -DFLAGS=-O3 "-DOUT=${WORK}/refused.hpp"
+  -P "${SOURCE}/cmake/EngineDigest.cmake" RESULT_VARIABLE result ERROR_QUIET)
+if(result EQUAL 0)
+  message(SEND_ERROR "a digest without the engine's flags")
+endif()
 
 # The project hands all of it over.
 file(READ "${SOURCE}/lib/pliant/simulation/CMakeLists.txt" text)
