@@ -125,13 +125,13 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
 }
 
 // Where the rows go: stdout, or a file that is there whole or not at all.
-class Output {
+class TextOutput {
  public:
-  static Result<Output> open(const std::string& file) {
-    if (file.empty()) return Output({});
+  static Result<TextOutput> open(const std::string& file) {
+    if (file.empty()) return TextOutput({});
     auto created = AtomicFile::create(file);
     if (!created) return fail(created.error());
-    return Output(*std::move(created));
+    return TextOutput(*std::move(created));
   }
 
   Result<void> write(std::string_view text) {
@@ -150,7 +150,7 @@ class Output {
   static bool is_lost() { return std::ferror(stdout) != 0; }
 
  private:
-  explicit Output(std::optional<AtomicFile> file) : file_(std::move(file)) {}
+  explicit TextOutput(std::optional<AtomicFile> file) : file_(std::move(file)) {}
 
   std::optional<AtomicFile> file_;
 };
@@ -158,7 +158,7 @@ class Output {
 // Rows `channel,frame,value`, numbers as the shortest text that reads back the same.
 class Table {
  public:
-  Table(Output& output, const Frames& frames, bool has_sides)
+  Table(TextOutput& output, const Frames& frames, bool has_sides)
       : output_(output), frames_(frames), has_sides_(has_sides) {}
 
   Result<void> write(std::span<const NamedChannel> channels) {
@@ -212,14 +212,14 @@ class Table {
 
   static constexpr std::size_t chunk = std::size_t{1} << 20;
 
-  Output& output_;
+  TextOutput& output_;
   const Frames& frames_;
   bool has_sides_;
   std::string text_;
 };
 
 // From the first to the last of the frames asked for.
-Result<void> write_plot(Output& output, std::span<const NamedChannel> channels,
+Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channels,
                         const Frames& frames, const CurvesOptions& options) {
   if (frames.count == 0) return fail(ErrorCode::InvalidInput, "no frames to plot");
   double first = frames[0], last = frames[frames.count - 1];
@@ -287,11 +287,11 @@ int run_curves(const CurvesOptions& options) {
   if (!frames) return report(frames.error());
 
   if (auto free = check_place(options, *scene); !free) return report(free.error());
-  auto output = Output::open(options.out);
+  auto output = TextOutput::open(options.out);
   if (!output) return report(output.error());
   auto written = ending == ".svg" ? write_plot(*output, *channels, *frames, options)
                                   : Table(*output, *frames, options.has_sides).write(*channels);
-  if (Output::is_lost()) return exit_failed;
+  if (TextOutput::is_lost()) return exit_failed;
   if (!written) {
     return report(with_kept(written.error(), options.out.empty() ? "the rows written are whole"
                                                                  : "no file is written"));

@@ -4,22 +4,13 @@
 #include <array>
 #include <variant>
 
-#include <nlohmann/json.hpp>
+#include "json.hpp"
 
 namespace pliant::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
-
-Json to_json(const BoundingBox& box) {
+Json bounds_json(const BoundingBox& box) {
   return {{"low", to_json(box.low)}, {"high", to_json(box.high)}};
-}
-
-Json to_json(const Box& box) {
-  if (box.is_empty()) return nullptr;
-  return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};
 }
 
 Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
@@ -29,8 +20,8 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
   json["columns"] = facts.grid.columns;
   json["rows"] = facts.grid.rows;
   json["vertices"] = facts.vertex_count;
-  json["boundingBox"] = to_json(facts.placed);
-  json["ownBoundingBox"] = to_json(facts.own);
+  json["boundingBox"] = bounds_json(facts.placed);
+  json["ownBoundingBox"] = bounds_json(facts.own);
   return json;
 }
 

@@ -3,19 +3,10 @@
 #include <utility>
 #include <variant>
 
-#include <nlohmann/json.hpp>
+#include "json.hpp"
 
 namespace pliant::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json to_json(const Box& box) {
-  if (box.is_empty()) return nullptr;
-  return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};
-}
-
-Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
 // Where the force is and where it points, as its kind has it.
 struct AddShape {
@@ -47,7 +38,7 @@ struct AddShape {
   void operator()(const FunctionForce&) const {}
 };
 
-Json to_json(const ForceReport& report) {
+Json force_json(const ForceReport& report) {
   const auto& [name, kind, sampled, selection, push] = report;
   Json json = {{"name", name},
                {"kind", kind},
@@ -63,7 +54,7 @@ Json to_json(const ForceReport& report) {
   return json;
 }
 
-Json to_json(const SurfaceReport& report, const std::string& name) {
+Json surface_json(const SurfaceReport& report, const std::string& name) {
   Box selected;
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -75,7 +66,7 @@ Json to_json(const SurfaceReport& report, const std::string& name) {
     regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
   }
   Json forces = Json::array();
-  for (const ForceReport& force : report.forces) forces.push_back(to_json(force));
+  for (const ForceReport& force : report.forces) forces.push_back(force_json(force));
   return {{"name", name},
           {"solved", report.is_solved},
           {"selected", to_json(selected)},
@@ -103,7 +94,7 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
 Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
-    surfaces.push_back(to_json(report.surfaces[k], scene.surfaces[k].name));
+    surfaces.push_back(surface_json(report.surfaces[k], scene.surfaces[k].name));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

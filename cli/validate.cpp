@@ -6,18 +6,16 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "counted.hpp"
 #include "interrupt.hpp"
+#include "json.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
 
 namespace pliant::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // What comes of all scenes, for `--json`.
 struct Findings {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "json.hpp"
 #include "pliant/mesh/triangulate.hpp"
 #include "report.hpp"
 #include "view_bytes.hpp"
@@ -22,8 +22,6 @@
 
 namespace pliant::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The arrays behind the head, each told of in it by where it begins and how many numbers it has.
 class Arrays {
@@ -101,9 +99,7 @@ std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
   return order;
 }
 
-Json to_json(const Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-Json to_json(const Transform& transform) {
+Json transform_json(const Transform& transform) {
   Json numbers = Json::array();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) numbers.push_back(transform.linear(row, column));
@@ -122,7 +118,7 @@ class SurfaceView {
         motion_(shape.mesh.positions, node_order(shape.mapping.vertex_nodes)) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
-    transforms_.push_back(to_json(frame.transform()));
+    transforms_.push_back(transform_json(frame.transform()));
     peak_displacement_ = std::max(peak_displacement_, frame.peak_displacement());
     Field positions = frame.positions();
     low_ = low_.cwiseMin(positions.colwise().minCoeff().transpose());

@@ -11,8 +11,6 @@
 namespace pliant::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string_view name_of(Interpolation::Kind kind) {
   switch (kind) {
     case Interpolation::Kind::Step:
@@ -71,7 +69,7 @@ Json points_of(const Curve<D>& curve, int first, int last) {
 }
 
 template <int D>
-Json to_json(const std::string& path, const Curve<D>& curve, const FrameRange& range) {
+Json channel_json(const std::string& path, const Curve<D>& curve, const FrameRange& range) {
   Json keys = Json::array(), handles = Json::array();
   for (const Key<D>& key : curve.keys().keys) {
     keys.push_back({{"at", row<D>(key.frame, key.value)}, {"next", name_of(key.next.kind)}});
@@ -89,16 +87,16 @@ Json to_json(const std::string& path, const Curve<D>& curve, const FrameRange& r
 
 }  // namespace
 
-nlohmann::ordered_json view_channels(const Scene& scene, const FrameRange& frames) {
+Json view_channels(const Scene& scene, const FrameRange& frames) {
   Json channels = Json::array();
   for (const NamedChannel& named : channels_of(scene)) {
     if (!named.is_animated()) continue;
     std::visit(
         [&](const auto* held) {
           if constexpr (std::is_same_v<decltype(held), const Switch*>) {
-            channels.push_back(to_json(named.path, held->channel().curve(), frames));
+            channels.push_back(channel_json(named.path, held->channel().curve(), frames));
           } else {
-            channels.push_back(to_json(named.path, held->curve(), frames));
+            channels.push_back(channel_json(named.path, held->curve(), frames));
           }
         },
         named.channel);

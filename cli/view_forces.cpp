@@ -6,8 +6,6 @@
 namespace pliant::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // The value at each frame, or one value that holds at all of them.
 Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
   Json values = Json::array();
@@ -69,7 +67,7 @@ const Group* group_of(const Scene& scene, const Force& force) {
   return nullptr;
 }
 
-Json to_json(const Force& force, const Group* group, const FrameRange& frames) {
+Json force_json(const Force& force, const Group* group, const FrameRange& frames) {
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
   if (group != nullptr) json["group"] = group->name;
   json["enabled"] = track(frames, [&](int frame) {
@@ -82,7 +80,7 @@ Json to_json(const Force& force, const Group* group, const FrameRange& frames) {
   return json;
 }
 
-Json to_json(const Group& group, const FrameRange& frames) {
+Json group_json(const Group& group, const FrameRange& frames) {
   return {{"name", group.name},
           {"kind", "group"},
           {"targets", group.targets},
@@ -91,16 +89,16 @@ Json to_json(const Group& group, const FrameRange& frames) {
           {"center", track(group.center, frames)}};
 }
 
-Json to_json(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
+Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 
 }  // namespace
 
-nlohmann::ordered_json view_forces(const Scene& scene, const FrameRange& frames) {
+Json view_forces(const Scene& scene, const FrameRange& frames) {
   Json forces = Json::array();
   for (const Force& force : scene.forces) {
-    forces.push_back(to_json(force, group_of(scene, force), frames));
+    forces.push_back(force_json(force, group_of(scene, force), frames));
   }
-  for (const Group& group : scene.groups) forces.push_back(to_json(group, frames));
+  for (const Group& group : scene.groups) forces.push_back(group_json(group, frames));
   return forces;
 }
 
@@ -109,14 +107,14 @@ void SurfaceMarks::add(int frame, const SurfaceReport& report,
   Json regions = Json::array(), boxes = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     Json parts = Json::array();
-    for (const Box& part : report.regions[k].parts) parts.push_back(to_json(part));
+    for (const Box& part : report.regions[k].parts) parts.push_back(corners(part));
     regions.push_back({{"solved", bool(report.region_is_solved[k])}, {"parts", parts}});
   }
   for (const ForceReport& force : report.forces) {
     if (force.selection.force.is_empty() || force.kind == "group") continue;
     const auto& push = force.push.sum;
     boxes.push_back({{"force", force_numbers.find(force.name)->second},
-                     {"box", to_json(force.selection.force)}});
+                     {"box", corners(force.selection.force)}});
     if (force.kind == "inertia") boxes.back()["push"] = {push.x(), push.y(), push.z()};
   }
   Json marks = {{"regions", regions}, {"forces", boxes}};

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "frame_range.hpp"
+#include "json.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/frame_report.hpp"
 
@@ -17,7 +16,7 @@ namespace pliant::cli {
 ///
 /// An array with an object for each, forces first. A parameter is an array with a value for each
 /// frame, or with one value if it is the same at all.
-nlohmann::ordered_json view_forces(const Scene& scene, const FrameRange& frames);
+Json view_forces(const Scene& scene, const FrameRange& frames);
 
 /// What a page draws on one surface: the regions that are solved and the boxes of the forces, kept
 /// where they change.
@@ -28,11 +27,11 @@ class SurfaceMarks {
            const std::map<std::string, std::size_t, std::less<>>& force_numbers);
 
   /// An array of objects, each with the first `frame` that it is for.
-  const nlohmann::ordered_json& changes() const { return changes_; }
+  const Json& changes() const { return changes_; }
 
  private:
-  nlohmann::ordered_json changes_ = nlohmann::ordered_json::array();
-  nlohmann::ordered_json last_;
+  Json changes_ = Json::array();
+  Json last_;
 };
 
 }  // namespace pliant::cli

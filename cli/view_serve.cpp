@@ -12,11 +12,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cache.hpp"
 #include "counted.hpp"
 #include "interrupt.hpp"
+#include "json.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
@@ -75,8 +75,7 @@ std::vector<std::filesystem::path> files_to_watch(const Scene& scene) {
   return files;
 }
 
-std::string to_json(const Error& error) {
-  using Json = nlohmann::ordered_json;
+std::string error_json(const Error& error) {
   Json messages = Json::array();
   constexpr std::size_t longest_text = 2000;
   const auto add = [&](const Error& each) {
@@ -111,7 +110,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
   auto scene = read_scene(options.scene, options.root);
   if (!scene) {
     report(scene.error());
-    server.tell_failure(to_json(scene.error()));
+    server.tell_failure(error_json(scene.error()));
     return watch;
   }
   auto all = std::make_unique<Watch>(files_to_watch(*scene));
@@ -121,7 +120,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
   if (should_stop()) return all;  // of what was baked nobody wants to know any more
   if (!baked) {
     report(baked.error());
-    server.tell_failure(to_json(baked.error()));
+    server.tell_failure(error_json(baked.error()));
     return all;
   }
   if (!options.is_quiet) {

@@ -46,6 +46,11 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::stri
       Error{.code = code, .message = std::move(message), .file = std::move(file), .line = line});
 }
 
+/// An `Error` about what a user gave; 0: no line is known.
+inline tl::unexpected<Error> invalid(std::string message, int line = 0) {
+  return fail(ErrorCode::InvalidInput, std::move(message), {}, line);
+}
+
 /// Hands an error on as it is.
 inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
 

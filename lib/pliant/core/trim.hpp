@@ -4,6 +4,9 @@
 
 namespace pliant {
 
+/// What parts the words of a text file.
+inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
+
 /// The text without the characters of `blanks` at both its ends.
 inline std::string_view trim(std::string_view text, std::string_view blanks) {
   const std::size_t first = text.find_first_not_of(blanks);

@@ -12,10 +12,6 @@ namespace {
 constexpr std::string_view data_scheme = "data:";
 constexpr std::size_t max_bytes = std::size_t{4} << 30;
 
-tl::unexpected<Error> broken(std::string message) {
-  return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
 constexpr std::uint32_t no_digit = 64;
 
 std::uint32_t digit_of(char c) {
@@ -55,9 +51,9 @@ Result<std::string> bytes_of_data(std::string_view uri, std::size_t buffer) {
   constexpr std::string_view marker = ";base64";
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(marker))
-    return broken(fmt::format("buffers[{}].uri is data that is not marked as base64", buffer));
+    return invalid(fmt::format("buffers[{}].uri is data that is not marked as base64", buffer));
   auto bytes = from_base64(uri.substr(comma + 1));
-  if (!bytes) return broken(fmt::format("buffers[{}].uri is no sound base64", buffer));
+  if (!bytes) return invalid(fmt::format("buffers[{}].uri is no sound base64", buffer));
   return *std::move(bytes);
 }
 
@@ -88,17 +84,17 @@ Result<std::string_view> Buffers::bytes(std::size_t buffer) {
   } else if (buffer == 0 && binary_) {
     bytes = *binary_;
   } else {
-    return broken(fmt::format("buffers[{}] has no uri, and no bytes in the file", buffer));
+    return invalid(fmt::format("buffers[{}] has no uri, and no bytes in the file", buffer));
   }
   if (entry.size <= bytes.size()) return bytes.substr(0, static_cast<std::size_t>(entry.size));
-  return broken(
+  return invalid(
       fmt::format("buffers[{}] has {} of its {} bytes", buffer, bytes.size(), entry.size));
 }
 
 Result<std::string> Buffers::read(std::size_t buffer) const {
   const std::string& uri = *document_.buffers[buffer].uri;
   if (is_data(uri)) return bytes_of_data(uri, buffer);
-  if (!read_file_) return broken(fmt::format("buffers[{}] is in another file", buffer));
+  if (!read_file_) return invalid(fmt::format("buffers[{}] is in another file", buffer));
   return read_file_(uri, max_bytes - std::min(max_bytes, size_so_far_));
 }
 

@@ -12,10 +12,6 @@ namespace {
 constexpr std::size_t header_size = 12, chunk_header_size = 8;
 constexpr std::uint64_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
-tl::unexpected<Error> broken(std::string message) {
-  return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
 // Requires: four bytes stand there.
 std::uint64_t number_at(std::string_view bytes, std::size_t at) {
   std::uint64_t number = 0;
@@ -28,23 +24,23 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at) {
 
 Result<Container> open_container(std::string_view bytes) {
   if (!bytes.starts_with("glTF")) return Container{bytes};
-  if (bytes.size() < header_size) return broken("the file is cut short within its header");
+  if (bytes.size() < header_size) return invalid("the file is cut short within its header");
   if (const auto version = number_at(bytes, 4); version != 2)
-    return broken(fmt::format("the file is a glTF of version {}; 2 is read", version));
+    return invalid(fmt::format("the file is a glTF of version {}; 2 is read", version));
   if (const auto length = number_at(bytes, 8); length != bytes.size()) {
-    return broken(fmt::format("the file {}: it has {} of {} bytes",
-                              length > bytes.size() ? "is cut short" : "goes on after its end",
-                              bytes.size(), length));
+    return invalid(fmt::format("the file {}: it has {} of {} bytes",
+                               length > bytes.size() ? "is cut short" : "goes on after its end",
+                               bytes.size(), length));
   }
   std::optional<std::string_view> json, binary;
   for (std::size_t at = header_size; at < bytes.size();) {
     const std::size_t room = bytes.size() - at;
     if (room < chunk_header_size || number_at(bytes, at) > room - chunk_header_size)
-      return broken(fmt::format("the chunk at byte {} reaches past the end of the file", at));
+      return invalid(fmt::format("the chunk at byte {} reaches past the end of the file", at));
     const auto size = static_cast<std::size_t>(number_at(bytes, at));
     const std::uint64_t kind = number_at(bytes, at + 4);
     const std::string_view content = bytes.substr(at + chunk_header_size, size);
-    if (!json && kind != json_chunk) return broken("the file's first chunk is no JSON");
+    if (!json && kind != json_chunk) return invalid("the file's first chunk is no JSON");
     if (!json) {
       json = content;
     } else if (kind == binary_chunk && !binary) {
@@ -52,7 +48,7 @@ Result<Container> open_container(std::string_view bytes) {
     }  // of other kinds nothing is known, and they may be there
     at += chunk_header_size + size;
   }
-  if (!json) return broken("the file holds no JSON");
+  if (!json) return invalid("the file holds no JSON");
   return Container{*json, binary};
 }
 

@@ -15,10 +15,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-tl::unexpected<Error> broken(std::string message, int line = 0) {
-  return fail(ErrorCode::InvalidInput, std::move(message), {}, line);
-}
-
 // Ahead of parsing: each value takes a hundred bytes or so, be it written in two.
 Result<void> check_size(std::string_view json) {
   std::size_t depth = 0, values = 1;
@@ -32,7 +28,7 @@ Result<void> check_size(std::string_view json) {
     } else if (!is_quoted && (c == '[' || c == '{')) {
       ++values;
       if (++depth > deepest_json)
-        return broken(fmt::format("the file nests its parts more than {} deep", deepest_json));
+        return invalid(fmt::format("the file nests its parts more than {} deep", deepest_json));
     } else if (!is_quoted && (c == ']' || c == '}') && depth > 0) {
       --depth;
     } else if (!is_quoted && c == ',') {
@@ -40,7 +36,7 @@ Result<void> check_size(std::string_view json) {
     }
   }
   if (values <= most_json_values) return {};
-  return broken(fmt::format("the file's JSON holds more than {} values", most_json_values));
+  return invalid(fmt::format("the file's JSON holds more than {} values", most_json_values));
 }
 
 // What a parser says quotes the text, which may be that of any file.
@@ -53,10 +49,10 @@ Result<Json> parse(std::string_view text) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    return broken("the file is no glTF: it is no sound JSON from here on",
-                  line_at(error.byte > 0 ? error.byte - 1 : 0));
+    return invalid("the file is no glTF: it is no sound JSON from here on",
+                   line_at(error.byte > 0 ? error.byte - 1 : 0));
   } catch (const Json::exception&) {
-    return broken("the file is no glTF: its JSON holds a number that is too large");
+    return invalid("the file is no glTF: its JSON holds a number that is too large");
   }
 }
 
@@ -89,7 +85,7 @@ class DocumentReader {
     each(root_, "meshes", [&](Json& json) { document_.meshes.push_back(read_mesh(json)); });
     each(root_, "nodes", [&](Json& json) { document_.nodes.push_back(read_node(json)); });
     read_roots();
-    if (fault_) return broken(*std::move(fault_));
+    if (fault_) return invalid(*std::move(fault_));
     return std::move(document_);
   }
 
@@ -116,14 +112,14 @@ class DocumentReader {
   Result<void> check_asset() {
     Json* const asset = root_.is_object() ? member(root_, "asset") : nullptr;
     const Json* const version = asset && asset->is_object() ? member(*asset, "version") : nullptr;
-    if (!version || !version->is_string()) return broken("the file is no glTF: no asset.version");
+    if (!version || !version->is_string()) return invalid("the file is no glTF: no asset.version");
     for (const char* key : {"version", "minVersion"}) {
       const Json* const written = member(*asset, key);
       if (!written) continue;
       const auto* const number = written->get_ptr<const std::string*>();
       if (!number || !number->starts_with("2.") || (key[0] == 'm' && *number != "2.0")) {
-        return broken(fmt::format("asset.{} is {}, but glTF 2.0 is what is read", key,
-                                  number ? in_quotes(*number) : "no text"));
+        return invalid(fmt::format("asset.{} is {}, but glTF 2.0 is what is read", key,
+                                   number ? in_quotes(*number) : "no text"));
       }
     }
     return {};

@@ -30,10 +30,6 @@ constexpr double affine_tolerance = 1e-5;
 
 constexpr std::uint64_t most = std::numeric_limits<int>::max();  // that can be counted in int
 
-tl::unexpected<Error> broken(std::string message) {
-  return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
 enum Mode : std::uint64_t { Triangles = 4, Strip = 5, Fan = 6 };
 
 // Corners of a primitive's triangles, by place in its list of vertices. Those of a strip turn one
@@ -95,7 +91,7 @@ class Merger {
                       [](const std::optional<std::size_t>& set) { return set.has_value(); });
     if (auto checked = check_uv_set(uv_set_, static_cast<int>(count)); !checked) return checked;
     if (count > 0)  // a file may leave out its first set
-      return broken(fmt::format("the object has no UV set {}, but others", uv_set_));
+      return invalid(fmt::format("the object has no UV set {}, but others", uv_set_));
     return {};
   }
 
@@ -115,7 +111,7 @@ class Merger {
     if (!positions) return fail(positions.error());
     Place place{static_cast<int>(coordinates_.size() / 3), positions->size() / 3};
     if (coordinates_.size() / 3 + place.count > most)
-      return broken(fmt::format("the object has more than {} vertices", most));
+      return invalid(fmt::format("the object has more than {} vertices", most));
     coordinates_.insert(coordinates_.end(), positions->begin(), positions->end());
     if (uvs) {
       if (auto added = add_uvs(k, *uvs, place); !added) return fail(added.error());
@@ -134,7 +130,7 @@ class Merger {
     if (!numbers) return numbers;
     const std::size_t count = numbers->size() / static_cast<std::size_t>(width);
     if (count == place.count) return numbers;
-    return broken(
+    return invalid(
         fmt::format("{} has {} vertices, but {} {}", name_of(k), place.count, count, thing));
   }
 
@@ -173,8 +169,8 @@ class Merger {
     if (!indices) return indices;
     for (std::size_t n = 0; n < indices->size(); ++n) {
       if ((*indices)[n] < place.count) continue;
-      return broken(fmt::format("{}: index {} is of vertex {}, but there are {} (from 0)",
-                                name_of(k), n, (*indices)[n], place.count));
+      return invalid(fmt::format("{}: index {} is of vertex {}, but there are {} (from 0)",
+                                 name_of(k), n, (*indices)[n], place.count));
     }
     return indices;
   }
@@ -184,12 +180,12 @@ class Merger {
     const auto list = list_of(k, place);
     if (!list) return fail(list.error());
     if (from.mode == Triangles && list->size() % 3 != 0) {
-      return broken(fmt::format("{} has {} corners of triangles, no multiple of 3", name_of(k),
-                                list->size()));
+      return invalid(fmt::format("{} has {} corners of triangles, no multiple of 3", name_of(k),
+                                 list->size()));
     }
     const std::size_t face_count = from.mode == Triangles ? list->size() / 3 : list->size() - 2;
     if (mesh_.corner_vertices.size() + 3 * face_count > most)
-      return broken(fmt::format("the object's faces have more than {} corners", most));
+      return invalid(fmt::format("the object's faces have more than {} corners", most));
     for_each_triangle(from.mode, list->size(), [&](std::size_t a, std::size_t b, std::size_t c) {
       mesh_.face_sizes.push_back(3);
       for (const std::size_t corner : {a, b, c}) add_corner((*list)[corner], place);
@@ -235,7 +231,7 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
   if (to_file == Matrix4d::Identity()) return {};  // -0 would become 0
   const Eigen::RowVector4d last_row = to_file.row(3);
   if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
-    return broken(
+    return invalid(
         fmt::format("the object's transform is not affine: its last row is "
                     "{} {} {} {}, not 0 0 0 1",
                     last_row[0], last_row[1], last_row[2], last_row[3]));

@@ -9,20 +9,16 @@
 namespace pliant {
 namespace {
 
-tl::unexpected<Error> broken(std::string message) {
-  return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
 Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* thing) {
   if (!names.of_faces.empty() && names.of_faces.size() != mesh.face_sizes.size()) {
-    return broken(fmt::format("{} of the mesh's {} faces have a {} or none", names.of_faces.size(),
-                              mesh.face_sizes.size(), thing));
+    return invalid(fmt::format("{} of the mesh's {} faces have a {} or none", names.of_faces.size(),
+                               mesh.face_sizes.size(), thing));
   }
   for (std::size_t face = 0; face < names.of_faces.size(); ++face) {
     const int index = names.of_faces[face];
     if (index >= -1 && index < static_cast<std::int64_t>(names.names.size())) continue;
-    return broken(fmt::format("face {} refers to {} {}, but there are {}", face + mesh.first_index,
-                              thing, std::int64_t{index} + mesh.first_index, names.names.size()));
+    return invalid(fmt::format("face {} refers to {} {}, but there are {}", face + mesh.first_index,
+                               thing, std::int64_t{index} + mesh.first_index, names.names.size()));
   }
   return {};
 }
@@ -30,16 +26,16 @@ Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* t
 Result<void> check_normals(const Mesh& mesh) {
   if (mesh.corner_normals.empty()) return {};
   if (mesh.corner_normals.size() != mesh.corner_vertices.size()) {
-    return broken(fmt::format("the faces have {} corners, but there are {} corner normals",
-                              mesh.corner_vertices.size(), mesh.corner_normals.size()));
+    return invalid(fmt::format("the faces have {} corners, but there are {} corner normals",
+                               mesh.corner_vertices.size(), mesh.corner_normals.size()));
   }
   std::vector<bool> is_used;
   for (std::size_t corner = 0; corner < mesh.corner_normals.size(); ++corner) {
     const int normal = mesh.corner_normals[corner];
     if (normal < 0 || static_cast<std::size_t>(normal) >= mesh.corner_normals.size()) {
-      return broken(fmt::format("corner {} has the normal {}, but there are {} at most",
-                                corner + mesh.first_index, std::int64_t{normal} + mesh.first_index,
-                                mesh.corner_normals.size()));
+      return invalid(fmt::format("corner {} has the normal {}, but there are {} at most",
+                                 corner + mesh.first_index, std::int64_t{normal} + mesh.first_index,
+                                 mesh.corner_normals.size()));
     }
     if (static_cast<std::size_t>(normal) >= is_used.size())
       is_used.resize(static_cast<std::size_t>(normal) + 1);
@@ -47,8 +43,8 @@ Result<void> check_normals(const Mesh& mesh) {
   }
   for (std::size_t normal = 0; normal < is_used.size(); ++normal) {
     if (!is_used[normal])
-      return broken(fmt::format("no corner has the normal {} of the {}", normal + mesh.first_index,
-                                is_used.size()));
+      return invalid(fmt::format("no corner has the normal {} of the {}", normal + mesh.first_index,
+                                 is_used.size()));
   }
   return {};
 }
@@ -56,23 +52,23 @@ Result<void> check_normals(const Mesh& mesh) {
 }  // namespace
 
 Result<void> check_mesh(const Mesh& mesh) {
-  if (mesh.face_sizes.empty()) return broken("the mesh has no faces");
+  if (mesh.face_sizes.empty()) return invalid("the mesh has no faces");
   if (!mesh.file_vertices.empty() &&
       mesh.file_vertices.size() != static_cast<std::size_t>(mesh.vertex_count())) {
-    return broken(fmt::format("{} of the mesh's {} vertices have a number in the file",
-                              mesh.file_vertices.size(), mesh.vertex_count()));
+    return invalid(fmt::format("{} of the mesh's {} vertices have a number in the file",
+                               mesh.file_vertices.size(), mesh.vertex_count()));
   }
   std::int64_t corners = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int size = mesh.face_sizes[face];
     if (size < 3)
-      return broken(
+      return invalid(
           fmt::format("face {} has {} of at least 3 corners", face + mesh.first_index, size));
     corners += size;
   }
   if (corners != static_cast<std::int64_t>(mesh.corner_vertices.size()) ||
       mesh.corner_uvs.size() != mesh.corner_vertices.size()) {
-    return broken(
+    return invalid(
         fmt::format("the faces have {} corners, but there are {} corner vertices and {} "
                     "corner uvs",
                     corners, mesh.corner_vertices.size(), mesh.corner_uvs.size()));
@@ -81,25 +77,25 @@ Result<void> check_mesh(const Mesh& mesh) {
     const int vertex = mesh.corner_vertices[corner];
     const int uv = mesh.corner_uvs[corner];
     if (vertex < 0 || vertex >= mesh.vertex_count()) {
-      return broken(fmt::format("corner {} refers to vertex {}, but there are {}",
-                                corner + mesh.first_index, std::int64_t{vertex} + mesh.first_index,
-                                mesh.vertex_count()));
+      return invalid(fmt::format("corner {} refers to vertex {}, but there are {}",
+                                 corner + mesh.first_index, std::int64_t{vertex} + mesh.first_index,
+                                 mesh.vertex_count()));
     }
     if (uv < -1 || uv >= static_cast<std::int64_t>(mesh.uvs.size())) {
-      return broken(fmt::format("corner {} refers to uv {}, but there are {}",
-                                corner + mesh.first_index, std::int64_t{uv} + mesh.first_index,
-                                mesh.uvs.size()));
+      return invalid(fmt::format("corner {} refers to uv {}, but there are {}",
+                                 corner + mesh.first_index, std::int64_t{uv} + mesh.first_index,
+                                 mesh.uvs.size()));
     }
   }
   for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
     if (!mesh.positions.row(vertex).allFinite()) {
-      return broken(
+      return invalid(
           fmt::format("vertex {} has a coordinate that is not finite", mesh.number_of(vertex)));
     }
   }
   for (std::size_t uv = 0; uv < mesh.uvs.size(); ++uv) {
     if (!std::isfinite(mesh.uvs[uv][0]) || !std::isfinite(mesh.uvs[uv][1])) {
-      return broken(fmt::format("uv {} is not finite", uv + mesh.first_index));
+      return invalid(fmt::format("uv {} is not finite", uv + mesh.first_index));
     }
   }
   if (auto checked = check_normals(mesh); !checked) return checked;

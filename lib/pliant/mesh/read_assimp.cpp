@@ -40,8 +40,6 @@ constexpr std::size_t max_bytes = std::size_t{4} << 30;
 // How far the last row of a transform may be from 0 0 0 1: assimp inverts pivots in float.
 constexpr double affine_tolerance = 1e-5;
 
-Error broken(std::string message) { return {ErrorCode::InvalidInput, std::move(message)}; }
-
 // One line of what may hold anything: assimp quotes the file in some of its reasons.
 std::string in_one_line(std::string_view reason) {
   constexpr std::size_t longest = 200;
@@ -59,7 +57,7 @@ std::string format_name(const std::string& ending) { return ending == ".fbx" ? "
 
 // By the names of the nodes, and by those of the meshes where no node has the name.
 Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
-  if (message.objects.empty()) return fail(broken("the file holds no faces"));
+  if (message.objects.empty()) return invalid("the file holds no faces");
   std::vector<std::string> nodes, meshes;
   for (const ObjectNames& each : message.objects) {
     nodes.emplace_back(each.node.empty() ? each.mesh : each.node);
@@ -76,7 +74,7 @@ Result<void> check_sets(const MeshMessage& message, int uv_set) {
     if (!part.uvs.empty()) continue;
     if (auto checked = check_uv_set(uv_set, set_count); !checked) return checked;
     if (set_count > 0)  // a file may leave out its first set
-      return fail(broken(fmt::format("the object has no UV set {}, but others", uv_set)));
+      return invalid(fmt::format("the object has no UV set {}, but others", uv_set));
   }
   return {};
 }
@@ -90,10 +88,10 @@ Result<void> check_size(const MeshMessage& message) {
   }
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   if (vertices <= most && corners <= most) return {};
-  return fail(
-      broken(fmt::format("the object has {} vertices and {} corners of faces; at most {} "
-                         "of each can be counted",
-                         vertices, corners, most)));
+  return invalid(
+      fmt::format("the object has {} vertices and {} corners of faces; at most {} "
+                  "of each can be counted",
+                  vertices, corners, most));
 }
 
 // Appends the faces of one part, whose vertices and (u,v) are numbered from those given.
@@ -104,8 +102,8 @@ Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, 
   for (std::size_t corner = 0; corner < part.corners.size(); ++corner) {
     const std::uint32_t index = part.corners[corner];
     if (index >= vertex_count) {
-      return fail(broken(fmt::format("corner {} of its faces refers to vertex {} of {}", corner,
-                                     index, vertex_count)));
+      return invalid(fmt::format("corner {} of its faces refers to vertex {} of {}", corner, index,
+                                 vertex_count));
     }
     mesh.corner_vertices.push_back(first_vertex + static_cast<int>(index));
     mesh.corner_uvs.push_back(first_uv < 0 ? -1 : first_uv + static_cast<int>(index));
@@ -176,10 +174,10 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
   if (to_file == Matrix4d::Identity()) return {};  // -0 would become 0
   const Eigen::RowVector4d last_row = to_file.row(3);
   if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
-    return fail(
-        broken(fmt::format("the object's transform is not affine: its last row is "
-                           "{} {} {} {}, not 0 0 0 1",
-                           last_row[0], last_row[1], last_row[2], last_row[3])));
+    return invalid(
+        fmt::format("the object's transform is not affine: its last row is "
+                    "{} {} {} {}, not 0 0 0 1",
+                    last_row[0], last_row[1], last_row[2], last_row[3]));
   }
   positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
   return {};
@@ -187,7 +185,8 @@ Result<void> apply(const Matrix4d& to_file, Field& positions) {
 
 // What is told of a process that gave no answer to trust.
 Error reader_failed(const std::string& format, const std::string& what) {
-  return broken(fmt::format("the {} reader {}: the file is broken or hostile", format, what));
+  return {ErrorCode::InvalidInput,
+          fmt::format("the {} reader {}: the file is broken or hostile", format, what)};
 }
 
 Error out_of_memory(const std::string& format, const BoxLimits& limits, std::size_t file_bytes) {
@@ -232,11 +231,11 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
   if (!message) return fail(reader_failed(format, "gave an answer that is no mesh"));
   switch (message->kind) {
     case MessageKind::OtherFormat:
-      return fail(broken(fmt::format("the file is no {}", format)));
+      return invalid(fmt::format("the file is no {}", format));
     case MessageKind::Refused:
-      return fail(broken(fmt::format("the file cannot be read: {}", in_one_line(message->reason))));
+      return invalid(fmt::format("the file cannot be read: {}", in_one_line(message->reason)));
     case MessageKind::TooManyObjects:
-      return fail(broken(fmt::format("the file holds more than {} objects", most_objects)));
+      return invalid(fmt::format("the file holds more than {} objects", most_objects));
     case MessageKind::Scene:
       break;
   }

@@ -21,12 +21,10 @@ namespace {
 
 constexpr std::size_t max_errors = 20;
 
-constexpr std::string_view blanks = " \t\r\v\f";
-
 // Takes the next word off the front of `text`; empty at its end.
 std::string_view next_word(std::string_view& text) {
-  const std::size_t begin = std::min(text.find_first_not_of(blanks), text.size());
-  const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+  const std::size_t begin = std::min(text.find_first_not_of(ascii_blanks), text.size());
+  const std::size_t end = std::min(text.find_first_of(ascii_blanks, begin), text.size());
   const std::string_view word = text.substr(begin, end - begin);
   text.remove_prefix(end);
   return word;
@@ -98,7 +96,7 @@ class ObjReader {
     int first_line = 1;
     while (!text.empty() && errors_.size() < max_errors && !is_refused_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
-      std::string_view statement = trim(text.substr(0, end), blanks);
+      std::string_view statement = trim(text.substr(0, end), ascii_blanks);
       text.remove_prefix(std::min(end + 1, text.size()));
       ++line;
       if (joined.empty()) first_line = line;
@@ -147,13 +145,13 @@ class ObjReader {
     } else if (keyword == "f") {
       read_face(statement);
     } else if (keyword == "o") {
-      objects_.push_back({std::string(trim(statement, blanks)), mesh_.face_sizes.size()});
+      objects_.push_back({std::string(trim(statement, ascii_blanks)), mesh_.face_sizes.size()});
     } else if (keyword == "vn") {
       shading_.normals.push_back(read_normal(statement));
     } else if (keyword == "usemtl") {
-      materials_.set(trim(statement, blanks));
+      materials_.set(trim(statement, ascii_blanks));
     } else if (keyword == "g") {
-      groups_.set(trim(statement, blanks));
+      groups_.set(trim(statement, ascii_blanks));
     } else if (keyword == "s") {
       const std::string_view word = next_word(statement);
       const auto group = word == "off" ? Shading::flat : to_integer(word).value_or(-1);

@@ -17,13 +17,12 @@
 
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/trim.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n\v\f";
 
 enum class Encoding { Ascii, LittleEndian, BigEndian };
 
@@ -75,16 +74,12 @@ struct Header {
   int line_count = 0;
 };
 
-tl::unexpected<Error> broken(std::string message, int line = 0) {
-  return fail(ErrorCode::InvalidInput, std::move(message), {}, line);
-}
-
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+  for (std::size_t at = line.find_first_not_of(ascii_blanks); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(ascii_blanks, at), line.size());
     words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(blanks, end);
+    at = line.find_first_not_of(ascii_blanks, end);
   }
   return words;
 }
@@ -109,7 +104,7 @@ Result<Encoding> to_encoding(std::span<const std::string_view> words, int line) 
     if (words[1] == "binary_little_endian") return Encoding::LittleEndian;
     if (words[1] == "binary_big_endian") return Encoding::BigEndian;
   }
-  return broken(
+  return invalid(
       "the format must be ascii, binary_little_endian or binary_big_endian, each of version 1.0",
       line);
 }
@@ -127,33 +122,33 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
   if (keyword == "element" && words.size() == 3) {
     const auto count = to_integer(words[2]);
     if (!count || *count < 0) {
-      return broken(fmt::format("the number of elements {} is not a whole number from 0 to {}",
-                                in_quotes(words[2]), std::numeric_limits<int>::max()),
-                    line);
+      return invalid(fmt::format("the number of elements {} is not a whole number from 0 to {}",
+                                 in_quotes(words[2]), std::numeric_limits<int>::max()),
+                     line);
     }
     const auto has_name = [&](const Element& element) { return element.name == words[1]; };
     if (std::any_of(header.elements.begin(), header.elements.end(), has_name))
-      return broken(fmt::format("the element {} stands twice", in_quotes(words[1])), line);
+      return invalid(fmt::format("the element {} stands twice", in_quotes(words[1])), line);
     header.elements.push_back({std::string(words[1]), *count, {}});
     return {};
   }
   if (keyword == "property" && !header.elements.empty()) {
     const auto property = to_property(words);
     if (!property) {
-      return broken(
+      return invalid(
           "a property is not of the form `property TYPE NAME` or `property list TYPE "
           "TYPE NAME`",
           line);
     }
     Element& element = header.elements.back();
     if (element.find({property->name}) >= 0)
-      return broken(fmt::format("the property {} stands twice", in_quotes(property->name)), line);
+      return invalid(fmt::format("the property {} stands twice", in_quotes(property->name)), line);
     element.properties.push_back(*property);
     return {};
   }
-  return broken(fmt::format("the header has the line {}, which is no part of one",
-                            in_quotes(std::string(keyword))),
-                line);
+  return invalid(fmt::format("the header has the line {}, which is no part of one",
+                             in_quotes(std::string(keyword))),
+                 line);
 }
 
 Result<Header> read_header(std::string_view bytes) {
@@ -170,15 +165,15 @@ Result<Header> read_header(std::string_view bytes) {
     }
     if (words.empty()) continue;
     if (words[0] == "end_header") {
-      if (!has_format) return broken("the header names no format", line);
+      if (!has_format) return invalid("the header names no format", line);
       header.size = at;
       return header;
     }
     has_format = has_format || words[0] == "format";
     if (auto read = read_header_line(words, line, header); !read) return fail(read.error());
   }
-  return broken(header.line_count < 2 ? "the file is no PLY: its first line is not `ply`"
-                                      : "the file ends within its header");
+  return invalid(header.line_count < 2 ? "the file is no PLY: its first line is not `ply`"
+                                       : "the file ends within its header");
 }
 
 // The numbers of the elements, one after the other.
@@ -202,15 +197,17 @@ class Numbers {
   // Whether the last number was missed because the file ends there.
   bool has_run_out() const { return has_run_out_; }
 
-  bool is_at_end() const { return bytes_.find_first_not_of(blanks, at_) == std::string_view::npos; }
+  bool is_at_end() const {
+    return bytes_.find_first_not_of(ascii_blanks, at_) == std::string_view::npos;
+  }
 
   int line() const { return encoding_ == Encoding::Ascii ? line_ : 0; }
 
  private:
   std::optional<double> next_word() {
-    while (at_ < bytes_.size() && blanks.find(bytes_[at_]) != std::string_view::npos)
+    while (at_ < bytes_.size() && ascii_blanks.find(bytes_[at_]) != std::string_view::npos)
       line_ += bytes_[at_++] == '\n';
-    const std::size_t end = std::min(bytes_.find_first_of(blanks, at_), bytes_.size());
+    const std::size_t end = std::min(bytes_.find_first_of(ascii_blanks, at_), bytes_.size());
     const std::string_view word = bytes_.substr(at_, end - at_);
     at_ = end;
     has_run_out_ = word.empty();
@@ -264,13 +261,13 @@ class PlyReader {
     for (const Element& element : header_.elements) {
       if (auto read = read_element(element); !read) return fail(read.error());
     }
-    if (!numbers_.is_at_end()) return broken("the file goes on after its last element", line());
+    if (!numbers_.is_at_end()) return invalid("the file goes on after its last element", line());
     if (!mesh_.corner_vertices.empty()) {
       if (auto checked = check_indices(); !checked) return fail(checked.error());
     }
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
-    if (mesh_.face_sizes.empty()) return broken("the file holds no faces");
+    if (mesh_.face_sizes.empty()) return invalid("the file holds no faces");
     if (!normals_.empty()) {
       mesh_.corner_normals =
           shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}});
@@ -286,7 +283,7 @@ class PlyReader {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
     if (element.properties.empty() && element.count > 0)
-      return broken(fmt::format("the element {} has no properties", in_quotes(element.name)));
+      return invalid(fmt::format("the element {} has no properties", in_quotes(element.name)));
     if (is_vertex) {
       if (auto found = find_vertex_properties(element); !found) return found;
     }
@@ -314,13 +311,13 @@ class PlyReader {
       u_ = vertex.find({u});
       v_ = vertex.find({v});
     }
-    if (x_ < 0 || y_ < 0 || z_ < 0) return broken("the vertices have no x, y and z");
+    if (x_ < 0 || y_ < 0 || z_ < 0) return invalid("the vertices have no x, y and z");
     const auto is_list = [&](int property) {
       return property >= 0 &&
              vertex.properties[static_cast<std::size_t>(property)].count_type.has_value();
     };
     for (const int property : {x_, y_, z_, u_, v_})
-      if (is_list(property)) return broken("a coordinate of the vertices is a list");
+      if (is_list(property)) return invalid("a coordinate of the vertices is a list");
     normal_ = {vertex.find({"nx"}), vertex.find({"ny"}), vertex.find({"nz"})};
     has_normals_ = std::all_of(normal_.begin(), normal_.end(),
                                [&](int property) { return property >= 0 && !is_list(property); });
@@ -333,7 +330,7 @@ class PlyReader {
     const auto is_list = [&](int k) {
       return face.properties[static_cast<std::size_t>(k)].count_type.has_value();
     };
-    if (corners_ < 0 || !is_list(corners_)) return broken("the faces have no list vertex_indices");
+    if (corners_ < 0 || !is_list(corners_)) return invalid("the faces have no list vertex_indices");
     if (corner_uvs_ >= 0 && !is_list(corner_uvs_)) corner_uvs_ = -1;
     return {};
   }
@@ -358,15 +355,15 @@ class PlyReader {
   tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
                                   std::size_t property) const {
     if (numbers_.has_run_out()) return ends_within(element, index);
-    return broken(fmt::format("{} {} has no finite number where its {} should be", element.name,
-                              index, in_quotes(element.properties[property].name)),
-                  line());
+    return invalid(fmt::format("{} {} has no finite number where its {} should be", element.name,
+                               index, in_quotes(element.properties[property].name)),
+                   line());
   }
 
   tl::unexpected<Error> ends_within(const Element& element, std::int64_t index) const {
-    return broken(fmt::format("the file ends within {} {}, counted from 0, of {}",
-                              in_quotes(element.name), index, element.count),
-                  line());
+    return invalid(fmt::format("the file ends within {} {}, counted from 0, of {}",
+                               in_quotes(element.name), index, element.count),
+                   line());
   }
 
   void add_vertex(const Values& values) {
@@ -382,13 +379,13 @@ class PlyReader {
     if (corners.size() < 3) return {};  // a point or a line
     constexpr std::size_t most = std::numeric_limits<int>::max();
     if (corners.size() > most - mesh_.corner_vertices.size())
-      return broken(fmt::format("the faces have more than {} corners", most));
+      return invalid(fmt::format("the faces have more than {} corners", most));
     const std::vector<double> none;
     const auto& uvs = corner_uvs_ < 0 ? none : values[static_cast<std::size_t>(corner_uvs_)];
     if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
-      return broken(fmt::format("face {} has {} corners, but {} texture coordinates", index,
-                                corners.size(), uvs.size()),
-                    line());
+      return invalid(fmt::format("face {} has {} corners, but {} texture coordinates", index,
+                                 corners.size(), uvs.size()),
+                     line());
     }
     mesh_.face_sizes.push_back(static_cast<int>(corners.size()));
     faces_.push_back(index);
@@ -417,8 +414,8 @@ class PlyReader {
       for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
         const int vertex = mesh_.corner_vertices[corner];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
-          return broken(fmt::format("corner {} of face {} refers to {}", k, faces_[face],
-                                    outside(vertex, vertex_count)));
+          return invalid(fmt::format("corner {} of face {} refers to {}", k, faces_[face],
+                                     outside(vertex, vertex_count)));
         }
         int& uv = mesh_.corner_uvs[corner];
         if (uv >= 0) {
