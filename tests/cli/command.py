@@ -55,7 +55,7 @@ class Command(unittest.TestCase):
     def run_pliant(self, *arguments, code=0, **options):
         """The run, which has to end with that code; `options` are those of subprocess.run."""
         options = {"cwd": self.folder, **options}
-        result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=120,
+        result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=600 if SANITIZED else 120,
                                 stdin=subprocess.DEVNULL, check=False, **options)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result

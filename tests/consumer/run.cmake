@@ -1,6 +1,6 @@
 # Installs the build to a scratch prefix, builds the consumer against it alone, and runs it.
 # The C++ of the README is built with it, so that it stays true.
-# usage: cmake -DBUILD=… -DSOURCE=… -DREADME=… -DWORK=… -DCOMPILER=… -DSANITIZE=… -P run.cmake
+# usage: cmake -DBUILD=… -DSOURCE=… -DREADME=… -DWORK=… -DCOMPILER=… -P run.cmake
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -19,9 +19,6 @@ endif()
 file(WRITE "${WORK}/readme.cpp" "${CMAKE_MATCH_1}\nint main() {\n${CMAKE_MATCH_2}}\n")
 
 set(flags "-DCMAKE_CXX_COMPILER=${COMPILER}")
-if(SANITIZE)
-  list(APPEND flags "-DCMAKE_CXX_FLAGS=-fsanitize=${SANITIZE}")
-endif()
 # A replay that holds, and one of another scene.
 set(pliant "${WORK}/prefix/bin/pliant")
 file(READ "${SOURCE}/scene.xml" scene)

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -21,7 +22,7 @@ double largest_deviation(const Curve<1>& a, const Curve<1>& b, double first, dou
 
 TEST_CASE("baked keys have the curve's values and limits", "[timeline][bake]") {
   Whim whim(1);
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < rounds(3000); ++round) {
     CurveKeys<1> keys = whim.keys(6);
     for (Key<1>& each : keys.keys) each.frame = std::round(each.frame);
     for (std::size_t k = 1; k < keys.keys.size(); ++k) {

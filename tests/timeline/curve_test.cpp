@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 #include "timeline/reference_evaluator.hpp"
 
@@ -37,7 +38,7 @@ TEST_CASE("default lengths reproduce any cubic", "[timeline][curve]") {
 
 TEST_CASE("general lengths agree with a bisection in long double", "[timeline][curve]") {
   Whim whim(2);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < rounds(2000); ++round) {
     std::vector<Key<1>> keys;
     double frame = whim.between(-30, 30);
     double span_before = 1;
@@ -76,7 +77,7 @@ TEST_CASE("general lengths agree with a bisection in long double", "[timeline][c
 
 TEST_CASE("the curve is a finite function of time, whatever the tangents", "[timeline][curve]") {
   Whim whim(3);
-  for (int round = 0; round < 100000; ++round) {
+  for (int round = 0; round < rounds(100000); ++round) {
     const CurveKeys<1> keys = whim.keys(4);
     const auto curve = Curve<1>::make(keys);
     REQUIRE(curve);
@@ -101,7 +102,7 @@ TEST_CASE("time never runs backwards inside a Bezier segment", "[timeline][curve
   // A curve whose values are its own times, x(u) = y(u): slopes 1 and lengths as corrected. Then
   // the value at t is t, however wild the lengths.
   Whim whim(4);
-  for (int round = 0; round < 15000; ++round) {
+  for (int round = 0; round < rounds(15000); ++round) {
     CurveKeys<1> keys;
     const double span = whim.size(-3, 3);
     keys.keys = {key(0, 0), key(span, span)};
@@ -120,7 +121,7 @@ TEST_CASE("time never runs backwards inside a Bezier segment", "[timeline][curve
 
 TEST_CASE("keys may be moved and scaled in time and value", "[timeline][curve]") {
   Whim whim(5);
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < rounds(3000); ++round) {
     CurveKeys<1> keys = whim.keys(5);
     // Powers of two and whole shifts of dyadic frames carry no rounding: equal bits, no tolerance.
     for (Key<1>& each : keys.keys) each.frame = std::round(each.frame * 1024) / 1024;
@@ -180,7 +181,7 @@ TEST_CASE("keys may be moved and scaled in time and value", "[timeline][curve]")
 
 TEST_CASE("velocity is the slope of the value", "[timeline][curve]") {
   Whim whim(6);
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     const CurveKeys<1> keys = whim.keys(5);
     const Curve<1> curve = make(keys);
     const double t = whim.between(keys.keys.front().frame - 3, keys.keys.back().frame + 3);
@@ -200,7 +201,7 @@ TEST_CASE("velocity is the slope of the value", "[timeline][curve]") {
 
 TEST_CASE("one-sided limits are the limits", "[timeline][curve]") {
   Whim whim(7);
-  for (int round = 0; round < 5000; ++round) {
+  for (int round = 0; round < rounds(5000); ++round) {
     const CurveKeys<1> keys = whim.keys(4);
     const Curve<1> curve = make(keys);
     for (const Key<1>& each : keys.keys) {
@@ -253,7 +254,7 @@ TEST_CASE("keys a billionth of a frame apart keep their shape", "[timeline][curv
 
 TEST_CASE("vector components are the curves of each number", "[timeline][curve]") {
   Whim whim(8);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < rounds(2000); ++round) {
     CurveKeys<1> parts[3] = {whim.keys(5), {}, {}};
     CurveKeys<3> keys;
     for (int c = 0; c < 3; ++c) {
@@ -313,7 +314,7 @@ TEST_CASE("vector components are the curves of each number", "[timeline][curve]"
 
 TEST_CASE("huge but legal numbers stay finite between the keys", "[timeline][curve]") {
   Whim whim(9);
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     CurveKeys<1> keys = whim.keys(4);
     for (Key<1>& each : keys.keys) {
       if (whim.once_in(2)) each.value[0] *= whim.size(-300, 148);

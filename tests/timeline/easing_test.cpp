@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -131,7 +132,7 @@ TEST_CASE("easings start at 0 and end at 1", "[timeline][easing]") {
 
 TEST_CASE("easing slopes are the slopes of the shares", "[timeline][easing]") {
   Whim whim(22);
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < rounds(3000); ++round) {
     Interpolation next = whim.interpolation();
     const double length = whim.between(1, 20);
     const Easing easing(next, length, 1.5);

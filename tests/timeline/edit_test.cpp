@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -73,7 +74,7 @@ TEST_CASE("a key put into a curve leaves it as it was", "[timeline][edit]") {
   Whim whim(1);
   int inserted = 0;
   int refused = 0;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < rounds(20000); ++round) {
     const Curve<1> curve = some_curve(whim, 6);
     double frame = some_frame(whim, curve);
     if (whim.once_in(10)) frame = curve.keys().keys.front().frame + whim.size(-12, -6);
@@ -113,13 +114,13 @@ TEST_CASE("a key put into a curve leaves it as it was", "[timeline][edit]") {
     CAPTURE(worst_frame, at(curve, worst_frame), at(*edited, worst_frame));
     if (worst > 1e-12) REQUIRE(worst <= 1e-12);
   }
-  CHECK(inserted > 10000);
-  CHECK(refused > 1000);
+  CHECK(inserted > rounds(10000));
+  CHECK(refused > rounds(1000));
 }
 
 TEST_CASE("a key put into a curve leaves its velocities", "[timeline][edit]") {
   Whim whim(2);
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     const Curve<1> curve = some_curve(whim, 6);
     const double frame = some_frame(whim, curve);
     const auto edited = insert_key(curve, frame);
@@ -166,7 +167,7 @@ void check_equivariance(std::uint64_t seed, bool is_reversed, double growth, con
                         const Map& map, const Rise& rise) {
   Whim whim(seed);
   int edited_curves = 0;
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     const Curve<1> curve = some_curve(whim, 6);
     const auto edited = edit(curve);
     CAPTURE(round);
@@ -212,7 +213,7 @@ void check_equivariance(std::uint64_t seed, bool is_reversed, double growth, con
     const double tolerance = 1e-12 + 64 * epsilon * 100 / shortest_span(curve);
     if (worst > tolerance) REQUIRE(worst <= tolerance);
   }
-  CHECK(edited_curves > 8000);
+  CHECK(edited_curves > rounds(8000));
 }
 
 TEST_CASE("moving all keys moves the curve", "[timeline][edit]") {
@@ -347,7 +348,7 @@ TEST_CASE("easings made of cubics take a key", "[timeline][edit]") {
 
 TEST_CASE("a key is put between keys a billionth of a frame apart", "[timeline][edit]") {
   Whim whim(9);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < rounds(1000); ++round) {
     const double start = whim.between(0, 1000);
     const double end = start + 1e-9;
     std::vector<Key<1>> keys = {key(start - 1, 3), key(start, 1), key(end, 2), key(end + 1, 0)};
@@ -366,7 +367,7 @@ TEST_CASE("a key is put between keys a billionth of a frame apart", "[timeline][
 TEST_CASE("deleting an inserted key restores the curve", "[timeline][edit]") {
   Whim whim(10);
   int rejoined = 0;
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     CurveKeys<1> keys = whim.keys(6);
     for (std::size_t k = 0; k < keys.keys.size(); ++k) {
       Key<1>& each = keys.keys[k];
@@ -395,7 +396,7 @@ TEST_CASE("deleting an inserted key restores the curve", "[timeline][edit]") {
       REQUIRE(off == 0);
     }
   }
-  CHECK(rejoined > 5000);
+  CHECK(rejoined > rounds(5000));
 }
 
 TEST_CASE("deleting a key leaves its neighbours to the rules", "[timeline][edit]") {

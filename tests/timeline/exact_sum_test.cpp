@@ -1,6 +1,7 @@
 #include "pliant/timeline/exact_sum.hpp"
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -8,7 +9,7 @@ namespace {
 
 TEST_CASE("pairs hold sums and products exactly", "[timeline][exact_sum]") {
   Whim whim(91);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < rounds(2000); ++round) {
     // Integers of at most 62 bits in sum and product: exact to compare against.
     const std::int64_t a = static_cast<std::int64_t>(whim.between(-0x1p31, 0x1p31));
     const std::int64_t b = static_cast<std::int64_t>(whim.between(-0x1p31, 0x1p31));

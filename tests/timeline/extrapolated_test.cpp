@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -195,7 +196,7 @@ TEST_CASE("before the first key the curve comes from its left value", "[timeline
 
 TEST_CASE("the range of a curve holds all its values and no more", "[timeline][extrapolated]") {
   Whim whim(61);
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < rounds(1500); ++round) {
     const CurveKeys<1> keys = whim.keys(4);
     const Curve<1> curve = make(keys);
     const double length = 2 + keys.keys.back().frame - keys.keys.front().frame;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -33,7 +34,7 @@ double least_speed(double a, double b) {
 
 TEST_CASE("a segment is legal exactly where time runs forwards", "[timeline][overshoot]") {
   Whim whim(31);
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < rounds(20000); ++round) {
     const double a = whim.between(0, 1.5);
     const double b = whim.between(0, 1.5);
     const double speed = least_speed(a, b);
@@ -49,7 +50,7 @@ TEST_CASE("a segment is legal exactly where time runs forwards", "[timeline][ove
 
 TEST_CASE("limit moves onto the ellipse and keeps the ratio", "[timeline][overshoot]") {
   Whim whim(32);
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < rounds(20000); ++round) {
     const double span = whim.size(-3, 3);
     const Lengths given{whim.size(-3, 3) * span, whim.once_in(9) ? 0 : whim.size(-3, 3) * span};
     const Lengths legal = corrected(given, span, Overshoot::Limit);
@@ -73,7 +74,7 @@ TEST_CASE("limit moves onto the ellipse and keeps the ratio", "[timeline][oversh
 
 TEST_CASE("keepStart keeps the start where it can", "[timeline][overshoot]") {
   Whim whim(33);
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < rounds(20000); ++round) {
     const double a = whim.between(0, 2);
     const double b = whim.between(0, 3);
     const Lengths legal = corrected({a, b}, 1, Overshoot::KeepStart);

@@ -1,6 +1,7 @@
 #include "pliant/timeline/preserve.hpp"
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -34,7 +35,7 @@ TEST_CASE("a linear end that would change is written as a slope", "[timeline][pr
 
 TEST_CASE("written corrections leave nothing to correct", "[timeline][preserve]") {
   Whim whim(1);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < rounds(2000); ++round) {
     CurveKeys<1> keys = whim.keys(5);
     const Curve<1> before = make(keys);
     timeline::write_corrections(keys, keys.overshoot);

@@ -7,6 +7,7 @@
 
 #include "pliant/timeline/bake_keys.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -54,7 +55,7 @@ TEST_CASE("a baked sine needs few keys", "[timeline][simplify]") {
 TEST_CASE("the deviation of a simplified curve stays below its bound", "[timeline][simplify]") {
   Whim whim(1);
   int removed = 0;
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     CurveKeys<1> keys = whim.keys(12);
     for (Key<1>& each : keys.keys) {
       if (whim.once_in(2)) each.left.reset();
@@ -91,7 +92,7 @@ TEST_CASE("the deviation of a simplified curve stays below its bound", "[timelin
     const double tolerance = result->error * (1 + 1e-9) + 1e-10;
     if (worst > tolerance) REQUIRE(worst <= tolerance);
   }
-  CHECK(removed > 20000);
+  CHECK(removed > rounds(20000));
 }
 
 TEST_CASE("jumps, steps and easings stay", "[timeline][simplify]") {

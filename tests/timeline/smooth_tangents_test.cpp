@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -49,7 +50,7 @@ CurveKeys<1> random_keys(Whim& whim, int count, TangentKind kind) {
 
 TEST_CASE("free tangents have continuous acceleration", "[timeline][smooth]") {
   Whim whim(51);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < rounds(1000); ++round) {
     CurveKeys<1> keys = random_keys(whim, 2 + whim.upto(10), TangentKind::Free);
     const bool is_periodic = whim.once_in(2);
     if (is_periodic) keys.after.kind = OutsideKind::RepeatOffset;
@@ -85,7 +86,7 @@ TEST_CASE("free tangents have continuous acceleration", "[timeline][smooth]") {
 TEST_CASE("smooth tangents never overshoot, and accelerate steadily but at fixed keys",
           "[timeline][smooth]") {
   Whim whim(52);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < rounds(1000); ++round) {
     CurveKeys<1> keys = random_keys(whim, 3 + whim.upto(10), TangentKind::Smooth);
     if (whim.once_in(2)) {
       // A long climb: few extrema, so that the system has something to say.

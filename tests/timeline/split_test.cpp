@@ -2,6 +2,7 @@
 
 #include "pliant/timeline/compile.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -23,7 +24,7 @@ TEST_CASE("handles are those of the keys", "[timeline][split]") {
 
 TEST_CASE("halves of a segment are joined to the whole", "[timeline][split]") {
   Whim whim(1);
-  for (int round = 0; round < 1000; ++round) {
+  for (int round = 0; round < rounds(1000); ++round) {
     const auto whole = track_of({key(0, 1, of_handle(whim.between(0, 4), whim.between(-3, 3))),
                                  key(4, 2, of_handle(-whim.between(0, 4), whim.between(-3, 3)))});
     const double frame = whim.between(0.1, 3.9);

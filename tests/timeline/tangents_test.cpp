@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -31,7 +32,7 @@ CurveKeys<1> keys_with_repeats(Whim& whim, int count, TangentKind kind) {
 
 TEST_CASE("auto and plateau never leave the interval of their neighbours", "[timeline][tangents]") {
   Whim whim(41);
-  for (int round = 0; round < 8000; ++round) {
+  for (int round = 0; round < rounds(8000); ++round) {
     const auto kind = whim.once_in(2) ? TangentKind::Auto : TangentKind::Plateau;
     const CurveKeys<1> keys = keys_with_repeats(whim, 2 + whim.upto(4), kind);
     const Curve<1> curve = make(keys);
@@ -51,7 +52,7 @@ TEST_CASE("auto and plateau never leave the interval of their neighbours", "[tim
 
 TEST_CASE("tangents follow their formulas", "[timeline][tangents]") {
   Whim whim(42);
-  for (int round = 0; round < 2000; ++round) {
+  for (int round = 0; round < rounds(2000); ++round) {
     const CurveKeys<1> keys = keys_with_repeats(whim, 3, TangentKind::Auto);
     const auto& [p, k, n] = std::tie(keys.keys[0], keys.keys[1], keys.keys[2]);
     const double s_p = (k.value[0] - p.value[0]) / (k.frame - p.frame);

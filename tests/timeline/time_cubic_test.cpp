@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
 #include "timeline/reference_evaluator.hpp"
 
@@ -31,7 +32,7 @@ long double miss(const TimeCubic::Place& place, double frame, double start, doub
 TEST_CASE("the time solve meets the frame within 3 ulp of it", "[timeline][time_cubic]") {
   Whim whim(11);
   double worst = 0;
-  for (int round = 0; round < 10000; ++round) {
+  for (int round = 0; round < rounds(10000); ++round) {
     const double start = whim.once_in(3) ? 0 : whim.between(-50, 50);
     const double end = start + whim.size(-3, 3);
     const double span = end - start;
