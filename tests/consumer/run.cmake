@@ -11,6 +11,13 @@ endfunction()
 file(REMOVE_RECURSE "${WORK}")
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/prefix")
 
+foreach(completion bash-completion/completions/pliant zsh/site-functions/_pliant
+                   fish/vendor_completions.d/pliant.fish)
+  if(NOT EXISTS "${WORK}/prefix/share/${completion}")
+    message(FATAL_ERROR "there is no share/${completion}")
+  endif()
+endforeach()
+
 file(READ "${README}" readme)
 string(REGEX MATCH "```cpp\n(#include[^\n]*\n)([^`]*)```" code "${readme}")
 if(NOT code)

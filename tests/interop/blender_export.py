@@ -3,8 +3,8 @@ settings that docs/your-mesh.md names.
 
 usage: blender -b --factory-startup -noaudio -P blender_export.py -- FOLDER
 
-FOLDER gets sheet.obj, .ply, .glb, .fbx and .dae, default.fbx by the exporter's own settings, and
-world.npy: the vertices in Blender's world space.
+FOLDER gets sheet.obj, .ply, .glb, .gltf with its .bin, .fbx and .dae, default.fbx by the exporter's
+own settings, and world.npy: the vertices in Blender's world space.
 """
 
 import math
@@ -41,6 +41,7 @@ def main():
     bpy.ops.wm.obj_export(filepath=path + ".obj")
     bpy.ops.export_mesh.ply(filepath=path + ".ply")
     bpy.ops.export_scene.gltf(filepath=path + ".glb", export_format="GLB")
+    bpy.ops.export_scene.gltf(filepath=path + ".gltf", export_format="GLTF_SEPARATE")
     bpy.ops.export_scene.fbx(filepath=path + ".fbx", apply_scale_options="FBX_SCALE_UNITS")
     bpy.ops.export_scene.fbx(filepath=os.path.join(folder, "default.fbx"))
     bpy.ops.wm.collada_export(filepath=path + ".dae")

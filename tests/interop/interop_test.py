@@ -370,8 +370,8 @@ class Interop(unittest.TestCase):
 
 
 # What docs/your-mesh.md says of Blender's exporters: how many times as long, and whether +y is up.
-EXPORTS = {"sheet.obj": (1, True), "sheet.ply": (1, False), "sheet.glb": (1, True), "sheet.fbx": (1, True),
-           "default.fbx": (100, True), "sheet.dae": (1, True)}
+EXPORTS = {"sheet.obj": (1, True), "sheet.ply": (1, False), "sheet.glb": (1, True), "sheet.gltf": (1, True),
+           "sheet.fbx": (1, True), "default.fbx": (100, True), "sheet.dae": (1, True)}
 
 # A force at a point of Blender's, said in the file's axes and unit. Its reach is a third of the sheet's.
 POKE = """<scene version="1" fps="24" start="1" end="6"><surface name="s"><mesh file="{file}"/></surface>

@@ -124,6 +124,20 @@ inline std::vector<double> numbers_of(const Mesh& mesh) {
   return numbers;
 }
 
+/// Triangles whose vertices have a (u,v) each, as an OBJ.
+inline std::string obj_text(const Mesh& mesh) {
+  std::string obj;
+  for (int k = 0; k < mesh.vertex_count(); ++k) {
+    obj += fmt::format("v {} {} {}\nvt {} {}\n", mesh.positions(k, 0), mesh.positions(k, 1),
+                       mesh.positions(k, 2), mesh.uvs[k][0], mesh.uvs[k][1]);
+  }
+  for (std::size_t k = 0; k < mesh.corner_vertices.size(); k += 3) {
+    obj += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", mesh.corner_vertices[k] + 1,
+                       mesh.corner_vertices[k + 1] + 1, mesh.corner_vertices[k + 2] + 1);
+  }
+  return obj;
+}
+
 inline std::vector<double> uv_numbers_of(const Mesh& mesh) {
   std::vector<double> numbers;
   for (const auto& uv : mesh.uvs) numbers.insert(numbers.end(), uv.begin(), uv.end());

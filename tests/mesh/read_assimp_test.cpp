@@ -87,16 +87,7 @@ TEST_CASE("(u,v) point the same way as in OBJ", "[mesh][read_assimp]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(true);
   for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not its own mirror image
-  std::string obj;
-  for (int k = 0; k < 9; ++k) {
-    obj += fmt::format("v {} {} {}\nvt {} {}\n", sheet.positions(k, 0), sheet.positions(k, 1),
-                       sheet.positions(k, 2), sheet.uvs[k][0], sheet.uvs[k][1]);
-  }
-  for (std::size_t k = 0; k < sheet.corner_vertices.size(); k += 3) {
-    obj += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", sheet.corner_vertices[k] + 1,
-                       sheet.corner_vertices[k + 1] + 1, sheet.corner_vertices[k + 2] + 1);
-  }
-  const GridMapping of_obj = find_grid(parse_obj(obj, "a.obj").value()).value();
+  const GridMapping of_obj = find_grid(parse_obj(obj_text(sheet), "a.obj").value()).value();
   const auto file = folder.write(
       "a.dae", collada(sheet, collada_faces(sheet, 0, 8, false), collada_node("n", instance)));
   const GridMapping mapping = find_grid(read_assimp(file).value()).value();

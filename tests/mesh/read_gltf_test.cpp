@@ -124,18 +124,9 @@ TEST_CASE("glTF's modes of triangles are read, points and lines passed over", "[
 TEST_CASE("(u,v) point the same way in a glTF and in an OBJ", "[mesh][read_gltf]") {
   Mesh sheet = small_sheet(true);
   for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not its own mirror image
-  std::string obj;
-  for (int k = 0; k < 9; ++k) {
-    obj += fmt::format("v {} {} {}\nvt {} {}\n", sheet.positions(k, 0), sheet.positions(k, 1),
-                       sheet.positions(k, 2), sheet.uvs[k][0], sheet.uvs[k][1]);
-  }
-  for (std::size_t k = 0; k < sheet.corner_vertices.size(); k += 3) {
-    obj += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", sheet.corner_vertices[k] + 1,
-                       sheet.corner_vertices[k + 1] + 1, sheet.corner_vertices[k + 2] + 1);
-  }
   Gltf gltf;
   const std::string meshes = gltf_mesh(gltf.primitive(sheet));
-  const GridMapping of_obj = find_grid(parse_obj(obj, "a.obj").value()).value();
+  const GridMapping of_obj = find_grid(parse_obj(obj_text(sheet), "a.obj").value()).value();
   const GridMapping of_gltf =
       find_grid(parse_exactly(gltf.text(meshes, cloth_node)).value()).value();
   CHECK(of_gltf.grid == of_obj.grid);

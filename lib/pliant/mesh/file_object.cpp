@@ -5,11 +5,15 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/transform.hpp"
 
 namespace pliant {
 namespace {
 
 constexpr std::size_t most_listed = 10;
+
+// How far the last row of a transform may be from 0 0 0 1: exporters work in float.
+constexpr double affine_tolerance = 1e-5;
 
 std::string listed(std::span<const std::string> names) {
   std::string list;
@@ -49,6 +53,28 @@ Result<std::size_t> choose_object(std::span<const std::string> names, const std:
                     in_quotes(object)));
   }
   return static_cast<std::size_t>(found - names.begin());
+}
+
+Result<std::size_t> choose_node(std::span<const std::string> nodes,
+                                std::span<const std::string> meshes, const std::string& object) {
+  PLIANT_EXPECTS(nodes.size() == meshes.size());
+  if (nodes.empty()) return invalid("the file holds no faces");
+  const bool is_node = std::find(nodes.begin(), nodes.end(), object) != nodes.end();
+  const bool is_mesh = std::find(meshes.begin(), meshes.end(), object) != meshes.end();
+  return choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
+}
+
+Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions) {
+  if (to_file == Eigen::Matrix4d::Identity()) return {};  // -0 would become 0
+  const Eigen::RowVector4d last_row = to_file.row(3);
+  if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
+    return invalid(
+        fmt::format("the object's transform is not affine: its last row is "
+                    "{} {} {} {}, not 0 0 0 1",
+                    last_row[0], last_row[1], last_row[2], last_row[3]));
+  }
+  positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
+  return {};
 }
 
 Result<void> check_uv_set(int uv_set, int set_count) {

@@ -16,17 +16,11 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "pliant/core/transform.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
 
 namespace pliant::gltf {
 namespace {
-
-using Eigen::Matrix4d;
-
-// How far the last row of a transform may be from 0 0 0 1: exporters work in float.
-constexpr double affine_tolerance = 1e-5;
 
 constexpr std::uint64_t most = std::numeric_limits<int>::max();  // that can be counted in int
 
@@ -227,26 +221,14 @@ class Merger {
   std::map<std::string, int> materials_;                           // by name
 };
 
-Result<void> apply(const Matrix4d& to_file, Field& positions) {
-  if (to_file == Matrix4d::Identity()) return {};  // -0 would become 0
-  const Eigen::RowVector4d last_row = to_file.row(3);
-  if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
-    return invalid(
-        fmt::format("the object's transform is not affine: its last row is "
-                    "{} {} {} {}, not 0 0 0 1",
-                    last_row[0], last_row[1], last_row[2], last_row[3]));
-  }
-  positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
-  return {};
-}
-
 }  // namespace
 
 Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
                      int uv_set) {
   auto mesh = Merger(document, object, accessors, uv_set).merge();
   if (!mesh) return mesh;
-  if (auto applied = apply(object.to_file, mesh->positions); !applied) return fail(applied.error());
+  if (auto applied = to_file_space(object.to_file, mesh->positions); !applied)
+    return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
 }

@@ -60,15 +60,12 @@ Result<std::vector<Object>> objects_of(const Document& document) {
 }
 
 Result<Object> choose(std::vector<Object> objects, const std::string& name) {
-  if (objects.empty()) return fail(ErrorCode::InvalidInput, "the file holds no faces");
   std::vector<std::string> nodes, meshes;
   for (const Object& each : objects) {
     nodes.push_back(each.node_name);
     meshes.push_back(each.mesh_name);
   }
-  const bool is_node = std::find(nodes.begin(), nodes.end(), name) != nodes.end();
-  const bool is_mesh = std::find(meshes.begin(), meshes.end(), name) != meshes.end();
-  const auto chosen = choose_object(!name.empty() && !is_node && is_mesh ? meshes : nodes, name);
+  const auto chosen = choose_node(nodes, meshes, name);
   if (!chosen) return fail(chosen.error());
   return std::move(objects[*chosen]);
 }

@@ -28,7 +28,7 @@ bool has_faces(const Document& document, const Primitive& primitive);
 Result<std::vector<Object>> objects_of(const Document& document);
 
 /// The one that `name` means: by the names of the nodes, and by those of the meshes where no node
-/// has it. Errors: no faces at all; those of `choose_object`.
+/// has it. Errors: no faces at all; those of `choose_node`.
 Result<Object> choose(std::vector<Object> objects, const std::string& name);
 
 }  // namespace pliant::gltf

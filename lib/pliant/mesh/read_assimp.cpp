@@ -23,7 +23,6 @@
 #include "pliant/core/file_ending.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/read_file.hpp"
-#include "pliant/core/transform.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh_message.hpp"
 #include "pliant/mesh/mesh_reader.hpp"
@@ -33,12 +32,7 @@
 namespace pliant {
 namespace {
 
-using Eigen::Matrix4d;
-
 constexpr std::size_t max_bytes = std::size_t{4} << 30;
-
-// How far the last row of a transform may be from 0 0 0 1: assimp inverts pivots in float.
-constexpr double affine_tolerance = 1e-5;
 
 // One line of what may hold anything: assimp quotes the file in some of its reasons.
 std::string in_one_line(std::string_view reason) {
@@ -55,17 +49,13 @@ std::string in_one_line(std::string_view reason) {
 
 std::string format_name(const std::string& ending) { return ending == ".fbx" ? "FBX" : "Collada"; }
 
-// By the names of the nodes, and by those of the meshes where no node has the name.
 Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
-  if (message.objects.empty()) return invalid("the file holds no faces");
   std::vector<std::string> nodes, meshes;
   for (const ObjectNames& each : message.objects) {
     nodes.emplace_back(each.node.empty() ? each.mesh : each.node);
     meshes.emplace_back(each.mesh);
   }
-  const bool is_node = std::find(nodes.begin(), nodes.end(), object) != nodes.end();
-  const bool is_mesh = std::find(meshes.begin(), meshes.end(), object) != meshes.end();
-  return choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
+  return choose_node(nodes, meshes, object);
 }
 
 Result<void> check_sets(const MeshMessage& message, int uv_set) {
@@ -170,19 +160,6 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set) {
   return mesh;
 }
 
-Result<void> apply(const Matrix4d& to_file, Field& positions) {
-  if (to_file == Matrix4d::Identity()) return {};  // -0 would become 0
-  const Eigen::RowVector4d last_row = to_file.row(3);
-  if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
-    return invalid(
-        fmt::format("the object's transform is not affine: its last row is "
-                    "{} {} {} {}, not 0 0 0 1",
-                    last_row[0], last_row[1], last_row[2], last_row[3]));
-  }
-  positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
-  return {};
-}
-
 // What is told of a process that gave no answer to trust.
 Error reader_failed(const std::string& format, const std::string& what) {
   return {ErrorCode::InvalidInput,
@@ -245,7 +222,7 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
     return fail(reader_failed(format, "gave another object than it was asked for"));
   auto mesh = merged(*message, uv_set);
   if (!mesh) return mesh;
-  if (auto applied = apply(message->to_file, mesh->positions); !applied)
+  if (auto applied = to_file_space(message->to_file, mesh->positions); !applied)
     return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
