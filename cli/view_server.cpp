@@ -50,11 +50,16 @@ struct ViewServer::State {
   // Requires: the mutex is held.
   std::string baked_text() const { return event_text("baked", std::to_string(bake_number)); }
 
+  // Requires: the mutex is held.
+  void set_event(std::string text) {
+    event = std::move(text);
+    ++event_number;
+  }
+
   void tell(std::string text) {
     {
       const std::lock_guard lock(mutex);
-      event = std::move(text);
-      ++event_number;
+      set_event(std::move(text));
     }
     server.notify();
   }
@@ -151,14 +156,14 @@ std::string ViewServer::address() const { return state_->gate.address(); }
 
 void ViewServer::publish(std::string packed) {
   auto shared = std::make_shared<const std::string>(std::move(packed));
-  std::string text;
   {
+    // Together: a page that comes in between would hear of this bake twice.
     const std::lock_guard lock(state_->mutex);
     state_->packed = std::move(shared);
     ++state_->bake_number;
-    text = state_->baked_text();
+    state_->set_event(state_->baked_text());
   }
-  state_->tell(std::move(text));
+  state_->server.notify();
 }
 
 void ViewServer::tell_working() { state_->tell(event_text("working", "")); }

@@ -1,5 +1,6 @@
 """`pliant bake`: what it writes, how it resumes, what --regions tells."""
 
+import contextlib
 import os
 import pty
 import re
@@ -100,8 +101,12 @@ class Bake(Command):
         subprocess.run([PLIANT, "bake", scene, "-o", self.path("a.npy")], stderr=terminal,
                        stdout=subprocess.DEVNULL, check=True, timeout=120)
         os.close(terminal)
-        shown = os.read(main, 100000).decode()
+        shown = b""
+        with contextlib.suppress(OSError):  # how a terminal says that there is no more
+            while piece := os.read(main, 100000):
+                shown += piece
         os.close(main)
+        shown = shown.decode()
         self.assertRegex(shown, r"12/12 frames, [\d.]+ frames/s, 0:00 left")
         self.assertTrue(shown.endswith("\r\x1b[K"))  # wiped
 
