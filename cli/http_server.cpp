@@ -127,6 +127,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void write_event(std::shared_ptr<const std::string> event);
   void close();
   void part();
+  bool is_last() const;
   std::string head_text(const HttpAnswer& answer, std::optional<std::size_t> size) const;
 
   Shared& server_;
@@ -289,9 +290,15 @@ void Session::answer() {
   send_piece();
 }
 
+// Whether nothing is answered on this connection after this request.
+bool Session::is_last() const {
+  const std::string* wish = head_.find("connection");
+  return requests_ >= server_.limits.requests || (wish && beast::iequals(*wish, "close"));
+}
+
 std::string Session::head_text(const HttpAnswer& answer, std::optional<std::size_t> size) const {
   const auto reason = http::obsolete_reason(static_cast<http::status>(answer.status));
-  const bool is_kept = size && answer.status < 400 && requests_ < server_.limits.requests;
+  const bool is_kept = size && answer.status < 400 && !is_last();
   std::string text = fmt::format("HTTP/1.1 {} {}\r\n", answer.status,
                                  std::string_view(reason.data(), reason.size()));
   if (!answer.type.empty()) text += fmt::format("Content-Type: {}\r\n", answer.type);
@@ -319,7 +326,7 @@ void Session::send_piece() {
 void Session::finish_answer() {
   answer_ = {};
   if (verdict_.is_stream) return begin_stream();
-  if (requests_ >= server_.limits.requests) return linger(0);
+  if (is_last()) return linger(0);
   await_head();
 }
 

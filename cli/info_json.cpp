@@ -58,6 +58,7 @@ Json preview_json(const Preview& preview, const Scene& scene) {
   json["everyFrame"] = preview.is_every_frame;
   if (is_force) json["magnitude"] = preview.magnitude;
   json["selected"] = to_json(preview.selected);
+  if (preview.of == Preview::Of::All) json["apart"] = preview.is_apart;
   json["solvable"] = preview.is_solvable;
   json["staticPeak"] = preview.is_solved ? Json(preview.static_peak) : Json(nullptr);
   json["animation"] = nullptr;
@@ -153,7 +154,7 @@ std::string info_json(const SceneFacts& facts) {
         {{"path", channel.path}, {"keys", std::visit(KeysJson{}, channel.channel)}});
   }
   json["memory"] = {{"surfaces", facts.surface_memory}, {"solver", facts.solver_memory}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json.dump(2, ' ', true, Json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace pliant::cli

@@ -66,6 +66,7 @@ std::string vibration_text(const RegionPreview& region, double fps) {
     text += std::isinf(ratio) ? "it creeps" : fmt::format("damping ratio {:.3g}, it creeps", ratio);
   }
   const Settling& settling = region.settling;
+  if (!std::isfinite(settling.time)) return text + "; does not settle\n";
   text += fmt::format("; settles to 5 % in {}{:.3g} s ({})\n", settling.is_counted ? "" : "about ",
                       settling.time, counted(settling.frames, "frame"));
   return text;
@@ -150,6 +151,12 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
                       preview.of == Preview::Of::All ? "they select" : "it selects", box.columns(),
                       box.rows(), box.i0, box.i1, box.j0, box.j1);
   if (!preview.is_every_frame) text += "    not every frame was looked at, the range is long\n";
+  if (preview.is_apart) {
+    text +=
+        "    their boxes do not all meet: one region around all of them is solved, in which each "
+        "moves "
+        "more than alone; combine=\"islands\" solves each by itself\n";
+  }
   if (!preview.is_solvable) {
     text += "    fewer than 3 x 3 nodes: too few to solve\n";
   } else if (!preview.is_solved) {
@@ -277,10 +284,12 @@ std::string info_text(const SceneFacts& facts) {
     text += surface_text(scene.surfaces[k], facts.surfaces[k]);
   }
   text += forces_text(facts) + channels_text(scene);
-  return text + fmt::format(
-                    "memory\n  {} for the surfaces, {} for the solver of the largest region "
-                    "above\n",
-                    bytes_text(facts.surface_memory), bytes_text(facts.solver_memory));
+  text += fmt::format("memory\n  {} for the surfaces", bytes_text(facts.surface_memory));
+  if (facts.solver_memory > 0) {
+    text += fmt::format(", {} for the solver of the largest region that was solved",
+                        bytes_text(facts.solver_memory));
+  }
+  return text + '\n';
 }
 
 }  // namespace pliant::cli

@@ -111,7 +111,7 @@ int run_validate(const ValidateOptions& options) {
     const Json json = {{"format", "pliant-validate-1"},
                        {"scenes", std::move(findings.scenes)},
                        {"problems", std::move(findings.problems)}};
-    print(stdout, json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+    print(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + '\n');
   }
   return worst;
 }

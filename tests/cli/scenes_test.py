@@ -100,6 +100,21 @@ class Info(Command):
                 ("</surface>", '<solver startFrame="50"/></surface>', "poke (point): no surface that is solved")):
             self.assertIn(words, self.run_pliant("info", self.write("n.xml", text.replace(old, new))).stdout)
 
+    def test_json_is_json_whatever_the_names(self):
+        for name in ("\u202ea.xml", "a\u009b\x7f.xml", "ä.xml"):
+            for command in ("info", "validate"):
+                told = json.loads(self.run_pliant(command, self.write(name, SCENE.format(end=3)), "--json").stdout)
+                self.assertIn(name, json.dumps(told, ensure_ascii=False))
+
+    def test_forces_far_apart_in_one_box_are_told(self):
+        scene = SCENE.format(end=5).replace(POINT, "".join(
+            f'<point name="{name}" center="{x} 0 {z}" deformationRadius="1.9" forceRadius="1.5" magnitude="1000"/>'
+            for name, x, z in (("a", -4, -3), ("b", 4, 3))))
+        self.assertIn("boxes do not all meet", self.run_pliant("info", self.write("f.xml", scene)).stdout)
+        for combine in ("box", "islands", "union"):
+            written = scene.replace("</surface>", f'<solver combine="{combine}"/></surface>')
+            self.assertNotIn("do not all meet", self.run_pliant("info", self.write("f.xml", written)).stdout)
+
     @unittest.skipIf(SANITIZED, "a million frames are looked at")
     def test_what_would_take_too_long_is_left_out(self):
         scene = self.write("l.xml", SCENE.format(end=1000000).replace('"13"', '"601"').replace(

@@ -63,6 +63,14 @@ class Serving(Command):
         return head
 
 
+class Ending(Serving):
+    def test_who_wants_one_answer_gets_one(self):
+        for wish in ("close", "Close"):
+            answer = self.server.send(self.server.request("bake", f"Connection: {wish}") + self.server.request())
+            self.assertEqual(statuses(answer), [200])
+            self.assertIn(b"Connection: close", answer.split(b"\r\n\r\n", 1)[0])
+
+
 class Smuggling(Serving):
     def test_the_body_of_what_is_refused_is_no_request(self):
         inner = self.server.request()

@@ -338,7 +338,8 @@ TEST_CASE("numbers that no glTF names any more are removed, others stay", "[io][
   const Mesh mesh = make_mesh({});
   written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
   const std::string first = numbers_of(folder, "a").front();
-  folder.write("a.0123456789abcdef.bin", "of a bake that was killed");
+  const std::string left = "of a bake that was killed";
+  folder.write("a." + to_text(hash_of(left)).substr(0, 16) + ".bin", left);
   const std::vector<std::string> others = {"a.bin", "a.0123456789ABCDEF.bin",
                                            "a.123456789abcdef.bin", "b.0123456789abcdef.bin",
                                            "a.0123456789abcdef.binary"};
@@ -370,6 +371,8 @@ TEST_CASE("a placement that glTF cannot hold is an error with its place", "[io][
   const std::vector<Case> cases = {
       {{{0, 1e300, 0}}, "translate of 1e+300, which is beyond the single precision", nullptr},
       {{{0, 0, 0}, {0, 0, 0}, {1, 1, 3.5e38}}, "scale of 3.5e+38, which is beyond", nullptr},
+      {{{0, 0, 0}, {0, 0, 0}, {1, -1e-50, 1}}, "scale of -1e-50, which is below", nullptr},
+      {{{1e-50, 0, 0}}, nullptr, nullptr},
       {{{0, 0, 0}, {0, 1e300, 0}}, nullptr, nullptr},
       {{{-inf, 0, 0}}, "translate of -inf, which is no finite", "translate of -inf, which is no"},
       {{{0, 0, 0}, {0, 0, inf}}, "rotate of inf, which is no finite", "rotate of inf, which is no"},
@@ -394,6 +397,35 @@ TEST_CASE("a placement that glTF cannot hold is an error with its place", "[io][
                  contains_text(std::string("surface \"sheet\" at frame 7 has a ") + words));
     }
   }
+}
+
+TEST_CASE("a position that a format cannot hold is told by the mesh's own vertex", "[io][gltf]") {
+  Mesh mesh = make_mesh({});
+  mesh.first_index = 1;
+  for (const char* name : {"a.gltf", "a.usda", "a.pc2"}) {
+    for (const double coordinate : {1e39, std::numeric_limits<double>::infinity()}) {
+      const ScratchFolder folder;
+      Field moved = mesh.positions;
+      moved(2, 1) = coordinate;
+      const auto all = write_all(plan_of(folder.file(name), mesh), {{mesh.positions, moved}});
+      REQUIRE_FALSE(all);
+      CHECK_THAT(all.error().message, contains_text("vertex 3 at frame "));
+      CHECK_THAT(all.error().message,
+                 contains_text(std::isinf(coordinate) ? "which is no finite number"
+                                                      : ".npy, .obj and .ply hold double"));
+    }
+  }
+}
+
+TEST_CASE("numbers that are not what their name says are nobody's to remove", "[io][gltf]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({});
+  const auto mine = folder.write("a.0123456789abcdef.bin", "precious");
+  written(folder, "a.gltf", mesh, {mesh.positions, mesh.positions});
+  CHECK(folder.entry_count() == 3);
+  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 2));
+  CHECK(folder.entry_count() == 3);  // the numbers of before are gone
+  CHECK(read_file(mine).value() == "precious");
 }
 
 TEST_CASE("times beyond single precision are refused ahead", "[io][gltf]") {

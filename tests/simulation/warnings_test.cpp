@@ -194,7 +194,7 @@ TEST_CASE("forces far apart in one box are a warning that names them", "[simulat
   CHECK(apart[0].surface == "a");
   CHECK_THAT(
       apart[0].message(),
-      Contains("\"beside\", \"left\" and \"right\" select boxes of \"a\" that do not meet, at "
+      Contains("\"beside\", \"left\" and \"right\" select boxes of \"a\" that do not all meet, at "
                "frames 1-5:") &&
           Contains("combine=\"islands\""));
   for (const Combine combine : {Combine::Islands, Combine::Union}) {

@@ -1,11 +1,13 @@
 #include "pliant/io/gltf_numbers.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "pliant/core/file_ending.hpp"
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/core/read_file.hpp"
 
 namespace pliant {
@@ -64,6 +66,22 @@ bool is_numbers_file(const fs::path& gltf, std::string_view name) {
                      [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
 
+namespace {
+
+// Whether a file is what its name says: nothing of anybody else's is removed.
+bool is_of_its_name(const fs::path& gltf, const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  HashStream hash;
+  std::vector<char> piece(std::size_t{1} << 20);
+  while (in) {
+    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
+  }
+  return in.eof() && numbers_file(gltf, hash.hash()).filename() == file.filename();
+}
+
+}  // namespace
+
 void remove_unnamed_numbers(const fs::path& gltf) {
   Neighbours found = neighbours_of(gltf);
   // As a rule there is one, and it is in use.
@@ -78,7 +96,8 @@ void remove_unnamed_numbers(const fs::path& gltf) {
     if (found.numbers.empty()) return;
   }
   std::error_code ignored;
-  for (const fs::path& file : found.numbers) fs::remove(file, ignored);
+  for (const fs::path& file : found.numbers)
+    if (is_of_its_name(gltf, file)) fs::remove(file, ignored);
 }
 
 }  // namespace pliant

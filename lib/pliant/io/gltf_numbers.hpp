@@ -18,7 +18,7 @@ std::filesystem::path numbers_file(const std::filesystem::path& gltf, const Hash
 bool is_numbers_file(const std::filesystem::path& gltf, std::string_view name);
 
 /// Removes those of `gltf` that neither it nor any other .gltf in the folder names. What cannot be
-/// read or removed stays. Not for other rooms.
+/// read or removed stays, and what does not have the hash that its name says. Not for other rooms.
 void remove_unnamed_numbers(const std::filesystem::path& gltf);
 
 }  // namespace pliant

@@ -83,7 +83,7 @@ GltfSurface::GltfSurface(const AnimatedSurface& surface, bool is_placed)
       keys_{{"translation", 3}, {"rotation", 4}, {"scale", 3}} {}
 
 Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer) {
-  const auto rows = to_single(rest, frame);
+  const auto rows = to_single(rest, frame, mesh_.first_index);
   if (!rows) return fail(rows.error());
   base_.reserve(3 * shape_.source.size());
   for (const int vertex : shape_.source) {
@@ -143,7 +143,10 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
     }
   }
   auto rounded = to_single(offsets, frame);
-  if (!rounded) return fail(rounded.error());
+  if (!rounded) {  // told by the mesh's own vertices if one of them is to blame
+    const auto held = to_single(pose.positions, frame, mesh_.first_index);
+    return fail(held ? rounded.error() : held.error());
+  }
   std::vector<float> normals = normals_at(pose.positions);
   for (std::size_t k = 0; k < normals.size(); ++k) normals[k] -= base_normals_[k];
 

@@ -39,14 +39,15 @@ void swap_bytes(std::span<float> numbers) {
 template <std::endian order>
 class PointCacheWriter final : public SurfaceWriter {
  public:
-  PointCacheWriter(AtomicFile cache, AtomicFile mesh)
-      : cache_(std::move(cache)), mesh_(std::move(mesh)) {}
+  PointCacheWriter(AtomicFile cache, AtomicFile mesh, int first_index)
+      : cache_(std::move(cache)), mesh_(std::move(mesh)), first_index_(first_index) {}
 
   Result<void> write(int frame, const Field& positions) override {
     numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
     return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) -> Result<void> {
       const std::span<float> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
-      if (auto rounded = to_single(positions, frame, first, numbers); !rounded) return rounded;
+      if (auto rounded = to_single(positions, frame, first, numbers, first_index_); !rounded)
+        return rounded;
       if (order != std::endian::native) swap_bytes(numbers);
       return cache_.write(std::span<const float>(numbers));
     });
@@ -60,6 +61,7 @@ class PointCacheWriter final : public SurfaceWriter {
  private:
   AtomicFile cache_;
   AtomicFile mesh_;
+  int first_index_;             // from which the mesh counts its vertices
   std::vector<float> numbers_;  // of some rows
 };
 
@@ -81,7 +83,8 @@ Result<std::unique_ptr<SurfaceWriter>> make_writer(const SurfacePlan& plan,
   if (auto written = cache->write(header); !written) return fail(written.error());
   auto mesh = write_mesh(plan);
   if (!mesh) return fail(mesh.error());
-  return std::make_unique<PointCacheWriter<order>>(*std::move(cache), *std::move(mesh));
+  return std::make_unique<PointCacheWriter<order>>(*std::move(cache), *std::move(mesh),
+                                                   plan.mesh->first_index);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -9,41 +10,47 @@
 
 namespace pliant {
 
-Result<std::vector<float>> to_single(const Field& positions, int frame) {
+Result<std::vector<float>> to_single(const Field& positions, int frame, int first_index) {
   std::vector<float> numbers(static_cast<std::size_t>(positions.size()));
-  if (auto rounded = to_single(positions, frame, 0, numbers); !rounded) {
+  if (auto rounded = to_single(positions, frame, 0, numbers, first_index); !rounded) {
     return fail(rounded.error());
   }
   return numbers;
 }
 
 Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
-                       std::span<float> numbers) {
+                       std::span<float> numbers, int first_index) {
   to_row_order(positions, first, numbers);
   const auto beyond = std::find_if(numbers.begin(), numbers.end(),
                                    [](float number) { return !std::isfinite(number); });
   if (beyond == numbers.end()) return {};
   const Eigen::Index place = beyond - numbers.begin();
   const Eigen::Index row = first + place / 3;
+  const double coordinate = positions(row, place % 3);
   return fail(ErrorCode::NotFinite,
-              fmt::format("vertex {} at frame {} has the coordinate {}, which is beyond the "
-                          "single precision of the format; .npy, .obj and .ply hold double",
-                          row, frame, positions(row, place % 3)));
+              fmt::format("vertex {} at frame {} has the coordinate {}, which is {}",
+                          first_index + row, frame, coordinate,
+                          std::isfinite(coordinate)
+                              ? "beyond the single precision of the format; .npy, .obj and .ply "
+                                "hold double"
+                              : "no finite number"));
 }
 
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
                              std::string_view surface, int frame) {
+  const auto refused = [&](const char* attribute, double number, const char* reason) {
+    return fail(ErrorCode::NotFinite,
+                fmt::format("surface \"{}\" at frame {} has a {} of {}, which is {}", surface,
+                            frame, attribute, number, reason));
+  };
   const auto check = [&](const char* attribute, const Vector3d& vector,
                          bool is_single) -> Result<void> {
-    for (int k = 0; k < 3; ++k) {
-      const bool is_finite = std::isfinite(vector[k]);
-      if (is_finite && !(is_single && std::isinf(static_cast<float>(vector[k])))) continue;
-      return fail(ErrorCode::NotFinite,
-                  fmt::format("surface \"{}\" at frame {} has a {} of {}, which is {}", surface,
-                              frame, attribute, vector[k],
-                              is_finite ? "beyond the single precision of the format; .usda holds "
-                                          "double"
-                                        : "no finite number"));
+    for (const double number : vector) {
+      if (!std::isfinite(number)) return refused(attribute, number, "no finite number");
+      if (is_single && std::isinf(static_cast<float>(number))) {
+        return refused(attribute, number,
+                       "beyond the single precision of the format; .usda holds double");
+      }
     }
     return {};
   };
@@ -51,7 +58,14 @@ Result<void> check_placement(const Placement& placement, PlacementNumbers number
   if (auto checked = check("translate", placement.translate, is_single); !checked) return checked;
   // Written as a quaternion, or in degrees as double.
   if (auto checked = check("rotate", placement.rotate, false); !checked) return checked;
-  return check("scale", placement.scale, is_single);
+  if (auto checked = check("scale", placement.scale, is_single); !checked) return checked;
+  for (const double number : placement.scale) {
+    if (is_single && std::fabs(number) < std::numeric_limits<float>::min()) {
+      return refused("scale", number,
+                     "below the single precision of the format; .usda holds double");
+    }
+  }
+  return {};
 }
 
 Result<float> to_single_seconds(int frame_count, double fps) {

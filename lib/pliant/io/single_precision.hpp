@@ -10,19 +10,20 @@
 
 namespace pliant {
 
-/// x y z of each row, rounded to the nearest float.
-/// Errors: NotFinite, naming frame and vertex, where a coordinate is beyond the range of float.
-Result<std::vector<float>> to_single(const Field& positions, int frame);
+/// x y z of each row, rounded to the nearest float. Errors: NotFinite, naming frame and vertex,
+/// counted from `first_index`, if a coordinate is not finite or beyond the range of float.
+Result<std::vector<float>> to_single(const Field& positions, int frame, int first_index = 0);
 
 /// The same of the rows from `first` on that fill `numbers`.
 Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
-                       std::span<float> numbers);
+                       std::span<float> numbers, int first_index = 0);
 
 /// How a format holds translation and scale of a placement.
 enum class PlacementNumbers { Single, Double };
 
-/// Whether a format can hold a placement. Errors: NotFinite, naming surface, frame and value, where
-/// one of its numbers is not finite or beyond the range of the format's.
+/// Whether a format can hold a placement. Errors: NotFinite, naming surface, frame and value, if
+/// one of its numbers is not finite or beyond the range of the format's, or a scale below it: a
+/// surface of scale 0 has no way back.
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
                              std::string_view surface, int frame);
 

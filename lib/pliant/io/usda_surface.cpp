@@ -99,7 +99,7 @@ Result<UsdaSurface> UsdaSurface::make(const AnimationPlan& plan, const AnimatedS
   auto velocities = SpoolFile::create(plan.file);
   if (!velocities) return fail(velocities.error());
   UsdaSurface made(plan, surface, *std::move(points), *std::move(normals), *std::move(velocities));
-  const auto rest = to_single(surface.rest, plan.first_frame);
+  const auto rest = to_single(surface.rest, plan.first_frame, surface.mesh->first_index);
   if (!rest) return fail(rest.error());
   append_vectors(*rest, made.rest_);
   return made;
@@ -110,7 +110,7 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
     auto held = check_placement(pose.placement, PlacementNumbers::Double, name_, frame);
     if (!held) return held;
   }
-  const auto numbers = to_single(pose.positions, frame);
+  const auto numbers = to_single(pose.positions, frame, mesh_->first_index);
   if (!numbers) return fail(numbers.error());
   std::string text = sample_head(frame);
   append_vectors(*numbers, text);

@@ -92,14 +92,16 @@ class DocumentReader {
  private:
   // Where the reader is: `meshes[2].primitives[0]`.
   struct Step {
-    const char* list;
-    std::size_t index;
+    const char* key;
+    std::optional<std::size_t> index;  // in a list
   };
 
   std::string place() const {
     std::string text;
-    for (const auto& [list, index] : place_)
-      text += fmt::format("{}{}[{}]", text.empty() ? "" : ".", list, index);
+    for (const auto& [key, index] : place_) {
+      text += fmt::format("{}{}", text.empty() ? "" : ".", key);
+      if (index) text += fmt::format("[{}]", *index);
+    }
     return text;
   }
 
@@ -162,6 +164,13 @@ class DocumentReader {
     }
   }
 
+  template <class Read>
+  void within(const char* key, const Read& read) {
+    place_.push_back({key, {}});
+    read();
+    place_.pop_back();
+  }
+
   std::size_t list_size(const char* key) {
     const Json* const list = member(root_, key);
     return list && list->is_array() ? list->size() : 0;
@@ -209,7 +218,9 @@ class DocumentReader {
                                            const char* list) {
     const std::size_t size = list_size(list);
     if (number < size) return static_cast<std::size_t>(number);
-    refuse(key, fmt::format("is {}, but the file has {} {} (from 0)", number, size, list));
+    refuse(key, size == 0 ? fmt::format("is {}, but the file has no {}", number, list)
+                          : fmt::format("is {}, but the file's {} go from 0 to {}", number, list,
+                                        size - 1));
     return {};
   }
 
@@ -250,7 +261,8 @@ class DocumentReader {
       if (!normalized->is_boolean()) refuse("normalized", "is neither true nor false");
       accessor.is_normalized = *normalized == true;
     }
-    if (Json* const sparse = part(json, "sparse")) accessor.sparse = read_sparse(*sparse);
+    if (Json* const sparse = part(json, "sparse"))
+      within("sparse", [&] { accessor.sparse = read_sparse(*sparse); });
     return accessor;
   }
 
@@ -260,16 +272,20 @@ class DocumentReader {
     Json* const indices = part(json, "indices");
     Json* const values = part(json, "values");
     if (!indices || !values) {
-      refuse("sparse", "lacks its indices or its values");
+      refuse("", "lacks its indices or its values");
       return sparse;
     }
     for (Json* const each : {indices, values})
-      if (!member(*each, "bufferView")) refuse("sparse", "names no bufferView");
-    sparse.index_view = required_index(*indices, "bufferView", "bufferViews");
-    sparse.index_offset = whole(*indices, "byteOffset").value_or(0);
-    sparse.index_type = required_whole(*indices, "componentType");
-    sparse.value_view = required_index(*values, "bufferView", "bufferViews");
-    sparse.value_offset = whole(*values, "byteOffset").value_or(0);
+      if (!member(*each, "bufferView")) refuse("", "names no bufferView");
+    within("indices", [&] {
+      sparse.index_view = required_index(*indices, "bufferView", "bufferViews");
+      sparse.index_offset = whole(*indices, "byteOffset").value_or(0);
+      sparse.index_type = required_whole(*indices, "componentType");
+    });
+    within("values", [&] {
+      sparse.value_view = required_index(*values, "bufferView", "bufferViews");
+      sparse.value_offset = whole(*values, "byteOffset").value_or(0);
+    });
     return sparse;
   }
 

@@ -11,6 +11,7 @@
 
 #include "pliant/simulation/acting_forces.hpp"
 #include "pliant/simulation/preview_body.hpp"
+#include "pliant/simulation/step_facts.hpp"
 
 namespace pliant {
 namespace {
@@ -154,6 +155,10 @@ class SurfacePreviewer {
       preview.magnitude = scene_.forces[preview.index].magnitude.at(*preview.frame)[0];
     }
     preview.selected = step->selection.region;
+    std::vector<Box> room;
+    preview.is_apart = !is_plain && surface_.solver.combine == Combine::Box &&
+                       !scene_.origin.lines.contains(surface_.name + ".combine") &&
+                       falls_apart(step->selection, room);
     const int unknowns = step->unknown_count();
     preview.is_solvable = unknowns > 0;
     preview.is_solved = preview.is_solvable && unknowns <= most_previewed_unknowns;
@@ -272,8 +277,11 @@ bool has_frames(const Case& one, const Scene& scene) {
 Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options) {
   const Scene& scene = simulation.scene();
-  MemoryBudget memory(options.max_memory -
-                      std::min(options.max_memory, simulation.surface_memory()));
+  MemoryBudget memory(options.max_memory);
+  MemoryShare surfaces_share(&memory);
+  if (!surfaces_share.try_resize(std::min(options.max_memory, simulation.surface_memory())))
+    return fail(ErrorCode::OutOfMemory,
+                "the surfaces' memory " + surfaces_share.complaint(simulation.surface_memory()));
   std::vector<std::vector<Case>> cases;
   std::size_t count = 0;
   for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {

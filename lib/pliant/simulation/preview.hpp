@@ -69,6 +69,8 @@ struct Preview {
   bool is_every_frame = true;  ///< whether all were looked at, or the range is too long for that
   double magnitude = 0;        ///< of a force, at that frame [length b/uv^4]
   Box selected;                ///< nodes, around all regions
+  bool is_apart = false;       ///< of all: boxes that do not all meet make one region, since
+                               ///< `combine` is box, and the scene does not write that out
   bool is_solvable = false;    ///< whether any node moves
   bool is_solved = false;  ///< and not so many that a preview would take long; else what follows
                            ///< is 0

@@ -33,32 +33,6 @@ bool merge_two(std::vector<Box>& boxes) {
   return false;
 }
 
-// Whether what the forces select would be several islands; as `merged` has it, in memory that
-// stays.
-bool falls_apart(const Selection& selection, std::vector<Box>& room) {
-  // Most often all boxes meet the first one, or what has met it.
-  Box met;
-  for (bool grows = true; grows && met != selection.region;) {
-    grows = false;
-    for (const ForceSelection& force : selection.forces) {
-      const Box& box = force.deformation;
-      if (box.is_empty() || (!met.is_empty() && intersection(met, box).is_empty())) continue;
-      const Box before = met;
-      met.include(box);
-      grows = grows || met != before;
-    }
-  }
-  if (met == selection.region) return false;
-  room.assign(1, met);
-  for (const ForceSelection& force : selection.forces) {
-    const Box& box = force.deformation;
-    if (!box.is_empty() && intersection(met, box).is_empty()) room.push_back(box);
-  }
-  while (merge_two(room)) {
-  }
-  return room.size() > 1;
-}
-
 ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport& report,
                     Combine combine) {
   const ForceSelection& selected = report.selection.forces[k];
@@ -84,6 +58,30 @@ ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport
 }
 
 }  // namespace
+
+bool falls_apart(const Selection& selection, std::vector<Box>& room) {
+  // Most often all boxes meet the first one, or what has met it.
+  Box met;
+  for (bool grows = true; grows && met != selection.region;) {
+    grows = false;
+    for (const ForceSelection& force : selection.forces) {
+      const Box& box = force.deformation;
+      if (box.is_empty() || (!met.is_empty() && intersection(met, box).is_empty())) continue;
+      const Box before = met;
+      met.include(box);
+      grows = grows || met != before;
+    }
+  }
+  if (met == selection.region) return false;
+  room.assign(1, met);
+  for (const ForceSelection& force : selection.forces) {
+    const Box& box = force.deformation;
+    if (!box.is_empty() && intersection(met, box).is_empty()) room.push_back(box);
+  }
+  while (merge_two(room)) {
+  }
+  return room.size() > 1;
+}
 
 StepFacts facts_of(const SurfaceInputs& inputs, const StepReport& report, Combine combine,
                    StepFacts reuse) {

@@ -35,6 +35,10 @@ struct StepFacts {
   }
 };
 
+/// Whether what the forces select would be several islands, in a region that is one box. `room`: to
+/// work in.
+bool falls_apart(const Selection& selection, std::vector<Box>& room);
+
 /// In the memory of `reuse`, facts of an earlier step or none.
 StepFacts facts_of(const SurfaceInputs& inputs, const StepReport& report, Combine combine,
                    StepFacts reuse = {});

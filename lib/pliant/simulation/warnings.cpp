@@ -59,7 +59,7 @@ std::string Warning::message() const {
                          surface, when);
     case Kind::ForcesApart:
       return fmt::format(
-          "{} select boxes of \"{}\" that do not meet, {}: one region around all of them is "
+          "{} select boxes of \"{}\" that do not all meet, {}: one region around all of them is "
           "solved, "
           "in which each moves more than it would alone; combine=\"islands\" solves each by "
           "itself, "
