@@ -12,14 +12,14 @@
 
 namespace pliant::testing {
 
+#ifdef PLIANT_SANITIZED
+inline constexpr bool is_sanitized = true;
+#else
+inline constexpr bool is_sanitized = false;
+#endif
+
 /// So many random cases, or a tenth of them with a sanitizer, whose subject is the code that they
 /// run rather than their numbers, and which takes ten times as long.
-constexpr int rounds(int count) {
-#ifdef PLIANT_SANITIZED
-  return count / 10;
-#else
-  return count;
-#endif
-}
+constexpr int rounds(int count) { return is_sanitized ? count / 10 : count; }
 
 }  // namespace pliant::testing
