@@ -19,6 +19,7 @@
 #include "interrupt.hpp"
 #include "output_file.hpp"
 #include "pliant/core/file_ending.hpp"
+#include "pliant/core/stage_timer.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "progress.hpp"
@@ -91,13 +92,13 @@ Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
                             "another name",
-                            printable(plan.file.string()), printable(input.string())));
+                            printable(plan.file), printable(input.string())));
   };
   for (const SceneInput& input : inputs_of(scene)) {
     if (is_named_at_the_end(plan, input.file.filename().string())) return refuse(input.file);
   }
   const InputsByName inputs(scene);
-  for (const std::filesystem::path& output : files_of(plan)) {
+  for (const std::string& output : files_of(plan)) {
     if (const auto input = inputs.find(output)) return refuse(*input);
   }
   return {};
@@ -116,7 +117,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
   if (const auto input = input_named(regions, scene); !input.empty()) return refuse(input);
   if (is_named_at_the_end(plan, regions.filename().string()))
     return refuse("it is named as what -o writes");
-  for (const std::filesystem::path& file : files_of(plan)) {
+  for (const std::filesystem::path file : files_of(plan)) {
     // Looking at the disk for each of a million frames would take long.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
       return refuse("it is a file that -o writes");

@@ -16,7 +16,7 @@ Json bounds_json(const BoundingBox& box) {
 Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
   Json json = {{"name", surface.name}, {"enabled", surface.enabled}};
   const auto* file = std::get_if<MeshFile>(&surface.shape);
-  json["mesh"] = file ? Json(file->path.string()) : Json(nullptr);
+  json["mesh"] = file ? Json(file->path) : Json(nullptr);
   json["columns"] = facts.grid.columns;
   json["rows"] = facts.grid.rows;
   json["vertices"] = facts.vertex_count;

@@ -20,7 +20,7 @@ std::string title(const Force& force) {
 
 std::string shape_text(const SurfaceShape& shape) {
   if (const auto* file = std::get_if<MeshFile>(&shape)) {
-    return "mesh " + printable(file->path.string());
+    return "mesh " + printable(file->path);
   }
   return std::holds_alternative<GridSheet>(shape) ? "sheet" : "mesh";
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "pliant/plate/vibration.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;

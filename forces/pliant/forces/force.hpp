@@ -19,8 +19,8 @@ namespace pliant {
 
 /// The thesis's force (5.2.2): a sphere around `center` that pushes along one direction.
 struct PointForce {
-  Vector3d center = Vector3d::Zero();      ///< world [length]
-  Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
+  Vector3d center = {0, 0, 0};     ///< world [length]
+  Vector3d direction = {0, 1, 0};  ///< any length; zero: no force
 
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
@@ -28,7 +28,7 @@ struct PointForce {
 
 /// Pushes away from `center`, where it is 0.
 struct RadialForce {
-  Vector3d center = Vector3d::Zero();  ///< world [length]
+  Vector3d center = {0, 0, 0};  ///< world [length]
 
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
@@ -37,8 +37,8 @@ struct RadialForce {
 /// Acts around the segment from..to, along `direction` or, without one, away from the segment, on
 /// which it is 0.
 struct LineForce {
-  Vector3d from = Vector3d::Zero();        ///< world [length]
-  Vector3d to = Vector3d::UnitX();         ///< world [length]; may equal `from`
+  Vector3d from = {0, 0, 0};               ///< world [length]
+  Vector3d to = {1, 0, 0};                 ///< world [length]; may equal `from`
   std::optional<Vector3d> direction = {};  ///< any length; zero: no force
 
   double distance(const Vector3d& p) const;  ///< to the closest point of the segment
@@ -47,7 +47,7 @@ struct LineForce {
 
 /// The same everywhere, like gravity: at distance 0 from everything.
 struct UniformForce {
-  Vector3d direction = Vector3d::UnitY();  ///< any length; zero: no force
+  Vector3d direction = {0, 1, 0};  ///< any length; zero: no force
 
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
@@ -56,9 +56,9 @@ struct UniformForce {
 /// Turns about the line through `center` along `axis`, by the right hand, and draws towards it; 0
 /// on the line itself. With an `axis` of length 0 it is no force, and distances are to `center`.
 struct VortexForce {
-  Vector3d center = Vector3d::Zero();  ///< world [length]
-  Vector3d axis = Vector3d::UnitY();   ///< any length
-  double pull = 0;                     ///< inward share, the turning one being 1; < 0: outward
+  Vector3d center = {0, 0, 0};  ///< world [length]
+  Vector3d axis = {0, 1, 0};    ///< any length
+  double pull = 0;              ///< inward share, the turning one being 1; < 0: outward
 
   double distance(const Vector3d& p) const;      ///< to the line
   Vector3d unit_force(const Vector3d& p) const;  ///< of length sqrt(1 + pull^2)
@@ -66,9 +66,9 @@ struct VortexForce {
 
 /// Wavers in space and time: `smooth_noise` on a lattice that has a corner at `center`.
 struct NoiseForce {
-  Vector3d center = Vector3d::Zero();  ///< world [length]
-  double frequency = 1;                ///< [cells/length]
-  double time = 0;                     ///< [cells]
+  Vector3d center = {0, 0, 0};  ///< world [length]
+  double frequency = 1;         ///< [cells/length]
+  double time = 0;              ///< [cells]
   std::uint64_t seed = 0;
 
   double distance(const Vector3d& p) const;      ///< to the centre
@@ -79,8 +79,8 @@ struct NoiseForce {
 /// offset + linear (p - origin).
 struct InertiaForce {
   Matrix3d linear = Matrix3d::Zero();
-  Vector3d origin = Vector3d::Zero();  ///< world [length]
-  Vector3d offset = Vector3d::Zero();
+  Vector3d origin = {0, 0, 0};  ///< world [length]
+  Vector3d offset = {0, 0, 0};
 
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;

@@ -7,6 +7,7 @@
 #include "pliant/body/field_rows.hpp"
 #include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
 
 namespace pliant {
 namespace {

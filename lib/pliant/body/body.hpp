@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "pliant/body/settings.hpp"
+#include "pliant/body/state.hpp"
 #include "pliant/body/workspace.hpp"
 #include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
@@ -30,18 +30,6 @@ struct BodyInputs {
   /// For each force the one whose deformation box is its own, which says in which island it acts;
   /// empty: each has its own.
   std::vector<int> selectors = {};
-};
-
-/// The state that one frame hands to the next.
-struct BodyState {
-  Field positions;   ///< #nodes x 3, object space [length]
-  Field velocities;  ///< #nodes x 3: of the last solve, 0 where it did not touch [length/s]
-
-  /// With `Release::Recover`: 1 for each node that the last solve left away from rest (#nodes);
-  /// otherwise empty.
-  std::vector<std::uint8_t> unsettled = {};
-
-  friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 
 /// What happens in a frame.

@@ -11,9 +11,9 @@ enum class RotateOrder { Xyz, Xzy, Yxz, Yzx, Zxy, Zyx };
 
 /// Where an object stands, as its author says it: p_world = translate + R S p.
 struct Placement {
-  Vector3d translate = Vector3d::Zero();  ///< [length]
-  Vector3d rotate = Vector3d::Zero();     ///< about x, y and z [degrees]
-  Vector3d scale = Vector3d::Ones();      ///< [1]
+  Vector3d translate = {0, 0, 0};  ///< [length]
+  Vector3d rotate = {0, 0, 0};     ///< about x, y and z [degrees]
+  Vector3d scale = {1, 1, 1};      ///< [1]
   RotateOrder order = RotateOrder::Xyz;
 
   friend bool operator==(const Placement&, const Placement&) = default;
@@ -24,8 +24,8 @@ std::array<int, 3> axes(RotateOrder order);
 
 /// An affine map from object to world space: p_world = linear p + translation.
 struct Transform {
-  Matrix3d linear = Matrix3d::Identity();   ///< R S
-  Vector3d translation = Vector3d::Zero();  ///< [length]
+  Matrix3d linear = Matrix3d::Identity();  ///< R S
+  Vector3d translation = {0, 0, 0};        ///< [length]
 
   /// Whether every direction survives: the inverse exists.
   bool is_invertible() const;

@@ -222,7 +222,7 @@ Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& p
                 fmt::format("{}: glTF has a weight for each frame at each frame, which is too much "
                             "for {} frames; at most {} are written; .usda, .pc2, .mdd and .npy "
                             "hold more, and --frames takes a part",
-                            plan.file.string(), plan.frame_count(), most_gltf_frames));
+                            plan.file, plan.frame_count(), most_gltf_frames));
   }
   if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());
   const bool is_separate = ending_of(plan.file) == ".gltf";

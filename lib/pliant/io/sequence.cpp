@@ -120,7 +120,7 @@ Result<void> check_sequence(const SurfacePlan& plan) {
     if (auto place = check_output_place(sequence_file(plan.file, frame)); !place) return place;
   }
   const SequenceName name(plan.file);
-  const std::filesystem::path parent = plan.file.parent_path();
+  const std::filesystem::path parent = std::filesystem::path(plan.file).parent_path();
   std::error_code error;
   for (std::filesystem::directory_iterator entry(parent.empty() ? "." : parent, error), end;
        !error && entry != end; entry.increment(error)) {

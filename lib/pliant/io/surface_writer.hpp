@@ -1,6 +1,6 @@
 #pragma once
 
-#include <filesystem>
+#include <string>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
@@ -36,7 +36,7 @@ class SurfaceWriter {
 
 /// What such a writer needs to know ahead.
 struct SurfacePlan {
-  std::filesystem::path file;
+  std::string file;
   const Mesh* mesh = nullptr;  ///< outlives the writer
   int first_frame = 0;
   int last_frame = 0;

@@ -56,12 +56,13 @@ const Format* find_format(const std::filesystem::path& file) {
 // OUT, or OUT-NAME.ext when there are several surfaces; ahead of the frame's place if OUT says
 // where that is, so that a sequence stays one: x.###.obj goes to x-NAME.###.obj.
 std::filesystem::path file_for(const AnimationPlan& plan, const std::string& surface) {
-  if (plan.surfaces.size() == 1) return plan.file;
-  std::string name = plan.file.filename().string();
+  const std::filesystem::path file = plan.file;
+  if (plan.surfaces.size() == 1) return file;
+  std::string name = file.filename().string();
   const std::size_t frame = name.find('#');
-  std::size_t place = frame == std::string::npos ? plan.file.stem().string().size() : frame;
+  std::size_t place = frame == std::string::npos ? file.stem().string().size() : frame;
   if (frame != std::string::npos && place > 0 && name[place - 1] == '.') --place;
-  return plan.file.parent_path() / name.insert(place, '-' + surface);
+  return file.parent_path() / name.insert(place, '-' + surface);
 }
 
 // Hands each surface to a writer of its own.
@@ -124,26 +125,26 @@ std::vector<std::string> known_endings() {
   return endings;
 }
 
-Result<void> check_ending(const std::filesystem::path& file) {
+Result<void> check_ending(const std::string& file) {
   if (find_format(file)) return {};
   return fail(ErrorCode::InvalidInput,
-              fmt::format("{}: no format has the ending \"{}\"; allowed: {}", file.string(),
-                          ending_of(file), fmt::join(known_endings(), ", ")));
+              fmt::format("{}: no format has the ending \"{}\"; allowed: {}", file, ending_of(file),
+                          fmt::join(known_endings(), ", ")));
 }
 
-std::vector<std::filesystem::path> files_of(const AnimationPlan& plan) {
+std::vector<std::string> files_of(const AnimationPlan& plan) {
   const Format* const format = find_format(plan.file);
   PLIANT_EXPECTS(format);
-  std::vector<std::filesystem::path> files;
+  std::vector<std::string> files;
   const auto add = [&](const std::filesystem::path& file) {
     if (format->is_sequence) {
       for (std::int64_t frame = plan.first_frame; frame <= plan.last_frame; ++frame)
-        files.push_back(sequence_file(file, static_cast<int>(frame)));
+        files.push_back(sequence_file(file, static_cast<int>(frame)).string());
       return;
     }
-    files.push_back(file);
+    files.push_back(file.string());
     if (!format->beside.empty())
-      files.push_back(std::filesystem::path(file).replace_extension(format->beside));
+      files.push_back(std::filesystem::path(file).replace_extension(format->beside).string());
   };
   if (format->make_writer) {
     add(plan.file);
@@ -162,7 +163,7 @@ Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) 
   if (auto known = check_ending(plan.file); !known) return fail(known.error());
   // A sequence looks for itself: its files may be a million.
   if (!find_format(plan.file)->is_sequence) {
-    for (const std::filesystem::path& file : files_of(plan)) {
+    for (const std::string& file : files_of(plan)) {
       if (auto place = check_output_place(file); !place) return fail(place.error());
     }
   }
@@ -171,7 +172,7 @@ Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) 
     return fail(ErrorCode::InvalidInput,
                 fmt::format("{}: a {} is one file, which is whole at its end only; what can be "
                             "resumed is a sequence of .obj or .ply",
-                            plan.file.string(), format.ending));
+                            plan.file, format.ending));
   }
   return format.make_writer ? format.make_writer(plan) : make_surface_by_surface(plan, format);
 }

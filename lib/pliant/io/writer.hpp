@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -50,7 +49,7 @@ struct AnimatedSurface {
 
 /// What a writer needs to know ahead.
 struct AnimationPlan {
-  std::filesystem::path file;  ///< its ending picks the format
+  std::string file;  ///< its ending picks the format
   std::vector<AnimatedSurface> surfaces = {};
   int first_frame = 0;
   int last_frame = 0;
@@ -65,11 +64,11 @@ struct AnimationPlan {
 std::vector<std::string> known_endings();
 
 /// Whether the file's ending names a format. Errors: InvalidInput, listing the endings.
-Result<void> check_ending(const std::filesystem::path& file);
+Result<void> check_ending(const std::string& file);
 
 /// Every file that the plan's writer will write whose name is known ahead, those of a sequence
 /// among them. Requires: check_ending(plan.file).
-std::vector<std::filesystem::path> files_of(const AnimationPlan& plan);
+std::vector<std::string> files_of(const AnimationPlan& plan);
 
 /// Whether the writer may also write, replace or remove a file of that name beside `plan.file`: the
 /// numbers of a .gltf, whose name shows only at the end (`gltf_numbers.hpp`).

@@ -1,6 +1,7 @@
 #include "pliant/plate/backward_euler.hpp"
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/domain.hpp"
 
 namespace pliant {

@@ -9,19 +9,9 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/plate/operator.hpp"
+#include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
-
-/// What a solver had to do so far; tells whether work was reused.
-struct SolverCounts {
-  long analyses = 0;        ///< orderings and symbolic factorisations
-  long factorizations = 0;  ///< numeric factorisations
-  long solves = 0;          ///< right-hand sides of three columns
-
-  friend SolverCounts operator+(const SolverCounts& a, const SolverCounts& b) {
-    return {a.analyses + b.analyses, a.factorizations + b.factorizations, a.solves + b.solves};
-  }
-};
 
 /// Solves plate systems: the one seam between the integrators and whoever solves. Every
 /// implementation gives the same errors and keeps the same tolerance, and the same tests run over

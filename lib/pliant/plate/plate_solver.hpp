@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string_view>
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
@@ -12,6 +9,7 @@
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/backward_euler.hpp"
 #include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
 
@@ -38,20 +36,6 @@ class PlateSolver {
   virtual std::size_t memory() const = 0;
 };
 
-/// Who steps the plates of a run. The choice may change the last digits of a result.
-enum class SolverChoice {
-  Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
-  Spectral,  ///< sine transforms for all rectangles; other outlines as `Auto` does
-  Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
-  Eigen,
-};
-
-/// The choice of that name: auto, spectral, cholmod, eigen. None for others.
-std::optional<SolverChoice> solver_choice(std::string_view name);
-
-/// Whether this build has it.
-bool is_available(SolverChoice choice);
-
 /// Whether `Auto` solves such a plate in sine space: where it is quicker, unless c is so close to
 /// its bound that digits would be lost. Depends on nothing else.
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
@@ -60,9 +44,6 @@ bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
 /// few of them cover it: where it pays, unless c is so close to its bound that they take long.
 /// Depends on nothing else.
 bool worth_iterating(int unknowns, const Stiffness& stiffness);
-
-/// As wide as the machine's vectors are.
-inline constexpr int widest_lanes = std::numeric_limits<int>::max();
 
 /// A solver that takes its memory out of `budget` and may work on `threads`, which both outlive it;
 /// none: no limit, one thread. Its vectors have at most so many doubles, or as few as the

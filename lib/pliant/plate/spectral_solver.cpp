@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/load_copy.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/vibration.hpp"
 
 namespace pliant {
 namespace {

@@ -4,9 +4,10 @@
 
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
-#include "pliant/plate/vibration.hpp"
 
 namespace pliant {
+
+struct ExcitedMode;
 
 // How a plate swings and comes to rest, in nature and under backward Euler, whose steps take energy
 // away. docs/model.md, eq. (38) to (42).

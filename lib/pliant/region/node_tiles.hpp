@@ -12,9 +12,9 @@ namespace pliant {
 class NodeTiles {
  public:
   struct Tile {
-    Box box;                           ///< its nodes
-    Vector3d low = Vector3d::Zero();   ///< the least of their x, y and z, world [length]
-    Vector3d high = Vector3d::Zero();  ///< the largest
+    Box box;                    ///< its nodes
+    Vector3d low = {0, 0, 0};   ///< the least of their x, y and z, world [length]
+    Vector3d high = {0, 0, 0};  ///< the largest
   };
 
   /// Of these nodes. Refers to their positions. Allocates nothing while the grid stays.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
@@ -9,27 +8,9 @@
 #include "pliant/region/combine.hpp"
 #include "pliant/region/node_tiles.hpp"
 #include "pliant/region/placed_nodes.hpp"
+#include "pliant/region/selection.hpp"
 
 namespace pliant {
-
-/// What one force selects, and where it acts.
-struct ForceSelection {
-  Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: none are
-  Box force;         ///< box of the nodes nearer than the force radius; may reach past the region
-  int selector = 0;  ///< the force whose deformation box is this one's, for most the force itself
-  int region = -1;   ///< which of the regions it acts in; -1: in none
-
-  friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
-};
-
-/// The region selection of thesis 5.3, fig. 5; SPEC 5.
-struct Selection {
-  Box region;                          ///< around all regions; empty: nothing is selected
-  std::vector<ForceSelection> forces;  ///< in the order of the forces
-  std::vector<Region> regions;         ///< as `combine` orders them, also those too small to solve
-
-  friend bool operator==(const Selection&, const Selection&) = default;
-};
 
 /// Selects by distance, strictly less than each radius, on nodes (#nodes x 3, world space). A box
 /// over (u,v) is a box of nodes, and it holds also the nodes that lie outside every sphere: that is
@@ -71,12 +52,6 @@ Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
                     std::span<const SampledForce> forces, const Selection& selection,
                     std::size_t region, const Box& box, const Matrix3d& to_object, Field reuse);
-
-/// What a force gives to the interior nodes of its region, all together. World [length b/uv^4]
-struct Push {
-  Vector3d sum = Vector3d::Zero();  ///< of the loads on nodes
-  int node_count = 0;               ///< nodes whose load is not 0
-};
 
 /// `patches` are those of the region that the force acts in, `box` its force box.
 Push push_of(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,

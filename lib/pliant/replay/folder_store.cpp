@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <cstdint>
 #include <ctime>
+#include <filesystem>
+#include <mutex>
 #include <system_error>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -79,34 +83,88 @@ bool read_all(int descriptor, std::string& bytes) {
 
 }  // namespace
 
-FolderFrameStore::FolderFrameStore(fs::path folder, std::size_t byte_budget)
-    : folder_(std::move(folder)), byte_budget_(byte_budget), opened_(now()) {}
+/// What the store does, safe from several threads; its public members are the store's own.
+class FolderFrameStore::Folder {
+ public:
+  Folder(fs::path folder, std::size_t byte_budget)
+      : folder_(std::move(folder)), byte_budget_(byte_budget), opened_(now()) {}
 
-Result<std::unique_ptr<FolderFrameStore>> FolderFrameStore::open(const fs::path& folder,
+  bool holds(const Hash& key) const;
+  std::optional<std::string> read(const Hash& key, std::size_t most) const;
+  void write(const Hash& key, std::string_view bytes);
+  void discard(const Hash& key);
+  std::string trouble() const;
+  int damaged_count() const;
+
+ private:
+  struct Entry {
+    fs::path file;
+    std::size_t bytes = 0;  // on the disk
+    std::int64_t used = 0;  // [ns] since 1970
+    int rank = 0;           // those of lower rank go first
+  };
+
+  fs::path file_of(const Hash& key) const;
+  bool take_room(std::size_t bytes);
+  std::vector<Entry> entries() const;
+  void make_room(std::size_t bytes);
+
+  fs::path folder_;
+  std::size_t byte_budget_;
+  std::int64_t opened_;  // [ns] since 1970
+
+  mutable std::mutex mutex_;       // of what follows
+  bool is_counted_ = false;        // whether `bytes_` is known
+  std::size_t bytes_ = 0;          // on the disk, when last counted, and what was written since
+  std::size_t bytes_written_ = 0;  // since then
+  std::string trouble_;
+  int damaged_count_ = 0;
+};
+
+FolderFrameStore::FolderFrameStore(std::unique_ptr<Folder> folder) : folder_(std::move(folder)) {}
+FolderFrameStore::~FolderFrameStore() = default;
+
+bool FolderFrameStore::holds(const Hash& key) { return folder_->holds(key); }
+
+std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t most) {
+  return folder_->read(key, most);
+}
+
+void FolderFrameStore::write(const Hash& key, std::string_view bytes) {
+  folder_->write(key, bytes);
+}
+
+void FolderFrameStore::discard(const Hash& key) { folder_->discard(key); }
+
+std::string FolderFrameStore::trouble() const { return folder_->trouble(); }
+
+int FolderFrameStore::damaged_count() const { return folder_->damaged_count(); }
+
+Result<std::unique_ptr<FolderFrameStore>> FolderFrameStore::open(const std::string& folder,
                                                                  std::size_t byte_budget) {
   std::error_code error;
   fs::create_directories(folder, error);
   std::error_code unknown;
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::InvalidInput, "is there, and no folder", folder.string());
+    return fail(ErrorCode::InvalidInput, "is there, and no folder", folder);
   }
   if (!fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
-                folder.string());
+    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(), folder);
   }
-  return std::unique_ptr<FolderFrameStore>(new FolderFrameStore(folder, byte_budget));
+  return std::unique_ptr<FolderFrameStore>(
+      new FolderFrameStore(std::make_unique<Folder>(folder, byte_budget)));
 }
 
-fs::path FolderFrameStore::file_of(const Hash& key) const {
+fs::path FolderFrameStore::Folder::file_of(const Hash& key) const {
   return folder_ / (to_text(key) += ending);
 }
 
-bool FolderFrameStore::holds(const Hash& key) {
+bool FolderFrameStore::Folder::holds(const Hash& key) const {
   struct stat status = {};
   return lstat(file_of(key).c_str(), &status) == 0 && S_ISREG(status.st_mode);
 }
 
-std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t most) {
+std::optional<std::string> FolderFrameStore::Folder::read(const Hash& key, std::size_t most) const {
   // A link or a pipe of that name is not ours, and must not keep us waiting.
   const Descriptor file(
       ::open(file_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
@@ -122,7 +180,7 @@ std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t m
   return bytes;
 }
 
-void FolderFrameStore::write(const Hash& key, std::string_view bytes) {
+void FolderFrameStore::Folder::write(const Hash& key, std::string_view bytes) {
   if (!take_room(on_disk(bytes.size()))) return;
   auto file = AtomicFile::create(file_of(key), Flush::Nothing);
   Result<void> written;
@@ -134,25 +192,25 @@ void FolderFrameStore::write(const Hash& key, std::string_view bytes) {
   if (trouble_.empty()) trouble_ = error.message;
 }
 
-void FolderFrameStore::discard(const Hash& key) {
+void FolderFrameStore::Folder::discard(const Hash& key) {
   std::error_code ignored;
   const bool is_gone = fs::remove(file_of(key), ignored);
   const std::lock_guard lock(mutex_);
   if (is_gone) ++damaged_count_;
 }
 
-std::string FolderFrameStore::trouble() const {
+std::string FolderFrameStore::Folder::trouble() const {
   const std::lock_guard lock(mutex_);
   return trouble_;
 }
 
-int FolderFrameStore::damaged_count() const {
+int FolderFrameStore::Folder::damaged_count() const {
   const std::lock_guard lock(mutex_);
   return damaged_count_;
 }
 
 // Whether so many more bytes may go to the disk.
-bool FolderFrameStore::take_room(std::size_t bytes) {
+bool FolderFrameStore::Folder::take_room(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   if (!trouble_.empty() || bytes > byte_budget_) return false;
   // Other processes write too: count again now and then.
@@ -165,7 +223,7 @@ bool FolderFrameStore::take_room(std::size_t bytes) {
   return true;
 }
 
-std::vector<FolderFrameStore::Entry> FolderFrameStore::entries() const {
+auto FolderFrameStore::Folder::entries() const -> std::vector<Entry> {
   std::vector<Entry> entries;
   std::error_code error;
   for (fs::directory_iterator place(folder_, error), end; !error && place != end;
@@ -189,7 +247,7 @@ std::vector<FolderFrameStore::Entry> FolderFrameStore::entries() const {
 }
 
 // Counts what is there, and where it is too much removes some of it.
-void FolderFrameStore::make_room(std::size_t bytes) {
+void FolderFrameStore::Folder::make_room(std::size_t bytes) {
   std::vector<Entry> there = entries();
   std::sort(there.begin(), there.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.rank, a.used, a.file) < std::tie(b.rank, b.used, b.file);

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "pliant/core/result.hpp"
 #include "pliant/simulation/frame_store.hpp"
@@ -25,8 +23,9 @@ class FolderFrameStore final : public FrameStore {
  public:
   /// Makes the folder where it is not there. Errors: InvalidInput where something else has the
   /// name; Unwritable where it cannot be made. [bytes]
-  static Result<std::unique_ptr<FolderFrameStore>> open(const std::filesystem::path& folder,
+  static Result<std::unique_ptr<FolderFrameStore>> open(const std::string& folder,
                                                         std::size_t byte_budget);
+  ~FolderFrameStore() override;
 
   bool holds(const Hash& key) override;
   std::optional<std::string> read(const Hash& key, std::size_t most) override;
@@ -42,30 +41,10 @@ class FolderFrameStore final : public FrameStore {
   int damaged_count() const;
 
  private:
-  struct Entry {
-    std::filesystem::path file;
-    std::size_t bytes = 0;  // on the disk
-    std::int64_t used = 0;  // [ns] since 1970
-    int rank = 0;           // those of lower rank go first
-  };
+  class Folder;
+  explicit FolderFrameStore(std::unique_ptr<Folder> folder);
 
-  FolderFrameStore(std::filesystem::path folder, std::size_t byte_budget);
-
-  std::filesystem::path file_of(const Hash& key) const;
-  bool take_room(std::size_t bytes);
-  std::vector<Entry> entries() const;
-  void make_room(std::size_t bytes);
-
-  std::filesystem::path folder_;
-  std::size_t byte_budget_;
-  std::int64_t opened_;  // [ns] since 1970
-
-  mutable std::mutex mutex_;       // of what follows
-  bool is_counted_ = false;        // whether `bytes_` is known
-  std::size_t bytes_ = 0;          // on the disk, when last counted, and what was written since
-  std::size_t bytes_written_ = 0;  // since then
-  std::string trouble_;
-  int damaged_count_ = 0;
+  std::unique_ptr<Folder> folder_;
 };
 
 }  // namespace pliant

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/body/body.hpp"
+#include "pliant/body/state.hpp"
 #include "pliant/core/hash.hpp"
 
 namespace pliant {

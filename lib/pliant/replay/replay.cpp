@@ -35,9 +35,9 @@ struct FoundScene {
 };
 
 Result<FoundScene> find_scene(const std::filesystem::path& log_file, const ReplayHeader& header,
-                              const std::optional<std::filesystem::path>& given,
-                              const std::filesystem::path& root) {
-  const std::filesystem::path file = given ? *given : log_file.parent_path() / header.scene_file;
+                              const std::optional<std::string>& given, const std::string& root) {
+  const std::filesystem::path file =
+      given ? std::filesystem::path(*given) : log_file.parent_path() / header.scene_file;
   std::error_code ignored;
   if (!given && !std::filesystem::exists(file, ignored)) {
     return FoundScene{{file, header.scene_text, root},
@@ -102,8 +102,7 @@ Result<void> read_on(ReplayLogReader& log) {
 
 }  // namespace
 
-Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
-                                   const std::filesystem::path& log_file,
+Result<ReplayHeader> record_replay(const std::string& scene_file, const std::string& log_file,
                                    const ReplayOptions& options) {
   const auto written = read_scene_text(scene_file, options.root);
   if (!written) return fail(written.error());
@@ -115,7 +114,7 @@ Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the last frame to record is {}; the scene has the frames {} to {}",
                             *options.last_frame, scene.start, scene.end),
-                scene_file.string());
+                scene_file);
   }
   if (auto free = check_log_place(log_file, scene); !free) return fail(free.error());
   auto header = header_of_text(*written, log_file, options.simulation.solver);
@@ -129,8 +128,8 @@ Result<ReplayHeader> record_replay(const std::filesystem::path& scene_file,
   return header;
 }
 
-Result<ReplayVerdict> verify_replay(const std::filesystem::path& log_file,
-                                    const std::optional<std::filesystem::path>& scene_file,
+Result<ReplayVerdict> verify_replay(const std::string& log_file,
+                                    const std::optional<std::string>& scene_file,
                                     const ReplayOptions& options) {
   auto log = ReplayLogReader::open(log_file);
   if (!log) return fail(log.error());
@@ -162,8 +161,8 @@ Result<ReplayVerdict> verify_replay(const std::filesystem::path& log_file,
   return verdict;
 }
 
-Result<ReplayVerdict> compare_replays(const std::filesystem::path& log_file,
-                                      const std::filesystem::path& other_log_file,
+Result<ReplayVerdict> compare_replays(const std::string& log_file,
+                                      const std::string& other_log_file,
                                       const ReplayOptions& options) {
   auto log = ReplayLogReader::open(log_file);
   if (!log) return fail(log.error());

@@ -10,6 +10,7 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/io/output_place.hpp"
+#include "pliant/plate/linear_solver.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-Result<void> write_state(const std::filesystem::path& file, Simulation& simulation, int frame) {
+Result<void> write_state(const std::string& file, Simulation& simulation, int frame) {
   const auto bytes = simulation.state_bytes(frame);
   if (!bytes) return fail(bytes.error());
   auto out = AtomicFile::create(file);
@@ -16,13 +16,13 @@ Result<void> write_state(const std::filesystem::path& file, Simulation& simulati
   return out->commit();
 }
 
-Result<int> read_state(const std::filesystem::path& file, Simulation& simulation) {
+Result<int> read_state(const std::string& file, Simulation& simulation) {
   const auto bytes = read_file(file);
   if (!bytes) return fail(bytes.error());
   auto frame = simulation.restore(*bytes);
   if (frame) return frame;
   Error error = std::move(frame.error());
-  error.file = file.string();
+  error.file = file;
   return fail(std::move(error));
 }
 

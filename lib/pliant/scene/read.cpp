@@ -1,5 +1,6 @@
 #include "pliant/scene/read.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -83,16 +84,16 @@ std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneF
 
 }  // namespace
 
-Result<Scene> load_scene(const std::filesystem::path& file, const std::filesystem::path& root) {
+Result<Scene> load_scene(const std::string& file, const std::string& root) {
   const Result<std::string> text = read_file(file, largest_file);
   if (!text) return fail(text.error());
-  return parse_scene(*text, file.string(), file.parent_path(), root);
+  return parse_scene(*text, file, std::filesystem::path(file).parent_path(), root);
 }
 
-Result<Scene> parse_scene(std::string_view text, const std::string& name,
-                          const std::filesystem::path& folder, const std::filesystem::path& root) {
+Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
+                          const std::string& root) {
   // An empty root would be each mesh's own folder.
-  const std::filesystem::path own = folder.empty() ? "." : folder;
+  const std::string own = folder.empty() ? "." : folder;
   SceneFile file{.folder = folder,
                  .root = root.empty() ? own : root,
                  .origin = {.file = name, .lines = {}},

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -15,12 +14,11 @@ namespace pliant {
 /// Errors: every problem of the file in one `Error`, in the order of lines: malformed XML, which
 /// ends the reading; else structure, words, names, numbers, ranges, keys (InvalidInput). A file
 /// that cannot be opened or read, or is larger than 256 MiB (Unreadable).
-Result<Scene> load_scene(const std::filesystem::path& file, const std::filesystem::path& root = {});
+Result<Scene> load_scene(const std::string& file, const std::string& root = {});
 
 /// Reads a scene from text. `name` stands for the file in messages; mesh paths are relative to
 /// `folder`, which is the `root` too where that is empty. Errors as `load_scene`.
-Result<Scene> parse_scene(std::string_view text, const std::string& name,
-                          const std::filesystem::path& folder,
-                          const std::filesystem::path& root = {});
+Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
+                          const std::string& root = {});
 
 }  // namespace pliant

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -24,11 +23,11 @@ namespace pliant {
 
 /// A mesh in a file.
 struct MeshFile {
-  std::filesystem::path path = {};  ///< as it is to be opened; its ending picks the format
+  std::string path = {};    ///< as it is to be opened; its ending picks the format
   std::string object = {};  ///< the one to take when the file holds several; empty: the only one
   int uv_set = 0;           ///< which set of (u,v) is the grid, counted from 0, < max_uv_sets
   /// What the file refers to is read in this folder and below only; empty: in the file's own.
-  std::filesystem::path root = {};
+  std::string root = {};
 };
 
 /// Where a surface's rest shape comes from; a `Mesh` is one that a program made.
@@ -51,15 +50,15 @@ struct MaterialChannels {
   Channel<1> d = 1;        ///< along v, > 0
 };
 
-/// A boundary tangent: one number for all of x, y, z, or three. [length/uv]
+/// A boundary tangent: one number for all of x, y, z, 0 by default, or three. [length/uv]
 using TangentChannel = std::variant<Channel<1>, Channel<3>>;
 
 /// The slopes prescribed on the region's edges. SPEC 3; thesis 5.2.1.2, fig. 9.
 struct TangentChannels {
-  TangentChannel su0 = Channel<1>(0);  ///< d/du on the edge of smallest u
-  TangentChannel su1 = Channel<1>(0);  ///< d/du on the edge of largest u
-  TangentChannel sv0 = Channel<1>(0);  ///< d/dv on the edge of smallest v
-  TangentChannel sv1 = Channel<1>(0);  ///< d/dv on the edge of largest v
+  TangentChannel su0 = {};  ///< d/du on the edge of smallest u
+  TangentChannel su1 = {};  ///< d/du on the edge of largest u
+  TangentChannel sv0 = {};  ///< d/dv on the edge of smallest v
+  TangentChannel sv1 = {};  ///< d/dv on the edge of largest v
 };
 
 /// How a surface is solved.
@@ -75,9 +74,9 @@ struct SolverSettings {
 
 /// One elastic surface.
 struct Surface {
-  std::string name;     ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
-  bool enabled = true;  ///< false: written at rest, not solved
-  SurfaceShape shape = GridSheet{};
+  std::string name;         ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  bool enabled = true;      ///< false: written at rest, not solved
+  SurfaceShape shape = {};  ///< by default a `GridSheet`
   TransformChannels transform = {};
   MaterialChannels material = {};
   TangentChannels tangents = {};
@@ -164,7 +163,7 @@ struct Force {
   std::optional<Curve<1>> falloff_curve = {};
   std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
                NoiseChannels, InertiaChannels, CustomForce>
-      shape = PointChannels{};
+      shape = {};  ///< by default `PointChannels`
 };
 
 /// `point`, `radial`, …: the name of its element in a scene file; `custom` has none there.

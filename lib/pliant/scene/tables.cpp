@@ -71,10 +71,10 @@ Attribute frame_rate(double& fps) {
 }
 
 /// A path relative to the scene's folder becomes one that can be opened.
-Attribute mesh_path(std::filesystem::path& path, const std::filesystem::path& folder) {
+Attribute mesh_path(std::string& path, const std::filesystem::path& folder) {
   return required(custom("file", "path", "", "", "", [&path, folder](std::string_view text) {
     if (trimmed(text).empty()) return Reading<void>(tl::unexpected(std::string("names no file")));
-    path = folder / std::filesystem::path(text);
+    path = (folder / text).string();
     return Reading<void>();
   }));
 }

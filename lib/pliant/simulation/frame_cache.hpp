@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "pliant/body/body.hpp"
+#include "pliant/body/state.hpp"
 #include "pliant/core/memory_budget.hpp"
 
 namespace pliant {

@@ -4,7 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/body/body.hpp"
+#include "pliant/forces/force.hpp"
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/region/selection.hpp"
 
 namespace pliant {
 

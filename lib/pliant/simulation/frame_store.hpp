@@ -1,13 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <list>
-#include <map>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "pliant/core/hash.hpp"
 
@@ -42,7 +39,8 @@ class FrameStore {
 /// A store in memory: for edits within one program. What was used longest ago goes first.
 class MemoryFrameStore final : public FrameStore {
  public:
-  explicit MemoryFrameStore(std::size_t byte_budget) : byte_budget_(byte_budget) {}
+  explicit MemoryFrameStore(std::size_t byte_budget);
+  ~MemoryFrameStore() override;
 
   bool holds(const Hash& key) override;
   std::optional<std::string> read(const Hash& key, std::size_t most) override;
@@ -50,22 +48,11 @@ class MemoryFrameStore final : public FrameStore {
   void discard(const Hash& key) override;
 
   std::size_t bytes() const;  ///< kept now
-  std::size_t byte_budget() const { return byte_budget_; }
+  std::size_t byte_budget() const;
 
  private:
-  using Place = std::pair<std::uint64_t, std::uint64_t>;
-  struct Kept {
-    std::string bytes;
-    std::list<Place>::iterator turn;
-  };
-  static Place place_of(const Hash& key) { return {key.high, key.low}; }
-  void erase(const Place& place);
-
-  mutable std::mutex mutex_;
-  std::size_t byte_budget_;
-  std::size_t bytes_ = 0;
-  std::map<Place, Kept> kept_;
-  std::list<Place> turns_;  // the one used longest ago first
+  class Kept;
+  std::unique_ptr<Kept> kept_;
 };
 
 }  // namespace pliant

@@ -48,8 +48,8 @@ class PreviewBody {
   Result<double> step(BodyInputs inputs);
 
   struct Peak {
-    double size = 0;                  ///< world [length]
-    Vector3d way = Vector3d::Zero();  ///< world [length]
+    double size = 0;           ///< world [length]
+    Vector3d way = {0, 0, 0};  ///< world [length]
     int node = 0;
   };
 

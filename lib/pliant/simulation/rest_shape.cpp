@@ -101,7 +101,7 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
     Error error = mapping.error();
     const auto* file = std::get_if<MeshFile>(&surface.shape);
     error.message = fmt::format("surface \"{}\"{}: {}", surface.name,
-                                file ? ", mesh " + file->path.string() : "", error.message);
+                                file ? ", mesh " + file->path : "", error.message);
     return at_scene(std::move(error));
   }
   return RestShape{surface.name, *std::move(mesh), *std::move(mapping)};

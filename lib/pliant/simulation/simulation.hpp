@@ -4,27 +4,25 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "pliant/core/memory_budget.hpp"
+#include "pliant/body/state.hpp"
 #include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/solver_choice.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/frame.hpp"
-#include "pliant/simulation/frame_cache.hpp"
-#include "pliant/simulation/frame_ranges.hpp"
 #include "pliant/simulation/frame_report.hpp"
 #include "pliant/simulation/frame_sequence.hpp"
-#include "pliant/simulation/frame_store.hpp"
 #include "pliant/simulation/rest_shape.hpp"
-#include "pliant/simulation/state_key.hpp"
 #include "pliant/simulation/warnings.hpp"
 
 namespace pliant {
 
-class SceneSampling;
+class FrameStore;
 
 /// How a simulation runs; none of it but the solver changes a result, and that by some 1e-9 of it
 /// at most: docs/model.md.
@@ -81,7 +79,7 @@ class Simulation {
   static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
 
   Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&& other) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
   /// Whether `make` would succeed, as far as it is known without making the sheets of the scene:
@@ -90,7 +88,7 @@ class Simulation {
   static Result<void> check(const Scene& scene, const SimulationOptions& options = {});
 
   /// The scene's frames, start to end.
-  FrameSequence frames() const { return {scene_.start, scene_.end}; }
+  FrameSequence frames() const;
 
   /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
   /// ahead; once the run has been played through, less than one interval of the `FrameCache`, and
@@ -123,10 +121,10 @@ class Simulation {
   /// restores answers for it. Warnings then lack those of frames that were never computed here.
   Result<int> restore(std::string_view state_bytes);
 
-  const Scene& scene() const { return scene_; }
+  const Scene& scene() const;
 
   /// The surfaces at rest, in the order of the scene.
-  std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
+  std::span<const RestShape> rest_shapes() const;
 
   /// What the frames computed, or read, so far gave reason to warn about, each cause once with its
   /// frames. What happens in no frame at all, such as a force that selects nothing, is told once
@@ -139,61 +137,18 @@ class Simulation {
   /// What the surfaces' solvers had to do so far, added up.
   SolverCounts solver_counts() const;
 
-  FrameCounts frame_counts() const { return frame_counts_; }
+  FrameCounts frame_counts() const;
 
   /// How long the frames computed so far took, by stage and added up over surfaces that went at the
   /// same time; nothing without `SimulationOptions::profile`. A caller may add to it what it knows.
   Profile profile() const;
 
  private:
-  struct Stepped;  // what a surface's step took and told
+  class Run;
 
-  Simulation(Scene scene, const SimulationOptions& options);
+  explicit Simulation(std::unique_ptr<Run> run);
 
-  void add_body(const Surface& surface, RestShape rest_shape, MemoryShare share);
-  Result<void> reach(int frame);
-  Result<void> go_to(int frame);
-  Result<void> step();
-  void step_surfaces();
-  void step_surface(std::size_t index);
-  void solve_surface(std::size_t index);
-  bool read_surface(std::size_t index, const Hash& key);
-  void write_surface(std::size_t index, const Hash& key);
-  bool is_idle(const Surface& surface, int frame) const;
-  Profile* profile_of(std::size_t surface);
-  void rewind(int frame);
-  void keep(bool is_going_back);
-  std::vector<BodyState> states() const;
-
-  const std::optional<Hash>& key(std::size_t surface, int frame);
-  Hash sealing_key(std::size_t surface, int frame);
-  bool has_marks(std::size_t surface) const;
-  void read_latest(int frame);
-  std::optional<std::vector<BodyState>> stored_states(int frame);
-  Result<SurfaceReport> report_of(std::size_t surface) const;
-  Error located(Error error, const Surface& surface, int frame) const;
-  int start_frame(const Surface& surface) const;
-
-  Scene scene_;
-  std::unique_ptr<SceneSampling> sampling_;
-  std::unique_ptr<MemoryBudget> memory_;
-  std::vector<MemoryShare> shares_;  // one a surface
-  std::vector<RestShape> rest_shapes_;
-  std::vector<Body> bodies_;  // one a surface
-  int frame_;                 // whose output the bodies hold
-  int furthest_frame_;        // that was ever computed
-  FrameCache cache_;
-  FrameStore* store_;
-  std::vector<KeyChain> keys_;  // one a surface
-  FrameRanges passed_;          // frames whose warnings are known
-  FrameCounts frame_counts_;
-  std::unique_ptr<ThreadPool> threads_;
-  SolverChoice solver_;
-  int most_lanes_;
-  StopRequest should_stop_;
-  WarningLog warnings_;
-  std::vector<Stepped> stepped_;   // one a surface; kept for its memory
-  std::vector<Profile> profiles_;  // one a surface; none: nobody asks
+  std::unique_ptr<Run> run_;  // null once moved from
 };
 
 }  // namespace pliant

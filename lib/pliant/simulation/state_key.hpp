@@ -7,7 +7,7 @@
 #include "pliant/body/settings.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/core/hash.hpp"
-#include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pliant/simulation/sampling.hpp"
-#include "pliant/simulation/warnings.hpp"
+#include "pliant/simulation/warning_log.hpp"
 
 namespace pliant {
 

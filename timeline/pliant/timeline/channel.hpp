@@ -11,11 +11,16 @@ namespace pliant {
 template <int D>
 class Channel {
  public:
-  Channel(Value<D> constant = {}) : constant_(constant) {}  // NOLINT: a constant is a channel
-  Channel(Curve<D> curve) : curve_(std::move(curve)) {}     // NOLINT: a curve is a channel
-  Channel(double constant)                                  // NOLINT: a number is a channel
+  Channel(Value<D> constant = {});  // NOLINT: a constant is a channel
+  Channel(Curve<D> curve);          // NOLINT: a curve is a channel
+  Channel(double constant)          // NOLINT: a number is a channel
       requires(D == 1)
-      : constant_{constant} {}
+      : Channel(Value<D>{constant}) {}
+  Channel(const Channel&);
+  Channel(Channel&&) noexcept;
+  Channel& operator=(const Channel&);
+  Channel& operator=(Channel&&) noexcept;
+  ~Channel();
 
   /// The value at a frame [unit]. Requires: finite.
   Value<D> at(double frame) const { return curve_ ? curve_->value(frame) : constant_; }
@@ -29,6 +34,9 @@ class Channel {
   Value<D> constant_ = {};
   std::optional<Curve<D>> curve_;
 };
+
+extern template class Channel<1>;
+extern template class Channel<3>;
 
 /// A switch over time: a channel whose curve steps between 0 (false) and 1 (true).
 class Switch {

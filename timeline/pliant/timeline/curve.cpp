@@ -30,6 +30,21 @@ Curve<D>::Curve(CurveKeys<D> keys, timeline::Compiled<D> compiled)
       handles_(std::move(compiled.handles)) {}
 
 template <int D>
+Curve<D>::Curve(const Curve&) = default;
+
+template <int D>
+Curve<D>::Curve(Curve&&) noexcept = default;
+
+template <int D>
+Curve<D>& Curve<D>::operator=(const Curve&) = default;
+
+template <int D>
+Curve<D>& Curve<D>::operator=(Curve&&) noexcept = default;
+
+template <int D>
+Curve<D>::~Curve() = default;
+
+template <int D>
 Value<D> Curve<D>::value(double frame) const {
   // Between two keys nothing else has a say.
   const timeline::Track<D>& track = compiled_.track;

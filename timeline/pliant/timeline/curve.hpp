@@ -45,6 +45,12 @@ class Curve {
   /// copies.
   [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
 
+  Curve(const Curve&);
+  Curve(Curve&&) noexcept;
+  Curve& operator=(const Curve&);
+  Curve& operator=(Curve&&) noexcept;
+  ~Curve();
+
   Value<D> value(double frame) const;       ///< [unit]. Requires: finite. O(log keys)
   Value<D> left_value(double frame) const;  ///< the limit from the left [unit]
   Value<D> velocity(double frame) const;    ///< the limit of the slope from the right [unit/frame]

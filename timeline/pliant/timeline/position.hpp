@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <variant>
 
 #include "pliant/timeline/channel.hpp"
@@ -17,20 +16,20 @@ struct PathMotion {
 /// A position over time: a constant, a curve, or a path that is walked.
 class PositionChannel {
  public:
-  PositionChannel(Value<3> constant = {}) : way_(Channel<3>(constant)) {}  // NOLINT: is a position
-  PositionChannel(Curve<3> curve) : way_(Channel<3>(std::move(curve))) {}  // NOLINT: likewise
-  PositionChannel(Channel<3> channel) : way_(std::move(channel)) {}        // NOLINT: likewise
-  PositionChannel(PathMotion motion) : way_(std::move(motion)) {}          // NOLINT: likewise
+  PositionChannel(Value<3> constant = {});  // NOLINT: a constant is a position
+  PositionChannel(Curve<3> curve);          // NOLINT: a curve is a position
+  PositionChannel(Channel<3> channel);      // NOLINT: a channel is a position
+  PositionChannel(PathMotion motion);       // NOLINT: a motion along a path is a position
+  PositionChannel(const PositionChannel&);
+  PositionChannel(PositionChannel&&) noexcept;
+  PositionChannel& operator=(const PositionChannel&);
+  PositionChannel& operator=(PositionChannel&&) noexcept;
+  ~PositionChannel();
 
   /// The position at a frame [length]. Requires: finite.
-  Value<3> at(double frame) const {
-    if (const auto* motion = path()) return motion->path.at(motion->progress.at(frame)[0]);
-    return channel()->at(frame);
-  }
+  Value<3> at(double frame) const;
 
-  bool is_animated() const {
-    return path() ? path()->progress.is_animated() : channel()->is_animated();
-  }
+  bool is_animated() const;
 
   /// The path, or null.
   const PathMotion* path() const { return std::get_if<PathMotion>(&way_); }

@@ -1,4 +1,4 @@
-// How a simulation comes to a state that it did not compute: out of a store, or from bytes.
+// States that a run did not compute: read from a store, or restored from bytes.
 
 #include <algorithm>
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "pliant/simulation/sampling.hpp"
+#include "pliant/core/stage_timer.hpp"
+#include "pliant/simulation/frame_store.hpp"
+#include "pliant/simulation/run.hpp"
 #include "pliant/simulation/sealed_bytes.hpp"
-#include "pliant/simulation/simulation.hpp"
-#include "pliant/simulation/stepped.hpp"
 #include "pliant/simulation/stored_state.hpp"
 
 namespace pliant {
@@ -20,7 +20,7 @@ constexpr std::string_view checkpoint_magic = "pliant checkpoint 1\n";
 
 }  // namespace
 
-const std::optional<Hash>& Simulation::key(std::size_t index, int frame) {
+const std::optional<Hash>& Simulation::Run::key(std::size_t index, int frame) {
   KeyChain& chain = keys_[index];
   const Surface& surface = scene_.surfaces[index];
   while (chain.length() <= frame - scene_.start) {
@@ -29,23 +29,23 @@ const std::optional<Hash>& Simulation::key(std::size_t index, int frame) {
       chain.append(nullptr, last);
       continue;
     }
-    const SurfaceInputs inputs = sample_inputs(scene_, *sampling_, index, last);
+    const SurfaceInputs inputs = sample_inputs(scene_, sampling_, index, last);
     chain.append(&inputs, last);
   }
   return chain.at(frame - scene_.start);
 }
 
-Hash Simulation::sealing_key(std::size_t surface, int frame) {
+Hash Simulation::Run::sealing_key(std::size_t surface, int frame) {
   const std::optional<Hash>& known = key(surface, frame);
   return known ? *known : unnamed_key(keys_[surface].rest());
 }
 
-bool Simulation::has_marks(std::size_t surface) const {
+bool Simulation::Run::has_marks(std::size_t surface) const {
   return !bodies_[surface].state().unsettled.empty();
 }
 
 // Takes what a surface's step makes from the store, if it is there. An interrupted run ends here.
-bool Simulation::read_surface(std::size_t index, const Hash& key) {
+bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   Stepped& stepped = stepped_[index];
   if (should_stop_ && should_stop_()) {
@@ -62,7 +62,7 @@ bool Simulation::read_surface(std::size_t index, const Hash& key) {
 }
 
 // Gives the store what a surface's step made, if it is sound.
-void Simulation::write_surface(std::size_t index, const Hash& key) {
+void Simulation::Run::write_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   const Stepped& stepped = stepped_[index];
   if (!stepped.report || !stepped.inputs.faults->first().empty()) return;
@@ -71,7 +71,7 @@ void Simulation::write_surface(std::size_t index, const Hash& key) {
 }
 
 // On to the latest frame until `frame` that the store has whole, if one is later than this one.
-void Simulation::read_latest(int frame) {
+void Simulation::Run::read_latest(int frame) {
   for (int candidate = frame; candidate > frame_; --candidate) {
     auto states = stored_states(candidate);
     if (!states) continue;
@@ -83,7 +83,7 @@ void Simulation::read_latest(int frame) {
   }
 }
 
-std::optional<std::vector<BodyState>> Simulation::stored_states(int frame) {
+std::optional<std::vector<BodyState>> Simulation::Run::stored_states(int frame) {
   const auto is_rest = [&](std::size_t k) { return key(k, frame) == keys_[k].rest(); };
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (!key(k, frame) || (!is_rest(k) && !store_->holds(*key(k, frame)))) return {};
@@ -101,7 +101,7 @@ std::optional<std::vector<BodyState>> Simulation::stored_states(int frame) {
   return states;
 }
 
-Result<std::string> Simulation::state_bytes(int frame) {
+Result<std::string> Simulation::Run::state_bytes(int frame) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
   std::string bytes(checkpoint_magic);
   append(bytes, static_cast<std::uint64_t>(std::int64_t{frame}));
@@ -116,7 +116,7 @@ Result<std::string> Simulation::state_bytes(int frame) {
   return bytes;
 }
 
-Result<int> Simulation::restore(std::string_view bytes) {
+Result<int> Simulation::Run::restore(std::string_view bytes) {
   const auto refuse = [](std::string message) {
     return fail(ErrorCode::InvalidInput, "cannot go on from the state: " + std::move(message));
   };

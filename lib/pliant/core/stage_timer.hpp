@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+
+#include "pliant/core/profile.hpp"
+
+namespace pliant {
+
+/// Adds the time from here to the end of its scope to one stage; without a profile it does nothing.
+/// Not for several threads on one profile.
+class StageTimer {
+ public:
+  StageTimer(Profile* profile, Stage stage) : profile_(profile), stage_(stage) {
+    if (profile_) begin_ = Clock::now();
+  }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+  ~StageTimer() { stop(); }
+
+  /// The end, ahead of the scope's.
+  void stop() {
+    if (!profile_) return;
+    (*profile_)[stage_] += std::chrono::duration<double>(Clock::now() - begin_).count();
+    profile_ = nullptr;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Profile* profile_;
+  Stage stage_;
+  Clock::time_point begin_ = {};
+};
+
+}  // namespace pliant

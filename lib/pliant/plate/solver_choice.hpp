@@ -1,0 +1,37 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace pliant {
+
+/// Who steps the plates of a run. The choice may change the last digits of a result.
+enum class SolverChoice {
+  Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
+  Spectral,  ///< sine transforms for all rectangles; other outlines as `Auto` does
+  Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
+  Eigen,
+};
+
+/// The choice of that name: auto, spectral, cholmod, eigen. None for others.
+std::optional<SolverChoice> solver_choice(std::string_view name);
+
+/// Whether this build has it.
+bool is_available(SolverChoice choice);
+
+/// As wide as the machine's vectors are.
+inline constexpr int widest_lanes = std::numeric_limits<int>::max();
+
+/// What a solver had to do so far; tells whether work was reused.
+struct SolverCounts {
+  long analyses = 0;        ///< orderings and symbolic factorisations
+  long factorizations = 0;  ///< numeric factorisations
+  long solves = 0;          ///< right-hand sides of three columns
+
+  friend SolverCounts operator+(const SolverCounts& a, const SolverCounts& b) {
+    return {a.analyses + b.analyses, a.factorizations + b.factorizations, a.solves + b.solves};
+  }
+};
+
+}  // namespace pliant
