@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-/// A surface's way from one frame to the next; kept for its memory. Not for other rooms.
+/// A surface's step from one frame to the next; reused to avoid allocations. Not for other rooms.
 struct Simulation::Stepped {
-  bool is_stepped = false;  // in the frame in hand
-  bool is_read = false;     // out of the store, rather than solved
+  bool is_stepped = false;  // in the present frame
+  bool is_read = false;     // read from the store, not solved
   SurfaceInputs inputs;
-  Result<StepReport> report;  // of the frame solved last, or why there is none
+  Result<StepReport> report;  // of the last solved frame, or its error
   StepFacts facts;
 };
 

@@ -11,42 +11,42 @@
 
 namespace pliant {
 
-/// Something that a run met and an author would want to know; the run goes on.
+/// A likely mistake of the author, found during a run; the run continues.
 struct Warning {
   enum class Kind {
     RegionTooSmall,  ///< fewer than 3 x 3 nodes selected: not solved
-    LostNodes,       ///< a force holds nodes of the rest mesh, but none as it stands
-    OutsideRegion,   ///< a force with a magnitude has its box outside the solved region
-    SelectsNothing,  ///< an enabled force touches no node in the whole range
-    PushesNothing,   ///< a force with a magnitude pushes no node that moves, in the whole range
-    NeverStarts,     ///< the surface's start frame is behind the last frame that is solved
+    LostNodes,       ///< a force pushes nodes of the rest mesh, but none of the present mesh
+    OutsideRegion,   ///< the force box of a force with a magnitude is outside the solved region
+    SelectsNothing,  ///< an enabled force selects no node and reaches no region, in the whole range
+    PushesNothing,   ///< a force with a magnitude pushes no moving node in the whole range
+    NeverStarts,     ///< the surface's start frame is after the last solved frame
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
-    ForcesApart,     ///< boxes that do not meet make one region, since `combine` is box
+    ForcesApart,     ///< boxes that do not meet form one region, since `combine` is box
   };
   Kind kind = Kind::RegionTooSmall;
-  std::string surface;  ///< empty: any, of a force that selects nothing anywhere
-  std::string force;    ///< or group; empty: the surface itself is meant
+  std::string surface;  ///< empty: all, for a force that selects nothing on any surface
+  std::string force;    ///< or group; empty: the warning is about the surface itself
   FrameRanges frames;
-  std::vector<std::string> others = {};  ///< of forces that are apart: those besides `force`
+  std::vector<std::string> others = {};  ///< for ForcesApart: the forces besides `force`
   bool is_group = false;                 ///< whether `force` is the region of a group
 
   /// One line for an author, frames included.
   std::string message() const;
 };
 
-/// Warnings gathered by cause, each with all its frames.
+/// Collects warnings by cause, each with all its frames.
 class WarningLog {
  public:
   void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
 
-  /// Something that should happen in some frame of the range and may in this one. It is a warning
-  /// with all these frames when it `happened` in none.
+  /// Notes that something is expected to happen at some frame of the range, perhaps this one. If it
+  /// `happened` at none, it becomes a warning with all these frames.
   void expect(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
   void happened(Warning::Kind kind, std::string_view surface, std::string_view force);
 
-  /// In order of kind, surface and force. What never happened is told once the range is complete.
-  /// Forces that are apart on one surface come as one warning. Which names are groups is not known
-  /// here.
+  /// In the order of kind, surface and force. Expectations that never happened are included only if
+  /// the range is complete. All forces that are apart on one surface form one warning. `is_group`
+  /// is not set here.
   std::vector<Warning> warnings(bool is_range_complete) const;
 
  private:
@@ -62,7 +62,7 @@ class WarningLog {
     std::string force;
     operator CauseView() const { return {kind, surface, force}; }
   };
-  // Looks a cause up without a copy of its names.
+  // Finds a cause without copying its names.
   struct Before {
     using is_transparent = void;
     bool operator()(const CauseView& a, const CauseView& b) const { return a < b; }
