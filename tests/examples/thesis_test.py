@@ -1,4 +1,4 @@
-"""Bakes the scenes of one figure of the thesis and checks what their comments say of them.
+"""Bakes the scenes of one figure of the thesis and checks the statements of their comments.
 
 usage: thesis_test.py PLIANT EXAMPLES_FOLDER NUMBER_OF_THE_FIGURE
 
@@ -111,7 +111,8 @@ def figure8():
     rest = middle(sheet("fig08-force", ('density="0.3"', 'density="0"'),
                         ('damping="4"', 'damping="0"')))[-1, 1]
 
-    # One force along y: y alone, the same from four sides, highest in the middle, level at the rim.
+    # One force along y moves only y; the dome is the same from four sides, highest in the middle,
+    # level at the rim.
     assert (force[..., [0, 2]] == 0).all(), "a force along y has moved x or z"
     dome = force[10, :, :, 1]
     for turned, how in ((flip_u(dome), "u"), (flip_v(dome), "v"), (dome.T, "exchange")):
@@ -121,7 +122,8 @@ def figure8():
     light = middle(force)[:, 1]
     assert abs(light[10] - rest) < 0.1 * rest and abs(light[-1] - rest) < 1e-3 * rest
 
-    # Denser: late, past the place of rest, and still moving when the light sheet has long stopped.
+    # Higher density: slower, swings past the position of rest, and still moves long after the light
+    # sheet has stopped.
     dense = middle(heavy)[:, 1]
     assert 0 < dense[10] < 0.5 * light[10], "more density is not slower"
     turn = dense.argmax()
@@ -151,8 +153,8 @@ def figure9():
     for name in scenes:
         assert differences("fig09-su0", name) <= {f"tangents.{edge}" for edge in edges}
 
-    # Nothing prescribed: no height. In the plane the literal equation still crowds the nodes at the
-    # rim, where r_u = 0; as a displacement it is nothing at all.
+    # Without tangents there is no height. In the plane the literal equation still crowds the nodes
+    # at the rim, where r_u = 0; solved for the displacement, nothing moves.
     flat = sheet("fig09-su0", (of_su0, all_zero))[1]
     assert (flat[..., 1] == 0).all() and np.abs(flat).max() > 0.2
     assert (sheet("fig09-su0", (of_su0, all_zero), ('"none"', '"rest"')) == 0).all()

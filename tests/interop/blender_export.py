@@ -14,7 +14,7 @@ import sys
 import bpy
 import numpy as np
 
-if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on needs what NumPy 1.24 has dropped
+if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on uses names that NumPy 1.24 removed
     np.bool = bool
 
 
