@@ -3,7 +3,7 @@
 //
 //   room       number of states that fit in the memory for kept states
 //   interval   frames from one checkpoint to the next: the least power of two for which the
-//              checkpoints take half of the room
+//              checkpoints use half of the room
 //   played     a frame when playing forwards, on average [ms]
 //   random     a random frame, on average and at most [ms]
 //   share      the same, in units of the time for playing one interval

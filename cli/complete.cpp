@@ -21,7 +21,7 @@ struct Place {
   const CLI::Option* option = nullptr;  // the option whose value comes next; null: none
   bool may_end = false;                 // the option may already have all its values
   std::size_t positionals = 0;          // number already given
-  bool has_dashes = false;              // no options come behind --
+  bool has_dashes = false;              // after --, words are never options
 };
 
 const CLI::App* find_command(const CLI::App& parent, std::string_view name) {

@@ -1,7 +1,7 @@
 """Shared by the tests of the command: a temporary folder, a scene, and runs of the command in it.
 
-Each of these tests is a program of its own, called with PLIANT SOURCE_FOLDER [sanitized] and, after
-these, what unittest takes, such as the names of tests.
+Each of these tests is a separate program, called with PLIANT SOURCE_FOLDER [sanitized], followed by
+arguments for unittest, such as the names of tests.
 """
 
 import os

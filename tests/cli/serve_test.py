@@ -1,7 +1,7 @@
 """Which requests `pliant view --serve` answers: an attacker's bytes, and the answers.
 
 An attacker here is any program of the machine and, through a browser, any web page: it knows the
-port, and not the token. Bounds hold against those who know the token, too.
+port, but not the token. The limits are also valid for clients that know the token.
 """
 
 import base64

@@ -1,8 +1,8 @@
 """The data that `pliant view` puts into its page, decoded as docs/viewer.md describes, and its
 server.
 
-In a build that was made without npm there is no page; then this tests what the command says of it.
-What a browser makes of the page is tested by tests/viewer, who may talk to the server by serve_test.py.
+A build without npm has no page; then this tests the command's message. tests/viewer tests the page
+in a browser, serve_test.py which requests the server answers.
 """
 
 import base64

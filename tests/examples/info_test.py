@@ -1,10 +1,10 @@
 """Compares the output of `pliant info` with bakes: for all examples, and for scenes made for this
 test.
 
-The peak of the animation is that of a bake. Where forces stand still, the scene is held as it is at
-the frame of greatest effect, baked until it has settled, and measured: where it comes to rest, when
-it is near for good, how it rings and how fast that dies away. Whether a scene rings or settles in
-time is seen from its numbers; how many were measured is checked in the end.
+The peak of the animation is compared with a bake. If forces do not move, the scene is made constant
+at the frame of greatest effect, baked until it has settled, and measured: the position of rest, the
+time after which it stays near it, the frequency and the damping of its ringing. Whether a scene
+rings or settles in time follows from its numbers; the number of measurements is checked at the end.
 
 usage: info_test.py PLIANT SOURCE_FOLDER
 """

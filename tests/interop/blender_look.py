@@ -5,8 +5,8 @@ usage: blender -b --factory-startup -noaudio -P blender_look.py -- JOBS RESULTS
 
 JOBS is a JSON array of {kind, file, times?, fps?, mesh?, picture?}: kind is gltf, obj, ply, cache
 (a .pc2 or .mdd in a Mesh Cache modifier on `mesh`) or mdd_keys (the MDD add-on on `mesh`); times
-are frames of Blender. RESULTS gets an array of {name: [positions of each time]} and what else is
-known of the objects.
+are frames of Blender. Writes to RESULTS an array of {name: [positions of each time]} and other data
+of the objects.
 """
 
 import json

@@ -3,9 +3,10 @@ pliant opens files that Blender writes.
 
 usage: interop_test.py PLIANT [PICTURE_FOLDER]
 
-Khronos's glTF validator, three.js and tinyusdz in headless Chromium, Blender. What each finds is
-compared with the float64 of .npy. Pictures of what three.js and Blender draw go to PICTURE_FOLDER.
-Needs what `script/bootstrap --interop` installs. Ends with the line "N passed, N failed".
+The programs are Khronos's glTF validator, three.js and tinyusdz in headless Chromium, and Blender.
+Their results are compared with the float64 of .npy. Pictures by three.js and Blender go to
+PICTURE_FOLDER. Needs the packages of `script/bootstrap --interop`. Ends with the line "N passed, N
+failed".
 """
 
 import json

@@ -65,8 +65,8 @@ template <int D>
 struct AnimateText {
   Extrapolation<D> before = {};
   Extrapolation<D> after = {};
-  Tangent<D> tangent = {};           ///< of keys that say nothing
-  Interpolation interpolation = {};  ///< of keys that say nothing
+  Tangent<D> tangent = {};           ///< of keys that give none
+  Interpolation interpolation = {};  ///< of keys that give none
   Overshoot overshoot = Overshoot::Limit;
 };
 
