@@ -289,7 +289,7 @@ class ChannelPlot {
     auto key = std::upper_bound(keys.begin(), keys.end(), from,
                                 [](double frame, const Key<D>& k) { return frame < k.frame; });
     Path path;
-    // At `to` the left value is used: at a joint the value may belong to the next span.
+    // At joints, starts with the value after `from` and ends with the value before `to`.
     path.move_to(panel_.at(from, sampler.value(from)[c]));
     for (int k = 1; k <= count; ++k) {
       const double frame = k == count ? to : from + (to - from) * k / count;

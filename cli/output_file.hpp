@@ -14,8 +14,8 @@ Result<void> check_output_folder(std::string_view option, const std::filesystem:
 
 /// Checks, before any work, that the file named by an option may be written. For every file that a
 /// command writes except those of an animation, which `make_writer` checks. Errors: those of
-/// `check_output_folder` and `check_output_place`; InvalidInput for "-", which other commands do
-/// not treat as a file.
+/// `check_output_folder` and `check_output_place`; InvalidInput for "-", which other programs read
+/// as the standard output.
 Result<void> check_output_file(std::string_view option, const std::string& file);
 
 }  // namespace pliant::cli

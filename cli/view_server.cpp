@@ -30,7 +30,7 @@ struct ViewServer::State {
   Text page;
   ViewGate gate;
 
-  std::mutex mutex;  // guards all members below, shared by the server's thread and the command's
+  std::mutex mutex;  // guards the members up to `picture`
   Text packed = std::make_shared<const std::string>();
   int bake_number = 0;            // of `packed`; 0: none yet
   std::string event = {};         // the last one

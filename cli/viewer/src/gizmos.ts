@@ -153,7 +153,8 @@ class Gizmo {
     private readonly parameters: Force,
     private readonly reach: number,
   ) {
-    // Volumes larger than the scene are also drawn in the background.
+    // Groups, and volumes with a radius above half of the scene's size, are drawn in the
+    // background.
     const isVast = (radius: Track<number> | undefined) => parameters.kind === "group" || Math.max(0, ...(radius ?? [])) > 0.5 * reach;
     this.inks = {
       deformation: isVast(parameters.deformationRadius) ? new BackgroundInk(1, 0.45) : new Ink(1.6, 0.9),

@@ -14,7 +14,8 @@ namespace pliant {
 /// The facts about one force.
 struct ForceFacts {
   bool is_too_small = false;     ///< it selects nodes, but too few are solved
-  bool is_outside = false;       ///< its magnitude is not 0, and its box is outside the region
+  bool is_outside = false;       ///< its magnitude is not 0, and its force box is outside the
+                                 ///< region
   bool touches = false;          ///< it selects a node, or its force box reaches the region
   bool is_push_awaited = false;  ///< it is expected to move a node, at this frame or another
   bool pushes = false;           ///< it moves a node
