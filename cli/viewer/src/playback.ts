@@ -13,8 +13,7 @@ export class Playback {
   private lastTick = 0;
   private readonly listeners: (() => void)[] = [];
 
-  /** Loads another range of frames. `isNew`: starts at its first frame; else the frame shown stays,
-  * if it is in the range. */
+  /** Loads a range of frames. The frame shown stays if it is in the range, unless `isNew`. */
   load(first: number, last: number, fps: number, isNew: boolean): void {
     [this.first, this.last, this.fps] = [first, last, fps];
     this.now = isNew ? first : this.clamped(this.now);
