@@ -1,21 +1,20 @@
-// What one value of a curve costs, beside the evaluator that one writes in an hour: a binary search
-// for the segment, then Newton's method for the time.
+// Measures the cost of one value of a curve, compared with an evaluator written in an hour: a
+// binary search for the segment, then Newton's method for the time.
 //
-//   plain      that evaluator; to it every segment is a Bézier cubic
-//   curve      Curve::value, which remembers nothing
+//   plain      that evaluator; it treats every segment as a Bézier cubic
+//   curve      Curve::value, which is stateless
 //   sampler    Sampler::value, which remembers the last segment
 //
 //   playback   1000 keys, frame after frame, about eight to a segment
 //   random     the same frames in random order
-//   scene      2000 curves of 20 keys, all of them at one frame, then at the next
+//   scene      2000 curves of 20 keys, all at one frame, then all at the next
 //
 //   bezier     handles of random lengths and slopes
 //   cubic      default lengths: time is linear in the parameter
 //   vector     bezier with three components, which share one solve; nanoseconds for all three
 //
-// All evaluators get the same keys and frames, and each repetition is timed in random order among
-// the others, so that a noisy moment hits all alike. The table at the end has the medians of the
-// processor time of one value.
+// All evaluators get the same keys and frames. The repetitions run in random order, so that noise
+// affects all alike. The table at the end lists the medians of the processor time per value.
 // Run: build/release/bench/curves [--benchmark_min_time=SECONDS]
 
 #include <algorithm>
@@ -52,7 +51,7 @@ struct Polynomial {
   double slope(double u) const { return c[1] + u * (2 * c[2] + u * (3 * c[3])); }
 };
 
-// The yardstick: keys in one array, cubics in another, nothing clever and nothing slowed down.
+// The reference: keys in one array, cubics in another, without clever tricks and without waste.
 template <int D>
 class PlainEvaluator {
  public:
@@ -94,7 +93,8 @@ class PlainEvaluator {
     Polynomial values[D];
   };
 
-  // Newton's method from the straight line's guess, kept in a bracket, until it stands still.
+  // Newton's method within a bracket, starting from the linear estimate, until it no longer
+  // changes.
   static double parameter(const Polynomial& time, double elapsed, double span) {
     double low = 0;
     double high = 1;
@@ -162,14 +162,14 @@ struct Evaluators {
 template <int D>
 std::vector<double> frames_of(const CurveKeys<D>& keys) {
   std::vector<double> frames;
-  // Between whole frames, where no key needs to be: a key's own value is not evaluated.
+  // Between whole frames, to avoid keys: the value at a key needs no evaluation.
   for (double t = keys.keys.front().frame + 0.37; t < keys.keys.back().frame; t += 1) {
     frames.push_back(t);
   }
   return frames;
 }
 
-// Asks for all frames, over and over.
+// Evaluates all frames repeatedly.
 template <class Evaluate>
 void ask(benchmark::State& state, const std::vector<double>& frames, const Evaluate& value) {
   for (auto _ : state) {
@@ -213,7 +213,7 @@ void add_scene(const std::string& kind, Lengths lengths) {
   std::vector<Evaluators<1>> curves;
   for (unsigned i = 0; i < 2000; ++i) curves.emplace_back(random_keys<1>(20, lengths, i));
   const auto of = std::make_shared<const std::vector<Evaluators<1>>>(std::move(curves));
-  // One frame further each time, and over again after the hundredth.
+  // Advances one frame each time, and starts again after the hundredth.
   const auto ask_all = [of](benchmark::State& state, const auto& value) {
     double frame = 0.37;
     for (auto _ : state) {
@@ -245,7 +245,7 @@ void add_making(const std::string& kind, Lengths lengths) {
       });
 }
 
-// Shows every line as usual and keeps the medians.
+// Prints every line as usual and stores the medians.
 class Medians : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {

@@ -1,21 +1,21 @@
-// What a frame costs from the channels to the file: square sheets, every vertex in the region, 20
-// backward Euler steps a frame by the solver that a run takes; bench/plate tells what becomes of
-// these. Frames are played by a Simulation; its own profile says what each stage took.
+// Measures the cost of a frame from the channels to the file: square sheets, every vertex in the
+// region, 20 backward Euler steps per frame by the default solver; bench/plate measures these
+// steps. A Simulation plays the frames; the times of the stages are from its profile.
 //
-//   triad      the yardstick in the same run: a[k] = b[k] + 3 c[k] over 15 doubles a node, which is
-//              what a step moves at least
+//   triad      the reference in the same run: a[k] = b[k] + 3 c[k] over 15 doubles per node, the
+//              least memory traffic of a step
 //   solve      transforms and steps, coefficients unchanged
-//   select     channels, boxes around the nodes, distances, whether all is finite
+//   select     channels, boxes around the nodes, distances, checks for finite values
 //   load       of two forces, one over a sixth of the sheet and one over a tenth
-//   in, out    the state on its way to the plate and back, and whether it is finite
+//   in, out    copies of the state to the plate and back, and checks for finite values
 //   output     positions in the order of the mesh and in world space, and their peak
-//   writers    one frame into each format, on a disk that is in memory if there is one
-//   holds      whether all but the solve, with the slowest writer, takes less than the solve
+//   writers    one frame in each format, on a RAM disk if there is one
+//   holds      whether all other stages, with the slowest writer, take less time than the solve
 //
 // Medians over frames, in ms; "rest" is the sum of all but the solve, "frame" that of all but the
-// writers: on a noisy machine a median of sums would tell of the noise. With --least the least
-// times, for a machine that others use: they lengthen a time, and nothing shortens it. Then what it
-// takes to select on a million vertices, beside a look at every distance.
+// writers: on a noisy machine a median of sums would contain the noise. With --least the minima,
+// for a shared machine: other loads only lengthen times. At the end: the cost of a selection on a
+// million vertices, compared with computing every distance.
 //
 // Run: build/release/bench/frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]
 
@@ -51,7 +51,7 @@ struct Options {
   bool is_least = false;
 };
 
-// The median of many times, or the least of them.
+// The median of many times, or the minimum.
 double typical(std::vector<double> times, bool is_least) {
   const auto middle = times.begin() + static_cast<long>(is_least ? 0 : times.size() / 2);
   std::nth_element(times.begin(), middle, times.end());
@@ -83,7 +83,7 @@ Scene make_scene(int side) {
   scene.start = 0;
   scene.end = 50'000;
   scene.surfaces.push_back(std::move(sheet));
-  // Reaches past every corner; a force in the middle and one aside.
+  // A force in the middle, whose region includes every corner, and one aside.
   scene.forces.push_back(
       force("middle", PointChannels{.center = Value<3>{0, 0, 0}}, 500, 100, 4, Falloff::Smooth));
   scene.forces.push_back(
@@ -126,7 +126,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// One frame into a file of each format. Twice, since the first has its buffers to make.
+// Writes a frame into a file of each format. Twice, since the first write allocates the buffers.
 void time_writers(const Folder& folder, const Simulation& simulation, const SurfacePose& pose,
                   Times& times) {
   const Mesh& mesh = simulation.rest_shapes()[0].mesh;
@@ -151,7 +151,7 @@ Times measure(int side, const Options& options) {
           .value();
   const Folder folder;
   Times times;
-  Frame frame = simulation.at(2).value();  // sets all up
+  Frame frame = simulation.at(2).value();  // allocates and sets up everything
   SurfacePose pose;
   pose.positions = frame.surfaces()[0].positions();
   const auto begin = std::chrono::steady_clock::now();
@@ -210,7 +210,7 @@ void print_frames(const Options& options) {
   }
 }
 
-// Pokes strewn over the sheet, each a fiftieth of its side in radius.
+// Point forces at random positions of the sheet, each with a radius of a fiftieth of its side.
 std::vector<SampledForce> strewn(int count, double extent) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> place(-extent / 2, extent / 2);

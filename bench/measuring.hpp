@@ -1,6 +1,6 @@
 #pragma once
 
-// What the measuring programs share: a clock, and numbers from the command line.
+// Shared by the benchmarks: a clock, and numbers from the command line.
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include <system_error>
 #include <vector>
 
-/// How long some work takes. [s]
+/// The duration of some work. [s]
 template <class Work>
 double seconds(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -17,7 +17,7 @@ double seconds(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Whether the text is a number and nothing else.
+/// Whether the whole text is a number.
 template <class Number>
 bool read_number(std::string_view text, Number& number) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

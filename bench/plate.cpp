@@ -1,16 +1,15 @@
-// What a plate costs in sine space, beside what it must move and beside sparse factors, in one run.
-// A frame is 20 backward Euler steps of three components from a state at hand to the next one, all
-// transforms in and out included; every time is a median, every ratio the median of ratios taken in
-// turn, since the machine may be noisy.
+// Measures the cost of a plate in sine space, compared with its minimal memory traffic and with
+// sparse factors, in one run. A frame is 20 backward Euler steps of three components from one state
+// to the next, including all transforms. Every time is a median, every ratio the median of ratios
+// of adjacent measurements, since the machine may be noisy.
 //
-//   triad     a[k] = b[k] + 3 c[k] over 15 doubles a node: what a step moves at least
+//   triad     a[k] = b[k] + 3 c[k] over 15 doubles per node: the least memory traffic of a step
 //   step      one of the steps, the state in sine space
 //   set-up    for new coefficients
 //   frame     20 steps and the transforms; "new" with the set-up, "kept" without
-//   simplicial, supernodal, eigen   the same frame by sparse factors, as multiples of the spectral
-//   one,
-//             with new coefficients and with the factor kept. The fill-reducing order is always
-//             kept
+//   simplicial, supernodal, eigen   the same frame with sparse factors, as a multiple of the
+//             spectral time, with new coefficients and with the factor kept. The fill-reducing
+//             order is always kept
 //
 // Run: build/release/bench/plate [--boxes 51,101x801,...] [--direct SIDE]
 //      [--threads N] [--csv FILE]
@@ -66,7 +65,7 @@ struct DirectCost {
 
 DirectCost cost_of(LinearSolver& solver, const PlateProblem& problem, const PlateState& state) {
   PlateSystem system{problem.grid, problem.stiffness, shift_of(problem.dynamics)};
-  if (!solver.factor(system)) return {};  // finds the order, which is kept
+  if (!solver.factor(system)) return {};  // computes the fill-reducing order, which is kept
   system.stiffness.c += 1e-6;
   DirectCost cost;
   cost.factor = seconds([&] { (void)solver.factor(system); });
@@ -87,7 +86,7 @@ struct Row {
   int columns = 0, rows = 0;
   double triad = 0, step = 0, set_up = 0, frame = 0;  // [s]
   double step_per_triad = 0;
-  double doubles = 0;  // memory of the solver, a node
+  double doubles = 0;  // memory of the solver per node
   std::optional<DirectCost> supernodal = {}, simplicial = {}, eigen = {};
 
   double with_set_up() const { return frame + set_up; }
@@ -101,7 +100,7 @@ Row measure(int columns, int rows, const Options& options, ThreadPool& threads) 
   const PlateState state{Field::Random(nodes, 3), Field::Random(nodes, 3)};
   Row row{.columns = columns, .rows = rows};
 
-  // About half a second for each size, but at least three rounds.
+  // About half a second per size, but at least three rounds.
   const int rounds = static_cast<int>(std::clamp(3e6 / static_cast<double>(nodes), 3.0, 101.0));
   {
     const auto solver = make_plate_solver(SolverChoice::Spectral, nullptr, &threads);
@@ -185,7 +184,7 @@ void print_csv(const Row& row, std::FILE* file) {
              frame_of(row.eigen));
 }
 
-// "51,101x801": boxes of so many columns and rows.
+// "51,101x801": boxes by columns and rows; one number: a square.
 std::optional<std::vector<std::pair<int, int>>> parse_boxes(std::string_view text) {
   std::vector<std::pair<int, int>> boxes;
   while (!text.empty()) {
@@ -228,8 +227,8 @@ std::optional<Options> parse(int count, char* arguments[]) {
     }
   }
   if (options.boxes.empty()) {
-    // Squares whose sides are smooth; then some that come next to them, with a prime or twice one;
-    // then longer boxes.
+    // Squares with smooth numbers of intervals; then neighbouring sizes with a prime number or
+    // twice a prime; then longer boxes.
     for (const int side : {51, 101, 201, 401, 701, 1001, 2001})
       options.boxes.emplace_back(side, side);
     for (const int side : {102, 198, 402, 398, 720}) options.boxes.emplace_back(side, side);

@@ -1,14 +1,14 @@
-// What a frame costs that is asked for out of order, once a run has been played: square sheets,
-// every vertex in the region, 20 backward Euler steps a frame, 240 frames.
+// Measures the cost of a frame requested out of order after a run was played: square sheets, every
+// vertex in the region, 20 backward Euler steps per frame, 240 frames.
 //
-//   room       states that the memory for kept ones holds
+//   room       number of states that fit in the memory for kept states
 //   interval   frames from one checkpoint to the next: the least power of two for which the
-//              checkpoints take half of the room
-//   played     a frame of playing through, on average [ms]
-//   random     a frame at random, on average and at most [ms]
-//   share      the same in intervals, that is in times that playing through one takes
-//   solved     frames solved for one at random, on average and at most, in intervals
-//   backwards  a frame of playing backwards, on average [ms]
+//              checkpoints use half of the room
+//   played     a frame when playing forwards, on average [ms]
+//   random     a random frame, on average and at most [ms]
+//   share      the same, in units of the time for playing one interval
+//   solved     frames solved for a random frame, on average and at most, in intervals
+//   backwards  a frame when playing backwards, on average [ms]
 //
 // Run: build/release/bench/random_access [--sides 51,101,...] [--room MIB] [--count N]
 

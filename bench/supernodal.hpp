@@ -8,8 +8,8 @@
 
 namespace pliant::bench {
 
-/// CHOLMOD's supernodal Cholesky with the BLAS that the system has: for comparison only. Its bits
-/// change with the BLAS, and it is under the GPL.
+/// CHOLMOD's supernodal Cholesky with the system's BLAS, for comparison only: its bits depend on
+/// the BLAS, and its licence is the GPL.
 class SupernodalSolver final : public LinearSolver {
  public:
   SupernodalSolver() {

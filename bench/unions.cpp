@@ -1,14 +1,15 @@
-// What a union of boxes costs by overlapping rectangles in sine space and by a sparse factor: an L,
-// three quarters of a square, and a ring, eight ninths of it, in frames of 20 backward Euler steps.
+// Measures the cost of a union of boxes, solved by overlapping rectangles in sine space and by a
+// sparse factor: an L, three quarters of a square, and a ring, eight ninths of a square, in frames
+// of 20 backward Euler steps.
 //
 //   first      a new outline: cover and tables, or order of elimination and factor, then the frame
 //   new        new coefficients on the same outline
 //   kept       the same coefficients as in the frame before
-//   rounds     over the rectangles, a step of `kept`
-//   memory     what the solver holds
+//   rounds     rounds over the rectangles, per step of `kept`
+//   memory     memory of the solver
 //
-// Medians of 5 frames in ms of processor time, one thread; from 300 nodes a side on of 3, and of 1
-// by factors. In brackets: how many times as long it takes by a factor. Run:
+// Medians of 5 frames in ms of processor time, one thread; from 300 nodes a side on, of 3 frames,
+// and of 1 with factors. In brackets: the time with a factor as a multiple. Run:
 // build/release/bench/unions [SIDE ...], 101 201 401 by default.
 
 #include <algorithm>
@@ -51,7 +52,7 @@ double median_ms(int repetitions, const F& f) {
   return times[times.size() / 2];
 }
 
-// A push that fades out with the distance from a point, all in one patch of boxes.
+// A load that decreases with the distance from a point, on one patch of boxes.
 PlateProblem problem_on(int side, const std::vector<Box>& boxes) {
   const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
   const double h = 1.0 / (side - 1);

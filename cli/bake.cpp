@@ -30,7 +30,7 @@
 namespace pliant::cli {
 namespace {
 
-// The solver of that name, if this build has it.
+// The solver of that name. Errors: this build does not have it.
 Result<SolverChoice> parse_solver(const std::string& name) {
   const auto choice = solver_choice(name);
   if (choice && is_available(*choice)) return *choice;
@@ -86,7 +86,7 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
   return plan;
 }
 
-// Whether no file to be written is one that the scene is made from: head.obj, baked to head.pc2.
+// Checks that no output file is an input of the scene: a bake to head.pc2 also writes head.obj.
 Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
   const auto refuse = [&](const std::filesystem::path& input) {
     return fail(ErrorCode::InvalidInput,
@@ -104,7 +104,7 @@ Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
   return {};
 }
 
-// The file for the regions must be none that the bake reads or writes.
+// Checks that the file for the regions is not one that the bake reads or writes.
 Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
                                 const AnimationPlan& plan) {
   if (!options.regions) return {};
@@ -118,7 +118,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
   if (is_named_at_the_end(plan, regions.filename().string()))
     return refuse("it is named as what -o writes");
   for (const std::filesystem::path file : files_of(plan)) {
-    // Looking at the disk for each of a million frames would take long.
+    // Compares names first: querying the disk for each of a million frames would be slow.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
       return refuse("it is a file that -o writes");
     }
@@ -126,12 +126,12 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
   return {};
 }
 
-// The surfaces to write and what writes them.
+// The surfaces to write and their writer.
 struct Output {
   std::vector<std::size_t> surfaces;  // by their index in the scene
   std::unique_ptr<AnimationWriter> writer;
-  std::vector<SurfacePose> poses = {};  // of the surfaces, kept for their memory
-  Profile profile = {};                 // of what happens here
+  std::vector<SurfacePose> poses = {};  // of the surfaces, reused to avoid allocations
+  Profile profile = {};                 // of the work in this file
 };
 
 Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
@@ -148,7 +148,7 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
   return Output{*chosen, *std::move(writer)};
 }
 
-// What the one-line summary tells.
+// The content of the one-line summary.
 struct Summary {
   int frame_count = 0;
   long vertex_count = 0;
@@ -156,12 +156,12 @@ struct Summary {
   FileCounts files = {};
 };
 
-// ", 15 files kept, 25 written" of a bake that goes on.
+// ", 15 files kept, 25 written" for a resumed bake.
 std::string resume_summary(const FileCounts& files) {
   return fmt::format(", {} kept, {} written", counted(files.kept, "file"), files.written);
 }
 
-// One frame of every chosen surface.
+// Writes one frame of every chosen surface.
 Result<void> write_frame(const Frame& frame, const BakeOptions& options, const Scene& scene,
                          Output& output, Summary& summary) {
   ++summary.frame_count;
@@ -202,7 +202,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   for (int number = simulation.scene().start; number <= frames.last; ++number) {
     if (was_interrupted())
       return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
-    // From the start, whatever frames are written.
+    // Always from the scene's start, whichever frames are written.
     auto reached = simulation.at(number, std::move(frame));
     if (!reached) return fail(reached.error());
     frame = *std::move(reached);
@@ -229,7 +229,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
   return summary;
 }
 
-// What an interrupted run leaves for the next one.
+// Describes the files that an interrupted run leaves for the next one.
 std::string kept_text(const BakeOptions& options) {
   const std::string ending = ending_of(options.out);
   const bool is_sequence = ending == ".obj" || ending == ".ply";
@@ -240,8 +240,8 @@ std::string kept_text(const BakeOptions& options) {
                       : "; with --cache DIR the frames solved are kept for the next run");
 }
 
-// Where the time of the run went, and how much of it went elsewhere: reading the scene, finding
-// grids, progress, files beside the animation.
+// Prints the time of each stage, and the rest: reading the scene, finding grids, progress, files
+// other than the animation.
 void print_profile(const Profile& profile, double elapsed) {
   const auto row = [&](std::string_view stage, double seconds) {
     print(stderr, fmt::format("{:<12} {:>10.3f} {:>8.1f}\n", stage, seconds,
@@ -251,7 +251,7 @@ void print_profile(const Profile& profile, double elapsed) {
   for (std::size_t k = 0; k < stage_count; ++k) {
     row(name_of(static_cast<Stage>(k)), profile.seconds[k]);
   }
-  // Below 0 where surfaces went at the same time.
+  // Below 0 if surfaces were solved in parallel.
   row("the rest", elapsed - profile.total());
   row("run", elapsed);
 }

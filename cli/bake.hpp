@@ -10,14 +10,14 @@
 
 namespace pliant::cli {
 
-/// What `pliant bake` was asked to do.
+/// Options of `pliant bake`.
 struct BakeOptions {
   std::string scene;
   std::string out;
-  std::optional<std::string> frames = {};   ///< A:B; none: all
-  std::optional<std::string> surface = {};  ///< none: all
+  std::optional<std::string> frames = {};   ///< A:B; null: all frames
+  std::optional<std::string> surface = {};  ///< null: all surfaces
   std::string space = "world";
-  std::optional<std::string> regions = {};  ///< JSON file; none: not written
+  std::optional<std::string> regions = {};  ///< JSON file; null: not written
   std::string solver = "auto";
   bool resume = false;
   bool is_quiet = false;
@@ -29,7 +29,7 @@ struct BakeOptions {
 
 void add_bake(CLI::App& app, BakeOptions& options);
 
-/// Simulates a scene and writes the animation. Gives the exit code.
+/// Simulates a scene and writes the animation. Returns the exit code.
 int run_bake(const BakeOptions& options);
 
 }  // namespace pliant::cli

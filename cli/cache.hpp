@@ -9,19 +9,19 @@
 
 namespace pliant::cli {
 
-/// Where a bake keeps what it solved, for the next one.
+/// The cache of a bake.
 struct CacheOptions {
-  std::optional<std::string> folder = {};  ///< none: nowhere
-  double gigabytes = 2;                    ///< of the disk, 10^9 bytes each
+  std::optional<std::string> folder = {};  ///< null: no cache
+  double gigabytes = 2;                    ///< most disk space, 10^9 bytes each
 };
 
 void add_cache(CLI::App& command, CacheOptions& options);
 
-/// The store in the folder that is asked for. None where none is, or with a note on stderr where
-/// the folder cannot be made: a bake can do without. Errors: InvalidInput where it is a file.
+/// The store in the requested folder. Null if no folder was requested, or, with a note on stderr,
+/// if the folder cannot be made: a bake works without it. Errors: InvalidInput if it is a file.
 Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options);
 
-/// Notes on stderr of what became of the store, once the run is over; null: nothing.
+/// Prints notes on stderr about the store after a run; null: prints nothing.
 void print_cache_notes(const FolderFrameStore* store, const CacheOptions& options);
 
 /// ", 12 frames solved, 83 read" for a summary.

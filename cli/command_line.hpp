@@ -1,6 +1,6 @@
 #pragma once
 
-// What the headers of the command name of CLI11, which takes seconds to compile: only files that
+// Declarations of CLI11 types for the headers. CLI11 takes seconds to compile, so only files that
 // add options include it.
 namespace CLI {
 class App;

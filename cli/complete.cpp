@@ -15,13 +15,13 @@
 namespace pliant::cli {
 namespace {
 
-// Where a line stands ahead of the word that is being completed.
+// The state of a command line before the word to complete.
 struct Place {
   const CLI::App* command;
-  const CLI::Option* option = nullptr;  // whose value comes next; null: none
-  bool may_end = false;                 // the option may as well have all its values
-  std::size_t positionals = 0;          // that stand there already
-  bool has_dashes = false;              // no options come behind --
+  const CLI::Option* option = nullptr;  // the option whose value comes next; null: none
+  bool may_end = false;                 // the option may already have all its values
+  std::size_t positionals = 0;          // number already given
+  bool has_dashes = false;              // after --, words are never options
 };
 
 const CLI::App* find_command(const CLI::App& parent, std::string_view name) {
@@ -30,7 +30,7 @@ const CLI::App* find_command(const CLI::App& parent, std::string_view name) {
   return found.empty() ? nullptr : found.front();
 }
 
-// An option by its name as written, --out or -o.
+// The option with a name as typed, --out or -o.
 const CLI::Option* find_option(const CLI::App& command, std::string_view word) {
   const std::string name(word);
   for (const CLI::Option* option : command.get_options()) {
@@ -51,7 +51,7 @@ void pass_option(Place& place, std::string_view word) {
 
 void pass_word(Place& place, std::string_view word) {
   if (place.option) {
-    // One that takes several goes on until the next option.
+    // An option with several values continues until the next option.
     if (place.option->get_items_expected_max() == 1) place.option = nullptr;
     place.may_end = place.option != nullptr;
     return;
@@ -67,7 +67,7 @@ Place place_of(const CLI::App& app, const std::vector<std::string_view>& words) 
   Place place{&app};
   for (std::size_t k = 0; k + 1 < words.size(); ++k) {
     const std::string_view word = words[k];
-    if (word == "=") continue;  // Bash takes --name=value apart
+    if (word == "=") continue;  // Bash splits --name=value
     if (place.has_dashes || !is_option(word)) {
       pass_word(place, word);
     } else if (word == "--") {
@@ -80,7 +80,7 @@ Place place_of(const CLI::App& app, const std::vector<std::string_view>& words) 
   return place;
 }
 
-// As it is: tabs part words from what they do.
+// Prints without `printable`, since a tab separates a word from its description.
 void say(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -113,7 +113,7 @@ void print_files(const std::vector<std::string>& endings) {
   say(fmt::format("files{}{}\n", endings.empty() ? "" : " ", fmt::join(endings, " ")));
 }
 
-// The words that an option's check allows: it is described as TEXT:{world,object}.
+// The words that an option's validator allows; its description is TEXT:{world,object}.
 std::vector<std::string> allowed_words(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
@@ -122,9 +122,9 @@ std::vector<std::string> allowed_words(const CLI::Option& option) {
   return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
 }
 
-// What files an option or an argument of a command takes. Not listed: no files.
+// The files that an option or argument of a command accepts. Options not listed accept none.
 struct Files {
-  std::vector<std::string> endings = {};  // none: any
+  std::vector<std::string> endings = {};  // empty: any
   bool are_folders = false;
 };
 
@@ -163,7 +163,7 @@ void print_values(const CLI::App& command, const CLI::Option& option) {
   print_files(files->endings);
 }
 
-// The argument without a name that comes next; the last one where it takes any number of words.
+// The next positional argument; the last one repeats if it accepts any number of words.
 const CLI::Option* next_positional(const Place& place) {
   std::size_t left = place.positionals;
   for (const CLI::Option* option : place.command->get_options()) {

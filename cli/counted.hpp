@@ -6,7 +6,7 @@
 
 namespace pliant::cli {
 
-/// "1 frame", "2 frames"; with `many` given, "1 vertex", "2 vertices".
+/// "1 frame", "2 frames"; with `many`, "1 vertex", "2 vertices".
 std::string counted(std::int64_t count, std::string_view one, std::string_view many = {});
 
 }  // namespace pliant::cli

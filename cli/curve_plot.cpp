@@ -54,7 +54,7 @@ constexpr std::string_view style = R"(<style>
 </style>
 )";
 
-// 1, 2 or 5 times a power of ten, so that about `count` of them fill `extent`.
+// A step of 1, 2 or 5 times a power of ten, so that about `count` steps fill `extent`.
 double nice_step(double extent, double count) {
   const double rough = extent / count;
   const double power = std::pow(10, std::floor(std::log10(rough)));
@@ -76,7 +76,7 @@ struct Point {
   double y = 0;
 };
 
-// From frames and values to pixels.
+// Maps frames and values to pixels.
 struct Panel {
   double first = 0;
   double last = 1;
@@ -91,7 +91,7 @@ struct Panel {
   Point at(double frame, double value) const { return {x(frame), y(value)}; }
 };
 
-// A line through points, without those that it passes anyway.
+// A line through points, leaving out those that it passes through anyway.
 class Path {
  public:
   void move_to(Point point) {
@@ -101,7 +101,7 @@ class Path {
   }
 
   void line_to(Point point) {
-    constexpr std::size_t most_passed = 50;  // each is looked at again for every new one
+    constexpr std::size_t most_passed = 50;  // each is checked again for every new point
     const bool passes_all = passed_.size() < most_passed &&
                             std::all_of(passed_.begin(), passed_.end(), [&](Point passed) {
                               return is_passed(start_, passed, point);
@@ -116,7 +116,8 @@ class Path {
   }
 
  private:
-  // Whether the straight line from a to c passes b: within a twentieth of a pixel, and not behind.
+  // Whether the straight line from a to c passes b: within a twentieth of a pixel, and b is not
+  // beyond a or c.
   static bool is_passed(Point a, Point b, Point c) {
     const double length = std::hypot(c.x - a.x, c.y - a.y);
     const double area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
@@ -132,7 +133,7 @@ class Path {
 
   std::string text_;
   Point start_;
-  std::vector<Point> passed_;  // since `start_`; the last one is where the line has come to
+  std::vector<Point> passed_;  // points since `start_`; the last one is the present end
 };
 
 template <int D>
@@ -169,8 +170,9 @@ class ChannelPlot {
   }
 
  private:
-  // The curve's exact extrema between its keys, and its handles and what lies outside its keys as
-  // far as they do not flatten it; with some air.
+  // The value range: the curve's exact extrema between its keys, with some margin. Handles and the
+  // curve outside its keys extend it by at most its height on each side, so that they do not
+  // flatten the curve.
   void choose_range() {
     if (!channel_.is_animated()) {
       const Value<D> value = channel_.at(panel_.first);
@@ -277,7 +279,7 @@ class ChannelPlot {
     draw_span(c, std::max(last_key, panel_.first), panel_.last, true);
   }
 
-  // From one frame to the next; exact on both sides of each key in between.
+  // Draws the curve between two frames, exact on both sides of each key in between.
   void draw_span(int c, double from, double to, bool is_outside) {
     if (!(from < to)) return;
     Sampler<D> sampler(channel_.curve());
@@ -287,7 +289,7 @@ class ChannelPlot {
     auto key = std::upper_bound(keys.begin(), keys.end(), from,
                                 [](double frame, const Key<D>& k) { return frame < k.frame; });
     Path path;
-    // On a joint the value may belong to the other side.
+    // At joints, starts with the value after `from` and ends with the value before `to`.
     path.move_to(panel_.at(from, sampler.value(from)[c]));
     for (int k = 1; k <= count; ++k) {
       const double frame = k == count ? to : from + (to - from) * k / count;

@@ -33,7 +33,7 @@
 namespace pliant::cli {
 namespace {
 
-// The frames asked for: a list, or first, first + step, ….
+// The frames to sample: a list, or first, first + step, ….
 struct Frames {
   std::vector<double> listed;
   double first = 0;
@@ -45,7 +45,7 @@ struct Frames {
   }
 };
 
-// One number a line; empty lines are passed over.
+// Reads one number per line; empty lines are skipped.
 Result<Frames> read_frames(const std::string& file) {
   const auto text = read_file(file);
   if (!text) return fail(text.error());
@@ -67,7 +67,7 @@ Result<Frames> read_frames(const std::string& file) {
   return frames;
 }
 
-// A:B, or one frame: any finite numbers, within the scene's range or not.
+// Parses A:B or one frame: any finite numbers, also outside the scene's range.
 Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
   const auto usage = [](std::string message) {
     return fail(ErrorCode::InvalidInput, std::move(message));
@@ -86,7 +86,7 @@ Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
     last = *to;
   }
   constexpr double most = 1e9;
-  // A step that ends on the last frame but for rounding does end on it.
+  // If the steps reach the last frame up to rounding, the last frame is included.
   const double steps = std::floor((last - first) / options.step * (1 + 1e-14) + 1e-9);
   if (!(steps < most)) {
     return usage(
@@ -108,7 +108,7 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
     const auto found = std::find_if(
         all.begin(), all.end(), [&](const NamedChannel& channel) { return channel.path == path; });
     if (found == all.end()) {
-      // Those of the same surface or force, if there is one, else all.
+      // Suggest channels of the same surface or force, if there is one, otherwise all.
       const std::string owner = path.substr(0, path.find('.') + 1);
       std::vector<std::string> near, any;
       for (const NamedChannel& channel : all) {
@@ -124,7 +124,7 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
   return chosen;
 }
 
-// Where the rows go: stdout, or a file that is there whole or not at all.
+// The destination of the rows: stdout, or a file that appears complete or not at all.
 class TextOutput {
  public:
   static Result<TextOutput> open(const std::string& file) {
@@ -146,7 +146,7 @@ class TextOutput {
     return {};
   }
 
-  /// Whether stdout took no more, which is told at the end of every command.
+  /// Whether a write to stdout failed; every command reports this at its end.
   static bool is_lost() { return std::ferror(stdout) != 0; }
 
  private:
@@ -155,7 +155,7 @@ class TextOutput {
   std::optional<AtomicFile> file_;
 };
 
-// Rows `channel,frame,value`, numbers as the shortest text that reads back the same.
+// Rows `channel,frame,value`; each number is the shortest text that reads back to the same double.
 class Table {
  public:
   Table(TextOutput& output, const Frames& frames, bool has_sides)
@@ -218,7 +218,7 @@ class Table {
   std::string text_;
 };
 
-// From the first to the last of the frames asked for.
+// Plots from the first to the last requested frame.
 Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channels,
                         const Frames& frames, const CurvesOptions& options) {
   if (frames.count == 0) return fail(ErrorCode::InvalidInput, "no frames to plot");
@@ -235,7 +235,7 @@ Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channe
   return output.write(curve_plot(channels, first, last, title));
 }
 
-// Whether the output is none of the files that it is made from.
+// Checks that the output is not one of the inputs.
 Result<void> check_place(const CurvesOptions& options, const Scene& scene) {
   if (options.out.empty()) return {};
   std::string input = input_named(options.out, scene);

@@ -8,13 +8,13 @@
 
 namespace pliant::cli {
 
-/// What `pliant curves` was asked to do.
+/// Options of `pliant curves`.
 struct CurvesOptions {
   std::string scene;
-  std::vector<std::string> channels;  ///< paths; none: all that are animated
-  std::string frames;                 ///< A:B or one frame; empty: the scene's
+  std::vector<std::string> channels;  ///< paths; empty: all animated channels
+  std::string frames;                 ///< A:B or one frame; empty: the scene's range
   double step = 1;                    ///< [frames]
-  std::string at;                     ///< file with a frame in each line; empty: none
+  std::string at;                     ///< file with one frame per line; empty: none
   std::string out;                    ///< .csv or .svg; empty: CSV on stdout
   bool has_sides = false;
   Root root = {};
@@ -22,7 +22,7 @@ struct CurvesOptions {
 
 void add_curves(CLI::App& app, CurvesOptions& options);
 
-/// Samples channels of a scene, as a table or a plot. Gives the exit code.
+/// Samples channels of a scene, as a table or a plot. Returns the exit code.
 int run_curves(const CurvesOptions& options);
 
 }  // namespace pliant::cli

@@ -35,7 +35,7 @@ tl::unexpected<Error> missing(const std::string& reason) {
                   reason));
 }
 
-// In a group of its own, so that Ctrl-C is for us to see first.
+// Starts it in its own process group, so that Ctrl-C reaches only us.
 int spawn(std::vector<std::string> words, int input, const std::string& log, pid_t& id) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -50,7 +50,7 @@ int spawn(std::vector<std::string> words, int input, const std::string& log, pid
   posix_spawnattr_init(&attributes);
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGPIPE);  // we ignore it, see `outlive_readers`
+  sigaddset(&signals, SIGPIPE);  // we ignore it, see `own_standard_streams`
   posix_spawnattr_setsigdefault(&attributes, &signals);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   const int failed =
@@ -101,7 +101,7 @@ Ffmpeg::Ffmpeg(Ffmpeg&& other) noexcept
 Ffmpeg::~Ffmpeg() {
   close_input();
   if (id_ == 0) return;
-  kill(-id_, SIGKILL);  // what it has written is of no use
+  kill(-id_, SIGKILL);  // its incomplete output is useless
   waitpid(id_, nullptr, 0);
 }
 
@@ -140,7 +140,7 @@ Result<void> Ffmpeg::finish() {
   }
 }
 
-// The first line that it said: later ones follow from it.
+// The first line of its log: later ones are consequences.
 tl::unexpected<Error> Ffmpeg::failure() const {
   std::ifstream file(log_);
   std::string line;

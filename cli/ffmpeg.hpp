@@ -10,25 +10,25 @@
 
 namespace pliant::cli {
 
-/// Whether there is a program of that name on the PATH.
+/// Whether a program of that name is on the PATH.
 bool is_on_path(std::string_view program);
 
-/// A run of ffmpeg, which takes bytes on its standard input; ended with its owner. It is another
-/// program, started with its words one by one and never through a shell.
+/// A running ffmpeg, which reads bytes from its standard input; killed by the destructor. It is
+/// started with a list of arguments, never through a shell.
 class Ffmpeg {
  public:
-  /// `words` come after those that all runs have: no questions, errors only. What it has to say
-  /// goes to the file `log`. Errors: Unwritable, if there is no ffmpeg.
+  /// `words` are arguments after those of all runs: no questions, errors only. Its messages are
+  /// written to the file `log`. Errors: Unwritable if there is no ffmpeg.
   static Result<Ffmpeg> start(const std::vector<std::string>& words, const std::string& log);
 
   Ffmpeg(Ffmpeg&& other) noexcept;
   Ffmpeg& operator=(Ffmpeg&&) = delete;
   ~Ffmpeg();
 
-  /// Waits until it has taken all of it. Errors: Unwritable with what ffmpeg said, if it ended;
+  /// Waits until it has read all bytes. Errors: Unwritable with ffmpeg's message if it ended;
   /// Interrupted.
   Result<void> write(std::string_view bytes);
-  /// No more is to come: waits until it is done. Errors: as for `write`.
+  /// Ends the input and waits until ffmpeg has finished. Errors: as for `write`.
   Result<void> finish();
 
  private:

@@ -8,7 +8,7 @@
 
 namespace pliant::cli {
 
-/// Frames that are asked for, both ends included.
+/// A range of frames, both ends included.
 struct FrameRange {
   int first = 0;
   int last = 0;
@@ -16,8 +16,8 @@ struct FrameRange {
   int count() const { return last - first + 1; }
 };
 
-/// A:B, or one frame, within the scene's frames; all of them when nothing is asked for. Errors:
-/// InvalidInput, naming --frames.
+/// Parses A:B or one frame, within the scene's frames; null: all frames. Errors: InvalidInput,
+/// naming --frames.
 Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene);
 
 }  // namespace pliant::cli

@@ -9,7 +9,7 @@ namespace pliant::cli {
 std::optional<FrameRate> frame_rate(double fps) {
   if (!(fps >= least_rate && fps <= most_rate)) return std::nullopt;
   constexpr double most = 1'000'000;
-  // The convergents of the continued fraction, each nearer than the one before.
+  // The convergents of the continued fraction, each nearer than the previous one.
   double numerator = 1, denominator = 0, earlier_numerator = 0, earlier_denominator = 1;
   for (double rest = fps;;) {
     const double whole = std::floor(rest);

@@ -5,7 +5,7 @@
 
 namespace pliant::cli {
 
-/// Frames in a second as a fraction, which programs that write movies take.
+/// Frames per second as a fraction, as programs that write movies need it.
 struct FrameRate {
   int frames = 0;
   int seconds = 1;
@@ -13,13 +13,12 @@ struct FrameRate {
   friend bool operator==(const FrameRate&, const FrameRate&) = default;
 };
 
-/// What movies have. [frames/s]
+/// The range of rates for movies. [frames/s]
 inline constexpr double least_rate = 0.01;
 inline constexpr double most_rate = 1000;
 
-/// The simplest fraction whose double quotient is `fps`, 24000/1001 for instance; if it takes
-/// numbers above 10^6, one that is within a millionth of it. None: it is not among the rates of
-/// movies.
+/// The simplest fraction whose double quotient is `fps`, such as 24000/1001; if that needs numbers
+/// above 10^6, one that is within a millionth of it. Null: outside the range for movies.
 std::optional<FrameRate> frame_rate(double fps);
 
 /// "24", "24000/1001"

@@ -13,21 +13,21 @@ struct HttpField {
   std::string value;
 };
 
-/// What a request says ahead of its body.
+/// A request without its body.
 struct HttpHead {
   std::string method;
   std::string target;
   std::vector<HttpField> fields;  ///< no name twice
   std::uint64_t body_size = 0;    ///< [bytes]
 
-  /// The value of a field, or none. `name` in lower case.
+  /// The value of a field, or null. `name` in lower case.
   const std::string* find(std::string_view name) const;
 };
 
-/// Finds the end of a request's head, byte by byte, and refuses early what two readers might take
-/// for two things: anything but printable ASCII, a line end that is not CR LF, a line that goes on
-/// in the next one (obs-fold), a first line that is not of HTTP/1.1. What passes is still to be
-/// parsed.
+/// Finds the end of a request's head, byte by byte, and rejects early anything that two parsers
+/// might read differently: bytes other than printable ASCII, a line end other than CR LF, a line
+/// continued on the next one (obs-fold), a first line not of HTTP/1.1. An accepted head must still
+/// be parsed.
 class HeadScanner {
  public:
   enum class State { More, Complete, Malformed, TooLarge };
@@ -35,7 +35,7 @@ class HeadScanner {
   HeadScanner(std::size_t most_bytes, std::size_t most_lines)
       : most_bytes_(most_bytes), most_lines_(most_lines) {}
 
-  /// Takes the next byte. Once the state is not `More` the head has ended.
+  /// Adds the next byte. After a state other than `More` the head has ended.
   State take(char byte);
 
   const std::string& text() const { return text_; }  ///< all bytes so far

@@ -32,12 +32,12 @@ using tcp = asio::ip::tcp;
 using Code = boost::system::error_code;
 
 constexpr const char* this_machine = "127.0.0.1";
-constexpr std::size_t piece_bytes = 262'144;  // of an answer, written under one deadline
-constexpr int stream_buffer_bytes = 65'536;   // that the system keeps for a slow listener
+constexpr std::size_t piece_bytes = 262'144;  // of an answer, written within one deadline
+constexpr int stream_buffer_bytes = 65'536;   // that the system buffers for a slow client
 constexpr std::size_t most_lingering_bytes = 1'000'000;
 
-// What every answer says: it is kept nowhere, is what it says it is, and is for pages of this
-// server only; it stands in no frame, and tells nobody its address, in which the token is.
+// Fields of every answer: no caching, no guessing of its type, use by pages of this server only, no
+// display in frames, and no referrer, since the address contains the token.
 constexpr std::string_view common_fields =
     "Cache-Control: no-store\r\n"
     "Cross-Origin-Opener-Policy: same-origin\r\n"
@@ -54,11 +54,11 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-// A head, or the status to refuse it with. `text`: a whole one.
+// The parsed head, or the status to refuse it with. `text`: a complete head.
 std::variant<HttpHead, int> parse_head(const std::string& text) {
   http::request_parser<http::empty_body> parser;
   parser.header_limit(static_cast<std::uint32_t>(text.size() + 1));
-  parser.skip(true);  // the body is read by us
+  parser.skip(true);  // we read the body ourselves
   Code error;
   const std::size_t taken = parser.put(asio::buffer(text), error);
   if (error || taken != text.size() || !parser.is_header_done()) return 400;
@@ -68,14 +68,14 @@ std::variant<HttpHead, int> parse_head(const std::string& text) {
   head.target = std::string(request.target());
   for (const auto& field : request) {
     std::string name = lower({field.name_string().data(), field.name_string().size()});
-    if (head.find(name) != nullptr) return 400;  // which of the two holds?
+    if (head.find(name) != nullptr) return 400;  // a duplicate field is ambiguous
     head.fields.push_back({std::move(name), std::string(field.value())});
   }
   if (head.find("transfer-encoding") != nullptr) return 501;
   if (head.find("expect") != nullptr) return 417;
   if (head.find("upgrade") != nullptr) return 400;
   if (const std::string* size = head.find("content-length")) {
-    // Beast takes a list of equal ones, too.
+    // Beast also accepts a list of equal values.
     if (size->find_first_not_of("0123456789") != std::string::npos) return 400;
     head.body_size = parser.content_length().value_or(0);
   }
@@ -84,14 +84,14 @@ std::variant<HttpHead, int> parse_head(const std::string& text) {
 
 class Session;
 
-// What all connections share. The server's thread's alone.
+// State shared by all connections. Used only in the server's thread.
 struct Shared {
   HttpLimits limits;
   HttpService service = {};
   std::set<Session*> sessions = {};
 };
 
-// One connection. Shared by the operations that are under way: the last one that ends, ends it.
+// One connection. Its pending operations own it: it ends with the last of them.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Shared& server, tcp::socket socket);
@@ -132,7 +132,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   Shared& server_;
   beast::tcp_stream stream_;
-  std::array<char, 16'384> chunk_;  // what was read and not yet looked at: [begin_, end_)
+  std::array<char, 16'384> chunk_;  // bytes read but not yet processed: [begin_, end_)
   std::size_t begin_ = 0, end_ = 0;
   HeadScanner scanner_;
   HttpHead head_ = {};
@@ -142,7 +142,7 @@ class Session : public std::enable_shared_from_this<Session> {
   std::string answer_head_ = {};
   std::size_t sent_ = 0;  // of the answer's body
   int requests_ = 0;
-  bool is_idle_ = false;  // nothing of the next request is there yet
+  bool is_idle_ = false;  // no byte of the next request has arrived yet
   bool is_answering_ = false;
   bool is_receiving_ = false;
   bool is_stream_ = false;
@@ -159,7 +159,7 @@ Session::Session(Shared& server, tcp::socket socket)
 
 Session::~Session() { server_.sessions.erase(this); }
 
-// What goes wrong here is this client's trouble only: answered if nothing of an answer is out yet.
+// An exception affects only this client. It is answered if no part of an answer has been sent yet.
 template <class Work>
 void Session::attempt(Work work) {
   const auto give_up = [this](int status) {
@@ -197,10 +197,11 @@ void Session::read(Next next) {
                           }));
 }
 
-// With what the system still holds for a client that does not take it (see `begin`).
+// Also discards data that the system still buffers for a client that does not read it (see
+// `begin`).
 void Session::close() { stream_.close(); }
 
-// The client has said all; what is on its way to it still gets there.
+// Closes after the client has ended its side; data still buffered for it is delivered.
 void Session::part() {
   Code ignored;
   stream_.socket().set_option(asio::socket_base::linger(false, 0), ignored);
@@ -212,7 +213,7 @@ void Session::begin() {
     tcp::socket& socket = stream_.socket();
     socket.set_option(tcp::no_delay(true));
     socket.set_option(asio::socket_base::send_buffer_size(static_cast<int>(piece_bytes)));
-    // Past a deadline the connection is cut, and the system keeps nothing of it.
+    // After a deadline the connection is reset, and the system keeps no data of it.
     socket.set_option(asio::socket_base::linger(true, 0));
     stream_.expires_after(server_.limits.head);
     read([this] { scan(); });
@@ -267,7 +268,7 @@ void Session::obey() {
   receive_body();
 }
 
-// Grows with what has come, not with what was announced.
+// The body grows with the bytes received, not with the announced size.
 void Session::receive_body() {
   const std::size_t missing = static_cast<std::size_t>(head_.body_size) - body_.size();
   const std::size_t count = std::min(missing, end_ - begin_);
@@ -290,7 +291,7 @@ void Session::answer() {
   send_piece();
 }
 
-// Whether nothing is answered on this connection after this request.
+// Whether this is the last request answered on this connection.
 bool Session::is_last() const {
   const std::string* wish = head_.find("connection");
   return requests_ >= server_.limits.requests || (wish && beast::iequals(*wish, "close"));
@@ -309,7 +310,7 @@ std::string Session::head_text(const HttpAnswer& answer, std::optional<std::size
   return text;
 }
 
-// The head with the first one.
+// The first piece includes the head.
 void Session::send_piece() {
   const std::size_t count = std::min(piece_bytes, answer_.body->size() - sent_);
   const std::array<asio::const_buffer, 2> parts = {
@@ -340,8 +341,8 @@ void Session::refuse(int status) {
                     guarded([this](Code error, std::size_t) { error ? close() : linger(0); }));
 }
 
-// Whoever is still sending would not get to see the last answer if the connection were cut at once.
-// What comes meanwhile is thrown away, some of it, for a moment.
+// A client that is still sending would not receive the last answer if the connection were closed at
+// once. So bytes that arrive are discarded, up to a limit and for a short time.
 void Session::linger(std::size_t bytes) {
   if (bytes == 0) {
     Code ignored;
@@ -353,12 +354,12 @@ void Session::linger(std::size_t bytes) {
 }
 
 void Session::begin_stream() {
-  if (begin_ < end_) return linger(0);  // there is nothing to say on a stream
+  if (begin_ < end_) return linger(0);  // a client must not send on a stream
   is_stream_ = true;
-  Code ignored;  // then the system keeps what it likes
+  Code ignored;  // on failure the system chooses the size
   stream_.socket().set_option(asio::socket_base::send_buffer_size(stream_buffer_bytes), ignored);
   stream_.expires_never();
-  read([this] { close(); });  // that it goes away, or says something
+  read([this] { close(); });  // close if the client disconnects or sends
   tell_news();
 }
 
@@ -376,7 +377,7 @@ void Session::tell_heartbeat() {
   });
 }
 
-// One event at a time: what happens meanwhile is asked for after it.
+// One event at a time: events that happen meanwhile are queried after it.
 void Session::write_event(std::shared_ptr<const std::string> event) {
   is_writing_ = true;
   stream_.expires_after(server_.limits.write);
@@ -390,7 +391,7 @@ void Session::write_event(std::shared_ptr<const std::string> event) {
 }  // namespace
 
 struct HttpServer::State {
-  Shared shared;  // ahead of the context, whose end ends the last sessions
+  Shared shared;  // before the context, whose destructor ends the last sessions
   bool is_accepting = false;
   bool is_beating = false;
   asio::io_context context{1};
@@ -414,7 +415,7 @@ void HttpServer::State::accept() {
       take(std::move(socket));
       return accept();
     }
-    // No files left, most likely: not asked again at once.
+    // Most likely no file descriptors are left: try again later.
     is_accepting = true;
     rest.expires_after(std::chrono::milliseconds(50));
     rest.async_wait([this](Code) { accept(); });
@@ -422,7 +423,7 @@ void HttpServer::State::accept() {
 }
 
 void HttpServer::State::take(tcp::socket socket) {
-  if (shared.sessions.size() >= shared.limits.connections) return;  // its end closes it
+  if (shared.sessions.size() >= shared.limits.connections) return;  // its destructor closes it
   std::make_shared<Session>(shared, std::move(socket))->begin();
 }
 
@@ -436,7 +437,8 @@ void HttpServer::State::beat() {
   });
 }
 
-// Until it is stopped. Only memory for our own work can be missing here; then it is tried again.
+// Runs until it is stopped. The only exception here is lack of memory for our own work; then it
+// tries again.
 void HttpServer::State::run() {
   while (!context.stopped()) {
     try {
@@ -459,7 +461,7 @@ Result<HttpServer> HttpServer::listen(int port, const HttpLimits& limits) {
   Code error;
   tcp::acceptor& acceptor = state->acceptor;
   acceptor.open(place.protocol(), error);
-  // Without SO_REUSEPORT, which would let two commands share a port, each with half the requests.
+  // Not SO_REUSEPORT, which would let two commands share a port, each with half of the requests.
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(place, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);

@@ -12,54 +12,55 @@
 
 namespace pliant::cli {
 
-/// What a server takes from whoever connects. Nothing that a client sends or leaves undone costs
-/// more than this.
+/// Limits of a server for all clients. They bound the cost of anything that a client sends or fails
+/// to do.
 struct HttpLimits {
   std::size_t head_bytes = 16384;
   std::size_t head_lines = 64;
-  std::size_t connections = 64;  ///< more are closed as they come
-  std::size_t streams = 16;      ///< connections that are told of events
-  std::size_t bodies = 1;        ///< that are being received at a time
-  int requests = 100;            ///< of one connection
+  std::size_t connections = 64;  ///< further ones are closed at once
+  std::size_t streams = 16;      ///< connections that receive events
+  std::size_t bodies = 1;        ///< being received at the same time
+  int requests = 100;            ///< per connection
 
   std::chrono::milliseconds head{3'000};    ///< from its first byte to its last one
   std::chrono::milliseconds idle{15'000};   ///< from an answer to the next request
   std::chrono::milliseconds body{30'000};   ///< from its first byte to its last one
-  std::chrono::milliseconds write{10'000};  ///< of a quarter of a megabyte
-  std::chrono::milliseconds linger{500};    ///< from a refusal until the connection is cut
+  std::chrono::milliseconds write{10'000};  ///< for 256 KiB
+  std::chrono::milliseconds linger{500};    ///< from the last answer until the connection is closed
   std::chrono::milliseconds heartbeat{2'000};
 };
 
-/// What becomes of a request, said ahead of its body.
+/// The decision about a request, made before its body is read.
 struct HttpVerdict {
-  int status = 200;             ///< another one: refused with it, and the connection closed
-  std::uint64_t most_body = 0;  ///< a longer one is refused
-  bool is_stream = false;       ///< told of events until it goes away; `answer` gives the type
+  int status = 200;             ///< any other: refused with it, and the connection is closed
+  std::uint64_t most_body = 0;  ///< a longer body is refused
+  bool is_stream = false;       ///< receives events until it disconnects; `answer` gives the type
 };
 
 struct HttpAnswer {
   int status = 200;  ///< from 400 on: a refusal, which has no body
   std::string type = {};
-  std::shared_ptr<const std::string> body = {};  ///< shared by all who are reading it
-  std::string policy = "default-src 'none'";     ///< of content, if it is a page
+  std::shared_ptr<const std::string> body = {};  ///< shared by all connections that send it
+  std::string policy = "default-src 'none'";     ///< content security policy, for a page
 };
 
-/// What a server serves. Called in the server's thread, one at a time; what they throw is answered
-/// by 503 (no memory) or 500.
+/// The functions of a service. They are called in the server's thread, one at a time; an exception
+/// is answered by 503 (out of memory) or 500.
 struct HttpService {
   std::function<HttpVerdict(const HttpHead&)> judge;
   std::function<HttpAnswer(const HttpHead&, std::string body)> answer;
-  /// What a stream has not been told yet, or nothing. `seen` is the stream's own, -1 at first.
+  /// The events that a stream has not received yet, or null. Each stream has its own `seen`, -1 at
+  /// first.
   std::function<std::shared_ptr<const std::string>(std::int64_t& seen)> next_event;
 };
 
-/// A server of HTTP/1.1 for this machine only (127.0.0.1). It is strict: what is not well formed,
-/// what has a body of unknown length, and what is refused ends the connection, so that no byte of
-/// such a request can be taken for another request.
+/// A server of HTTP/1.1 for this machine only (127.0.0.1). It is strict: a malformed request, one
+/// with a body of unknown length, or a refused one ends the connection, so that none of its bytes
+/// can be read as another request.
 class HttpServer {
  public:
-  /// Takes connections from now on. `port` 0: any that is free. Errors: Unwritable where the port
-  /// is taken.
+  /// Accepts connections from now on. `port` 0: any free port. Errors: Unwritable if the port is in
+  /// use.
   static Result<HttpServer> listen(int port, const HttpLimits& limits = {});
 
   HttpServer(HttpServer&&) noexcept;
@@ -68,9 +69,9 @@ class HttpServer {
 
   int port() const;
 
-  /// Answers from now on. Once.
+  /// Starts answering. Call once.
   void serve(HttpService service);
-  /// There may be something new for `next_event`. From any thread.
+  /// Makes the server call `next_event` for all streams. Thread-safe.
   void notify();
 
  private:

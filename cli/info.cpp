@@ -19,7 +19,7 @@ BoundingBox bounding_box(const Field& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
-// All that needs the meshes.
+// Computes all facts that need the meshes.
 Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                               const SimulationOptions& run) {
   auto previews = preview_forces(simulation, run);

@@ -8,7 +8,7 @@
 
 namespace pliant::cli {
 
-/// What `pliant info` was asked to do.
+/// Options of `pliant info`.
 struct InfoOptions {
   std::string scene;
   Root root = {};
@@ -18,7 +18,7 @@ struct InfoOptions {
 
 void add_info(CLI::App& app, InfoOptions& options);
 
-/// Prints what is in a scene, and what each force would do. Gives the exit code.
+/// Prints the content of a scene and a preview of each force. Returns the exit code.
 int run_info(const InfoOptions& options);
 
 }  // namespace pliant::cli

@@ -6,8 +6,8 @@
 
 namespace pliant::cli {
 
-/// The same as JSON: docs/info.md. Text that is no UTF-8, as a file's name may be, has U+FFFD where
-/// it is not.
+/// The output of `pliant info --json`: docs/info.md. In text that is not UTF-8, such as some file
+/// names, invalid bytes become U+FFFD.
 std::string info_json(const SceneFacts& facts);
 
 }  // namespace pliant::cli

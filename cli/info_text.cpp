@@ -26,7 +26,7 @@ std::string shape_text(const SurfaceShape& shape) {
 }
 
 std::string box_text(const BoundingBox& box) {
-  // + 0.0: no minus in front of a 0.
+  // + 0.0 avoids "-0".
   const auto corner = [](const Vector3d& p) {
     return fmt::format("{:.5g} {:.5g} {:.5g}", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0);
   };
@@ -50,7 +50,7 @@ std::string frequency_text(double frequency) {
                             : fmt::format("{:.3e} Hz", frequency);
 }
 
-// The two lines on how a region vibrates.
+// Two lines about the vibration of a region.
 std::string vibration_text(const RegionPreview& region, double fps) {
   std::string text = region.first_frequency > 0
                          ? fmt::format("    first natural frequency {}, damping ratio {:.3g}\n",
@@ -78,7 +78,8 @@ std::string region_text(const RegionPreview& region) {
                      box.i0, box.i1, box.j0, box.j1);
 }
 
-// Of several regions each one; the largest peaks first, and of many only these.
+// One line per region if there are several; the largest peaks first, and only these if there are
+// many.
 std::string regions_text(const Preview& preview, double fps) {
   std::vector<const RegionPreview*> regions;
   for (const RegionPreview& region : preview.regions) regions.push_back(&region);
@@ -102,7 +103,7 @@ std::string regions_text(const Preview& preview, double fps) {
 
 std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
 
-// "palm 98 %, weight 2 %": the largest first, and of many only these.
+// "palm 98 %, weight 2 %": the largest first, and only these if there are many.
 std::string shares_text(const Preview& preview, const Scene& scene) {
   if (preview.shares.size() < 2) return {};
   std::vector<ForceShare> shares = preview.shares;
@@ -134,7 +135,7 @@ std::string gap_text(const Preview& preview) {
   return text;
 }
 
-// What comes of the forces, in as many lines as there is something to say; `who` says whose.
+// The effect of forces, in as many lines as needed; `who` names the forces.
 std::string preview_text(const Preview& preview, const std::string& who, const Scene& scene) {
   std::string text = fmt::format("  {} on {}: ", who, scene.surfaces[preview.surface].name);
   const bool is_force = preview.of == Preview::Of::Force;
@@ -175,7 +176,7 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
   return text + shares_text(preview, scene) + regions_text(preview, scene.fps);
 }
 
-// Whether all forces of a surface come to what its only one does alone.
+// Whether the preview of all forces of a surface equals that of its only force.
 bool is_told_already(const Preview& all, const std::vector<Preview>& previews) {
   const Preview* only = nullptr;
   for (const Preview& preview : previews) {
@@ -240,7 +241,7 @@ template <int D>
 std::string keys_text(const Channel<D>& channel, bool is_switch = false) {
   const auto& keys = channel.curve().keys().keys;
   std::string text = counted(keys.size(), "key") + ':';
-  // The ends of a long curve say enough.
+  // For a long curve only the keys at its ends are shown.
   constexpr std::size_t most = 12, at_each_end = 5;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (keys.size() > most && k == at_each_end) {

@@ -6,7 +6,7 @@
 
 namespace pliant::cli {
 
-/// What `pliant info` tells of a scene, to read.
+/// The text that `pliant info` prints about a scene.
 std::string info_text(const SceneFacts& facts);
 
 }  // namespace pliant::cli

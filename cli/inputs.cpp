@@ -10,7 +10,7 @@ namespace pliant::cli {
 
 bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code ignored;
-  // Absolute first: of a relative name that is not there nothing would be resolved.
+  // Absolute first: otherwise a relative path that does not exist would not be resolved at all.
   const auto place = [&](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
   };
@@ -32,7 +32,7 @@ InputsByName::InputsByName(const Scene& scene) {
   }
 }
 
-// Looking at the disk for each of a million frames would take long.
+// Compares names first: querying the disk for each of a million frames would be slow.
 std::optional<std::filesystem::path> InputsByName::find(const std::filesystem::path& output) const {
   const auto [first, last] = files_.equal_range(output.filename().string());
   for (auto each = first; each != last; ++each)

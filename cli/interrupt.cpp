@@ -20,7 +20,8 @@ void note_interrupt(int) { interrupted = true; }
 void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = &note_interrupt;
-  // Without SA_RESTART: a read that waits for a pipe ends too. The second one ends the program.
+  // Without SA_RESTART, so that a read that waits for a pipe ends too. SA_RESETHAND: the second
+  // signal ends the program.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -28,7 +29,8 @@ void catch_interrupts() {
 
 void own_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    // The lowest number that is free is the one. Of stdout every write fails, which is told.
+    // `open` returns the lowest free descriptor, which is this one. stdout is opened for reading,
+    // so every write fails, which is reported.
     if (fcntl(stream, F_GETFD) < 0)
       open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
   }

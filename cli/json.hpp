@@ -7,7 +7,7 @@
 
 namespace pliant::cli {
 
-/// Keys stay in the order in which they are written.
+/// Keys keep the order of insertion.
 using Json = nlohmann::ordered_json;
 
 /// [x, y, z].

@@ -76,7 +76,7 @@ int main(int count, char* arguments[]) {
     return exit_code_after_output(run(count, arguments));
   } catch (const std::bad_alloc&) {
     print(stderr, "pliant: error: out of memory\n");
-  } catch (const std::exception& error) {  // of a library; ours returns its errors
+  } catch (const std::exception& error) {  // from a library; ours returns its errors
     print(stderr, fmt::format("pliant: error: {}\n", printable(error.what())));
   }
   return exit_failed;

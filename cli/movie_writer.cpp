@@ -21,12 +21,12 @@ void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
 }
 
-// PNG files one behind the other.
+// Input of concatenated PNG files.
 Words pictures_from(const std::string& source, const FrameRate& rate) {
   return {"-f", "image2pipe", "-c:v", "png", "-framerate", to_text(rate), "-i", source};
 }
 
-// The colours of a screen as BT.709, as players expect them, told in the file too.
+// Converts screen colours to BT.709, as players expect, and tags the file with it.
 const Words to_yuv = {"-vf",
                       "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+"
                       "full_chroma_int,format=yuv420p",
@@ -60,7 +60,7 @@ Words words_for(const MoviePlan& plan, const std::string& out) {
       append(words, {"-f", "webm", out});
       break;
     case MovieFormat::Gif:
-      // First the 256 colours that suit all frames, which are looked at again with them.
+      // The first pass finds 256 colours for all frames, the second pass uses them.
       append(words, {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-f", "image2",
                      "-update", "1", out});
       break;
@@ -83,13 +83,13 @@ struct MovieWriter::State {
   MoviePlan plan;
   AtomicFile file;
   Ffmpeg ffmpeg;
-  std::ofstream pictures = {};  // of a GIF, which takes two looks at them
+  std::ofstream pictures = {};  // for a GIF, which needs two passes
 
   std::string scratch(std::string_view name) const {
     return fmt::format("{}/{}", plan.scratch, name);
   }
 
-  // With the palette that is there now.
+  // The second pass, with the palette.
   Result<void> write_gif() {
     pictures.close();
     if (!pictures) return fail(ErrorCode::Unwritable, "the folder for temporary files is full");
@@ -101,7 +101,7 @@ struct MovieWriter::State {
     return second->finish();
   }
 
-  // From the folder for temporary files, which may be on another disk, to its place.
+  // Copies the movie from the temporary folder, which may be on another disk, to its place.
   Result<std::size_t> copy() {
     std::ifstream movie(scratch("movie"), std::ios::binary);
     std::string piece(1 << 20, '\0');

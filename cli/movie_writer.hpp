@@ -10,34 +10,34 @@
 
 namespace pliant::cli {
 
-/// What a movie file is, by its ending.
+/// The format of a movie file, by its extension.
 enum class MovieFormat { Mp4, Gif, Webm };
 
-/// Errors: InvalidInput, naming the endings that there are.
+/// Errors: InvalidInput, naming the known extensions.
 Result<MovieFormat> movie_format(const std::filesystem::path& file);
 
-/// What is to be written.
+/// The movie to write.
 struct MoviePlan {
   std::filesystem::path file;
   MovieFormat format = MovieFormat::Mp4;
   FrameRate rate;
-  int threads = 0;      ///< that ffmpeg may use; 0: its own choice
-  std::string scratch;  ///< an empty folder that is gone later
+  int threads = 0;      ///< of ffmpeg; 0: its own choice
+  std::string scratch;  ///< an empty folder for temporary files, removed later
 };
 
-/// Makes a movie of pictures by way of ffmpeg. The file appears whole under its name or not at all.
+/// Makes a movie from pictures with ffmpeg. The file appears complete under its name or not at all.
 class MovieWriter {
  public:
-  /// Errors: Unwritable, if there is no ffmpeg, or no file can be made there.
+  /// Errors: Unwritable if there is no ffmpeg, or the file cannot be made.
   static Result<MovieWriter> start(const MoviePlan& plan);
 
   MovieWriter(MovieWriter&&) noexcept;
   MovieWriter& operator=(MovieWriter&&) = delete;
   ~MovieWriter();
 
-  /// The next frame, a PNG file; all of one size. Errors: Unwritable, Interrupted.
+  /// Adds the next frame, a PNG file; all have the same size. Errors: Unwritable, Interrupted.
   Result<void> write(std::string_view picture);
-  /// Gives the file its name, and how long it is. [bytes] Errors: as for `write`.
+  /// Gives the file its name, and returns its size. [bytes] Errors: as for `write`.
   Result<std::size_t> finish();
 
  private:

@@ -11,7 +11,7 @@ namespace pliant::cli {
 Result<void> check_output_folder(std::string_view option, const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
   if (folder.empty()) return {};
-  std::error_code unknown;  // what cannot be looked at, writing will tell of
+  std::error_code unknown;  // if the status is unknown, the write will report it
   const auto status = std::filesystem::status(folder, unknown);
   const auto refuse = [&](std::string_view reason) {
     return fail(ErrorCode::Unwritable,

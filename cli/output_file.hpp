@@ -8,14 +8,14 @@
 
 namespace pliant::cli {
 
-/// Whether the folder that `file`, given with an option, is to lie in is there: looked at ahead of
-/// any work. Errors: Unwritable, naming the option and the folder.
+/// Checks, before any work, that the folder of `file`, given with an option, exists. Errors:
+/// Unwritable, naming the option and the folder.
 Result<void> check_output_folder(std::string_view option, const std::filesystem::path& file);
 
-/// Whether the file that an option names may be written: looked at ahead of the work, for every
-/// file that a command writes and that is not one of an animation, which `make_writer` looks at.
-/// Errors: those of `check_output_folder` and `check_output_place`; InvalidInput for "-", which is
-/// no file elsewhere.
+/// Checks, before any work, that the file named by an option may be written. For every file that a
+/// command writes except those of an animation, which `make_writer` checks. Errors: those of
+/// `check_output_folder` and `check_output_place`; InvalidInput for "-", which other programs read
+/// as the standard output.
 Result<void> check_output_file(std::string_view option, const std::string& file);
 
 }  // namespace pliant::cli

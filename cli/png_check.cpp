@@ -31,7 +31,7 @@ struct Chunk {
   std::string_view content;
 };
 
-// The chunks of a file, up to IEND, which ends it.
+// The chunks of a file; IEND must be the last.
 Result<std::vector<Chunk>> chunks_of(std::string_view bytes) {
   if (!bytes.starts_with(signature)) return invalid("it does not begin as a PNG");
   constexpr std::size_t frame = 12;  // length, type and checksum
@@ -52,7 +52,7 @@ Result<std::vector<Chunk>> chunks_of(std::string_view bytes) {
   return invalid("it breaks off");
 }
 
-// Bytes of a row, its filter included.
+// Bytes of a row, including its filter byte.
 Result<std::size_t> row_bytes(const Chunk& first, PictureSize size) {
   if (first.type != "IHDR" || first.content.size() != 13) return invalid("it has no header");
   const std::uint32_t width = number_at(first.content, 0), height = number_at(first.content, 4);
@@ -67,7 +67,7 @@ Result<std::size_t> row_bytes(const Chunk& first, PictureSize size) {
   return 1 + static_cast<std::size_t>(width) * (form == rgb ? 3 : 4);
 }
 
-// Unpacks rows to look at their number and their filters; keeps none.
+// Unpacks rows to check their number and filters, without storing them.
 class Rows {
  public:
   Rows(std::size_t bytes, std::size_t count) : row_bytes_(bytes), left_(bytes * count) {}
@@ -80,7 +80,7 @@ class Rows {
       stream_.next_out = piece_.data();
       stream_.avail_out = static_cast<uInt>(piece_.size());
       const int state = inflate(&stream_, Z_NO_FLUSH);
-      if (state == Z_BUF_ERROR) return {};  // all that is here has been taken
+      if (state == Z_BUF_ERROR) return {};  // all input so far is consumed
       if (state != Z_OK && state != Z_STREAM_END) return invalid("it cannot be unpacked");
       if (auto seen = look_at(piece_.size() - stream_.avail_out); !seen) return seen;
       has_ended_ = state == Z_STREAM_END;
@@ -134,7 +134,7 @@ Result<void> check_png(std::string_view bytes, PictureSize size) {
       if (has_rows && before != "IDAT") return invalid("its rows are not in one place");
       has_rows = true;
       if (auto taken = rows.take(chunk.content); !taken) return taken;
-    } else if ((chunk.type.front() & 0x20) == 0) {  // a capital: not to be passed over
+    } else if ((chunk.type.front() & 0x20) == 0) {  // upper case: a critical chunk
       return invalid(fmt::format("it has a chunk {}", printable(chunk.type)));
     }
     before = chunk.type;
@@ -143,8 +143,8 @@ Result<void> check_png(std::string_view bytes, PictureSize size) {
 }
 
 std::size_t longest_png(PictureSize size) {
-  // Rows as they are, what deflate and the chunks add to such that cannot be packed, and some
-  // words about the picture.
+  // Uncompressed rows, the overhead of deflate and chunks for incompressible data, and some
+  // metadata.
   const std::size_t rows =
       (1 + 4 * static_cast<std::size_t>(size.width)) * static_cast<std::size_t>(size.height);
   return rows + rows / 64 + 65'536;

@@ -10,7 +10,7 @@
 namespace pliant::cli {
 namespace {
 
-// In place of the line that is there: the one thing that acts on a terminal.
+// Replaces the present line: the only output with terminal control sequences.
 void draw(const std::string& line) {
   const std::string text = "\r\033[K" + line;
   std::fwrite(text.data(), 1, text.size(), stderr);

@@ -4,16 +4,16 @@
 
 namespace pliant::cli {
 
-/// A bar on stderr with frames, frames per second and time left; nothing where stderr is no
+/// A bar on stderr with frames, frames per second and time left; not shown if stderr is not a
 /// terminal.
 class Progress {
  public:
   Progress(int frame_count, bool is_quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  ~Progress();  ///< wipes the bar
+  ~Progress();  ///< erases the bar
 
-  /// One frame more is done. Draws at most ten times a second.
+  /// Counts one more frame. Draws at most ten times a second.
   void advance();
 
  private:

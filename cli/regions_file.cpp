@@ -8,7 +8,7 @@
 namespace pliant::cli {
 namespace {
 
-// Where the force is and where it points, as its kind has it.
+// Adds the place and direction of the force, depending on its kind.
 struct AddShape {
   Json& force;
 

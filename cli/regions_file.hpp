@@ -8,8 +8,8 @@
 
 namespace pliant::cli {
 
-/// What is solved in each frame, and under which forces, as JSON; docs/regions.md. Written frame by
-/// frame, and there under its name once finished.
+/// The regions solved in each frame and their forces, as JSON; docs/regions.md. Written frame by
+/// frame; appears under its name when finished.
 class RegionsFile {
  public:
   /// Errors: Unwritable.
@@ -18,7 +18,7 @@ class RegionsFile {
   /// Appends a frame. Errors: Unwritable.
   Result<void> write(const FrameReport& report, const Scene& scene);
 
-  /// Ends the file with what the solvers had to do. Errors: Unwritable.
+  /// Ends the file with the counts of the solvers' work. Errors: Unwritable.
   Result<void> finish(const SolverCounts& counts);
 
  private:

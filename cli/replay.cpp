@@ -30,7 +30,7 @@ CLI::Validator integer_from(int least) {
       range);
 }
 
-// Runs `work` with the options for it while a bar shows how far it is.
+// Runs `work` with its options and shows a progress bar.
 template <class Work>
 auto with_progress(const ReplayCommandOptions& options, const Work& work) {
   std::optional<Progress> progress;
@@ -66,7 +66,7 @@ int record(const ReplayCommandOptions& options) {
   return exit_done;
 }
 
-// A difference is data; what may explain it is a remark.
+// Differences go to stdout as data, possible causes to stderr as notes.
 int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdict,
          std::string_view done) {
   if (!verdict) {

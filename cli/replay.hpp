@@ -24,7 +24,7 @@ struct ReplayCommandOptions {
 
 void add_replay(CLI::App& app, ReplayCommandOptions& options);
 
-/// Whichever of record, verify and diff `app` was told to run.
+/// Runs the parsed subcommand of `app`: record, verify or diff. Returns the exit code.
 int run_replay(const CLI::App& app, const ReplayCommandOptions& options);
 
 }  // namespace pliant::cli

@@ -17,7 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-// What the machine has, or what the container that we run in may use of it. [bytes]
+// The machine's memory, or the limit of the container. [bytes]
 std::size_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const long page = sysconf(_SC_PAGESIZE);

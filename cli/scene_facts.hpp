@@ -7,18 +7,18 @@
 
 namespace pliant::cli {
 
-/// The corners of what encloses some points. [length]
+/// Two opposite corners of a box around points, parallel to the axes. [length]
 struct BoundingBox {
   Vector3d low;
   Vector3d high;
 };
 
-/// What `pliant info` tells of a scene. Refers to the scene.
+/// The facts that `pliant info` prints about a scene. Refers to the scene.
 struct SceneFacts {
-  std::string file;  ///< as the caller named it
+  std::string file;  ///< the name given by the caller
   const Scene& scene;
 
-  /// Of each surface in the order of the scene; empty without surfaces.
+  /// One for each surface, in the order of the scene.
   struct SurfaceFacts {
     Grid grid;
     std::size_t vertex_count = 0;
@@ -31,7 +31,7 @@ struct SceneFacts {
   std::size_t solver_memory = 0;   ///< of the largest region previewed [bytes]
 };
 
-/// Why a force has no preview: "never enabled", or that no surface is solved while it is.
+/// Why a force has no preview: "never enabled", or that no surface is solved while it is enabled.
 std::string idle_reason(const Force& force, const Scene& scene);
 
 }  // namespace pliant::cli

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* name = "standard input";
 
-// As much as `parse_scene` takes, and the one byte more that shows it to be too much.
+// One byte more than `parse_scene` accepts, to detect a scene that is too large.
 constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
 
 tl::unexpected<Error> interrupted() {
@@ -64,7 +64,7 @@ Result<Scene> read_scene(const std::string& scene, const Root& root) {
   if (!folder) return fail(folder.error());
   if (!is_standard_input(scene)) {
     auto loaded = load_scene(scene, *folder);
-    if (!loaded && was_interrupted()) return interrupted();  // a pipe was waited for
+    if (!loaded && was_interrupted()) return interrupted();  // interrupted while waiting for a pipe
     return loaded;
   }
   if (isatty(STDIN_FILENO) != 0) {

@@ -11,19 +11,19 @@
 
 namespace pliant::cli {
 
-/// `--root DIR` of every command that reads scenes; none: each scene's own folder.
+/// `--root DIR` of every command that reads scenes; null: each scene's own folder.
 using Root = std::optional<std::string>;
 
 void add_root(CLI::App& command, Root& root);
 
-/// The folder that was named; empty: none. Errors: it is no folder.
+/// The folder given; an empty path if null. Errors: InvalidInput if it is not a folder.
 Result<std::filesystem::path> folder_of(const Root& root);
 
 /// Whether a command's SCENE means the standard input: "-". A file of that name is "./-".
 bool is_standard_input(std::string_view scene);
 
-/// `load_scene`, or for "-" the same from the standard input: its meshes are relative to the
-/// current folder. Errors: those of `load_scene` and `folder_of`; InvalidInput where the standard
+/// `load_scene`, or for "-" the same from the standard input: its mesh paths are relative to the
+/// current folder. Errors: those of `load_scene` and `folder_of`; InvalidInput if the standard
 /// input is a terminal; Interrupted.
 Result<Scene> read_scene(const std::string& scene, const Root& root);
 

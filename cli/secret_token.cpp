@@ -13,7 +13,7 @@ Result<std::string> make_token() {
   std::size_t count = 0;
   while (count < bytes.size()) {
     const ssize_t got = getrandom(bytes.data() + count, bytes.size() - count, 0);
-    if (got < 0 && errno == EINTR) continue;  // a signal, while the system still gathers noise
+    if (got < 0 && errno == EINTR) continue;  // a signal while the system still collects entropy
     if (got <= 0) return fail(ErrorCode::Unreadable, "the system gives no random bytes");
     count += static_cast<std::size_t>(got);
   }
@@ -24,7 +24,7 @@ Result<std::string> make_token() {
 
 bool is_same_secret(std::string_view given, std::string_view secret) {
   if (given.size() != secret.size()) return false;
-  // Volatile: or a compiler may leave the loop at the first difference.
+  // Volatile, since otherwise a compiler may leave the loop at the first difference.
   volatile unsigned char difference = 0;
   for (std::size_t k = 0; k < secret.size(); ++k) {
     const unsigned char here = static_cast<unsigned char>(given[k] ^ secret[k]);

@@ -7,12 +7,12 @@
 
 namespace pliant::cli {
 
-/// 128 bits that nobody can guess, as 32 hexadecimal digits. Errors: Unreadable where the system
-/// gives no random bytes.
+/// 128 random bits from the system, as 32 hexadecimal digits. Errors: Unreadable if the system
+/// provides no random bytes.
 Result<std::string> make_token();
 
-/// Whether both are the same text. How long it takes tells nothing of where they differ, so that a
-/// secret cannot be found out digit by digit; its length is no secret.
+/// Whether both texts are equal. The time needed does not depend on where they differ, so that a
+/// secret cannot be found digit by digit; its length is not secret.
 bool is_same_secret(std::string_view given, std::string_view secret);
 
 }  // namespace pliant::cli

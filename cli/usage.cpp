@@ -15,13 +15,13 @@
 namespace pliant::cli {
 namespace {
 
-// As the user types it: `pliant replay record`.
+// The command as the user types it: `pliant replay record`.
 std::string full_name(const CLI::App& command) {
   const CLI::App* const parent = command.get_parent();
   return (parent ? full_name(*parent) + " " : "") + command.get_name();
 }
 
-// Without the commands that `command.help()` would hand on to.
+// Unlike `command.help()`, not the help of a parsed subcommand.
 std::string help_text(const CLI::App& command) {
   return command.get_formatter()->make_help(&command, full_name(command),
                                             CLI::AppFormatMode::Normal);

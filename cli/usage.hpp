@@ -7,18 +7,18 @@
 
 namespace pliant::cli {
 
-/// What `pliant help` was asked to tell of.
+/// Arguments of `pliant help`.
 struct HelpOptions {
-  std::vector<std::string> command = {};  ///< `replay record`; empty: all
+  std::vector<std::string> command = {};  ///< such as `replay record`; empty: all commands
 };
 
 void add_help(CLI::App& app, HelpOptions& options);
 
-/// Prints what --help of the command tells. Gives the exit code.
+/// Prints the text of the command's --help. Returns the exit code.
 int run_help(const CLI::App& app, const HelpOptions& options);
 
-/// Says on stderr what is wrong with a call that could not be parsed: a misspelt command or option
-/// with the nearest one; the help where a command was to follow and none did. Gives the exit code.
+/// Prints on stderr why a command line could not be parsed: for a misspelt command or option with
+/// the nearest one; if a command is missing, the help. Returns the exit code.
 int report_usage(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pliant::cli

@@ -17,7 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-// What comes of all scenes, for `--json`.
+// The results for all scenes, for `--json`.
 struct Findings {
   Json scenes = Json::array();
   Json problems = Json::array();
@@ -49,7 +49,7 @@ void add_problem(Findings& findings, const std::string& file, int line, std::str
                                {"message", message}});
 }
 
-// An error of a scene: on stderr, or among the findings. Gives the exit code.
+// Reports an error of a scene on stderr, or adds it to the findings. Returns the exit code.
 int tell(const Error& error, const std::string& file, Findings* findings) {
   if (!findings) return report(error);
   std::vector<Error> all = error.others;
@@ -61,7 +61,7 @@ int tell(const Error& error, const std::string& file, Findings* findings) {
   return exit_code(error);
 }
 
-// `findings`: where to tell of it, in place of the streams.
+// `findings`: receives the results instead of the streams; null: prints them.
 int validate(const std::string& file, const ValidateOptions& options, Findings* findings) {
   const auto scene = read_scene(file, options.root);
   if (!scene) return tell(scene.error(), file, findings);

@@ -9,7 +9,7 @@
 
 namespace pliant::cli {
 
-/// What `pliant validate` was asked to do.
+/// Options of `pliant validate`.
 struct ValidateOptions {
   std::vector<std::string> scenes;
   bool is_quiet = false;
@@ -20,7 +20,7 @@ struct ValidateOptions {
 
 void add_validate(CLI::App& app, ValidateOptions& options);
 
-/// Reads and checks scenes without running them. Gives the exit code.
+/// Reads and checks scenes without running them. Returns the exit code.
 int run_validate(const ValidateOptions& options);
 
 }  // namespace pliant::cli

@@ -24,7 +24,7 @@
 namespace pliant::cli {
 namespace {
 
-// Text of this many bytes is as long as a browser takes in one piece.
+// The longest text in bytes that browsers accept in one piece.
 constexpr std::size_t longest_page = 500'000'000;
 
 Result<void> write_page(const std::filesystem::path& file, const std::string& page) {
@@ -64,7 +64,7 @@ int page_view(const ViewOptions& options, std::string_view page) {
   return exit_done;
 }
 
-// A value that is no port is most likely the scene, written behind --serve.
+// A value that is not a port is most likely the scene, given after --serve.
 CLI::Validator port_number() {
   return CLI::Validator(
       [](std::string& text) -> std::string {

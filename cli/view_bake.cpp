@@ -23,10 +23,11 @@
 namespace pliant::cli {
 namespace {
 
-// The arrays behind the head, each told of in it by where it begins and how many numbers it has.
+// The arrays after the head. The head gives the offset and length of each.
 class Arrays {
  public:
-  // Little-endian numbers of four bytes, or bytes. Each array begins at a multiple of four.
+  // Little-endian numbers of four bytes, or bytes. Each array begins at an offset that is a
+  // multiple of four.
   template <class Number>
   Json add(std::span<const Number> numbers) {
     const std::size_t begin = bytes_.size();
@@ -76,7 +77,7 @@ std::vector<std::uint32_t> edge_vertices(const Mesh& mesh) {
   return vertices;
 }
 
-// (u,v) of each vertex: of its first corner; 0 without one.
+// (u,v) of each vertex, from its first corner; 0 if it has none.
 std::vector<float> vertex_uvs(const Mesh& mesh) {
   std::vector<float> uvs(2 * static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (std::size_t corner = mesh.corner_vertices.size(); corner-- > 0;) {
@@ -90,7 +91,8 @@ std::vector<float> vertex_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-// Vertices by their nodes, so that neighbours in a row of the grid stand beside each other.
+// Vertices in the order of their nodes, so that neighbours in a row of the grid are next to each
+// other.
 std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
   std::vector<int> order(vertex_nodes.size());
   std::iota(order.begin(), order.end(), 0);
@@ -108,7 +110,7 @@ Json transform_json(const Transform& transform) {
   return numbers;
 }
 
-// One surface while the run goes.
+// One surface during the run.
 class SurfaceView {
  public:
   SurfaceView(const RestShape& shape, const Surface& surface, double fps)
@@ -140,7 +142,7 @@ class SurfaceView {
     const Vector3d high = mesh.positions.colwise().maxCoeff();
     const Vector3d origin = 0.5 * low + 0.5 * high;
     const PackedMotion motion = motion_.pack();
-    // Half a step, and what float makes of the rest position.
+    // Half a step, plus the rounding of the rest position to float.
     const double error = 0.5 * motion.step + (high - low).maxCoeff() * 0x1p-25;
     return {{"name", shape_.name},
             {"enabled", surface_.enabled},
@@ -191,7 +193,7 @@ class SurfaceView {
   std::vector<Json> transforms_;
   SurfaceMarks marks_;
   double peak_displacement_ = 0;
-  double peak_speed_ = 0;  // the way since the frame before, in a second [length/s]
+  double peak_speed_ = 0;  // from the displacement since the frame before [length/s]
   Vector3d low_ = Vector3d::Constant(std::numeric_limits<double>::infinity());  // over all frames
   Vector3d high_ = -low_;
   Field before_;  // world
@@ -211,9 +213,9 @@ Json messages_of(const Simulation& simulation) {
   return messages;
 }
 
-// The length of the head, the head, the arrays.
+// Concatenates the length of the head, the head and the arrays.
 std::string joined(const Json& head, const std::string& arrays) {
-  // An author's text may hold bytes that are no UTF-8.
+  // An author's text may contain bytes that are not UTF-8.
   std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto length = static_cast<std::uint32_t>(text.size());
@@ -226,7 +228,7 @@ Result<void> check_memory(const Simulation& simulation, const FrameRange& frames
                           std::size_t max_memory) {
   std::size_t vertex_count = 0;
   for (const RestShape& shape : simulation.rest_shapes()) vertex_count += shape.mesh.vertex_count();
-  // Besides the packer's: the packed stream, and its text in the page.
+  // In addition to the packer's memory: the packed stream and its text in the page.
   const double bytes = static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
                        static_cast<double>(MotionPacker::bytes_a_vertex + 14);
   const double free = static_cast<double>(max_memory) -
@@ -241,7 +243,7 @@ Result<void> check_memory(const Simulation& simulation, const FrameRange& frames
 
 using ForceNumbers = std::map<std::string, std::size_t, std::less<>>;
 
-// Every frame up to the last, and into the surfaces those that are shown.
+// Runs every frame up to the last, and adds those in `frames` to the surfaces.
 Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const ViewLimits& limits,
                         std::vector<SurfaceView>& surfaces, const ForceNumbers& force_numbers,
                         const std::function<void()>& advance) {

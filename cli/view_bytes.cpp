@@ -10,7 +10,7 @@
 namespace pliant::cli {
 namespace {
 
-// Bytes that zlib can count at a time.
+// Number of bytes to pass to zlib at once: its counters have fewer bits.
 uInt portion(std::size_t bytes) {
   constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
   return static_cast<uInt>(std::min(bytes, most));
@@ -33,7 +33,7 @@ Result<std::string> deflated(std::string_view bytes) {
   int status = Z_OK;
   while (status == Z_OK) {
     const uInt given = portion(bytes.size());
-    // zlib reads only, but its struct is not const.
+    // zlib only reads the input, but its struct is not const.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream.avail_in = given;
     stream.next_out = reinterpret_cast<Bytef*>(chunk.data());

@@ -29,7 +29,7 @@ std::string_view name_of(Interpolation::Kind kind) {
   return "bezier";
 }
 
-// A frame and the value there, as one row.
+// A frame and its value, as one row.
 template <int D>
 Json row(double frame, const Value<D>& value) {
   Json numbers = {frame};
@@ -37,8 +37,8 @@ Json row(double frame, const Value<D>& value) {
   return numbers;
 }
 
-// Every frame from `first` to `last`, whose values the page tells, and as many between two as make
-// a smooth line.
+// Every frame from `first` to `last`, as the page shows their values, and enough frames in between
+// for a smooth line.
 std::vector<double> sampled_frames(int first, int last) {
   constexpr int most = 2000;
   const int between = std::clamp(most / std::max(last - first, 1), 1, 8);

@@ -6,7 +6,7 @@
 namespace pliant::cli {
 namespace {
 
-// The value at each frame, or one value that holds at all of them.
+// The value at each frame, or a single value if all are equal.
 Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
   Json values = Json::array();
   bool is_constant = true;
@@ -28,7 +28,7 @@ Json track(const PositionChannel& position, const FrameRange& frames) {
   return track(frames, [&](int frame) { return Json(position.at(frame)); });
 }
 
-// Where a force is and where it points, as its kind has it.
+// Adds the place and direction of a force, depending on its kind.
 struct AddPlace {
   Json& force;
   const FrameRange& frames;

@@ -11,22 +11,22 @@
 
 namespace pliant::cli {
 
-/// What a page draws of the forces and groups of a scene: where they are and how far they reach,
-/// frame by frame, as their channels have it. Thesis 5.2.2.
+/// The forces and groups of a scene as a page draws them: their places and radii at each frame,
+/// from their channels. Thesis 5.2.2.
 ///
-/// An array with an object for each, forces first. A parameter is an array with a value for each
-/// frame, or with one value if it is the same at all.
+/// An array with one object for each, forces first. A parameter is an array with a value for each
+/// frame, or with a single value if it is constant.
 Json view_forces(const Scene& scene, const FrameRange& frames);
 
-/// What a page draws on one surface: the regions that are solved and the boxes of the forces, kept
+/// The regions and the boxes of forces that a page draws on one surface, stored only at frames
 /// where they change.
 class SurfaceMarks {
  public:
-  /// `force_numbers` has the place of each name in what `view_forces` gives.
+  /// `force_numbers`: the index of each name in the result of `view_forces`.
   void add(int frame, const SurfaceReport& report,
            const std::map<std::string, std::size_t, std::less<>>& force_numbers);
 
-  /// An array of objects, each with the first `frame` that it is for.
+  /// An array of objects, each with the first `frame` for which it is valid.
   const Json& changes() const { return changes_; }
 
  private:

@@ -25,13 +25,14 @@ std::optional<ViewRoute> route_to(std::string_view place) {
   return std::nullopt;
 }
 
-// What browsers say of where a request comes from; programs that are none say nothing.
+// Uses the fields in which browsers state the origin of a request; other programs do not send them.
 bool is_from_own_page(const HttpHead& head, std::optional<ViewRoute> route) {
   const std::string* site = head.find("sec-fetch-site");
   if (site == nullptr || *site == "same-origin") return true;
-  // The person in front of the browser, by typing the address.
+  // "none": the user typed the address.
   if (route == ViewRoute::Page) return *site == "none";
-  // The way there is a file of ours, whose browser loads this page as its own, not into another.
+  // Our own file redirects to this page, so the browser loads it as a top-level page, not inside
+  // another.
   const auto says = [&](std::string_view name, std::string_view value) {
     const std::string* found = head.find(name);
     return found != nullptr && *found == value;

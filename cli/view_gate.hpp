@@ -8,27 +8,28 @@
 
 namespace pliant::cli {
 
-/// What can be asked of the viewer's server.
+/// The requests that the viewer's server answers.
 enum class ViewRoute { Page, PicturePage, Events, Bake, Job, Picture };
 
-/// A status of HTTP from 400 on.
+/// An HTTP status, 400 or above.
 struct Refusal {
   int status;
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
 
-/// Who may ask the viewer's server, and for what. The server is reached by every program of the
-/// machine and, through a browser, by every web page; so whoever asks has to know the token, and to
-/// ask by this machine's own name (else DNS rebinding) from the server's own page (else a page
-/// from elsewhere that was told the address).
+/// Decides which requests the viewer's server answers. Every program of the machine can reach the
+/// server, and through a browser every web page can. So a request must contain the token, use this
+/// machine's own name (against DNS rebinding) and come from the server's own page (against a
+/// foreign page that knows the address).
 class ViewGate {
  public:
   ViewGate(std::string token, int port) : token_(std::move(token)), port_(port) {}
 
-  /// Where the page is, with a slash at the end. Pages know their own server by it alone.
+  /// The address of the page, with a slash at its end. A page knows its server only by this
+  /// address.
   std::string address() const;
 
-  /// 403 says nothing of what there is; 404 and 405 are told to those who know the token.
+  /// 403 does not reveal which paths exist; 404 and 405 need the token.
   std::variant<ViewRoute, Refusal> judge(const HttpHead& head) const;
 
  private:

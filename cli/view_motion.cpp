@@ -19,10 +19,10 @@ constexpr std::array<int, 6> predictions = {
     prediction::same,    prediction::same + prediction::along,
     prediction::even,    prediction::even + prediction::along};
 
-// Differences are counted round and round, modulo 2^16.
+// Differences are modulo 2^16.
 std::uint16_t wrapped(int number) { return static_cast<std::uint16_t>(number); }
 
-// 0, -1, 1, -2, … become 0, 1, 2, 3, …, so that what is small is so in both bytes.
+// 0, -1, 1, -2, … become 0, 1, 2, 3, …, so that numbers of small magnitude have a small high byte.
 std::uint16_t folded(std::uint16_t difference) {
   const bool is_negative = difference >= 0x8000;
   return static_cast<std::uint16_t>((difference << 1) ^ (is_negative ? 0xffff : 0));
@@ -30,7 +30,7 @@ std::uint16_t folded(std::uint16_t difference) {
 
 using Numbers = std::vector<std::int16_t>;
 
-// How much each number was missed by; `before` and `earlier` are one and two frames before.
+// The prediction error of each number; `before` and `earlier` are one and two frames before.
 std::vector<std::uint16_t> misses(int predicted, const Numbers& now, const Numbers& before,
                                   const Numbers& earlier, std::size_t vertex_count) {
   const int along = predicted & prediction::along;
@@ -50,7 +50,7 @@ std::vector<std::uint16_t> misses(int predicted, const Numbers& now, const Numbe
   return result;
 }
 
-// What a frame costs, roughly: the digits of its numbers.
+// Approximate cost of a frame: the total number of bits of its numbers.
 std::size_t weight(std::span<const std::uint16_t> numbers) {
   std::array<std::size_t, 17> counts = {};
   for (const std::uint16_t number : numbers) {

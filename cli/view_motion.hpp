@@ -9,40 +9,41 @@
 
 namespace pliant::cli {
 
-/// What a page holds of a surface's motion; docs/viewer.md tells how to read it back.
+/// A surface's motion as a page stores it; docs/viewer.md describes how to decode it.
 ///
-/// The displacement from rest of vertex k is `step` times three whole numbers of 16 bits. They are
-/// stored as differences from a prediction, low and high bytes apart, so that they pack well.
+/// The displacement of vertex k from rest is `step` times three integers of 16 bits. They are
+/// stored as differences from a prediction, low and high bytes separately, so that they compress
+/// well.
 struct PackedMotion {
   double step = 0;         ///< object space [length]
-  double peak = 0;         ///< the largest component of a displacement that there is [length]
+  double peak = 0;         ///< the largest absolute component of any displacement [length]
   std::string predictors;  ///< #frames bytes: how each frame was predicted
   std::string low;         ///< #frames x 3 x #vertices low bytes: all x of a frame, then y, then z
   std::string high;        ///< the high bytes likewise
 };
 
-/// How a number of a frame is guessed from those that are known before it.
+/// Prediction of a number of a frame from earlier numbers.
 namespace prediction {
 inline constexpr int nothing = 0;  ///< 0
-inline constexpr int same = 1;     ///< what it was a frame before
-inline constexpr int even = 2;     ///< on, as from two frames before to one before
-inline constexpr int along = 4;    ///< added: the vertex before was missed by as much
+inline constexpr int same = 1;     ///< the number of the frame before
+inline constexpr int even = 2;     ///< linear extrapolation from the two frames before
+inline constexpr int along = 4;    ///< added to one of these: plus the error at the vertex before
 }  // namespace prediction
 
-/// Takes a surface frame by frame.
+/// Packs a surface frame by frame.
 class MotionPacker {
  public:
-  /// `rest` is #vertices x 3, object space [length]. `order` has each vertex once: neighbours of
-  /// the surface beside each other, as far as it can be.
+  /// `rest` is #vertices x 3, object space [length]. `order` contains each vertex once, with
+  /// neighbours on the surface next to each other as far as possible.
   MotionPacker(Field rest, std::vector<int> order);
 
-  /// Positions, #vertices x 3, object space. Errors: NotFinite where a coordinate is beyond the
-  /// range of float.
+  /// Positions, #vertices x 3, object space. Errors: NotFinite if a coordinate is outside the range
+  /// of float.
   Result<void> add(const Field& positions, int frame);
 
   PackedMotion pack() const;
 
-  /// Memory for each vertex of a frame, packing included. [bytes]
+  /// Memory per vertex and frame, including packing. [bytes]
   static constexpr std::size_t bytes_a_vertex = 3 * (sizeof(float) + 2);
 
  private:

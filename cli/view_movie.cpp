@@ -21,7 +21,7 @@
 namespace pliant::cli {
 namespace {
 
-// What can be said of a movie without making it.
+// The properties of a movie that are known before making it.
 struct Plan {
   MovieFormat format = MovieFormat::Mp4;
   PictureSize size;
@@ -72,7 +72,7 @@ Result<std::size_t> write_frames(PictureTaker& taker, MovieWriter& movie, const 
   taker.order({frames.first}, plan.size, options.look);
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     const auto picture = taker.take();
-    // The browser draws the next one while ffmpeg takes this.
+    // The browser draws the next picture while ffmpeg reads this one.
     if (frame < frames.last) taker.order({frame + 1}, plan.size, options.look);
     const auto written = picture ? movie.write(*picture) : fail(picture.error());
     if (!written && written.error().code == ErrorCode::Interrupted) {
@@ -84,14 +84,14 @@ Result<std::size_t> write_frames(PictureTaker& taker, MovieWriter& movie, const 
   return movie.finish();
 }
 
-// How long it is, in bytes, and of how many frames.
+// Its size in bytes and its number of frames.
 struct Movie {
   std::size_t size = 0;
   int frame_count = 0;
 };
 
 Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
-  // Whatever can be said without running the scene is said first.
+  // All checks that do not need a run come first.
   if (auto place = check_output_file("--movie", *options.movie); !place) return fail(place.error());
   if (auto format = movie_format(*options.movie); !format) return fail(format.error());
   auto scene = read_scene(options.scene, options.root);

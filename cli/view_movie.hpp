@@ -6,8 +6,8 @@
 
 namespace pliant::cli {
 
-/// Writes a movie of the frames, which a browser without a window draws and ffmpeg puts together.
-/// Gives the exit code.
+/// Writes a movie of the frames: a headless browser draws them and ffmpeg encodes them. Returns the
+/// exit code.
 int movie_view(const ViewOptions& options, std::string_view page);
 
 }  // namespace pliant::cli

@@ -6,12 +6,12 @@
 
 namespace pliant::cli {
 
-// The page as the build made it, empty without npm; generated, see cli/CMakeLists.txt.
+// The built page, empty in a build without npm; generated, see cli/CMakeLists.txt.
 extern const std::span<const unsigned char> embedded_page;
 
 namespace {
 
-// As text of an element.
+// Escapes text for the content of an element.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char letter : text) {
@@ -35,7 +35,7 @@ std::string escaped(std::string_view text) {
 constexpr std::string_view policy_begin = "<meta http-equiv=\"Content-Security-Policy\" content=\"";
 constexpr std::string_view asks_own_server = "connect-src 'self'";
 
-// What stands between the two marks of the page goes, `text` comes.
+// Replaces the text between two marks of the page.
 void put(std::string& page, std::string_view begin, std::string_view end, std::string_view text) {
   const std::size_t from = page.find(begin);
   const std::size_t to = page.find(end, from);

@@ -7,16 +7,16 @@
 
 namespace pliant::cli {
 
-/// The page that shows a bake, from cli/viewer. Errors: Unwritable in a build that was made without
-/// it, telling how to get it.
+/// The page that shows a bake, from cli/viewer. Errors: Unwritable if this build has no page; the
+/// message says how to get it.
 Result<std::string_view> page_template();
 
-/// What the page may do, as a content security policy: run and be styled by what stands in it, ask
-/// its own server, nothing else.
+/// The page's content security policy: it may use its own scripts and styles and connect to its own
+/// server, nothing else.
 std::string policy_of(std::string_view page);
 
-/// One page that needs nothing else: `page` with a title, and `packed` (see `ViewBake`) in it. It
-/// asks for nothing at all.
+/// A self-contained page: `page` with a title and `packed` (see `ViewBake`) inside. It makes no
+/// requests.
 std::string page_with(std::string_view page, std::string_view title, std::string_view packed);
 
 }  // namespace pliant::cli

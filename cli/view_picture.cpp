@@ -46,7 +46,7 @@ tl::unexpected<Error> no_browser(std::string_view option) {
                           option, fmt::join(browsers, ", ")));
 }
 
-// A browser without a window, ended with its owner.
+// A headless browser, ended by the destructor.
 class Browser {
  public:
   static Result<Browser> open(const std::string& url, const std::string& folder) {
@@ -58,7 +58,7 @@ class Browser {
                                       "--use-angle=swiftshader",
                                       "--enable-unsafe-swiftshader",
                                       "--user-data-dir=" + folder};
-    // Chromium's own rule: root has no sandbox. All that it opens is our page.
+    // Chromium does not run as root with its sandbox. It opens only our page.
     if (geteuid() == 0) words.emplace_back("--no-sandbox");
     words.push_back(url);
     for (const char* program : browsers) {
@@ -79,7 +79,7 @@ class Browser {
  private:
   explicit Browser(pid_t id) : id_(id) {}
 
-  // In a group of its own, with all that it starts; silent.
+  // Starts it in its own process group, with its child processes; without output.
   static std::optional<pid_t> spawn(std::vector<std::string>& words) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -114,7 +114,7 @@ class Browser {
   pid_t id_;
 };
 
-// One frame, or of a sheet twelve that lie evenly.
+// One frame, or for a sheet up to twelve evenly spaced ones.
 Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRange& frames) {
   if (!options.is_sheet) {
     const int frame = options.frame.value_or(frames.first);
@@ -132,8 +132,8 @@ Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRa
   return chosen;
 }
 
-// A page that leads on to `address`: what a program is called with everyone may see, and the token
-// in the address is for this browser only.
+// Writes a page that redirects to `address`. Everyone can see a program's arguments, but the token
+// in the address is only for this browser.
 Result<std::string> write_way(const std::string& folder, const std::string& address) {
   const std::string path = folder + "/way.html";
   std::ofstream file(path);
@@ -144,9 +144,9 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
   return "file://" + path;
 }
 
-// What the page makes of the frames: a table of them, each with its number under it and one legend
-// for all, or one frame alone. The page takes each number once: the next picture is not drawn ahead
-// of its order.
+// The order for a picture: a table of frames, each with its number below and one legend for all, or
+// a single frame. The page executes each `number` once, so it does not draw the next picture before
+// it is ordered.
 PictureOrder order_of(int number, const std::vector<int>& frames, PictureSize size,
                       const std::string& look) {
   constexpr int most_columns = 4;
@@ -172,7 +172,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("--png {}: {}; choose another name", printable(*options.png), input));
   }
-  // What is asked for is checked before the scene is run for it.
+  // The options are checked before the scene is run.
   const auto range = parse_frames(options.frames, *scene);
   if (!range) return fail(range.error());
   const auto frames = chosen_frames(options, *range);
@@ -193,7 +193,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 
 }  // namespace
 
-// WxH in pixels, as large as a canvas may be.
+// WxH in pixels, at most the size of a canvas.
 Result<PictureSize> parse_size(const std::string& text) {
   constexpr int most = 8192;
   const std::size_t cross = text.find('x');
@@ -229,7 +229,8 @@ ScratchFolder::~ScratchFolder() {
 struct PictureTaker::State {
   ViewServer server;
   ScratchFolder folder;
-  std::optional<Browser> browser = {};  // from the first order on; ended ahead of what it uses
+  std::optional<Browser> browser = {};  // from the first order on; last, so that it ends before the
+                                        // members it uses
   int orders = 0;
 };
 

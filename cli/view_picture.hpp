@@ -12,17 +12,18 @@
 
 namespace pliant::cli {
 
-/// Writes a picture of one frame, or a sheet of several, which a browser without a window draws.
-/// Gives the exit code.
+/// Writes a picture of one frame, or a sheet of several, drawn by a headless browser. Returns the
+/// exit code.
 int picture_view(const ViewOptions& options, std::string_view page);
 
-/// WxH, as large as a canvas may be. Errors: InvalidInput, naming --size.
+/// Parses WxH, at most the size of a canvas. Errors: InvalidInput, naming --size.
 Result<PictureSize> parse_size(const std::string& text);
 
-/// Whether there is a browser. Errors: Unwritable, if not; `option` needs one.
+/// Checks that there is a browser. Errors: Unwritable if not; `option` is the option that needs
+/// one.
 Result<void> check_browser(std::string_view option);
 
-/// A folder that is gone with its owner.
+/// A temporary folder, removed by the destructor.
 class ScratchFolder {
  public:
   static Result<ScratchFolder> make();
@@ -38,21 +39,20 @@ class ScratchFolder {
   std::string path_;
 };
 
-/// A browser without a window that draws pictures of a bake, one after the other; ended with its
-/// owner.
+/// A headless browser that draws pictures of a bake, one after the other; ended by the destructor.
 class PictureTaker {
  public:
-  /// `packed`: see `ViewBake`. Errors: Unwritable, if there is no browser.
+  /// `packed`: see `ViewBake`. Errors: Unwritable if there is no browser.
   static Result<PictureTaker> start(std::string_view page, std::string packed);
 
   PictureTaker(PictureTaker&&) noexcept;
   PictureTaker& operator=(PictureTaker&&) = delete;
   ~PictureTaker();
 
-  /// Asks for a picture of one frame, or for a sheet of several; `look` as --look has it.
+  /// Requests a picture of one frame, or a sheet of several; `look` in the syntax of --look.
   void order(const std::vector<int>& frames, PictureSize size, const std::string& look);
-  /// The picture that was asked for, a PNG file; waits for it. Errors: Unwritable, if the browser
-  /// ended or takes too long; Interrupted.
+  /// Waits for the requested picture, a PNG file. Errors: Unwritable if the browser ended or needs
+  /// too long; Interrupted.
   Result<std::string> take();
 
  private:

@@ -9,20 +9,20 @@
 
 namespace pliant::cli {
 
-/// A scene that has been run for a page.
+/// A scene after its run for a page.
 struct BakedScene {
   Scene scene;
   FrameRange frames;
   ViewBake bake;
-  FrameCounts counts;  ///< how many of its frames were solved, and how many read
+  FrameCounts counts;  ///< frames solved and frames read from the store
 };
 
-/// What the page is called: the scene's file, without its folder.
+/// The page's title: the name of the scene's file, without its folder.
 std::string title_of(const Scene& scene);
 
-/// Runs a scene that has been read, and prints its notes and warnings. Errors: those of
-/// `parse_frames`, of the simulation and of `view_bake`. What an earlier run left in `store` is not
-/// solved again; its memory is part of what the command may use.
+/// Runs a scene that has been read, and prints its notes and warnings. States of earlier runs in
+/// `store` are not solved again; the memory of the store counts towards the command's limit.
+/// Errors: those of `parse_frames`, of the simulation and of `view_bake`.
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
                               const StopRequest& should_stop, MemoryFrameStore* store = nullptr);
 

@@ -30,7 +30,7 @@ using namespace std::chrono_literals;
 
 constexpr auto pause = 50ms;
 
-// Looks at files now and then, and says once that one has been saved.
+// Polls files, and reports when one has been saved.
 class Watch {
  public:
   explicit Watch(std::vector<std::filesystem::path> files) {
@@ -38,13 +38,13 @@ class Watch {
     for (auto& [file, stamp] : stamps_) stamp = stamp_of(file);
   }
 
-  // Whether a file is another one than at the last look; from several threads at once.
+  // Whether a file has changed since construction. Thread-safe.
   bool has_changed() {
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     auto due = due_.load();
     if (now < due) return has_changed_;
     const auto next = now + std::chrono::steady_clock::duration(pause).count();
-    if (!due_.compare_exchange_strong(due, next)) return has_changed_;  // another thread looks
+    if (!due_.compare_exchange_strong(due, next)) return has_changed_;  // another thread checks
     for (const auto& [file, stamp] : stamps_) {
       if (stamp_of(file) != stamp) has_changed_ = true;
     }
@@ -59,7 +59,7 @@ class Watch {
   };
 
   static Stamp stamp_of(const std::filesystem::path& file) {
-    std::error_code ignored;  // a file that is away for a moment is like an empty one
+    std::error_code ignored;  // a file that is briefly absent counts as empty
     return {std::filesystem::last_write_time(file, ignored),
             std::filesystem::file_size(file, ignored)};
   }
@@ -85,7 +85,7 @@ std::string error_json(const Error& error) {
                         {"text", each.message.substr(0, longest_text)}});
   };
   add(error);
-  // A page shows some and tells how many more there are; the terminal has them all.
+  // A page shows some and the number of the others; the terminal shows all.
   constexpr std::size_t most_shown = 100;
   const std::size_t shown = std::min(error.others.size(), most_shown);
   for (std::size_t k = 0; k < shown; ++k) add(error.others[k]);
@@ -95,16 +95,16 @@ std::string error_json(const Error& error) {
   return messages.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// For states that the next save need not have solved again: a quarter of what the command may use,
-// and no more than a gigabyte.
+// Size of the store for states that need not be solved again after the next save: a quarter of the
+// command's memory, at most a gigabyte.
 std::size_t store_bytes(const ResourceOptions& resources) {
   return std::min(simulation_options(resources).max_memory / 4, std::size_t{1'000'000'000});
 }
 
-// Bakes the scene as it is now. Gives what to watch for the next time.
+// Bakes the scene in its present state. Returns the watch over its files.
 std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
                                  MemoryFrameStore& store) {
-  // Watched from before it is read, so that no save is missed.
+  // Watch the file before reading it, so that no save is missed.
   auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
   server.tell_working();
   auto scene = read_scene(options.scene, options.root);
@@ -117,7 +117,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
   if (watch->has_changed()) return watch;
   const auto should_stop = [&] { return was_interrupted() || all->has_changed(); };
   auto baked = bake_scene(*std::move(scene), options, should_stop, &store);
-  if (should_stop()) return all;  // of what was baked nobody wants to know any more
+  if (should_stop()) return all;  // the result is outdated or not needed
   if (!baked) {
     report(baked.error());
     server.tell_failure(error_json(baked.error()));
@@ -139,12 +139,14 @@ int serve_view(const ViewOptions& options, std::string_view page) {
   auto server = ViewServer::start(std::string(page), *options.port);
   if (!server) return report(server.error());
   print(stdout, server->address() + '\n');
-  if (std::ferror(stdout) != 0) return exit_failed;  // nobody knows where it is
+  if (std::ferror(stdout) != 0)
+    return exit_failed;  // the address was not printed, so no one can
+                         // use the server
   MemoryFrameStore store(store_bytes(options.resources));
   while (!was_interrupted()) {
     const auto watch = bake_once(options, *server, store);
     while (!was_interrupted() && !watch->has_changed()) std::this_thread::sleep_for(pause);
-    // A save may take a moment: what is there is read once nothing changes any more.
+    // A save may need a moment: wait before reading the files.
     std::this_thread::sleep_for(pause);
   }
   return exit_done;

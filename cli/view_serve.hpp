@@ -6,8 +6,8 @@
 
 namespace pliant::cli {
 
-/// Serves the page until Ctrl-C, and bakes again when the scene's file or a mesh of it is saved.
-/// Gives the exit code.
+/// Serves the page until Ctrl-C, and bakes again when the scene's file or one of its meshes is
+/// saved. Returns the exit code.
 int serve_view(const ViewOptions& options, std::string_view page);
 
 }  // namespace pliant::cli

@@ -30,16 +30,16 @@ struct ViewServer::State {
   Text page;
   ViewGate gate;
 
-  std::mutex mutex;  // of all below, which the server's thread and the command's share
+  std::mutex mutex;  // guards the members up to `picture`
   Text packed = std::make_shared<const std::string>();
   int bake_number = 0;            // of `packed`; 0: none yet
   std::string event = {};         // the last one
   std::int64_t event_number = 0;  // counts them
   std::optional<PictureOrder> order = {};
-  bool has_picture = false;  // whatever came of it
+  bool has_picture = false;  // one has arrived, valid or not
   std::optional<Result<std::string>> picture = {};
 
-  HttpServer server;  // last, so that its thread ends ahead of what it uses
+  HttpServer server;  // last, so that its thread ends before the members it uses
 
   State(std::string text, ViewGate rules, HttpServer http)
       : policy(policy_of(text)),
@@ -64,7 +64,7 @@ struct ViewServer::State {
     server.notify();
   }
 
-  // What has happened since, however much: the last of it. A new page hears of the last bake first.
+  // Only the last event since `seen`, however many there were. A new page gets the last bake first.
   Text next_event(std::int64_t& seen) {
     const std::lock_guard lock(mutex);
     if (seen == event_number) return nullptr;
@@ -98,7 +98,7 @@ struct ViewServer::State {
     return {.status = 404};
   }
 
-  // Requires: the head was judged to be answered.
+  // Requires: `judge` accepted the head.
   HttpAnswer answer(const HttpHead& head, std::string body) {
     const auto judged = gate.judge(head);
     const auto route = std::get<ViewRoute>(judged);
@@ -122,7 +122,7 @@ struct ViewServer::State {
 
   // Requires: the mutex is held.
   HttpAnswer take(std::string body) {
-    if (std::exchange(has_picture, true)) return {.status = 409};  // another one was faster
+    if (std::exchange(has_picture, true)) return {.status = 409};  // another client was faster
     if (auto checked = check_png(body, order->size); !checked) {
       picture = fail(checked.error());
       return {.status = 400};
@@ -157,7 +157,7 @@ std::string ViewServer::address() const { return state_->gate.address(); }
 void ViewServer::publish(std::string packed) {
   auto shared = std::make_shared<const std::string>(std::move(packed));
   {
-    // Together: a page that comes in between would hear of this bake twice.
+    // Both under one lock: a page that connects in between would be notified of this bake twice.
     const std::lock_guard lock(state_->mutex);
     state_->packed = std::move(shared);
     ++state_->bake_number;

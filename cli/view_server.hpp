@@ -9,41 +9,41 @@
 
 namespace pliant::cli {
 
-/// What the page at `address()`take is asked for.
+/// An order for the page at `address()`take.
 struct PictureOrder {
   std::string job;   ///< a JSON object
-  PictureSize size;  ///< of the picture that has to come of it
+  PictureSize size;  ///< of the picture that the page must send
 };
 
-/// Serves the viewer's page to browsers of this machine, and tells it what happens to the scene.
-/// Whoever asks without the address's token, from another page, or by another name than this
-/// machine's own gets nothing; see `ViewGate`.
+/// Serves the viewer's page to browsers of this machine, and notifies it of changes to the scene.
+/// Requests without the address's token, from another page, or by a name other than this machine's
+/// own are refused; see `ViewGate`.
 class ViewServer {
  public:
-  /// Takes requests from now on. `port` 0: any that is free. Errors: Unwritable where the port is
-  /// taken.
+  /// Accepts requests from now on. `port` 0: any free port. Errors: Unwritable if the port is in
+  /// use.
   static Result<ViewServer> start(std::string page, int port);
 
   ViewServer(ViewServer&&) noexcept;
   ViewServer& operator=(ViewServer&&) = delete;
   ~ViewServer();  ///< ends all connections
 
-  /// Of the page, with the token that all its requests need, and with a slash at its end.
+  /// The address of the page, with the token that all its requests need and a slash at its end.
   std::string address() const;
 
-  /// Pages show this bake (see `ViewBake::packed`) from now on, those that are open too.
+  /// Makes all pages, including open ones, show this bake (see `ViewBake::packed`).
   void publish(std::string packed);
-  /// A new bake has begun.
+  /// Notifies pages that a new bake has begun.
   void tell_working();
-  /// There is no new bake; what open pages show stays. `messages`: a JSON array of
-  /// {kind, file, line, text}.
+  /// Notifies pages that the new bake failed; open pages keep the previous one. `messages`: a JSON
+  /// array of {kind, file, line, text}.
   void tell_failure(std::string messages);
 
-  /// Page `address()`take asks for the job, and sends one picture back. The next order stands in
-  /// place of the last.
+  /// The page at `address()`take requests the job, and sends one picture back. A new order replaces
+  /// the last.
   void order_picture(PictureOrder order);
-  /// The picture, a PNG file, once it is there; takes it. Errors: InvalidInput where what came is
-  /// not the one that was ordered (see `check_png`).
+  /// Removes and returns the picture, a PNG file; null if it has not arrived. Errors: InvalidInput
+  /// if it is not the picture ordered (see `check_png`).
   std::optional<Result<std::string>> take_picture();
 
  private:

@@ -1,4 +1,4 @@
-# Writes OUT, a C++ source with the bytes of the file PAGE; without one, with none.
+# Writes OUT, a C++ source with the bytes of the file PAGE; empty PAGE: no bytes.
 # usage: cmake -DPAGE=FILE -DOUT=FILE -P EmbedPage.cmake
 set(bytes)
 if(PAGE)

@@ -1,18 +1,18 @@
 cmake_minimum_required(VERSION 3.25)
-# A script: writes a header with a digest of everything that decides the bits of a state, so that no
-# number has to be raised by hand when the engine changes. Runs at each build, and touches the
-# header only where the digest is another.
+# A script: writes a header with a digest of everything that affects the bits of a state, so that no
+# version number must be raised by hand when the engine changes. Runs at each build, and writes the
+# header only if the digest has changed.
 #   cmake -DROOMS=<folders> -DLIBRARIES=<headers and library files> -DARCHITECTURE=<name>
 #         -DCOMPILER=<name and version> -DFLAGS=<words> -DVERSIONS=<words> -DOUT=<header>
 #         -P EngineDigest.cmake
-# It is part of what states are kept under (docs/caching.md), not of replay logs, which are compared
-# across compilers.
+# The digest is part of the keys of stored states (docs/caching.md), not of replay logs, which are
+# compared across compilers.
 if(NOT -ffp-contract=off IN_LIST FLAGS)
   message(FATAL_ERROR "these are not the flags that the engine is compiled with: ${FLAGS}")
 endif()
 set(digests "${ARCHITECTURE}\n${COMPILER}\n${VERSIONS}\n")
 foreach(flag IN LISTS FLAGS)
-  # Warnings decide no bits, nor does where the project lies.
+  # Warning flags and the project's path do not affect bits.
   if(NOT flag MATCHES "^(-W|SHELL:-include)")
     string(APPEND digests "${flag}\n")
   endif()

@@ -1,4 +1,4 @@
-# SuiteSparse 5 has no CMake package. Gives CHOLMOD::cholmod.
+# SuiteSparse 5 has no CMake package. Defines CHOLMOD::cholmod.
 include(FindPackageHandleStandardArgs)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 find_library(CHOLMOD_LIBRARY cholmod)

@@ -1,4 +1,4 @@
-# libseccomp has no CMake package. Gives Seccomp::seccomp.
+# libseccomp has no CMake package. Defines Seccomp::seccomp.
 include(FindPackageHandleStandardArgs)
 find_path(Seccomp_INCLUDE_DIR seccomp.h)
 find_library(Seccomp_LIBRARY seccomp)

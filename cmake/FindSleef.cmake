@@ -1,4 +1,4 @@
-# SLEEF has no CMake package in Debian. Gives Sleef::sleef.
+# SLEEF has no CMake package in Debian. Defines Sleef::sleef.
 include(FindPackageHandleStandardArgs)
 find_path(Sleef_INCLUDE_DIR sleef.h)
 find_library(Sleef_LIBRARY sleef)

@@ -1,4 +1,4 @@
-# xxHash has no CMake package in Debian. Gives xxHash::xxhash.
+# xxHash has no CMake package in Debian. Defines xxHash::xxhash.
 include(FindPackageHandleStandardArgs)
 find_path(xxHash_INCLUDE_DIR xxhash.h)
 find_library(xxHash_LIBRARY xxhash)

@@ -1,4 +1,4 @@
-# Install and export: find_package(pliant) in another project gives pliant::pliant.
+# Install and export: find_package(pliant) in another project defines pliant::pliant.
 include(CMakePackageConfigHelpers)
 
 set(pliant_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pliant")

@@ -1,24 +1,25 @@
-# What every target of the project is built with, and how a room (one folder, one library) is made.
+# The settings of every target of the project, and the function that makes a room: one folder, one
+# library.
 
 include("${CMAKE_CURRENT_LIST_DIR}/StrictMath.cmake")
 pliant_refuse_fast_math_of_the_build()
 
-# Without the sanitizers: for a program that must bear the bounds of a box.
+# Without the sanitizers, for programs that run with restricted system calls and memory.
 add_library(pliant_plain_settings INTERFACE)
 add_library(pliant::plain_settings ALIAS pliant_plain_settings)
 target_compile_features(pliant_plain_settings INTERFACE cxx_std_20)
-# -ffp-contract=off: a fused multiply-add would give other bits on machines that have one.
+# -ffp-contract=off: a fused multiply-add would change the bits on machines that have it.
 target_compile_options(pliant_plain_settings INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic
-  # If files are compiled together, a name in one hides another's, and a class has members of what
-  # the compiler takes for a header's unnamed namespace.
+  # In a unity build, names of one file shadow those of another, and GCC treats the unnamed
+  # namespace of a source file as that of a header.
   $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
   $<$<AND:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   -Wnon-virtual-dtor -Wold-style-cast
   -Wcast-qual -Woverloaded-virtual -Wconversion -Wno-sign-conversion
   $<$<BOOL:${PLIANT_WERROR}>:-Werror>
   "SHELL:-include \"${CMAKE_CURRENT_LIST_DIR}/strict_math.hpp\"")
-# GCC 12 warns of overlaps in std::string's operator+ that cannot be (GCC bug 105651).
+# GCC 12 warns of impossible overlaps in std::string's operator+ (GCC bug 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(pliant_plain_settings INTERFACE -Wno-restrict)
 endif()
@@ -39,16 +40,16 @@ if(PLIANT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${PLIANT_CCACHE})
 endif()
 
-# pliant_sanitize_fast(TARGET): for rooms whose tests do not wait for them. UBSan's checks take the
-# optimiser longer than the code does.
+# pliant_sanitize_fast(TARGET): for rooms that need little of the tests' time. Optimising UBSan's
+# checks takes longer than running them unoptimised.
 function(pliant_sanitize_fast target)
   if(PLIANT_SANITIZE)
     target_compile_options(${target} PRIVATE -O0)
   endif()
 endfunction()
 
-# pliant_build_fast(TARGET): for targets that have little to compute themselves. Half the time of
-# building them goes to optimisation, more than all their runs win by it.
+# pliant_build_fast(TARGET): for targets with little computation of their own. Full optimisation
+# takes half of their build time, more than all their runs gain.
 function(pliant_build_fast target)
   pliant_sanitize_fast(${target})
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -56,7 +57,7 @@ endfunction()
 
 # pliant_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
 # makes the library pliant_NAME, alias pliant::NAME. Paths are relative to the room's own folder,
-# which lies at <include root>/pliant/NAME.
+# which is <include root>/pliant/NAME.
 function(pliant_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE")
   set(target pliant_${name})

@@ -1,7 +1,7 @@
-# pliant_refuse_fast_math(WHERE WORD...): stops configuring where one of the compiler's or linker's
-# words gives other bits, or checks for NaN that check nothing. strict_math.hpp, which every source
-# includes, finds most of them again, but Clang tells a source nothing of a part of -ffast-math, and
-# the linker's start-up code flushes denormal numbers.
+# pliant_refuse_fast_math(WHERE WORD...): stops configuring if a word for the compiler or linker
+# would change bits or disable checks for NaN. strict_math.hpp, which every source includes, detects
+# most of them too. But Clang defines no macro for some parts of -ffast-math, and start-up code
+# added by the linker flushes denormal numbers.
 function(pliant_refuse_fast_math where)
   set(refused
     -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math
@@ -22,7 +22,7 @@ function(pliant_refuse_fast_math where)
   endforeach()
 endfunction()
 
-# All that the project's targets are built with besides their own.
+# Checks the flags of the whole build, which are added to each target's own.
 function(pliant_refuse_fast_math_of_the_build)
   set(configurations ${CMAKE_BUILD_TYPE} ${CMAKE_CONFIGURATION_TYPES})
   foreach(kind CXX C EXE_LINKER SHARED_LINKER MODULE_LINKER)

@@ -3,9 +3,9 @@
 
     python3 make_head.py [-o head.obj]
 
-The face is the front of an ellipsoid, u across from ear to ear and v up from chin to crown, with a
-nose, brows, eye sockets, cheeks and lips raised from or sunk into it along its normal. Vertex order
-is shuffled with a fixed seed: pliant finds the grid from the (u,v) values alone.
+The face is the front of an ellipsoid, with u from ear to ear and v from chin to crown. Nose, brows,
+eye sockets, cheeks and lips are raised or sunk along its normal. The vertex order is shuffled with
+a fixed seed: pliant finds the grid from the (u,v) values alone.
 """
 
 import argparse

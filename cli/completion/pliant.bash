@@ -1,10 +1,10 @@
-# Completion of pliant for Bash. The command itself knows what may come: `pliant __complete WORD...`.
+# Completion of pliant for Bash. It calls `pliant __complete WORD...`.
 
 _pliant() {
   local word=${COMP_WORDS[COMP_CWORD]} lines line kind ending
   [[ $word == "=" ]] && word=
   COMPREPLY=()
-  # A tilde is not expanded in COMP_WORDS; nothing else of the line is.
+  # Bash does not expand a tilde in COMP_WORDS, so do it here; nothing else is expanded.
   mapfile -t lines < <("${COMP_WORDS[0]/#\~/$HOME}" __complete "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
   read -r kind line <<<"${lines[0]}"
   case $kind in

@@ -1,11 +1,11 @@
-# Completion of pliant for fish. The command itself knows what may come: `pliant __complete WORD...`.
+# Completion of pliant for fish. It calls `pliant __complete WORD...`.
 
 function __pliant_complete
     set -l words (commandline -opc)
     set -l word (commandline -ct)
     set -l lines ($words[1] __complete $words[2..-1] "$word" 2>/dev/null)
     set -l kind (string split ' ' -- $lines[1])
-    # --name=value: what stands ahead of the value stays.
+    # --name=value: keep the part before the value.
     set -l ahead (string match -r -- '^--[^=]*=' "$word")
     set -l part (string replace -r -- '^--[^=]*=' '' "$word")
     switch $kind[1]

@@ -1,5 +1,5 @@
-// The page as one file: scripts and styles stand in it, so that it opens from the file system. They
-// are all that its policy lets run.
+// Builds the page as one file with its scripts and styles inside, so that it opens from the file
+// system. Its policy allows only these.
 
 import { createHash } from "node:crypto";
 
@@ -7,7 +7,7 @@ import { defineConfig, type Plugin } from "vite";
 
 const allow = (text: string) => `'sha256-${createHash("sha256").update(text, "utf8").digest("base64")}'`;
 
-// In the page itself; the command finds it there for the answers of its server, too.
+// The policy is in the page itself; the command also reads it there for its server's answers.
 function policy(scripts: string[], styles: string[]): string {
   const rules = [
     "default-src 'none'",
@@ -34,12 +34,13 @@ function inlined(): Plugin {
       for (const [name, part] of Object.entries(bundle)) {
         if (part === page) continue;
         const text = part.type === "chunk" ? part.code : String(part.source);
-        // A function as replacement: in a text, $& and the like would mean something.
+        // The replacement is a function, since $& and the like have a meaning in a replacement
+        // text.
         const put = (tag: RegExp, element: () => string) => (html = html.replace(tag, element));
         const place = name.replaceAll(".", "\\.");
         if (part.type === "chunk") {
           put(new RegExp(`<script[^>]*src="[^"]*${place}"[^>]*></script>`), () => "");
-          // Last in the page: what it shows stands ahead of it.
+          // Last in the page, after the elements that it uses.
           const script = text.replaceAll("</script", "<\\/script");
           scripts.push(script);
           put(/<\/body>/, () => `<script type="module">${script}</script>\n</body>`);
@@ -49,7 +50,7 @@ function inlined(): Plugin {
         }
         delete bundle[name];
       }
-      // Ahead of all that it holds for.
+      // The policy must come before all content that it covers.
       page.source = html.replace(/<meta charset="utf-8">/, (charset) => `${charset}\n${policy(scripts, styles)}`);
     },
   };

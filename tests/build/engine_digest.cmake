@@ -1,4 +1,5 @@
-# Whatever decides the bits of a state gives another digest, and so other keys; what does not, does not.
+# A change that affects the bits of a state changes the digest, and so the keys; other changes do
+# not.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}/room")
@@ -6,7 +7,7 @@ file(WRITE "${WORK}/room/a.cpp" "1\n")
 file(WRITE "${WORK}/room/CMakeLists.txt" "flags of a file\n")
 file(WRITE "${WORK}/library.h" "version 1\n")
 
-# digest_of(OUT ARGUMENT=VALUE...): with these in place of what is below.
+# digest_of(OUT ARGUMENT=VALUE...): with these instead of the defaults below.
 function(digest_of out)
   set(ROOMS "${WORK}/room")
   set(LIBRARIES "${WORK}/library.h")
@@ -58,14 +59,14 @@ foreach(change "FLAGS=-ffp-contract=off|-O3|-Wall|-Werror|Release"
   endif()
 endforeach()
 
-# Flags without the one that every build has are not those of the engine.
+# Flags without the one that every build has are rejected.
 execute_process(COMMAND "${CMAKE_COMMAND}" -DFLAGS=-O3 "-DOUT=${WORK}/refused.hpp"
   -P "${SOURCE}/cmake/EngineDigest.cmake" RESULT_VARIABLE result ERROR_QUIET)
 if(result EQUAL 0)
   message(SEND_ERROR "a digest without the engine's flags")
 endif()
 
-# The project hands all of it over.
+# The project passes all arguments.
 file(READ "${SOURCE}/lib/pliant/simulation/CMakeLists.txt" text)
 foreach(word "CMAKE_CXX_COMPILER_ID} \${CMAKE_CXX_COMPILER_VERSION}" "CMAKE_CXX_FLAGS" "CHOLMOD_LIBRARY"
              "Sleef_LIBRARY" "Eigen3_VERSION" "-DCOMPILER=" "-DFLAGS=" "-DVERSIONS=")

@@ -1,5 +1,5 @@
-# A build with -ffast-math, or a part of it, is refused: when it is configured, with the word and
-# where it stands, and when a source is compiled.
+# A build with -ffast-math, or a part of it, is refused: at configuration, with a message that names
+# the word and its place, and when a source is compiled.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
@@ -37,7 +37,7 @@ check("-O2 SHELL:-ffast-math")
 check("-O2 -march=native -fno-fast-math -ffp-contract=off -ffp-model=strict -fno-math-errno" taken)
 check("" taken)
 
-# The project asks.
+# The project's configuration refuses it.
 foreach(flag -DCMAKE_CXX_FLAGS=-fassociative-math -DCMAKE_CXX_FLAGS_RELEASE=-Ofast
              -DCMAKE_EXE_LINKER_FLAGS=-ffast-math)
   execute_process(COMMAND "${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/project" --fresh
@@ -51,7 +51,7 @@ foreach(flag -DCMAKE_CXX_FLAGS=-fassociative-math -DCMAKE_CXX_FLAGS_RELEASE=-Ofa
   endif()
 endforeach()
 
-# A source does.
+# Compiling a source refuses it.
 file(WRITE "${WORK}/empty.cpp" "int main() {}\n")
 function(compile is_refused)
   execute_process(COMMAND "${COMPILER}" -std=c++20 -include "${SOURCE}/cmake/strict_math.hpp" ${ARGN}

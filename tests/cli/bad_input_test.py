@@ -1,4 +1,5 @@
-"""Scenes and meshes that are refused: each by one line, with place and words, within bounds."""
+"""Scenes and meshes that are refused: each with a one-line message that gives the place, within
+limits of time and memory."""
 
 import os
 import resource
@@ -7,7 +8,7 @@ import subprocess
 from command import Command, GRID, PATH, PLIANT, POINT, SANITIZED, SCENE, animated, main
 
 
-# name: what is replaced in the scene, by what, the line of the error, words of its message
+# name: (text to replace in the scene, replacement, line of the error, words of its message)
 BAD_SCENES = {
     "a misspelt element": ("<grid", "<gird", 3, 'did you mean "grid"'),
     "a misspelt attribute": ("magnitude", "magnitud", 4, 'did you mean "magnitude"'),
@@ -68,7 +69,7 @@ BAD_SCENES = {
     "10^5 nested elements": (GRID, "<a>" * 100000 + "</a>" * 100000, 3, "nested deeper"),
 }
 
-# name: text of the mesh file, line of the error in it, words of its message
+# name: (text of the mesh file, line of the error in it, words of its message)
 BAD_MESHES = {
     "an index out of range": ("v 0 0 0\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 9/1\n", 5, "9"),
     "coordinates that are not finite": ("v 0 0 nan\nv 1 0 0\nv 1 0 1\nvt 0 0\nf 1/1 2/1 3/1\n", 1, "nan"),
@@ -78,12 +79,13 @@ BAD_MESHES = {
 
 class BadInput(Command):
     def refused(self, scene):
-        """The lines that a bake prints of a scene that it refuses; within bounds, leaving nothing."""
+        """The lines that a bake prints for a scene that it refuses. Checks limits of time and
+        memory, and that no files are left."""
         before = self.files()
         limit = (2 << 30, 2 << 30)
 
         def bounded():
-            if not SANITIZED:  # they reserve more than any machine has
+            if not SANITIZED:  # sanitizers reserve more address space than any limit
                 resource.setrlimit(resource.RLIMIT_AS, limit)
 
         result = subprocess.run([PLIANT, "bake", scene, "-o", self.path("out.npy")], timeout=30,

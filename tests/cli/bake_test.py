@@ -1,4 +1,4 @@
-"""`pliant bake`: what it writes, how it resumes, what --regions tells."""
+"""`pliant bake`: its output files, resuming, and the output of --regions."""
 
 import contextlib
 import os
@@ -102,7 +102,7 @@ class Bake(Command):
                        stdout=subprocess.DEVNULL, check=True, timeout=120)
         os.close(terminal)
         shown = b""
-        with contextlib.suppress(OSError):  # how a terminal says that there is no more
+        with contextlib.suppress(OSError):  # a terminal ends its output with this error
             while piece := os.read(main, 100000):
                 shown += piece
         os.close(main)
@@ -161,7 +161,8 @@ class Bake(Command):
         self.assertEqual(self.files(), ["large.xml"])
 
     def test_the_memory_told_ahead_is_the_memory_taken(self):
-        # One bake with a region as large as the surface; info's sum bounds it, but not by far.
+        # A bake with a region as large as the surface; the sum that info prints is an upper bound,
+        # but not a loose one.
         scene = self.write("all.xml", SCENE.format(end=2).replace('"13"', '"301"').replace(
             '"11"', '"301"').replace('"4.5"', '"100"'))
         told = self.run_pliant("info", scene).stdout
@@ -174,14 +175,14 @@ class Bake(Command):
             taken = 1000 * int(subprocess.run(
                 [sys.executable, "-c", code, PLIANT, "bake", scene, "-o", self.path(out), "--quiet"],
                 capture_output=True, text=True, check=True, timeout=120).stdout)
-            if not SANITIZED:  # their shadow memory counts too
-                self.assertLess(taken - 20e6, told)  # what any program takes
+            if not SANITIZED:  # the shadow memory of sanitizers counts too
+                self.assertLess(taken - 20e6, told)  # the base memory of any program
                 self.assertGreater(taken, 0.5 * told)
 
 
 class Outputs(Command):
     def slow_scene(self):
-        """Many seconds of work, in frames that glTF can hold."""
+        """A scene with many seconds of work, whose frames fit in a glTF."""
         return self.write("slow.xml", SCENE.format(end=4000).replace('"13"', '"161"').replace(
             '"11"', '"161"').replace('"4.5"', '"9"'))
 

@@ -1,4 +1,4 @@
-"""`pliant bake --cache`: what is solved, what is read, and that no result ever differs."""
+"""`pliant bake --cache`: which frames are solved and read, and that results never differ."""
 
 import os
 import random
@@ -44,7 +44,7 @@ class Cache(Command):
         return self.run_pliant(*self.words(*arguments, out=out, cache=cache), **options)
 
     def counts(self, *arguments, **options):
-        """Frames solved and read, by the summary; nothing else is said."""
+        """Frames solved and read, from the summary; checks that nothing else is printed."""
         result = self.bake(*arguments, **options)
         self.assertEqual(result.stderr, "")
         found = re.search(r", (\d+) frames solved, (\d+) read\n$", result.stdout)
@@ -52,7 +52,7 @@ class Cache(Command):
         return tuple(map(int, found.groups()))
 
     def expected(self):
-        """The bytes of a run without a cache."""
+        """The output of a run without a cache."""
         result = self.bake(out="plain.npy", cache=False)
         self.assertNotIn("solved", result.stdout)
         return self.read("plain.npy")
@@ -72,10 +72,10 @@ class Reuse(Cache):
     def test_an_edit_costs_the_frames_from_where_it_takes_effect(self):
         self.scene()
         self.check(40, 0)
-        self.scene(last=3000)  # the key at frame 21 is the last that is the same
-        self.check(19, 21)     # frame 22 samples another magnitude and makes frame 23
+        self.scene(last=3000)  # the last unchanged state is that of frame 21
+        self.check(19, 21)     # frame 22 samples another magnitude, which changes frame 23
         self.scene()
-        self.check(0, 40)  # what was once solved is still there
+        self.check(0, 40)  # states solved before are still stored
 
     def test_frames_beyond_the_end_are_all_that_a_longer_scene_solves(self):
         self.scene(last=4000, end=41, middle=21)
@@ -234,7 +234,8 @@ class Trouble(Cache):
         self.assertIn("19 frames solved, 21 read", result.stdout)
 
     def test_a_full_disk_does_not_cost_the_bake(self):
-        # No file may grow beyond some bytes: a result of the small surface fits, a state of the large not.
+        # A limit on file sizes: a state of the small surface fits, one of the large surface does
+        # not.
         self.scene(end=11, count=1001)
         with open(self.path("scene.xml"), "r+", encoding="utf-8") as file:
             text = file.read().replace("</surface>", "</surface>"
@@ -259,7 +260,7 @@ class Kill(Cache):
         generator = random.Random(11)
         begin = time.monotonic()
         self.bake(out="timed.npy", cache=False)
-        longest = 0.5 * (time.monotonic() - begin)  # so that none gets to the end at once
+        longest = 0.5 * (time.monotonic() - begin)  # so that no run completes at the first attempt
         read_before = 0
         for kill in range(kills):
             run = subprocess.Popen([PLIANT, *self.words("--quiet")], stdout=subprocess.DEVNULL,
@@ -271,7 +272,7 @@ class Kill(Cache):
             self.assertIn(run.returncode, (0, -signal.SIGKILL))
             self.assertEqual(errors, "")
             if kill % (kills // 10) == 0:
-                # What is there is whole, and as much as ever: read it in a copy.
+                # The stored files are complete, and none is lost: read them in a copy.
                 copy = self.path("copy")
                 shutil.copytree(self.cache, copy) if os.path.exists(self.cache) else os.mkdir(copy)
                 kept = sum(name.endswith(".state") for name in os.listdir(copy))

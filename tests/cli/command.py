@@ -1,7 +1,7 @@
-"""What the tests of the command share: a folder of their own, a scene, and the command run in it.
+"""Shared by the tests of the command: a temporary folder, a scene, and runs of the command in it.
 
-Each of these tests is a program of its own, called with PLIANT SOURCE_FOLDER [sanitized] and, after
-these, what unittest takes, such as the names of tests.
+Each of these tests is a separate program, called with PLIANT SOURCE_FOLDER [sanitized], followed by
+arguments for unittest, such as the names of tests.
 """
 
 import os
@@ -53,7 +53,8 @@ class Command(unittest.TestCase):
             return file.read()
 
     def run_pliant(self, *arguments, code=0, **options):
-        """The run, which has to end with that code; `options` are those of subprocess.run."""
+        """Runs the command, which must end with that code; `options` are those of
+        subprocess.run."""
         options = {"cwd": self.folder, **options}
         result = subprocess.run([PLIANT, *arguments], capture_output=True, text=True, timeout=600 if SANITIZED else 120,
                                 stdin=subprocess.DEVNULL, check=False, **options)
@@ -64,17 +65,17 @@ class Command(unittest.TestCase):
         return sorted(os.listdir(self.folder))
 
     def holds_hidden_files(self, process):
-        """Whether it has a file of the folder open that has no name there any more."""
+        """Whether the process has an open file of the folder that has no name there."""
         folder = f"/proc/{process.pid}/fd"
         try:
             targets = [os.readlink(os.path.join(folder, name)) for name in os.listdir(folder)]
-        except OSError:  # one of them is just being closed
+        except OSError:  # a descriptor was just closed
             return False
         return any(target.startswith(self.folder) and "(deleted)" in target for target in targets)
 
     def interrupt(self, scene, out, number, there=None):
-        """Sends a signal once the bake has begun to write, or once the file `there` is; gives its
-        exit code and stderr."""
+        """Sends a signal once the bake has begun to write, or once the file `there` exists; returns
+        its exit code and stderr."""
         before = self.files()
         with subprocess.Popen([PLIANT, "bake", scene, "-o", self.path(out)],
                               stderr=subprocess.PIPE, text=True) as process:

@@ -1,4 +1,4 @@
-"""What shells offer behind `pliant` on a line: held against the command's own help."""
+"""The completions that shells offer after `pliant`, compared with the command's own help."""
 
 import os
 import re
@@ -56,7 +56,7 @@ class Complete(Command):
         self.assertEqual(self.offered("curves", "a.xml", "--at", "")[0], "files")
 
     def bash(self, line):
-        """What Bash offers for the last word of a line."""
+        """The completions that Bash offers for the last word of a line."""
         words = line.split(" ")
         text = f"""source "{SCRIPTS}/pliant.bash"
 COMP_WORDS=("{PLIANT}" {" ".join(f"'{word}'" for word in words)}); COMP_CWORD={len(words)}

@@ -52,7 +52,7 @@ class Curves(Command):
                 self.assertLessEqual(len(number), len(repr(float(number))))
         last = [float(number) for number in text[6].split(",")[1:]]
         self.assertEqual(last[:3], [6, -1, 10])
-        self.assertEqual(last[4], 3.5)  # from 3 to 10 in two frames
+        self.assertEqual(last[4], 3.5)  # the slope: from 3 to 10 in two frames
 
     def test_frames_from_a_file(self):
         scene = self.write("c.xml", CURVES)

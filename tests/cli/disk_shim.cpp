@@ -1,7 +1,7 @@
-// Stands between the command and the system (LD_PRELOAD): writes down, in order, which files and
-// folders are flushed and what is renamed, to PLIANT_SHIM_LOG, and makes flushes fail as
-// PLIANT_SHIM_FAIL says: "file 5" or "folder 22", the errno of every fsync of that kind; EINTR of
-// every second one only. PLIANT_SHIM_KILL=N ends the program, as SIGKILL does, ahead of the Nth.
+// Intercepts system calls of the command (LD_PRELOAD). It logs flushes of files and folders, and
+// renames, in order to PLIANT_SHIM_LOG. PLIANT_SHIM_FAIL makes flushes fail: "file 5" or "folder
+// 22" is the errno of every fsync of that kind; EINTR only of every second one. PLIANT_SHIM_KILL=N
+// ends the program, like SIGKILL, before the Nth event.
 
 #include <cerrno>
 #include <csignal>

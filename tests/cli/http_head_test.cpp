@@ -10,7 +10,7 @@ using State = HeadScanner::State;
 
 namespace {
 
-// The state after the last byte that was looked at, and how many that were.
+// The state after the last byte that was scanned, and the number of scanned bytes.
 std::pair<State, std::size_t> scan(const std::string& text, std::size_t bytes = 1000,
                                    std::size_t lines = 10) {
   HeadScanner scanner(bytes, lines);

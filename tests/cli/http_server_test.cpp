@@ -16,7 +16,8 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// All that the server says to a request until it closes, which it must: ctest has a time limit.
+// Everything that the server sends for a request until it closes the connection; if it does not,
+// ctest's time limit ends the test.
 std::string answer_to(const HttpServer& server, const std::string& path) {
   const int connection = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

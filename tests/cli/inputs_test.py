@@ -1,4 +1,4 @@
-"""The files that a scene is made from: which are read, and that no command overwrites one."""
+"""The input files of a scene: which are read, and that no command overwrites one."""
 
 import json
 import os
@@ -8,18 +8,18 @@ import subprocess
 
 from command import Command, GRID, PLIANT, SCENE, main
 
-# Without a viewer's page the command says so (1) before it misses the scene (2).
+# A build without the viewer's page fails with 1, before it looks for the scene (2).
 HAS_PAGE = subprocess.run([PLIANT, "view", "no-such-scene.xml"], capture_output=True, check=False,
                           timeout=60).returncode == 2
 
 
-# A name that the numbers of a buffers.gltf may get.
+# A possible name for the buffer file of a buffers.gltf.
 BUFFERS = "buffers.0123456789abcdef.bin"
 
 
 class Inputs(Command):
     def setUp(self):
-        """head.gltf with its numbers in BUFFERS, and mesh.xml, which is made from them."""
+        """Makes head.gltf with its numbers in BUFFERS, and mesh.xml, which uses them."""
         super().setUp()
         self.run_pliant("bake", self.scene(end=1), "-o", "head.gltf")
         with open(self.path("head.gltf"), encoding="utf-8") as file:
@@ -34,7 +34,7 @@ class Inputs(Command):
         self.write(name, json.dumps(self.gltf))
 
     def refused(self, *arguments, says):
-        """The run is wrong usage, for that reason, and changes nothing."""
+        """Checks that the run fails as wrong usage, for that reason, and changes no file."""
         before = {name: self.read(name) for name in self.files()
                   if os.path.isfile(self.path(name))}
         result = self.run_pliant(*arguments, code=2)

@@ -1,4 +1,4 @@
-"""Where commands write to: which files may be replaced, what names may hold, a stdout that is gone."""
+"""Outputs of commands: which files may be replaced, unusual names, a closed stdout."""
 
 import json
 import os
@@ -36,7 +36,7 @@ CONTROLS = bytes(range(0x20)).replace(b"\n", b"") + b"\x7f"
 
 class Places(Command):
     def outputs(self):
-        """Of every command with an output: what to call, with OUT for the file."""
+        """The arguments of every command with an output, with OUT for the file."""
         scene = self.scene(end=3)
         for ending in (".npy", ".glb", ".gltf", ".usda", ".pc2", ".mdd"):
             yield ["bake", scene, "-o", "OUT"], "a" + ending
@@ -88,7 +88,7 @@ class Places(Command):
         try:
             os.mknod(self.path("device.npy"), 0o600 | stat.S_IFCHR, os.makedev(1, 3))
         except PermissionError:
-            pass  # who may make none; none of the system's is put at risk here
+            pass  # only root can make one; the system's own must not be put at risk
         else:
             self.assertIn("it is a device", self.run_pliant("bake", scene, "-o", "device.npy", code=2).stderr)
             os.remove(self.path("device.npy"))
@@ -170,7 +170,7 @@ class Names(Command):
         for words in (r"\\x1b\]0;title\\x07\S*: warning: ", r"\\x1b\]0;title\\x07\S*: note: ",
                       r"\\x1b\]0;title\\x07\S*: error: ", r"n\\x0afake\.xml: error: no\.xml: all right",
                       r"mesh \S*\\x0afake\.xml|mesh \S*n\\xc2\\x9b31m\.obj", r"\\xff\\xfe\.xml\nframes 1 to 3"):
-            self.assertRegex(everything, words)  # each kind of message was there to be seen
+            self.assertRegex(everything, words)  # each kind of message occurred
 
 
 class Placements(Command):

@@ -1,5 +1,5 @@
-"""From whom `pliant view --png` takes its picture: a program stands in for Chromium, and does what an
-attacker does. What Chromium draws is tested by tests/viewer.
+"""Whose picture `pliant view --png` accepts: a program replaces Chromium and behaves like an
+attacker. tests/viewer tests the drawings of Chromium.
 """
 
 import json
@@ -12,7 +12,7 @@ import zlib
 from command import Command, SANITIZED, SCENE, main
 from view_server import HAS_PAGE
 
-# Called as Chromium is. What each test does with it is appended; its results go to a file.
+# Started like Chromium. Each test appends its own code; results go to a file.
 BROWSER = """#!/usr/bin/python3
 import json, os, re, resource, socket, struct, sys, time, zlib
 way = sys.argv[-1].removeprefix("file://")
@@ -67,7 +67,7 @@ def size_of(png):
 @unittest.skipUnless(HAS_PAGE, "this build has no page")
 class Picture(Command):
     def draw(self, work, *options, code=0):
-        """The run, with what the program in Chromium's place found out."""
+        """The run, and the results of the program that replaces Chromium."""
         scene = self.write("scene.xml", SCENE.format(end=30))
         program = self.write("chromium", BROWSER + work + "\ntime.sleep(60)\n")
         os.chmod(program, stat.S_IRWXU)
@@ -77,7 +77,7 @@ class Picture(Command):
         try:
             with open(self.path("results.json"), encoding="utf-8") as file:
                 return result, json.load(file)
-        except FileNotFoundError:  # it noted nothing
+        except FileNotFoundError:  # it wrote no results
             return result, None
 
     def test_a_whole_picture_is_taken_as_it_is(self):
@@ -164,7 +164,7 @@ post(png(64, 48))
                 self.assertNotIn("out.png", self.files())
 
     def test_a_second_picture_is_refused(self):
-        # Together, so that the command cannot end between them.
+        # Both at the same time, so that the command cannot end between them.
         work = """
 good = png(64, 48, 3)
 one = f"POST /{token}/picture HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: {len(good)}\\r\\n\\r\\n".encode() + good

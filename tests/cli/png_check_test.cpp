@@ -69,7 +69,7 @@ TEST_CASE("a picture of a canvas passes", "[cli][png]") {
   CHECK(complaint(picture()) == "");
   CHECK(complaint(begin + header(std::string("\x08\x02\0\0\0", 5)) +
                   chunk("IDAT", packed(rows(5, 3))) + end) == "");
-  // In pieces, an empty one among them, with words about it that may be passed over.
+  // In several chunks, one of them empty, with ancillary chunks.
   const std::string all = packed(rows(5));
   CHECK(complaint(begin + header() + chunk("sRGB", std::string(1, '\0')) +
                   chunk("IDAT", all.substr(0, 3)) + chunk("IDAT", "") +

@@ -30,7 +30,7 @@ class Regions(Command):
 
     @staticmethod
     def box(selected):
-        """A box by another way: from the nodes selected, rows x columns."""
+        """A box computed independently from the selected nodes, rows x columns."""
         if not selected.any():
             return None
         rows, columns = np.nonzero(selected)
@@ -41,7 +41,7 @@ class Regions(Command):
         self.assertEqual((told["version"], told["fps"]), (1, 25))
         self.assertEqual([frame["frame"] for frame in told["frames"]], list(range(3, 10)))
         frames = np.load(self.path("o-sheet.npy"))
-        x, z = frames[0][:, 0].reshape(13, 25), frames[0][:, 2].reshape(13, 25)  # measured at rest
+        x, z = frames[0][:, 0].reshape(13, 25), frames[0][:, 2].reshape(13, 25)  # at rest
         to_a, to_b = np.hypot(x + 6, z), np.hypot(x - 7, z - 1)
         for k, frame in enumerate(told["frames"]):
             sheet, late, off = frame["surfaces"]
@@ -53,7 +53,8 @@ class Regions(Command):
             self.assertEqual(a["forceBox"], self.box(to_a < 2.5))
             self.assertEqual(b["deformationBox"], self.box(to_b < 2.5))
             self.assertEqual(b["forceBox"], self.box(to_b < 99))
-            # Islands by themselves; b's force box is the whole sheet, but it acts in its own.
+            # Each island alone; b's force box is the whole sheet, but it acts only in its own
+            # island.
             regions = [region for region in sheet["regions"] if region["solved"]]
             self.assertEqual([regions[0]["box"], regions[1]["box"]], [a["deformationBox"], b["deformationBox"]])
             self.assertEqual(sheet["regions"][a["region"]]["box"], a["deformationBox"])
@@ -70,7 +71,7 @@ class Regions(Command):
                 c = sheet["forces"][2]
                 self.assertFalse(sheet["regions"][c["region"]]["solved"])
                 self.assertEqual((c["from"], c["pushedNodes"], c["load"]), ([0, 0, -5], 0, [0, 0, 0]))
-            # What is told at a frame is what moves until the next.
+            # The report at a frame gives the nodes that move until the next frame.
             if k + 1 < len(frames):
                 moves = (frames[k] != frames[k + 1]).any(axis=1)
                 self.assertLessEqual(moves.sum(), sheet["unknowns"])
@@ -80,7 +81,7 @@ class Regions(Command):
 
     def test_the_page_shows_what_is_written(self):
         def keys(value):
-            """Keys in their order, of all that is inside; of a list, those of its first element."""
+            """The keys of nested objects in their order; for a list, those of its first element."""
             if isinstance(value, list):
                 return [keys(value[0])] if value and isinstance(value[0], dict) else []
             return {key: keys(inner) for key, inner in value.items()} if isinstance(value, dict) else None

@@ -1,4 +1,5 @@
-"""What is left, whole and on the disk, when a command is killed, the disk fails or the power goes."""
+"""The files left, complete and on the disk, after a command is killed, the disk fails or the power
+fails."""
 
 import errno
 import hashlib
@@ -16,7 +17,7 @@ SHIM = os.environ.get("PLIANT_DISK_SHIM", "")
 
 
 class Flushes(Command):
-    """What goes to the disk, and in which order, as the system is asked for it."""
+    """The system calls that flush and rename, and their order."""
 
     def setUp(self):
         super().setUp()
@@ -24,7 +25,7 @@ class Flushes(Command):
             self.skipTest("the shim does not go with a sanitizer")
 
     def events(self, *arguments, fail=None, code=0):
-        """The run's flushes and renames, names without the folder; and its stderr."""
+        """The run's flushes and renames, with names without the folder; and its stderr."""
         log = self.path("shim.log")
         environment = {**os.environ, "LD_PRELOAD": SHIM, "PLIANT_SHIM_LOG": log}
         if fail:
@@ -38,7 +39,8 @@ class Flushes(Command):
         return lines, result.stderr
 
     def check_order(self, events, name):
-        """The part is flushed, then renamed to that name, then the folder is flushed."""
+        """Checks that the part is flushed, then renamed to that name, then the folder is
+        flushed."""
         renames = [k for k, event in enumerate(events)
                    if re.fullmatch(rf"rename DIR/(\S+\.part) to DIR/{name}", event)]
         self.assertEqual(len(renames), 1, (name, events))
@@ -102,7 +104,7 @@ class Flushes(Command):
     def test_a_folder_that_cannot_be_flushed(self):
         scene = self.scene(end=3)
         for out in ("a.npy", "a.obj", "a.gltf"):
-            for number in (errno.EINVAL, errno.EOPNOTSUPP):  # the file system has no such thing
+            for number in (errno.EINVAL, errno.EOPNOTSUPP):  # the file system does not support it
                 self.events("bake", scene, "-o", out, fail=f"folder {number}")
                 self.events("bake", scene, "-o", out, fail=f"file {number}")
             _, errors = self.events("bake", scene, "-o", out, fail=f"folder {errno.EIO}", code=1)
@@ -117,7 +119,7 @@ class Flushes(Command):
 
 class Killed(Command):
     def whole(self, name):
-        """What a .gltf is made of, or none where its parts do not belong together."""
+        """The contents of a .gltf, or None if its files do not belong together."""
         with open(self.path(name), encoding="utf-8") as file:
             text = file.read()
         buffer = json.loads(text)["buffers"][0]
@@ -152,7 +154,7 @@ class Killed(Command):
             self.assertIn(self.whole("a.gltf"), known)
         self.assertLess(ended, k + 1)
         self.run_pliant("bake", scenes[0], "-o", "a.gltf")
-        self.assertEqual(len(self.numbers()), 1)  # none piles up
+        self.assertEqual(len(self.numbers()), 1)  # old ones do not accumulate
 
     def test_killed_ahead_of_each_flush_and_rename_a_gltf_is_whole(self):
         if SANITIZED or not SHIM:
@@ -217,7 +219,7 @@ class Resumed(Command):
                 self.assertEqual(self.read(name(frame)), data, frame)
 
     def test_a_key_in_the_middle_counts(self):
-        # At rest at both ends: the first frame and the last are the same for both scenes.
+        # At rest at both ends, so that both scenes have the same first and last frame.
         text = SCENE.format(end=12).replace(' magnitude="3000"/>', (
             '><animate attribute="magnitude"><key frame="1" value="0"/><key frame="5" value="{}"/>'
             '<key frame="9" value="0"/></animate></point>')).replace(

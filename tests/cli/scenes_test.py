@@ -56,7 +56,7 @@ class Validate(Command):
         for number in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen([PLIANT, "validate", self.path("pipe.xml"), self.scene()],
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-                time.sleep(0.5)  # it waits for someone to write to the pipe
+                time.sleep(0.5)  # it waits for a writer of the pipe
                 process.send_signal(number)
                 out, _ = process.communicate(timeout=30)
             self.assertNotEqual(process.returncode, 0)

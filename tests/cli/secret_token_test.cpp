@@ -40,7 +40,7 @@ TEST_CASE("a secret is the same text, every byte of it", "[cli][token]") {
 }
 
 TEST_CASE("a comparison takes as long wherever the difference is", "[cli][token]") {
-  // Large, so that a comparison which leaves early would be thousands of times as fast.
+  // Large, so that a comparison that stops early would be thousands of times as fast.
   const std::string secret(1 << 22, 'a');
   std::string early = secret, late = secret;
   early.front() = 'b';

@@ -1,7 +1,7 @@
-"""Who may talk to `pliant view --serve`: what an attacker sends, byte by byte, and what comes back.
+"""Which requests `pliant view --serve` answers: an attacker's bytes, and the answers.
 
 An attacker here is any program of the machine and, through a browser, any web page: it knows the
-port, and not the token. Bounds hold against those who know the token, too.
+port, but not the token. The limits are also valid for clients that know the token.
 """
 
 import base64
@@ -21,14 +21,14 @@ from view_server import HAS_PAGE, Server, exchange, statuses
 
 CONNECTIONS, STREAMS, REQUESTS = 64, 16, 100  # HttpLimits
 HEAD_SECONDS, WRITE_SECONDS = 3, 10
-SLACK = 6 if SANITIZED else 3  # seconds; a machine may be busy
+SLACK = 6 if SANITIZED else 3  # seconds; the machine may be busy
 
 EVENTS = '<noise name="n" frequency="0.5" rate="4" deformationRadius="300" forceRadius="300" magnitude="4000"/></scene>'
 
 
 @unittest.skipUnless(HAS_PAGE, "this build has no page")
 class Serving(Command):
-    """One command for all tests of a class: that it is still there after each is part of them."""
+    """One command for all tests of a class; it must still run after each of them."""
 
     @classmethod
     def setUpClass(cls):
@@ -50,11 +50,12 @@ class Serving(Command):
         self.assertEqual(statuses(self.ask())[:1], [200], "it answers nobody any more")
 
     def ask(self, *lines, **options):
-        """The whole answer to one request, after which we have nothing to say."""
+        """The whole answer to a single request."""
         return self.server.send(self.server.request("bake", *lines, **options), end=True)
 
     def refused(self, status, *pieces, **options):
-        """They are answered once, by nothing but that status, and the connection is closed."""
+        """Checks that the pieces are answered once, with only that status, and that the connection
+        is closed."""
         answer = self.server.send(*pieces, **options)
         self.assertEqual(statuses(answer), [status], answer[:300])
         head, body = answer.split(b"\r\n\r\n", 1)
@@ -88,7 +89,7 @@ class Smuggling(Serving):
                 with self.subTest(status=status, body=body[:10], length=len(body)):
                     self.refused(status, outer + body)
                     self.refused(status, outer, body)
-                    # With the end of the body in pieces, each late.
+                    # The end of the body is sent late.
                     self.refused(status, outer, body[:-9], body[-9:])
 
     def test_what_stands_behind_a_refused_request_is_not_looked_at(self):
@@ -166,7 +167,7 @@ class Names(Serving):
             with self.subTest(method):
                 self.refused(405, self.server.request(method=method))
         self.refused(403, self.server.request(method="CONNECT", target=f"127.0.0.1:{self.server.port}"))
-        # Nobody ordered a picture of this command.
+        # This command has not been asked for a picture.
         self.refused(404, self.server.request("picture", "Content-Length: 3", method="POST") + b"png")
 
     def test_only_by_this_machines_own_names(self):
@@ -194,7 +195,8 @@ class Names(Serving):
             with self.subTest(site):
                 self.assertEqual(statuses(self.server.send(self.server.request("", f"Sec-Fetch-Site: {site}"), end=True)), [page])
                 self.assertEqual(statuses(self.ask(f"Sec-Fetch-Site: {site}")), [rest])
-        # What a browser says for a link or a frame in a page from elsewhere, and for a script of it.
+        # The fields that a browser sends for a link or a frame in a foreign page, and for its
+        # scripts.
         for more in (("Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: document"), ("Sec-Fetch-Mode: navigate", "Sec-Fetch-Dest: iframe"),
                      ("Sec-Fetch-Mode: no-cors", "Sec-Fetch-Dest: script")):
             self.refused(403, self.server.request("", "Sec-Fetch-Site: cross-site", *more))
@@ -272,7 +274,7 @@ class Forms(Serving):
                      b"G" * 17000, b"GET / HTTP/1.1\r\n" + b"a" * 100000, b"GET / HTTP/1.1\r\n" + b"a:b\r\n" * 100000):
             with self.subTest(text[:40]):
                 self.refused(431, text)
-        # Up to the bounds they are taken.
+        # Requests up to the limits are accepted.
         self.assertEqual(statuses(self.ask("X: " + "a" * 16000)), [200])
         self.assertEqual(statuses(self.ask(*(f"X{k}:" for k in range(61)))), [200])
 
@@ -291,7 +293,7 @@ class Forms(Serving):
                 answer = self.server.send(sent, end=True)
                 self.assertLessEqual(len(statuses(answer)), 1, sent)
                 if statuses(answer) == [200]:
-                    # Host and target are as they were; what else was said is of no matter.
+                    # Host and target are unchanged; the other fields do not matter.
                     self.assertRegex(sent.replace(b"host", b"Host"), rule)
 
     def test_noise(self):
@@ -319,7 +321,7 @@ class Bounds(Serving):
         sent = 0
         try:
             while time.monotonic() - begin < HEAD_SECONDS + SLACK:
-                slow.sendall(request[sent:sent + 1])  # a byte now and then, as if more would come
+                slow.sendall(request[sent:sent + 1])  # a byte now and then, as if more would follow
                 sent += 1
                 time.sleep(0.1)
         except (BrokenPipeError, ConnectionResetError):
@@ -353,7 +355,7 @@ class Bounds(Serving):
             except ConnectionResetError:
                 closed += 1
         self.assertEqual(closed, len(links) - CONNECTIONS - 10)
-        # None of them said a word: all are gone without our help.
+        # None of them sent anything: the server must close them itself.
         self.until(HEAD_SECONDS + SLACK, lambda: self.server.open_sockets() <= before, "silent ones stay")
         self.assertEqual(statuses(self.ask()), [200])
         for link in links:
@@ -395,7 +397,7 @@ class Bounds(Serving):
 
 @unittest.skipUnless(HAS_PAGE, "this build has no page")
 class Slow(Command):
-    """Those who ask and do not take what comes, and Ctrl-C."""
+    """Clients that request but do not read, and Ctrl-C."""
 
     def setUp(self):
         super().setUp()
@@ -411,7 +413,7 @@ class Slow(Command):
         return self.server
 
     def is_cut(self, link, seconds):
-        """Whether the server cuts the connection; found out without reading from it."""
+        """Whether the server closes the connection; found without reading from it."""
         poll = select.poll()
         poll.register(link, 0)  # errors and hang-ups only
         return bool(poll.poll(1000 * seconds))
@@ -420,7 +422,7 @@ class Slow(Command):
         large = SCENE.format(end=60).replace('columns="13" rows="11"', 'columns="160" rows="160"').replace("</scene>", EVENTS)
         server = self.start(large)
         self.assertGreater(len(server.get("bake")[1]), 2_000_000)  # more than the system takes for them
-        # Some hundred lines with an error each.
+        # Several hundred lines with an error each.
         wrong = SCENE.format(end=60).replace("</scene>", "".join(
             f'<point name="p{k}" {"x" * 90}="1"/>\n' for k in range(300)) + "</scene>")
         links = []
@@ -439,10 +441,11 @@ class Slow(Command):
         self.assertIn("more; see the terminal", told)
         before = server.resident_bytes()
         for k in range(40):
-            # In one step, so that no half of a save is seen.
+            # Atomically, so that no incomplete save is read.
             os.replace(self.write("next.xml", wrong + "<!--" + "x" * k + "-->"), self.path("scene.xml"))
             server.wait_for("failed")
-        # Each event kept for each listener would be 10 MB and more. A sanitizer keeps what was freed.
+        # Storing each event for each listener would need 10 MB or more. Sanitizers keep freed
+        # memory.
         if not SANITIZED:
             self.assertLess(server.resident_bytes() - before, 5_000_000)
         for link in (*takers, *listeners):

@@ -1,4 +1,4 @@
-"""A scene that comes through a pipe."""
+"""A scene from a pipe."""
 
 import os
 import signal

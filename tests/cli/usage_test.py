@@ -1,4 +1,4 @@
-"""How the command is called, and what it says when something goes wrong."""
+"""The command's arguments, and its error messages."""
 
 import os
 import re
@@ -99,7 +99,7 @@ class Errors(Command):
         self.assertRegex(result.stderr, r"m\.xml:3: error: .*none\.obj.*No such file")
 
     def test_a_missing_folder_is_named_ahead_of_any_work(self):
-        # What comes first is told of: not even the scene is read.
+        # The output is checked first: the scene is not even read.
         for arguments, option in ((["bake", "none.xml", "-o", "no/such/a.npy"], "-o no/such/a.npy"),
                                   (["bake", "none.xml", "-o", "a.npy", "--regions", "no/such/r.json"],
                                    "--regions no/such/r.json"),
@@ -137,7 +137,7 @@ class Errors(Command):
         begin = time.monotonic()
         code, errors = self.interrupt(scene, "a.npy", signal.SIGINT)
         self.assertEqual(code, 1, errors)
-        self.assertLess(time.monotonic() - begin, 30)  # one frame takes minutes
+        self.assertLess(time.monotonic() - begin, 30)  # one frame needs minutes
         self.assertEqual(self.files(), ["slow.xml"])
 
     def test_whole_frames_of_an_interrupted_sequence_stay(self):

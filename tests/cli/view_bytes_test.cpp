@@ -13,9 +13,9 @@ using pliant::cli::deflated;
 
 namespace {
 
-// What zlib makes of a raw stream.
+// The bytes of a raw stream, unpacked by zlib.
 std::string inflated(const std::string& packed, std::size_t size) {
-  std::string bytes(size + 1, '\0');  // one more: a longer answer would be seen
+  std::string bytes(size + 1, '\0');  // one more, to detect a longer result
   z_stream stream = {};
   REQUIRE(inflateInit2(&stream, -15) == Z_OK);
   std::string source = packed;

@@ -18,7 +18,7 @@ using namespace pliant;
 using pliant::cli::MotionPacker;
 using pliant::cli::PackedMotion;
 
-// Frames x (#vertices x 3), read back by the words of docs/viewer.md.
+// Frames x (#vertices x 3), decoded as docs/viewer.md describes.
 std::vector<Field> unpacked(const PackedMotion& packed, const std::vector<int>& order) {
   const std::size_t count = order.size();
   std::vector<std::vector<long>> frames(2, std::vector<long>(3 * count, 0));
@@ -132,18 +132,19 @@ TEST_CASE("each way of prediction is used where it is best", "[view]") {
     const PackedMotion packed = pack(given);
     return std::set<int>(packed.predictors.begin() + 2, packed.predictors.end());
   };
-  // Even motion; every vertex another way, so that nothing can be learnt from the one before.
+  // Uniform motion, each vertex in another direction, so that the vertex before does not help the
+  // prediction.
   std::mt19937 random(5);
   std::uniform_real_distribution<double> speed(-1, 1);
   std::vector<double> speeds;
   for (int k = 0; k < 300; ++k) speeds.push_back(speed(random));
   const auto even = motion(100, 30, [&](int k, int c, int f) { return f * speeds[3 * k + c]; });
   CHECK(predictors(even) == std::set<int>{pliant::cli::prediction::even});
-  // A pose that is held.
+  // A constant pose.
   const auto held =
       motion(100, 9, [&](int k, int c, int f) { return f > 0 ? speeds[3 * k + c] : 0; });
   CHECK(predictors(held) == std::set<int>{pliant::cli::prediction::same});
-  // All vertices jump together, each frame elsewhere.
+  // All vertices jump together, to another place at each frame.
   const auto jumping = motion(100, 9, [&](int, int, int f) { return speeds[f]; });
   for (const int predictor : predictors(jumping))
     CHECK((predictor & pliant::cli::prediction::along));

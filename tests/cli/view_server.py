@@ -1,4 +1,4 @@
-"""`pliant view --serve` as its tests have it: what is sent byte by byte, and a listener to events."""
+"""`pliant view --serve` for its tests: requests byte by byte, and a listener to events."""
 
 import http.client
 import os
@@ -11,13 +11,13 @@ import time
 
 from command import PLIANT
 
-# Without the page the command says so (1) before it misses the scene (2).
+# A build without the page fails with 1, before it looks for the scene (2).
 HAS_PAGE = subprocess.run([PLIANT, "view", "no-such-scene.xml"], capture_output=True, check=False, timeout=60).returncode == 2
 
 
 def exchange(port, *pieces, end=False, timeout=20):
-    """Sends the pieces and gives all that comes until the server closes; a server that does not is
-    a TimeoutError. `end`: tells it that nothing more comes."""
+    """Sends the pieces and returns everything received until the server closes the connection;
+    TimeoutError if it does not. `end`: also closes our sending side."""
     with socket.create_connection(("127.0.0.1", port), timeout=timeout) as link:
         link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         answer = b""
@@ -32,7 +32,7 @@ def exchange(port, *pieces, end=False, timeout=20):
             limit = time.monotonic() + timeout
             while piece := link.recv(65536):
                 answer += piece
-                if time.monotonic() > limit:  # of a stream that goes on and on
+                if time.monotonic() > limit:  # for a stream that never ends
                     raise TimeoutError(f"it is still open: {answer[-200:]}")
         except ConnectionResetError:
             pass
@@ -40,7 +40,7 @@ def exchange(port, *pieces, end=False, timeout=20):
 
 
 def statuses(stream):
-    """Those of all answers that came, each as long as it says. Anything else is a ValueError."""
+    """The statuses of all answers, each of its stated length; otherwise ValueError."""
     found = []
     while stream:
         head, _, rest = stream.partition(b"\r\n\r\n")
@@ -57,7 +57,7 @@ class Server:
     """The command, and a listener to its events."""
 
     def __init__(self, scene):
-        # A file: a pipe that nobody reads would stop a command with much to say.
+        # A file, since a pipe without a reader would block a command with much output.
         self.errors = tempfile.TemporaryFile("w+", encoding="utf-8")
         self.process = subprocess.Popen([PLIANT, "view", scene, "--serve"], stdout=subprocess.PIPE,
                                         stderr=self.errors, text=True)
@@ -80,7 +80,7 @@ class Server:
         return response.status, body
 
     def request(self, place="bake", *lines, method="GET", target=None, host=None):
-        """The bytes of a request that is answered, if no line says otherwise."""
+        """The bytes of a valid request, unless `lines` make it invalid."""
         target = self.path(place) if target is None else target
         host = f"127.0.0.1:{self.port}" if host is None else host
         return "\r\n".join([f"{method} {target} HTTP/1.1", f"Host: {host}", *lines, "", ""]).encode("latin-1")
@@ -89,7 +89,7 @@ class Server:
         return exchange(self.port, *pieces, **options)
 
     def connect(self, *pieces):
-        """An open connection to which something was sent."""
+        """An open connection, after sending some bytes."""
         link = socket.create_connection(("127.0.0.1", self.port), timeout=20)
         for piece in pieces:
             link.sendall(piece)
@@ -110,7 +110,7 @@ class Server:
         return count
 
     def wait_for(self, name):
-        """The next event of that name, and what it tells."""
+        """The data of the next event of that name."""
         while True:
             line = self.stream.readline().decode()
             if not line:

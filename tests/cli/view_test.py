@@ -1,7 +1,8 @@
-"""What `pliant view` puts into its page, read back as docs/viewer.md tells, and how it serves it.
+"""The data that `pliant view` puts into its page, decoded as docs/viewer.md describes, and its
+server.
 
-In a build that was made without npm there is no page; then this tests what the command says of it.
-What a browser makes of the page is tested by tests/viewer, who may talk to the server by serve_test.py.
+A build without npm has no page; then this tests the command's message. tests/viewer tests the page
+in a browser, serve_test.py which requests the server answers.
 """
 
 import base64
@@ -41,7 +42,7 @@ def unpack(packed):
 
 
 def positions(head, arrays, surface):
-    """Frames x vertices x 3, world space, by the rules of the page, one number at a time."""
+    """Frames x vertices x 3, world space, decoded by the page's rules, one number at a time."""
     def array(name, kind):
         place = surface[name]
         return np.frombuffer(arrays, kind, place["count"], place["begin"])
@@ -51,7 +52,7 @@ def positions(head, arrays, surface):
     missed = array("lowBytes", "u1").astype(int) + 256 * array("highBytes", "u1").astype(int)
     missed = np.where(missed % 2, -(missed + 1) // 2, missed // 2)
     missed = missed.reshape(-1, 3, count)
-    steps = np.zeros((len(missed) + 2, 3, count), int)  # two frames of rest ahead
+    steps = np.zeros((len(missed) + 2, 3, count), int)  # two frames of rest before the first
     for frame, predictor in enumerate(array("predictors", "u1")):
         now = missed[frame]
         if predictor & 4:
@@ -91,7 +92,7 @@ class Page(View):
         super().setUp()
 
     def compare(self, scene, *options):
-        """The page's positions against those of a bake, within what the page says."""
+        """Compares the page's positions with those of a bake, within the page's error bound."""
         self.run_pliant("view", scene, "-o", "view.html", "--quiet", *options)
         self.run_pliant("bake", scene, "-o", "bake.npy", "--quiet", *options)
         _, head, arrays = read_page(self.path("view.html"))
@@ -152,7 +153,7 @@ class Page(View):
         with open(self.path("regions.json"), encoding="utf-8") as file:
             frames = json.load(file)["frames"]
         marks = head["surfaces"][0]["marks"]
-        self.assertLess(len(marks), len(frames))  # kept where they change
+        self.assertLess(len(marks), len(frames))  # stored only where they change
         for frame in frames:
             told = frame["surfaces"][0]
             now = [each for each in marks if each["frame"] <= frame["frame"]][-1]

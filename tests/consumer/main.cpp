@@ -1,5 +1,4 @@
-// A scene built in code: a mesh as arrays, a curve as an object, a force of the program's own kind;
-// no file is read.
+// A scene built in code: a mesh as arrays, a curve as an object, a custom force; no file is read.
 
 #include <cmath>
 #include <cstdio>
@@ -21,7 +20,8 @@ int main() {
   poke.deformation_radius = 4;
   poke.force_radius = 2;
 
-  // A wave that runs along x. Pure functions of place and time: any thread may call them.
+  // A wave that moves along x. The functions depend only on position and time, so any thread may
+  // call them.
   pliant::Force wave;
   wave.name = "wave";
   wave.magnitude = 300;

@@ -1,4 +1,5 @@
-// A program's own test that a scene gives what was recorded, and that another one does not.
+// A test in another program that a scene reproduces its recorded log, and that another scene does
+// not.
 // usage: replay SCENE LOG OTHER_LOG
 
 #include <cstdio>

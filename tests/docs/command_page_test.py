@@ -1,4 +1,4 @@
-"""Holds docs/command.md against the command's own help: the same commands, options and endings.
+"""Compares docs/command.md with the command's own help: the same commands, options and extensions.
 
 usage: command_page_test.py PLIANT SOURCE_FOLDER
 """

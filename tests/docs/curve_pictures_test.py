@@ -1,5 +1,5 @@
-"""Holds the pictures of curves against the command: each .svg in docs/curves is what `pliant curves`
-makes of the scene beside it, and is shown on some page. --bless writes them anew.
+"""Compares the pictures of curves with the command: each .svg in docs/curves must equal the output
+of `pliant curves` for the scene beside it, and some page must show it. --bless writes them again.
 
 usage: curve_pictures_test.py PLIANT SOURCE_FOLDER [--bless]
 """

@@ -1,4 +1,4 @@
-"""Holds docs/gallery.md against script/gallery: the same pictures, all there, of all examples.
+"""Compares docs/gallery.md with script/gallery: the same pictures, all existing, of all examples.
 
 usage: gallery_page_test.py SOURCE_FOLDER
 """

@@ -1,4 +1,4 @@
-"""Holds the ratios that CHANGELOG.md states against the table of docs/performance.md.
+"""Compares the ratios in CHANGELOG.md with the table of docs/performance.md.
 
 usage: performance_page_test.py SOURCE_FOLDER
 """

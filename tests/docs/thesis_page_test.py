@@ -1,5 +1,5 @@
-"""Holds docs/thesis.md against examples/thesis: every scene has its row, with the reference that its
-file has, every picture and link is there, and the figures named are those script/figures draws.
+"""Compares docs/thesis.md with examples/thesis: every scene has a row with its reference, every
+picture and link exists, and the named figures are those that script/figures draws.
 
 usage: thesis_page_test.py SOURCE_FOLDER
 """

@@ -1,5 +1,5 @@
-"""Bakes an example and checks what holds of every one: it starts at rest, moves visibly within its
-size, stays finite, and comes to no tear between neighbouring frames.
+"""Bakes an example and checks what must be true for every one: it starts at rest, moves visibly
+within its size, stays finite, and does not jump between neighbouring frames.
 
 usage: example_test.py PLIANT SCENE.xml
 """
@@ -22,7 +22,7 @@ def check(frames):
     assert motion.max() < 0.5 * size, f"the peak {motion.max():.3g} is out of scale at size {size:.3g}"
     steps = np.linalg.norm(np.diff(frames, axis=0), axis=2).max(axis=1)
     assert steps.max() < 0.4 * motion.max(), "the motion jumps from one frame to the next"
-    # It is over its peak before the end: it rings and settles, or at least recedes.
+    # The peak is before the end: then it rings and settles, or at least decreases.
     assert motion[-1].max() < 0.9 * motion.max(), "the animation ends at its peak"
 
 

@@ -1,9 +1,10 @@
-"""Holds what `pliant info` tells against bakes: of all examples, and of scenes made for it.
+"""Compares the output of `pliant info` with bakes: for all examples, and for scenes made for this
+test.
 
-The peak of the animation is that of a bake. Where forces stand still, the scene is held as it is at
-the frame of greatest effect, baked until it has settled, and measured: where it comes to rest, when
-it is near for good, how it rings and how fast that dies away. Whether a scene rings or settles in
-time is seen from its numbers; how many were measured is checked in the end.
+The peak of the animation is compared with a bake. If forces do not move, the scene is made constant
+at the frame of greatest effect, baked until it has settled, and measured: the position of rest, the
+time after which it stays near it, the frequency and the damping of its ringing. Whether a scene
+rings or settles in time follows from its numbers; the number of measurements is checked at the end.
 
 usage: info_test.py PLIANT SOURCE_FOLDER
 """
@@ -22,7 +23,7 @@ import numpy as np
 PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
 FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia")
 TOLERANCE = 0.1
-LONGEST = 3000  # frames of a held scene
+LONGEST = 3000  # frames of a scene with constant forces
 
 MADE = """<scene version="1" fps="{fps}" start="1" end="60">
   <surface name="sheet"><grid columns="{columns}" rows="{rows}" width="20" depth="{depth}"/>
@@ -85,7 +86,7 @@ def stands_still(told, root):
 
 
 def held(scene, text, told, preview):
-    """The scene with every force as it is at the preview's frame, long enough to settle."""
+    """The scene with every force constant as at the preview's frame, long enough to settle."""
     root = tree.fromstring(text)
     for force in [element for kind in FORCES + ("group",) for element in root.iter(kind)]:
         for animate in force.findall("animate"):
@@ -96,8 +97,8 @@ def held(scene, text, told, preview):
                 value = "true" if float(value) else "false"
             force.set(animate.get("attribute"), value)
             force.remove(animate)
-    # Info tells of the surface at rest. What a force lets go of as the surface moves away from it is
-    # in the animation's peak alone.
+    # Info describes the surface at rest. Only the peak of the animation includes nodes that a force
+    # loses as the surface moves away.
     for surface in root.iter("surface"):
         solver = surface.find("solver")
         if solver is None:
@@ -110,7 +111,7 @@ def held(scene, text, told, preview):
 
 
 def crossings(way):
-    """Where a curve crosses 0, between frames."""
+    """The times, between frames, at which a curve crosses 0."""
     at = np.nonzero(way[:-1] * way[1:] < 0)[0]
     return at + way[at] / (way[at] - way[at + 1])
 
@@ -134,8 +135,8 @@ def check_held(frames, told, preview, vibration, count):
     ratio, frequency = vibration["dampingRatio"], vibration["frequency"]
     if ratio is None or ratio > 0.3 or frequency > told["fps"] / 3:
         return
-    # The slowest vibration outlasts the others. The last frame, which stands for the place of rest,
-    # is only so near to it: the end of the curve tells nothing.
+    # The slowest vibration lasts longest. The last frame represents the position of rest only
+    # approximately, so the end of the curve is not used.
     period = told["fps"] / frequency
     first = int(0.5 * settled)
     way = away[first:4 * settled]
@@ -145,7 +146,7 @@ def check_held(frames, told, preview, vibration, count):
     measured = (len(at) - 1) / 2 / (at[-1] - at[0]) * told["fps"]
     assert is_close(frequency, measured), ("rings", frequency, measured)
     count["ring frequency"] += 1
-    # Three frames in a row of a vibration that dies away: way[k+2] = p way[k+1] - q way[k].
+    # Three consecutive frames of a decaying vibration: way[k+2] = p way[k+1] - q way[k].
     way = away[2 * settled:4 * settled]
     if period < 6 or len(way) < period:
         return
@@ -155,7 +156,7 @@ def check_held(frames, told, preview, vibration, count):
     root = np.log(complex(p, np.sqrt(max(0.0, 4 * q - p * p))) / 2)
     measured = -root.real / abs(root)
     error = np.abs(p * way[1:-1] - q * way[:-2] - way[2:]) / np.abs(way).max()
-    is_alone = error.max() < 0.02  # others have died away
+    is_alone = error.max() < 0.02  # the others have decayed
     if is_alone and abs(abs(root.imag) * told["fps"] / (2 * np.pi) / frequency - 1) < 0.05:
         assert is_close(ratio, measured), ("damping ratio", ratio, measured)
         count["damping ratio"] += 1
@@ -176,7 +177,7 @@ def check(name, scene, folder, count):
         if preview["frame"] is None or not stands_still(told, tree.fromstring(text)):
             continue
         if 'reference="none"' in text:
-            continue  # what comes to rest is not the surface's own shape
+            continue  # its rest state is not the surface's rest shape
         try:
             still, vibration, length = held(scene, text, told, preview)
             at_rest = os.path.join(folder, "held.xml")
@@ -195,7 +196,7 @@ def main():
     assert len(examples) >= 18, examples
     with tempfile.TemporaryDirectory() as folder:
         for scene in examples:
-            # Beside the example, so that a mesh is found by its relative name.
+            # Next to the example, so that relative mesh paths work.
             with tempfile.TemporaryDirectory(dir=folder) as beside:
                 check(os.path.basename(scene)[:-4], scene, beside, count)
         examples_alone = dict(count)

@@ -1,4 +1,4 @@
-"""Bakes an example of regions and checks what its comment says.
+"""Bakes an example of regions and checks the statements of its comment.
 
 usage: regions_test.py PLIANT EXAMPLES_FOLDER hands|finger
 """
@@ -16,7 +16,7 @@ PLIANT, EXAMPLES = (os.path.abspath(argument) for argument in sys.argv[1:3])
 
 
 def bake(name, *changes):
-    """{surface: frames x rows x columns x 3}, displacements, and what --regions tells."""
+    """{surface: frames x rows x columns x 3}, displacements, and the output of --regions."""
     with open(os.path.join(EXAMPLES, name + ".xml"), encoding="utf-8") as file:
         text = file.read()
     for pattern, new in changes:
@@ -48,7 +48,7 @@ def hands():
     left, right = moved[:, :, :half], moved[:, :, half:]
     for frame in told:
         assert len(frame["surfaces"][0]["regions"]) == 2, "not two islands"
-    # Each hand as if it were alone, to the bit; the sheet between them as flat as it was.
+    # Each hand has exactly the bits of a run with it alone; the sheet between them stays flat.
     alone, _ = bake("hands", (r'<point name="right".*?</point>', ""))
     assert np.array_equal(alone["membrane"][:, :, :half], left)
     assert not alone["membrane"][:, :, half:].any(), "the left hand moves the right half"
@@ -58,7 +58,8 @@ def hands():
     assert first == second
     between = slice(first[0]["box"]["columns"][1], first[1]["box"]["columns"][0] + 1)
     assert not moved[:, :, between].any(), "the sheet between the hands moves"
-    # The left presses down and rings once let go; the right, later, up; then both.
+    # The left hand presses down, and the sheet rings after it lets go; the right one, later,
+    # presses up; then both.
     low, high = left[..., 1].min(axis=(1, 2)), left[..., 1].max(axis=(1, 2))
     assert low[17] < -0.3 and high[17] < 0.05 and high[23:30].max() > 0.03, "the left hand"
     assert not right[:24].any() and right[36, ..., 1].max() > 0.3, "the right hand"
@@ -71,20 +72,20 @@ def finger():
     columns = rubber.shape[2]
     peak = np.abs(rubber).max()
     assert 0.3 < peak < 2 and np.abs(clay).max() > 0.3, "a dent that is no picture"
-    # The dents travel along with the finger.
+    # The dents travel with the finger.
     for frame in (16, 28, 40):
         finger_at = (told[frame]["surfaces"][0]["forces"][0]["center"][0] / 20 + 0.5) * (columns - 1)
         for dent in (rubber[frame], clay[frame]):
             deepest = np.unravel_index(dent.argmin(), dent.shape)[1]
             assert abs(deepest - finger_at) < 4, f"frame {frame}: deepest at column {deepest}"
-    # Where the finger began the rubber has closed while it is still being drawn; the clay has not.
+    # Where the finger began, the rubber has closed while the finger still moves; the clay has not.
     start = slice(8, 14)
     assert np.abs(rubber[44, :, start]).max() < 0.05 * np.abs(rubber[:, :, start]).max()
     assert np.abs(clay[44, :, start]).max() > 5 * np.abs(rubber[44, :, start]).max()
-    # Lifted: the rubber is back, to the bit, before the end; the trail stays as it is.
+    # After lifting, the rubber is exactly at rest before the end; the trail stays.
     assert (moved["rubber"][90:] == 0).all(), "the rubber is not at rest"
     assert (clay[50:] == clay[50]).all() and np.abs(clay[50]).max() > 0.5 * np.abs(clay).max()
-    # What --regions tells of it.
+    # The counts that --regions reports.
     recovering = [frame["surfaces"][0]["recovering"] for frame in told]
     assert recovering[0] == 0 and max(recovering) > 100 and recovering[-1] == 0
     assert all(frame["surfaces"][1]["recovering"] == 0 for frame in told)

@@ -1,9 +1,9 @@
-"""Bakes the scenes of one figure of the thesis and checks what their comments say of them.
+"""Bakes the scenes of one figure of the thesis and checks the statements of their comments.
 
 usage: thesis_test.py PLIANT EXAMPLES_FOLDER NUMBER_OF_THE_FIGURE
 
-Nothing is compared with stored numbers: what holds is a symmetry, a sum, or a comparison between a
-scene and the same text with one thing changed.
+Nothing is compared with stored numbers: each check is a symmetry, a sum, or a comparison between a
+scene and the same text with one change.
 """
 
 import os
@@ -17,7 +17,7 @@ import numpy as np
 
 PLIANT, EXAMPLES = (os.path.abspath(argument) for argument in sys.argv[1:3])
 
-# The direct solver's rounding, with cond(L) ~ 2e5 of a 39 x 39 plate: 2e5 * 2e-16 * 200 steps.
+# Rounding of the direct solver: cond(L) ~ 2e5 for a 39 x 39 plate; 2e5 * 2e-16 * 200 steps.
 ROUNDING = 1e-8
 
 
@@ -111,7 +111,8 @@ def figure8():
     rest = middle(sheet("fig08-force", ('density="0.3"', 'density="0"'),
                         ('damping="4"', 'damping="0"')))[-1, 1]
 
-    # One force along y: y alone, the same from four sides, highest in the middle, level at the rim.
+    # One force along y moves only y; the dome is the same from four sides, highest in the middle,
+    # level at the rim.
     assert (force[..., [0, 2]] == 0).all(), "a force along y has moved x or z"
     dome = force[10, :, :, 1]
     for turned, how in ((flip_u(dome), "u"), (flip_v(dome), "v"), (dome.T, "exchange")):
@@ -121,7 +122,8 @@ def figure8():
     light = middle(force)[:, 1]
     assert abs(light[10] - rest) < 0.1 * rest and abs(light[-1] - rest) < 1e-3 * rest
 
-    # Denser: late, past the place of rest, and still moving when the light sheet has long stopped.
+    # Higher density: slower, swings past the position of rest, and still moves long after the light
+    # sheet has stopped.
     dense = middle(heavy)[:, 1]
     assert 0 < dense[10] < 0.5 * light[10], "more density is not slower"
     turn = dense.argmax()
@@ -129,7 +131,7 @@ def figure8():
     assert dense[-1] < dense[turn]
     assert np.ptp(dense[30:]) > 10 * np.ptp(light[30:]), "more density does not ring on"
 
-    # A tangent at u = 0 acts on x, y and z alike, is met where prescribed, and adds to the load.
+    # A tangent at u = 0 acts on x, y and z equally, is met at its edge, and adds to the load.
     check_slopes(along_u[10], {"su0": 30}, "tangent at u = 0")
     same(along_u[..., 0], along_u[..., 2], "x and z under one tangent")
     same(along_u[..., 1] - force[..., 1], along_u[..., 0], "force and tangent add up")
@@ -151,8 +153,8 @@ def figure9():
     for name in scenes:
         assert differences("fig09-su0", name) <= {f"tangents.{edge}" for edge in edges}
 
-    # Nothing prescribed: no height. In the plane the literal equation still crowds the nodes at the
-    # rim, where r_u = 0; as a displacement it is nothing at all.
+    # Without tangents there is no height. In the plane the literal equation still crowds the nodes
+    # at the rim, where r_u = 0; solved for the displacement, nothing moves.
     flat = sheet("fig09-su0", (of_su0, all_zero))[1]
     assert (flat[..., 1] == 0).all() and np.abs(flat).max() > 0.2
     assert (sheet("fig09-su0", (of_su0, all_zero), ('"none"', '"rest"')) == 0).all()
@@ -165,9 +167,9 @@ def figure9():
         same(added, sum(single[edge] for edge in prescribed), f"{name}: the tangents add up")
         same(added[..., 0], added[..., 1], f"{name}: x and y")
         same(added[..., 2], added[..., 1], f"{name}: z and y")
-        # The tangents are those of the position, though the sheet's own slope in x is 20.
+        # The tangents are those of the position, although the slope of the sheet itself in x is 20.
         check_slopes(rest + shapes[name], dict.fromkeys(prescribed, 30), name)
-        # The reference matters to x and z only, on a sheet that is flat in y.
+        # On a sheet that is flat in y, the reference affects only x and z.
         relative = sheet(name, ('"none"', '"rest"'))[1]
         same(relative[..., 1], shapes[name][..., 1], f"{name}: the height under either reference")
         stiffer = sheet(name, ('b="0.1" c="0.2" d="0.1"', 'b="1" c="2" d="1"'))[1]
@@ -193,7 +195,7 @@ def figure10():
         held = sheet(name, (off, ""))
         assert np.array_equal(held[:27], moved[:27]), f"{name}: the key acts before its frame"
         assert not np.array_equal(held[27], moved[27]), f"{name}: the key does not act"
-        # Without a region there is no solve: nothing rings, nothing returns.
+        # Without a region there is no solve: the sheet neither rings nor returns.
         switched = ('</animate><animate attribute="enabled"><key frame="0" value="true"/>'
                     '<key frame="26" value="false"/></animate>')
         disabled = sheet(name, ("</animate>", switched))
@@ -204,18 +206,19 @@ def figure10():
     a, b = middle(fine)[:, 1], middle(coarse)[:, 1]
     at_rest = middle(sheet("fig10-fine", ('density="0.4" damping="0.1"',
                                           'density="0" damping="0"')))[25, 1]
-    # Loaded: the fine one swings about the place of rest, the coarse one stands there.
+    # Under the load the fine one swings about the position of rest, the coarse one is at it.
     signs = np.sign(a[1:27] - at_rest)
     assert (np.diff(signs) != 0).sum() >= 4, "dt = 0.01 does not swing"
     assert a[25] > 1.2 * at_rest and np.abs(b[2:27] - at_rest).max() < 0.01 * at_rest
-    # Let go: the fine one goes through the plane and back, less each time; the coarse one is flat.
+    # Released, the fine one swings through the plane with decreasing height; the coarse one is
+    # flat.
     assert a[30] < -0.5 * at_rest and abs(b[30]) < 1e-3 * at_rest
     low, high = a[27:].min(), a[32:].max()
     assert 0 < high < -low < a[26], "dt = 0.01 does not ring down"
     assert np.abs(b[28:]).max() < 0.02 * at_rest, "dt = 1 rings"
 
-    # Which one is right? With frames of one length, the smaller step is nearer, at first order:
-    # what halving it changes halves each time, to within terms of second order (omega dt = 0.05).
+    # Which one is right? For frames of equal length, the smaller step is nearer, at first order:
+    # each halving of dt halves the change, up to second-order terms (omega dt = 0.05).
     exact = ('stepping="overshoot"', 'stepping="exact"')
     runs = [middle(sheet("fig10-fine", exact, ('dt="0.01"', f'dt="{1 / 24 / steps!r}"')))[:, 1]
             for steps in (1, 5, 10, 20, 40)]
@@ -253,21 +256,22 @@ def figure11():
         peak = length.max()
         assert 0.04 < peak / 35 < 0.25, f"{name}: a peak of {peak} is no picture"
         assert np.linalg.norm(np.diff(frames, axis=0), axis=2).max() < 0.3 * peak, f"{name}: jumps"
-        # Only the region moves, though the narrow one's force reaches further; all of it does.
+        # Only the region moves, although the force of the narrow one reaches further; all of it
+        # moves.
         inside = box(frames[0], centers[0], deformation)
         assert (length[:10, ~inside] == 0).all(), f"{name}: vertices outside the region move"
         assert (length[9, inside] > 0).all(), f"{name}: vertices of the region stand still"
         reached[name] = inside.sum()
-        # All loads are along one line, so all displacement is.
+        # All loads are along one line, so all displacements are too.
         same(np.abs(moved @ direction), length, f"{name}: along the force")
-        # The force has gone elsewhere and the region with it. What it has left stands still.
+        # The force has moved, and the region with it. Nodes that it has left do not move.
         last = box(frames[40], centers[-1], deformation)
         assert length[40].argmax() in np.flatnonzero(last), f"{name}: the peak stays behind"
         trail = ~last & (length[40] > 0)
         remains[name] = length[40, trail].max() / peak
         assert (inside & trail).sum() > 0.3 * inside.sum(), f"{name}: no trail"
         assert (frames[39, trail] == frames[40, trail]).all(), f"{name}: the trail moves"
-        # A force radius beyond the region is as good as any larger one; within it, it is not.
+        # Beyond the region, a larger force radius changes nothing; within it, it does.
         radius = f'forceRadius="{pushed}"'
         larger = bake(name, (radius, f'forceRadius="{pushed + 3}"'))
         assert np.array_equal(larger, frames) == (pushed > deformation), f"{name}: the force radius"
@@ -282,7 +286,8 @@ def figure12():
             for key in point.iter("key")]
     peak = np.abs(turning).max()
     assert (turning[..., 2] == 0).all(), "x and y pushed, z moves"
-    # It goes where the force points: exactly while that holds from the start, a little late after.
+    # The sheet moves where the force points: exactly while the direction is constant from the
+    # start, slightly late afterwards.
     same(np.linalg.norm(turning[:9], axis=3), np.abs(turning[:9, :, :, 1]), "up")
     for frame, direction in {16: (1, 1), 24: (1, 0), 40: (0, -1)}.items():
         found = middle(turning)[frame, :2]
@@ -293,13 +298,13 @@ def figure12():
     same_height = abs(turning[8, 20, 20, 1] + turning[-1, 20, 20, 1])
     assert same_height < 0.02 * peak, "down is not as far as up"
 
-    # The region is a square: its corners, outside the sphere, move; what lies around it does not.
+    # The region is a square: its corners, outside the sphere, move; nodes around it do not.
     rest = bake("fig12-turning")[0].reshape(41, 41, 3)
     reach = np.abs(rest).max(axis=2)
     assert (turning[:, reach > 6.9] == 0).all() and (turning[8, reach < 6.9] != 0).any(axis=1).all()
     assert (np.linalg.norm(rest[reach < 6.9], axis=1) > 7.1).any()
 
-    # The length of the direction does not count.
+    # The length of the direction does not matter.
     longer = [(f'frame="{frame}" value="{" ".join(f"{c:g}" for c in value)}"',
                f'frame="{frame}" value="{" ".join(f"{7 * c:g}" for c in value)}"')
               for frame, value in keys]

@@ -1,6 +1,6 @@
-// Holds every golden replay against this build: with the kernels of every width that the machine
-// has, and with several threads; with --once in one way only. --bless records those that are
-// missing or differ again, and tells what changed. docs/replay.md, "Golden replays".
+// Verifies every golden replay with this build: with the kernels of every width that the machine
+// has, and with several numbers of threads; with --once in one way only. --bless records all of
+// them again, and prints new ones and differences. docs/replay.md, "Golden replays".
 //
 // usage: golden SOURCE_FOLDER [--once | --bless]
 
@@ -29,18 +29,18 @@ namespace {
 namespace fs = std::filesystem;
 using namespace pliant;
 
-// As many frames as keep a golden replay quick where nothing is optimised.
+// Few enough frames for a build without optimisation.
 constexpr int most_frames = 24;
 constexpr int most_frames_of_large_surfaces = 12;
 constexpr long most_nodes = 41L * 41;
 
 struct Golden {
-  std::string name;  // of the scene in the source folder, without its ending
+  std::string name;  // of the scene in the source folder, without its extension
   fs::path scene;
   fs::path log;
 };
 
-// How a golden replay is run: nothing of it may show in a bit.
+// The settings of a run. They must not change a bit.
 struct Run {
   int lanes = widest_lanes;
   int threads = 1;
@@ -61,8 +61,8 @@ std::vector<Run> runs_to_do(bool once) {
   return runs;
 }
 
-// Of all examples, and of the reference tests, which reach what the examples leave out; in the
-// order of their names.
+// The golden replays of all examples, and of the reference tests, which cover features that the
+// examples do not use; in the order of their names.
 std::vector<Golden> find_goldens(const fs::path& source) {
   std::vector<Golden> goldens;
   for (const char* folder : {"examples", "tests/reference/scenes"}) {
@@ -78,7 +78,7 @@ std::vector<Golden> find_goldens(const fs::path& source) {
   return goldens;
 }
 
-// Logs of scenes that are no more.
+// Logs whose scenes no longer exist.
 std::vector<fs::path> find_orphans(const fs::path& source, const std::vector<Golden>& goldens) {
   std::vector<fs::path> orphans;
   for (const auto& entry : fs::recursive_directory_iterator(source / "tests/golden")) {
@@ -93,7 +93,7 @@ std::vector<fs::path> find_orphans(const fs::path& source, const std::vector<Gol
 
 void say(const std::string& line) { std::fputs((line + '\n').c_str(), stdout); }
 
-// Whether all is well with a golden replay, and what there is to say of it.
+// Whether a golden replay passed, and the lines to print about it.
 struct Outcome {
   bool is_well = true;
   std::vector<std::string> lines = {};
@@ -129,7 +129,7 @@ Result<int> last_frame(const Golden& golden) {
   return std::min(simulation->scene().end, simulation->scene().start + frames - 1);
 }
 
-// What a golden replay has become.
+// Describes the differences from a golden replay.
 std::vector<std::string> description(const ReplayVerdict& verdict) {
   std::vector<std::string> lines = verdict.causes;
   lines.insert(lines.end(), verdict.mismatches.begin(), verdict.mismatches.end());
@@ -167,7 +167,7 @@ Outcome bless(const Golden& golden) {
   return {.lines = description(*verdict)};
 }
 
-// The locale of whoever runs this, which an embedding program may set too.
+// Uses the user's locale, as an embedding program may.
 void take_locale() {
   if (!std::setlocale(LC_ALL, "")) return;  // not installed
   std::locale::global(std::locale(""));

@@ -1,10 +1,10 @@
-"""Runs inside Blender: makes a mesh with (u,v) and saves it in every format that pliant reads, by the
-settings that docs/your-mesh.md names.
+"""Runs inside Blender: makes a mesh with (u,v) and saves it in every format that pliant reads, with
+the settings of docs/your-mesh.md.
 
 usage: blender -b --factory-startup -noaudio -P blender_export.py -- FOLDER
 
-FOLDER gets sheet.obj, .ply, .glb, .gltf with its .bin, .fbx and .dae, default.fbx by the exporter's
-own settings, and world.npy: the vertices in Blender's world space.
+Writes to FOLDER: sheet.obj, .ply, .glb, .gltf with its .bin, .fbx and .dae, default.fbx with the
+exporter's default settings, and world.npy: the vertices in Blender's world space.
 """
 
 import math
@@ -14,7 +14,7 @@ import sys
 import bpy
 import numpy as np
 
-if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on needs what NumPy 1.24 has dropped
+if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on uses names that NumPy 1.24 removed
     np.bool = bool
 
 

@@ -1,11 +1,12 @@
-"""Runs inside Blender: opens files with its own importers and tells where their vertices are.
+"""Runs inside Blender: opens files with its own importers and reports the positions of their
+vertices.
 
 usage: blender -b --factory-startup -noaudio -P blender_look.py -- JOBS RESULTS
 
 JOBS is a JSON array of {kind, file, times?, fps?, mesh?, picture?}: kind is gltf, obj, ply, cache
 (a .pc2 or .mdd in a Mesh Cache modifier on `mesh`) or mdd_keys (the MDD add-on on `mesh`); times
-are frames of Blender. RESULTS gets an array of {name: [positions of each time]} and what else is
-known of the objects.
+are frames of Blender. Writes to RESULTS an array of {name: [positions of each time]} and other data
+of the objects.
 """
 
 import json
@@ -15,7 +16,7 @@ import addon_utils
 import bpy
 import numpy as np
 
-if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on needs what NumPy 1.24 has dropped
+if not hasattr(np, "bool"):  # Blender 3.4's glTF add-on uses names that NumPy 1.24 removed
     np.bool = bool
 
 
@@ -44,7 +45,7 @@ def at(time):
 
 
 def describe():
-    """What came along besides positions, by object."""
+    """The other imported data, by object."""
     return {each.name: {
         "faces": [list(face.vertices) for face in each.data.polygons],
         "smooth": [face.use_smooth for face in each.data.polygons],
@@ -76,7 +77,7 @@ def import_obj(file):
 
 
 def look_at_obj(job):
-    # Without the conversion of axes: the file's numbers as they are.
+    # Without conversion of axes: the numbers of the file.
     bpy.ops.wm.obj_import(filepath=job["file"], forward_axis="Y", up_axis="Z")
     return sampled([1])
 
@@ -104,7 +105,8 @@ def look_at_mdd_keys(job):
 
 
 def picture(file):
-    """A look at what is loaded, by the workbench renderer's software cousin, Cycles on the CPU."""
+    """Renders the loaded objects with Cycles on the CPU, since the workbench renderer needs a
+    GPU."""
     scene = bpy.context.scene
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for each in meshes():

@@ -1,9 +1,10 @@
-// Opens files in headless Chromium with three.js and tinyusdz, and tells where their vertices are.
+// Opens files in headless Chromium with three.js and tinyusdz, and reports the positions of their
+// vertices.
 //
 // usage: node browser.mjs FOLDER CHROMIUM < JOBS
-// JOBS is a JSON array of {kind, file, times?, picture?}: file lies in FOLDER, kind is gltf, usd,
-// tinyusdz, obj, ply or mdd; times are seconds into the animation. Prints a JSON array with what
-// page.js found for each. Both servers and browser see this machine only.
+// JOBS is a JSON array of {kind, file, times?, picture?}: file is in FOLDER, kind is gltf, usd,
+// tinyusdz, obj, ply or mdd; times are seconds into the animation. Prints a JSON array with the
+// results of page.js for each. Servers and browser use this machine only.
 
 import { createServer } from "node:http";
 import { readFile, writeFile } from "node:fs/promises";

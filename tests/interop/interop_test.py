@@ -1,11 +1,12 @@
-"""Programs that we did not write open what pliant writes, and must find our vertices at every frame;
-and pliant opens what Blender writes.
+"""Other programs open files that pliant writes, and must find our vertices at every frame; and
+pliant opens files that Blender writes.
 
 usage: interop_test.py PLIANT [PICTURE_FOLDER]
 
-Khronos's glTF validator, three.js and tinyusdz in headless Chromium, Blender. What each finds is
-compared with the float64 of .npy. Pictures of what three.js and Blender draw go to PICTURE_FOLDER.
-Needs what `script/bootstrap --interop` installs. Ends with the line "N passed, N failed".
+The programs are Khronos's glTF validator, three.js and tinyusdz in headless Chromium, and Blender.
+Their results are compared with the float64 of .npy. Pictures by three.js and Blender go to
+PICTURE_FOLDER. Needs the packages of `script/bootstrap --interop`. Ends with the line "N passed, N
+failed".
 """
 
 import json
@@ -28,8 +29,8 @@ PICTURES = None
 FRAMES = 12
 COLUMNS, ROWS = 9, 7
 
-# Two surfaces whose names meet in USD; one moves, turns and is mirrored, and its region passes over a
-# mesh with a seam of shading and two materials.
+# Two surfaces whose names clash in USD; one moves, turns and is mirrored, and its region crosses a
+# mesh with a shading seam and two materials.
 SCENE = """<scene version="1" fps="{fps}" start="1" end="{frames}">
   <surface name="relief-a"><mesh file="relief.obj"/>
     <transform rotate="20 30 -50" scale="1 1.5 -0.7"><animate attribute="translate">
@@ -45,12 +46,12 @@ SCENE = """<scene version="1" fps="{fps}" start="1" end="{frames}">
 """
 SURFACES = ("relief-a", "relief_a")
 
-# From Blender's axes, +z up, as rows times this.
+# Converts from Blender's axes, +z up: rows times this matrix.
 TO_Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
 def relief():
-    """OBJ text of a relief whose vertices and (u,v) stand in any order, and its faces."""
+    """OBJ text of a relief with vertices and (u,v) in shuffled order, and its faces."""
     shuffle = random.Random(3)
     nodes = [(i, j) for j in range(ROWS) for i in range(COLUMNS)]
     vertices, uvs = nodes[:], nodes[:]
@@ -86,7 +87,7 @@ def fps_of(rate):
 
 
 class Bakes:
-    """Everything baked once, and what each program says of it."""
+    """All bakes, made once, and the results of each program."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -123,7 +124,7 @@ class Bakes:
         run(PLIANT, "bake", self.path(f"{rate}.xml"), "-o", self.path(out), "--space", space, "--quiet", *more)
 
     def times(self, rate="film"):
-        """Times of the frames and half-way between them, as single precision has them."""
+        """Times of the frames and half-way between them, in single precision."""
         return [float(np.float32(k / 2 / fps_of(rate))) for k in range(2 * FRAMES - 1)]
 
     def ask_browser(self):
@@ -148,7 +149,8 @@ class Bakes:
         frames = list(range(1, FRAMES + 1))
         jobs = [{"kind": "gltf", "file": "whole.glb", "fps": [25, 1], "times": [k / 2 for k in range(2 * FRAMES - 1)],
                  "picture": os.path.join(PICTURES, "blender.png"), "picture_at": 5},
-                # Blender's glTF import counts whole rates only: our frames lie 24 * 1001/24000 apart.
+                # Blender's glTF import knows only whole frame rates; our frames are 24 * 1001/24000
+                # apart.
                 {"kind": "gltf", "file": "world.glb", "fps": [24, 1],
                  "times": [1.001 * k / 2 for k in range(2 * FRAMES - 1)]}]
         for name in SURFACES:
@@ -187,21 +189,22 @@ class Interop(unittest.TestCase):
         return self.bakes.expected[kind, name]
 
     def check(self, found, expected, size_of, roundings=2):
-        """Positions to single precision: so many half units in the last place of the largest."""
+        """Compares positions in single precision; the tolerance is `roundings` half units in the
+        last place of the largest."""
         self.assertEqual(found.shape, expected.shape)
         size = np.abs(size_of).max()
         self.assertLessEqual(np.abs(found - expected).max(), roundings * 2.0**-24 * size)
 
     def halves(self, frames):
-        """The frames, and the means between them: linear in between."""
+        """The frames and the means between them, as from linear interpolation."""
         result = [frames[0]]
         for before, after in zip(frames, frames[1:]):
             result += [(before + after) / 2, after]
         return result
 
     def check_split(self, samples, expected, roundings):
-        """Vertices of a mesh that a program has split or put in another order: each goes the way of
-        the vertex of ours where it begins."""
+        """Checks the vertices of a mesh that a program has split or reordered: each must move like
+        our vertex at its first position."""
         first = rows(samples[0])
         distance = np.linalg.norm(first[:, None] - expected[0][None], axis=2)
         source = distance.argmin(axis=1)
@@ -228,7 +231,7 @@ class Interop(unittest.TestCase):
                 samples = seen["surfaces"][name]
                 self.assertEqual(len(samples), 2 * FRAMES - 1)
                 for sample, frame in zip(samples, self.halves(expected)):
-                    # The weights half-way come from times in single precision.
+                    # The weights half-way are computed from times in single precision.
                     self.check(rows(sample)[:len(frame)], frame, expected, 40)
                 for sample, frame in zip(samples[::2], expected):
                     self.check(rows(sample)[:len(frame)], frame, expected, 4)
@@ -239,7 +242,7 @@ class Interop(unittest.TestCase):
         for name in SURFACES:
             samples = seen["surfaces"][name][::2]
             for sample, frame in zip(samples, self.expected(name)):
-                self.check(rows(sample)[:len(frame)], frame, self.expected(name), 16)  # quaternions too
+                self.check(rows(sample)[:len(frame)], frame, self.expected(name), 16)  # quaternions
 
     def test_three_js_plays_a_part_from_its_first_frame(self):
         seen = self.bakes.seen["browser", "gltf", "part.glb"]
@@ -285,7 +288,7 @@ class Interop(unittest.TestCase):
                 seen = self.bakes.seen["blender", "cache", f"world-{name}.{ending}"]
                 (samples,) = seen["positions"].values()
                 for sample, frame in zip(samples, self.halves(self.expected(name))):
-                    # Half-way Blender finds its place in the file through the scene's rate.
+                    # Half-way, Blender computes the place in the file from the scene's rate.
                     self.check(rows(sample) @ TO_Y_UP, frame, self.expected(name), 40)
 
     def test_blender_s_mdd_import_makes_the_same_shapes(self):
@@ -348,7 +351,7 @@ class Interop(unittest.TestCase):
                 self.assertEqual(points["times"], list(range(1, FRAMES + 1)))
                 found = np.array(points["values"]).reshape(FRAMES, -1, 3)
                 expected = self.expected(name, space)
-                self.check(found, expected, expected)  # the text is shortest, so rounded too
+                self.check(found, expected, expected)  # shortest text, so rounded too
                 extent = np.array(samples[f"/scene/{prim}.extent"]["values"]).reshape(FRAMES, 2, 3)
                 self.check(extent, np.stack([expected.min(axis=1), expected.max(axis=1)], axis=1), expected)
                 velocities = np.array(samples[f"/scene/{prim}.velocities"]["values"]).reshape(FRAMES, -1, 3)
@@ -369,11 +372,12 @@ class Interop(unittest.TestCase):
                 self.assertEqual(set(distance.argmin(axis=1)), set(range(len(first))))
 
 
-# What docs/your-mesh.md says of Blender's exporters: how many times as long, and whether +y is up.
+# Blender's exporters in docs/your-mesh.md: the factor of lengths, and whether +y is up.
 EXPORTS = {"sheet.obj": (1, True), "sheet.ply": (1, False), "sheet.glb": (1, True), "sheet.gltf": (1, True),
            "sheet.fbx": (1, True), "default.fbx": (100, True), "sheet.dae": (1, True)}
 
-# A force at a point of Blender's, said in the file's axes and unit. Its reach is a third of the sheet's.
+# A force at a point from Blender, in the axes and unit of the file. Its radius is about a third of
+# the sheet.
 POKE = """<scene version="1" fps="24" start="1" end="6"><surface name="s"><mesh file="{file}"/></surface>
 <point name="poke" center="{center}" direction="0 1 0" deformationRadius="{reach}" forceRadius="{half}"
  magnitude="{magnitude}"/></scene>
@@ -409,7 +413,7 @@ class FromBlender(unittest.TestCase):
                 # Six decimals in the text of an OBJ.
                 self.assertLess(distance.min(axis=1).max(), 1e-6 * np.abs(points).max())
                 self.assertEqual(set(source), set(range(len(points))))
-                # The force finds the vertex that it was placed at, and lifts it along the file's +y.
+                # The force lifts the vertex where it was placed, along the file's +y.
                 way = frames[-1] - frames[0]
                 self.assertEqual(points[source[way[:, 1].argmax()]].tolist(), points[31].tolist())
                 self.assertGreater(way[:, 1].max(), 1e-3 * size)
@@ -425,7 +429,7 @@ def main():
         suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender)))
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     failed = len(result.failures) + len(result.errors)
-    # A failure of what all tests need counts once, and none of them has run.
+    # A failure in the shared setup counts once; then no test has run.
     print(f"{result.testsRun - failed if result.testsRun else 0} passed, {failed} failed")
     sys.exit(0 if failed == 0 and result.testsRun > 0 else 1)
 

@@ -1,4 +1,4 @@
-// What browser.mjs runs in the page: opens a file and tells where its vertices are.
+// Run by browser.mjs in the page: opens a file and reports the positions of its vertices.
 
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
@@ -18,7 +18,7 @@ const renderer = new THREE.WebGLRenderer({
 const url_of = (job) => `/files/${encodeURIComponent(job.file)}`;
 const numbers = (array) => Array.from(array);
 
-// Everything in front of a camera, lit from the side; so the vertex shader has seen the targets.
+// Renders everything, lit from the side, so that the vertex shader has used the morph targets.
 function render(object) {
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(0xf4f1ea);
@@ -34,7 +34,7 @@ function render(object) {
   renderer.render(scene, camera);
 }
 
-// World positions of a mesh with its morph targets at the weights that it has now.
+// World positions of a mesh with its morph targets at their present weights.
 function positions_of(mesh) {
   const count = mesh.geometry.attributes.position.count;
   const vertex = new THREE.Vector3();
@@ -46,7 +46,7 @@ function positions_of(mesh) {
   return result;
 }
 
-// The meshes of a node are its materials: parts of one and the same vertices.
+// The meshes of a node are its materials: they share the same vertices.
 const first_mesh = (node) => {
   let found = null;
   node.traverse((each) => { if (each.isMesh) found ??= each; });
@@ -84,7 +84,7 @@ async function look_at_gltf(job) {
   return result;
 }
 
-// The samples as three.js's parser reads them, and whether its composer makes meshes of them.
+// The samples that three.js's parser reads, and whether its composer makes meshes of them.
 async function look_at_usd(job) {
   const text = await (await fetch(url_of(job))).text();
   const { specsByPath } = new USDAParser().parseData(text);

@@ -1,5 +1,5 @@
-// Runs Khronos's glTF validator. usage: node validate_gltf.mjs FILE…
-// Prints one JSON array, an entry a file: {file, errors, warnings, messages, animations, morphs}.
+// Runs Khronos's glTF validator. usage: node validate_gltf.mjs FILE… Prints one JSON array with an
+// entry per file: {file, errors, warnings, messages, animations, morphs}.
 
 import { readFile } from "node:fs/promises";
 import path from "node:path";

@@ -27,7 +27,8 @@ TOLERANCE = 1e-8
 
 
 def tolerance_of(reference):
-    """Absolute tolerance of a surface: 0, but for the rounding of a transform, when it rests.
+    """Absolute tolerance of a surface. For a surface at rest: 0, apart from the rounding of its
+    transform.
 
     A transform may follow a weighted curve, whose time is solved to a few ulps: the error in value is
     that times the slope, which grows without bound near a vertical tangent.

@@ -50,7 +50,8 @@ def apply_operator(w, hu, hv, b, c, d, tangents):
 def assemble(m, n, hu, hv, b, c, d):
     """The matrix of L on the interior nodes, row (i-1)*(n-2) + (j-1), ghosts eliminated (SPEC 4).
 
-    What rim values and tangents add is the operator applied to a field with a zero interior.
+    The contribution of rim values and tangents is the operator applied to a field with a zero
+    interior.
     """
     i, j = np.meshgrid(np.arange(1, m - 1), np.arange(1, n - 1), indexing="ij")
     rows, columns, values = [], [], []
@@ -175,7 +176,8 @@ def steps_of_frame(frame_length, dt, stepping):
 def advance(w, velocity, load, hu, hv, material, tangents, count, dt):
     """`count` backward Euler steps of the region `w` (M x N x 3); returns w and velocity.
 
-    SPEC 3: the rim is fixed; SPEC 4: everything but w and its velocity is held over the steps.
+    SPEC 3: the rim is fixed; SPEC 4: everything except w and its velocity is constant over the
+    steps.
     """
     m, n = w.shape[:2]
     density, damping = material["density"], material["damping"]
@@ -285,7 +287,7 @@ def falloff(force, s):
 
 
 def has_direction(force):
-    """Whether no direction is taken from a node to the force."""
+    """Whether the force's direction does not depend on the direction from a node to the force."""
     return (force.kind in ("point", "uniform", "noise", "inertia") or
             (force.kind == "line" and force.channels["direction"]))
 
@@ -403,7 +405,8 @@ def is_exact_distance(force, frame, point, radius):
 
 
 class Diagnostics:
-    """What a scene exercised, and how near it came to decisions that rounding could turn."""
+    """The features that a scene used, and how near it came to decisions that rounding could
+    change."""
 
     def __init__(self):
         self.solves = []  # (frame, surface, (i0, i1, j0, j1))
@@ -413,8 +416,8 @@ class Diagnostics:
         self.direction_margin = math.inf  # smallest non-exact delta where delta gives a direction
         self.time_margin = math.inf  # smallest |t - T| / T of an overshoot step
         self.settle_margin = math.inf  # smallest |motion - 1e-6 D| / (1e-6 D) of `recover`
-        self.recovering = 0  # nodes that counted as selected, over all frames
-        self.unions = 0  # solves of regions that are no box
+        self.recovering = 0  # nodes counted as selected, over all frames
+        self.unions = 0  # solves of regions that are not a box
 
     def note_distances(self, force, frame, points, is_untouched, radii):
         """`is_untouched`: nodes at their rest position under an identity transform."""
@@ -461,7 +464,8 @@ class SurfaceRun:
         self.unsettled = np.zeros(self.rest.shape[:2], dtype=bool)
 
     def enabled_forces(self, frame):
-        """(force, selects a region) and (group) lists of what acts on this surface."""
+        """Lists of the forces and groups that act on this surface: (force, selects a region) and
+        (group)."""
         def acts(item):
             is_target = item.targets is None or self.surface.name in item.targets
             return is_target and item.enabled(frame)[0] != 0
@@ -492,7 +496,7 @@ class SurfaceRun:
         return own
 
     def regions(self, own):
-        """What is solved, nodes that have not come back to rest included (SPEC 5, 6)."""
+        """The regions that are solved, including nodes not yet back at rest (SPEC 5, 6)."""
         how = self.surface.choices["combine"]
         boxes = [box for box in own.values() if box is not None]
         regions = combined(boxes, how)
@@ -509,7 +513,7 @@ class SurfaceRun:
         return regions
 
     def settle(self, regions):
-        """Puts what is not interior to a region at rest."""
+        """Sets all nodes that are not interior to a region to rest."""
         moving = np.zeros(self.rest.shape[:2], dtype=bool)
         for region in regions:
             moving |= interior_of(region, moving.shape)
@@ -517,7 +521,7 @@ class SurfaceRun:
         self.velocity[~moving] = 0
 
     def note_settling(self, before, interior, region):
-        """Which of the nodes that were solved are not at rest yet."""
+        """The solved nodes that are not yet at rest."""
         rest = np.concatenate([self.rest[i0:i1 + 1, j0:j1 + 1].reshape(-1, 3)
                                for i0, i1, j0, j1 in region])
         length = 1e-6 * float(np.linalg.norm(rest.ptp(axis=0)))
@@ -545,7 +549,7 @@ class SurfaceRun:
         return transform.vector_to_object(total)
 
     def solve(self, frame):
-        """The solve at `frame`, which makes the mesh of frame + 1."""
+        """The solve at `frame`, which computes the mesh of frame + 1."""
         surface = self.surface
         forces, groups = self.enabled_forces(frame)
         transform = Transform(surface, frame)
@@ -593,7 +597,7 @@ class SurfaceRun:
                     tangents, count, dt)
             self.position[interior] = (origin + w)[interior]
             velocities[interior] = velocity[interior]
-            if self.noise is not None:  # a stand-in for another implementation's rounding
+            if self.noise is not None:  # simulates another implementation's rounding
                 shift = (self.position - self.rest)[interior]
                 shift *= 1 + 1e-12 * self.noise.standard_normal(shift.shape)
                 self.position[interior] = self.rest[interior] + shift

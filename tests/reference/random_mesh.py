@@ -7,7 +7,7 @@ import numpy as np
 
 
 def text_of(value):
-    """Numbers of an attribute, shortest round trip."""
+    """The text of an attribute's numbers: the shortest that reads back to the same numbers."""
     return " ".join(repr(float(x)) for x in np.atleast_1d(value))
 
 

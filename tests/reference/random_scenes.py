@@ -62,7 +62,7 @@ def write_element(out, depth, tag, attributes, channels, closing_lines=()):
 
 
 class SceneMaker:
-    """Draws one scene; `tags` says what it exercises."""
+    """Draws one random scene; `tags` are the features it uses."""
 
     def __init__(self, rng, folder, name):
         self.rng, self.folder, self.name = rng, folder, name
@@ -89,7 +89,8 @@ class SceneMaker:
     # Curves
 
     def animate(self, name, values, is_safe=False, is_exact=False):
-        """Lines of an <animate> through `values`; `is_safe` keeps between them as far as it can.
+        """Lines of an <animate> through `values`; `is_safe` keeps the curve between them as far as
+        possible.
 
         `is_exact` keeps every sample representable: steps, or lines over power-of-two spans.
         """
@@ -283,7 +284,7 @@ class SceneMaker:
         return float(world.reshape(-1, 3).ptp(axis=0).max())
 
     def path(self, name, world):
-        """A channel for a centre: at rest, or travelling, perhaps off the sheet and back."""
+        """A channel for a centre: constant, or moving, perhaps off the sheet and back."""
         if self.chance(0.5):
             return Channel(name, text_of(self.place(world)))
         stops = [self.place(world, not self.chance(0.2)) for _ in range(self.pick(2, 3, 4))]
@@ -498,7 +499,7 @@ class SceneMaker:
 
 
 def make_scene(seed, index, folder, rejections):
-    """Writes one scene that is kept; returns its tags, its relative peak and its diagnostics."""
+    """Writes one accepted scene; returns its tags, its relative peak and its diagnostics."""
     name = f"random-{seed}-{index:03d}"
     path = os.path.join(folder, name + ".xml")
     for attempt in range(1000):
@@ -521,7 +522,7 @@ def make_scene(seed, index, folder, rejections):
                     break
                 factor *= 0.3 / peak
             if trouble is None and not 0.03 <= peak <= 1.0:
-                # A few scenes in which nothing moves are welcome: they must stay exactly at rest.
+                # A few scenes without motion are wanted: they must stay exactly at rest.
                 if peak > 0 or rng.random() > 0.05:
                     trouble = "too little or too much motion"
                 else:
@@ -542,7 +543,7 @@ def make_scene(seed, index, folder, rejections):
 
 
 def note_run(tags, diagnostics):
-    """Tags that only a run can tell."""
+    """Tags known only after a run."""
     if diagnostics.recovering:
         tags.add("ran: recovering nodes")
     if diagnostics.unions:

@@ -1,6 +1,6 @@
 """Reads scene files and meshes, trusting them (SCENE_FORMAT; SPEC 1).
 
-Only what the reference engine evaluates is understood; anything else fails an assertion.
+Supports only features of the reference engine; anything else fails an assertion.
 """
 
 import os
@@ -146,7 +146,7 @@ def flat_grid(element):
 
 
 def read_obj(path):
-    """A <mesh>: positions in file order, and the one (u,v) of each, from the faces."""
+    """A <mesh>: positions in file order, and the single (u,v) of each, from the faces."""
     positions, coordinates, uv_of = [], [], {}
     with open(path, encoding="utf-8") as lines:
         for line in lines:

@@ -1,8 +1,8 @@
-"""Whether two good implementations must agree on a scene.
+"""Decides whether two good implementations must agree on a scene.
 
 No selection distance within rounding of a radius (exact ties on representable lattices excepted),
-no direction from a point that is all but the node itself, no curve sampled where it is vertical,
-and a run that does not amplify noise of 1e-12 to anything near the tolerance of the comparison.
+no direction from a point that almost equals the node, no curve sampled at a vertical tangent, and a
+run that does not amplify noise of 1e-12 to near the tolerance of the comparison.
 """
 
 import numpy as np

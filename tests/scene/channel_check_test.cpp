@@ -27,7 +27,7 @@ TEST_CASE("each channel's rule is checked at each frame of the range", "[scene][
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})}, 24);
   Surface& surface = s.surfaces[0];
   Force& force = s.forces[0];
-  // Good at both ends of the range, bad in the middle.
+  // Valid at both ends of the range, invalid in the middle.
   const Channel<1> dips = curve({{1, 1}, {12, -1}, {24, 1}});
   std::string expected;
   SECTION("density") {

@@ -27,7 +27,7 @@ TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
   }
   std::set<std::string> expected;
   for (const ElementFormat& element : scene_format()) {
-    if (element.name == "path") continue;  // has a channel of its own, see below
+    if (element.name == "path") continue;  // has its own channel, see below
     const auto& parents = element.parents;
     const bool is_child = std::find(parents.begin(), parents.end(), "scene") != parents.end();
     const std::string owner(is_child && element.name != "surface" ? element.name : "s");
@@ -49,7 +49,7 @@ TEST_CASE("a position on a path has its progress as a channel", "[scene][channel
       fmt::format(fmt::runtime(path), "to"), fmt::format(fmt::runtime(path), "center"))));
   std::vector<std::string> paths;
   for (const NamedChannel& channel : channels_of(scene)) paths.push_back(channel.path);
-  // Of the force in the group, no deformationRadius.
+  // The force in the group has no deformationRadius.
   CHECK(paths == std::vector<std::string>{"l.enabled", "l.magnitude", "l.deformationRadius",
                                           "l.forceRadius", "l.from", "l.to.progress", "p.enabled",
                                           "p.magnitude", "p.forceRadius", "p.center", "p.direction",

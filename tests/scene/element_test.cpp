@@ -102,7 +102,7 @@ TEST_CASE("text belongs nowhere", "[scene][element]") {
 }
 
 TEST_CASE("one mistake is told once", "[scene][element]") {
-  // Each of these would bring a second complaint if what is unknown counted as absent.
+  // Each of these would cause a second complaint if an unknown value counted as absent.
   check_each({
       {scene_with("<point nam=\"poke\"/>"), 2, {"\"nam\"; did you mean \"name\"?"}},
       {scene_with("<surface nme=\"s\"><grid columns=\"3\" rows=\"3\"/></surface>\n"

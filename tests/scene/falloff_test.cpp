@@ -19,7 +19,7 @@ TEST_CASE("a falloff is a curve over s", "[scene][falloff]") {
   REQUIRE(scene.forces.at(0).falloff_curve);
   const Curve<1>& curve = *scene.forces[0].falloff_curve;
   CHECK(curve.value(0)[0] == 1);
-  CHECK_THAT(curve.value(0.3)[0], WithinAbs(0.625, 1e-15));  // linear, as the element says
+  CHECK_THAT(curve.value(0.3)[0], WithinAbs(0.625, 1e-15));  // linear, as given in the element
   CHECK(curve.value(0.75)[0] == 0.25);
   CHECK(curve.value(2)[0] == -3);
   CHECK(curve.keys().overshoot == Overshoot::Contain);

@@ -18,7 +18,7 @@ struct Row {
   std::string element, attribute, type, unit, standard, range, keyable;
 };
 
-/// The cells of a line `| a | b |`, without blanks and backquotes; an en dash stands for nothing.
+/// The cells of a line `| a | b |`, without blanks and backquotes; an en dash means an empty cell.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::string cell;
@@ -60,7 +60,7 @@ std::vector<Row> documented() {
   std::vector<Row> rows;
   for (const auto& cells : rows_below("attribute")) {
     CAPTURE(cells);
-    REQUIRE(cells.size() == 8);  // the last says what it means
+    REQUIRE(cells.size() == 8);  // the last one is the meaning
     CHECK_FALSE(cells[7].empty());
     rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6]});
   }
@@ -95,17 +95,18 @@ TEST_CASE("the page has one row for each attribute, as the reader knows it", "[s
   for (const auto& [key, row] : rows) FAIL_CHECK("the reader does not know " << key);
 }
 
-/// Whether it stands in a scene, with a name: a force or a group.
+/// Whether the element is a direct child of a scene with a name: a force or a group.
 bool is_force(const std::string& element) {
   const std::set<std::string> forces = {"point",  "radial", "line",    "uniform",
                                         "vortex", "noise",  "inertia", "group"};
   return forces.contains(element);
 }
 
-/// A scene that holds `element` with what it needs, and `given` besides, unless that gives it.
+/// A scene that contains `element` with its required attributes and `given`, which may replace one
+/// of them.
 std::string scene_around(const std::string& element, const std::string& attribute,
                          const std::string& value) {
-  // Some attributes of a key apply to one interpolation only.
+  // Some attributes of a key are valid for one interpolation only.
   const std::string easing = attribute == "amplitude" || attribute == "period"
                                  ? " interpolation=\"elasticIn\""
                              : attribute == "back"    ? " interpolation=\"backIn\""

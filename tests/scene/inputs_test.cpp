@@ -12,7 +12,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// A glTF that refers to these, be there anything in them or not.
+// A glTF that refers to these URIs, valid or not.
 std::string gltf_with(const std::vector<std::string>& uris) {
   std::string buffers;
   for (const std::string& uri : uris)
@@ -75,7 +75,7 @@ TEST_CASE("a scene's root is its folder, another one, or each mesh's own", "[sce
   scene.surfaces.push_back({.name = "s", .shape = MeshFile{.path = mesh}});
   CHECK(inputs_of(scene).size() == 2);
   CHECK(inputs_of(Scene{}).empty());
-  // In the current folder: not that of a mesh elsewhere.
+  // Relative to the current folder, not to the folder of a mesh elsewhere.
   const auto parsed = parse_scene(scene_of_meshes({mesh.string()}), "x", "").value();
   CHECK(std::get<MeshFile>(parsed.surfaces.front().shape).root == ".");
 }

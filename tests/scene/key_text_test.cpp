@@ -10,7 +10,7 @@ namespace {
 
 using Kind = Interpolation::Kind;
 
-/// The curve of poke's magnitude as its author wrote it.
+/// The keys of poke's magnitude, as given.
 CurveKeys<1> curve_of(const std::string& attributes, const std::string& keys) {
   return scene_of(animate_with(attributes, keys)).forces.at(0).magnitude.curve().keys();
 }
@@ -75,7 +75,7 @@ TEST_CASE("every tangent has its word, or is a slope", "[scene][key_text]") {
   const Key<1> handles = read_key("inHandle=\"-2 3\" outHandle=\"0 4\"");
   CHECK(handles.in == Tangent<1>{.kind = Side::Handle, .handle_frames = -2, .handle_value = {3}});
   CHECK(handles.out == Tangent<1>{.kind = Side::Handle, .handle_value = {4}});
-  // One side is told, the other keeps the default.
+  // One side is given, the other keeps the default.
   const Key<1> mixed = read_key("out=\"2\"", "tangent=\"spline\"");
   CHECK(mixed.in.kind == Side::Spline);
   CHECK(mixed.out == Tangent<1>{.kind = Side::Slope, .slope = {2}});

@@ -25,7 +25,7 @@ TEST_CASE("keys stand in increasing order of frames", "[scene][keys]") {
        6,
        {"frame 5 is not after frame 9 of line 5", "increasing order"}},
   });
-  // A key that is out of place is told once, and does not make those behind it wrong.
+  // A key out of order is reported once, and does not cause problems for the keys after it.
   CHECK(problems_of(animate_with("",
                                  "<key frame=\"1\" value=\"0\"/><key frame=\"120\" value=\"0\"/>"
                                  "<key frame=\"13\" value=\"0\"/><key frame=\"14\" value=\"0\"/>"))

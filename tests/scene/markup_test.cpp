@@ -146,8 +146,8 @@ TEST_CASE("every truncated prefix of a scene is an error with a line", "[scene][
 }
 
 TEST_CASE("no mutation of a scene crashes the reader", "[scene][markup]") {
-  // A fixed seed: a crash can be repeated. Bytes are flipped, cut out, doubled, or replaced by
-  // those that mean something to XML and to numbers.
+  // A fixed seed, so that a crash can be reproduced. Bytes are flipped, removed, doubled, or
+  // replaced by characters with a meaning in XML or numbers.
   std::mt19937 random(20'050'613);
   const auto below = [&](std::size_t count) { return random() % count; };
   constexpr std::string_view telling = "<>\"'&;=/!?-.,+eE0123456789 \n\t#xX:ax\xC3\x00\xFF";

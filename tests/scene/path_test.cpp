@@ -29,7 +29,7 @@ TEST_CASE("a position may follow a path", "[scene][path]") {
   CHECK(line.from.path() == nullptr);
   REQUIRE(line.to.path());
   CHECK_FALSE(line.to.is_animated());
-  CHECK_THAT(line.to.at(1)[0], WithinAbs(1, 1e-9));  // half of a way that is as long on both sides
+  CHECK_THAT(line.to.at(1)[0], WithinAbs(1, 1e-9));  // half of a path of two equally long parts
   const auto& vortex = std::get<VortexChannels>(scene.forces.at(1).shape);
   REQUIRE(vortex.center.path());
   CHECK(vortex.center.is_animated());

@@ -91,7 +91,7 @@ TEST_CASE("the example of the format is read to exact values", "[scene][read]") 
   CHECK(scene.origin.line_of("poke", "center") == 10);
   CHECK(scene.origin.line_of("poke", "magnitude") == 11);
   CHECK(scene.origin.line_of("crease", "magnitude") == 18);
-  CHECK(scene.origin.line_of("crease", "enabled") == 18);  // not given: the element's
+  CHECK(scene.origin.line_of("crease", "enabled") == 18);  // not given: the line of the element
 }
 
 TEST_CASE("everything that is left out has its documented default", "[scene][read]") {
@@ -238,7 +238,7 @@ TEST_CASE("a long value does not make a long message", "[scene][read]") {
     }
 }
 
-/// A folder that is gone when the test is over.
+/// A temporary folder, removed after the test.
 class Folder {
  public:
   Folder() : path_(std::filesystem::temp_directory_path() / "pliant-scene-read-test") {
@@ -288,7 +288,8 @@ TEST_CASE("a file that cannot be read is one clear line", "[scene][read]") {
   CHECK_THAT(empty.message, contains_text("the file is empty"));
 
   const std::filesystem::path huge = folder.write("huge.xml", "");
-  std::filesystem::resize_file(huge, (std::uintmax_t{256} << 20U) + 1);  // a hole: takes no disk
+  std::filesystem::resize_file(huge, (std::uintmax_t{256} << 20U) + 1);  // sparse: needs no disk
+                                                                         // space
   const Error too_large = refused(huge);
   CHECK(too_large.code == ErrorCode::Unreadable);
   CHECK_THAT(too_large.message, contains_text("larger than 256 MiB"));
@@ -308,7 +309,7 @@ TEST_CASE("a file with a mistake tells also what a run would have refused", "[sc
   const auto with = [&](std::string_view material, std::string_view point) {
     return problems_of(scene_with(fmt::format(fmt::runtime(rest), material, point)));
   };
-  CHECK(with("", "").empty());  // alone these wait for the run: curves may be looked at without one
+  CHECK(with("", "").empty());  // no other problem: the run checks these
 
   const auto all = with("", "<pond/>");
   REQUIRE(all.size() == 4);
@@ -318,7 +319,8 @@ TEST_CASE("a file with a mistake tells also what a run would have refused", "[sc
   CHECK_THAT(all[3], Catch::Matchers::StartsWith("7: poke.forceRadius at frame 11 is -"));
   CHECK_THAT(all[2], Catch::Matchers::StartsWith("7: <point> has no element \"pond\""));
 
-  // What is not sound is not held against its default: c is not judged by a d that is no number.
+  // An unsound value is not replaced by its default in checks: c is not checked against a d that is
+  // not a number.
   const auto some = with(" d=\"9x\"", "");
   REQUIRE(some.size() == 3);
   CHECK_THAT(some[1], Catch::Matchers::StartsWith("4: <material> d=\"9x\""));

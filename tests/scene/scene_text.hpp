@@ -9,18 +9,18 @@
 
 namespace pliant::testing {
 
-/// A scene of one frame range around `body`, whose first line is line 2.
+/// A scene around `body`, whose first line is line 2.
 inline std::string scene_with(std::string_view body) {
   return "<scene version=\"1\" start=\"1\" end=\"96\">\n" + std::string(body) + "\n</scene>\n";
 }
 
-/// A surface named sheet around `parts`, and a grid at the line before them.
+/// A surface named sheet around a grid and `parts`, which begin on the line after the grid.
 inline std::string surface_with(std::string_view parts) {
   return scene_with("<surface name=\"sheet\"><grid columns=\"5\" rows=\"4\"/>\n" +
                     std::string(parts) + "</surface>");
 }
 
-/// A point force named poke around `children`, at the line before them.
+/// A point force named poke around `children`, which begin on the line after it.
 inline std::string force_with(std::string_view children) {
   return scene_with("<point name=\"poke\">\n" + std::string(children) + "</point>");
 }
@@ -33,7 +33,7 @@ inline std::string animate_with(std::string_view attributes, std::string_view ke
 
 inline Result<Scene> read(std::string_view text) { return parse_scene(text, "plate.xml", "shots"); }
 
-/// The scene that a text must be; its problems are shown if it is not.
+/// The scene of a valid text; fails with its problems if it is not valid.
 inline Scene scene_of(std::string_view text) {
   Result<Scene> scene = read(text);
   if (!scene)
@@ -42,7 +42,7 @@ inline Scene scene_of(std::string_view text) {
   return *scene;
 }
 
-/// All problems of a text, `LINE: MESSAGE` each; empty for a sound scene.
+/// All problems of a text, `LINE: MESSAGE` each; empty for a valid scene.
 inline std::vector<std::string> problems_of(std::string_view text) {
   const Result<Scene> scene = read(text);
   if (scene) return {};
@@ -53,7 +53,7 @@ inline std::vector<std::string> problems_of(std::string_view text) {
   return problems;
 }
 
-/// A bad scene and all that its only problem has to say.
+/// A bad scene, and the expected parts of its only problem.
 struct BadScene {
   std::string text;
   int line;

@@ -74,7 +74,7 @@ TEST_CASE("what is no number in the C locale is a complaint that says why", "[sc
       {"1 2", "one number is required, not 2"},
       {"\xC2\xA0"
        "5",
-       "not a number"},  // a no-break space is no XML blank
+       "not a number"},  // a no-break space is not a blank in XML
       {"٣", "not a number"},
   };
   for (const Row& row : rows) {

@@ -8,7 +8,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// Two forces, one of them switched, and a group with one of its own.
+// Two forces, one of them switched, and a group with another force.
 Scene grouped_scene() {
   Scene s =
       scene({sheet("a")}, {poke("f", {0, 0, 0}), poke("g", {3, 0, 0}), poke("h", {-3, 0, 0})}, 20);
@@ -79,7 +79,7 @@ TEST_CASE("what stands still differs by its magnitude alone", "[simulation][acti
       [&] { s.forces[0].shape = VortexChannels{.center = turned}; },
       [&] { s.forces[0].shape = VortexChannels{.axis = turned}; },
       [&] { s.forces[0].shape = VortexChannels{.pull = moved}; },
-      [&] { s.forces[0].shape = NoiseChannels{}; },  // it wavers by itself
+      [&] { s.forces[0].shape = NoiseChannels{}; },  // noise varies over time
       [&] { s.forces[0].shape = CustomForce{}; },
       [&] { s.groups[0].center = turned; },
       [&] { s.groups[0].deformation_radius = moved; },
@@ -94,6 +94,6 @@ TEST_CASE("what stands still differs by its magnitude alone", "[simulation][acti
   s = still;
   s.forces[0].shape = NoiseChannels{.rate = 0};
   CHECK(stands());
-  s.forces[1].shape = PointChannels{.center = turned};  // not one of them
+  s.forces[1].shape = PointChannels{.center = turned};  // not among the forces
   CHECK(stands());
 }

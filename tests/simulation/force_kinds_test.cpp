@@ -18,14 +18,14 @@ double difference(const std::vector<Field>& a, const std::vector<Field>& b) {
   return most;
 }
 
-// The force as the only one of a group with the region that it had.
+// The same scene with its force as the only one of a group with the same region.
 Scene grouped(Scene s) {
   Force& force = s.forces[0];
   s.groups.push_back({.name = "g",
                       .center = std::get<PointChannels>(force.shape).center,
                       .deformation_radius = force.deformation_radius});
   force.group = "g";
-  force.deformation_radius = 1;  // is not read
+  force.deformation_radius = 1;  // not used
   return s;
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("a force in a group pushes only within the group's region", "[simulati
     }
   }
   CHECK(peak(baked(s, "s")) > 0);
-  // And nothing is told of the region that it lacks.
+  // There is no warning about its missing region.
   auto simulation = Simulation::make(s).value();
   REQUIRE(simulation.at(s.end));
   CHECK(simulation.warnings().empty());
@@ -90,12 +90,12 @@ TEST_CASE("a uniform force on the whole plate is the load of SPEC 11", "[simulat
   s.forces[0].force_radius = 0.01;
   const double height = baked(s, "s")[1](41 * 20 + 20, 1);
   CHECK_THAT(height, WithinRel(0.00126532 * 2000, 0.01));
-  s.forces[0].deformation_radius = 0;  // but for 0, less than which is nothing
+  s.forces[0].deformation_radius = 0;  // except 0, since no distance is less than 0
   CHECK(peak(baked(s, "s")) == 0);
 }
 
 TEST_CASE("a vortex at rest turns the sheet and lifts nothing", "[simulation][vortex]") {
-  // No node on the axis: off it by a rounding, one would be pushed with full strength.
+  // No node is on the axis: a rounding error off it, a node would be pushed with full strength.
   Scene s = scene({sheet("s", 14)}, {poke("f", {0, 0, 0}, 500)}, 6);
   s.forces[0].shape = VortexChannels{};
   s.forces[0].deformation_radius = s.forces[0].force_radius = 20;
@@ -134,11 +134,11 @@ TEST_CASE("inertia leaves a surface behind when it sets off", "[simulation][iner
   const auto sag = [&](int frame) {
     const auto at = simulation.at(frame).value();
     const auto positions = at.surface("s").positions();
-    return positions(112, 1) - positions(0, 1);  // the middle against a corner
+    return positions(112, 1) - positions(0, 1);  // the middle relative to a corner
   };
   CHECK(sag(2) == 0);
   CHECK(sag(5) < -1e-4);
-  // The surface's space feels the same whether the surface or the world is turned.
+  // In the surface's space it makes no difference whether the surface or the world is turned.
   Scene turned = s;
   turned.surfaces[0].transform.rotate = Value<3>{90, 0, 0};
   turned.surfaces[0].transform.translate = vector_curve({{3, {0, 0, 0}}, {9, {0, 0, 4}}});
@@ -176,7 +176,7 @@ TEST_CASE("an unsound answer of a custom force ends the run and is located",
   CHECK(failed.error().code == ErrorCode::NotFinite);
   CHECK_THAT(failed.error().message, contains_text("surface \"s\", frame 4: force \"wind\": "));
   CHECK_THAT(failed.error().message, contains_text("not finite"));
-  bad_from = 100;  // it is sound again: so is the simulation
+  bad_from = 100;  // the force is valid again, and so is the simulation
   CHECK(simulation.at(5));
   std::get<CustomForce>(s.forces[0].shape).distance = [](const Vector3d&, const ForceTime&) {
     return std::nan("");

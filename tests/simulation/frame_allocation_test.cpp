@@ -1,5 +1,5 @@
-// From the third frame on playing a scene into files allocates nothing while its regions keep their
-// shape. An executable of its own, since it counts what everyone allocates.
+// From the third frame on, playing a scene into files allocates nothing while its regions keep
+// their shape. A separate executable, since it counts all allocations of the process.
 
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,7 @@ Force force_at(double x, double z, double radius, std::string name) {
   return force;
 }
 
-// Large enough that threads take part, and with names that fill more than a short string.
+// Large enough to use threads, and with names too long for the short-string optimisation.
 Scene scene_of(int side, Combine combine) {
   Scene scene;
   scene.end = 40;
@@ -93,7 +93,7 @@ int main() {
       }
     }
   }
-  // A file a frame has its names to make, however many vertices there are.
+  // With one file per frame, file names are allocated, independent of the number of vertices.
   const long small = allocations_of(41, Combine::Box, 1, "ply");
   const long large = allocations_of(161, Combine::Box, 1, "ply");
   std::printf("ply: %ld and %ld allocations in 8 frames\n", small, large);

@@ -9,13 +9,13 @@ using namespace pliant;
 
 namespace {
 
-// 6 doubles a node.
+// 6 doubles per node.
 FrameCache::States states(double mark) {
   return {{Field::Constant(10, 3, mark), Field::Zero(10, 3)}};
 }
 constexpr std::size_t bytes = 10 * 6 * sizeof(double);
 
-// As a simulation does it that plays through.
+// Calls the cache as a simulation does when playing forwards.
 void play(FrameCache& cache, int last) {
   for (int frame = 1; frame <= last; ++frame) {
     if (cache.wants_checkpoint(frame)) cache.keep(frame, states(frame));
@@ -71,13 +71,13 @@ TEST_CASE("beyond the budget every frame is within an interval that is as told",
 
 TEST_CASE("what is left of the room goes to the frames used last", "[simulation][cache]") {
   FrameCache cache(0, 8 * bytes);
-  play(cache, 64);  // a checkpoint each 16 frames
+  play(cache, 64);  // a checkpoint every 16 frames
   REQUIRE(cache.interval() == 16);
   for (const int frame : {40, 41, 42, 43}) cache.keep(frame, states(frame));
   cache.use(40);
   cache.keep(44, states(44));
   CHECK(cache.latest_until(40) == 40);
-  CHECK(cache.latest_until(41) == 40);  // used longest ago
+  CHECK(cache.latest_until(41) == 40);  // 41 was the least recently used
   CHECK(cache.latest_until(44) == 44);
   for (const int frame : {16, 32, 48, 64}) CHECK(cache.latest_until(frame) == frame);
 }
@@ -86,7 +86,7 @@ TEST_CASE("a cache keeps its promise whatever the order of frames", "[simulation
   std::mt19937 random(GENERATE(1, 2, 3, 4, 5));
   const int room = std::uniform_int_distribution(1, 12)(random);
   MemoryBudget memory(room * bytes);
-  FrameCache cache(-5, 100 * bytes, &memory);  // memory is what is short
+  FrameCache cache(-5, 100 * bytes, &memory);  // the memory is the tighter limit
   play(cache, 80);
   for (int n = 0; n < 500; ++n) {
     const int frame = std::uniform_int_distribution(-5, 80)(random);

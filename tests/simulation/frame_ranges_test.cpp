@@ -19,7 +19,7 @@ TEST_CASE("of many ranges the first are told", "[simulation][frame_ranges]") {
   FrameRanges ranges;
   for (int frame = 0; frame < 1000; frame += 2) ranges.add(frame);
   CHECK(ranges.to_string(3) == "0, 2, 4 and 497 more ranges to 998");
-  CHECK(ranges.to_string(499) == ranges.to_string());  // one left out would be as long
+  CHECK(ranges.to_string(499) == ranges.to_string());  // a summary of one range would be as long
   ranges.add(1);
   CHECK(ranges.to_string(2) == "0-2, 4 and 497 more ranges to 998");
 }

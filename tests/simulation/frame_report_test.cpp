@@ -10,7 +10,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// Two forces that travel towards each other and are off at the end, on a surface that recovers.
+// Two forces that move towards each other and are disabled at the end, on a surface that recovers.
 Scene meeting(Combine how) {
   Scene s = scene({sheet("s", 31), sheet("off"), sheet("late", 9)}, {}, 16);
   s.surfaces[0].solver.combine = how;
@@ -66,7 +66,7 @@ TEST_CASE("a report tells what the solve at its frame moves", "[simulation][repo
       }
       const bool has_moved = before.row(node) != after.row(node);
       moved += is_held;
-      // What moves is solved; the rest may only settle.
+      // Nodes that move are solved; the others may only settle.
       if (has_moved && !is_held)
         CHECK((after.row(node) == simulation.rest_shapes()[0].mapping.rest.row(node)));
     }

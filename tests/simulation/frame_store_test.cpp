@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t plenty = std::size_t{1} << 30;
 
-// The channel's samples at the frames around a scene, each held for a frame; what they are from
-// frame k on goes through `change`.
+// A step curve with the channel's samples at the frames around a scene; those from frame k on are
+// passed through `change`.
 template <int D, class AnyChannel>
 Curve<D> sampled(const AnyChannel& channel, int k,
                  const std::function<Value<D>(Value<D>)>& change) {
@@ -48,8 +48,8 @@ void shift_from(AnyChannel& channel, int k) {
 struct Edit {
   const char* channel;
   void (*apply)(Scene& scene, int k);
-  int delay = 0;     // frames until what is sampled changes
-  int surface = -1;  // the one that it is about; -1: any
+  int delay = 0;     // frames until the sampled value changes
+  int surface = -1;  // the surface concerned; -1: any
 };
 
 const std::vector<Edit> edits = {
@@ -73,7 +73,7 @@ const std::vector<Edit> edits = {
     {"frequency",
      [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].shape).frequency, k); },
      0, 0},
-    // The cells that have passed by a frame are those of the frames before.
+    // The noise's time at a frame is a sum over the frames before it.
     {"rate",
      [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].shape).rate, k); }, 1, 0},
     {"group radius", [](Scene& s, int k) { scale_from(s.groups[0].deformation_radius, k); }},
@@ -92,7 +92,7 @@ std::vector<std::string> states_of(const Scene& scene, FrameStore& store, FrameC
   return states;
 }
 
-// Gives damaged bytes, now and then.
+// Returns damaged bytes now and then.
 class BadStore final : public FrameStore {
  public:
   explicit BadStore(unsigned seed) : random_(seed) {}
@@ -127,7 +127,7 @@ TEST_CASE("an edit costs the frames from where it takes effect", "[simulation][s
   Scene scene = moving_scene();
   MemoryFrameStore store(plenty);
   FrameCounts counts;
-  // The same samples, said in another way.
+  // The same samples, expressed differently.
   edit.apply(scene, 1000);
   CHECK(states_of(scene, store, counts) == all_states(moving_scene()));
   CHECK(counts.solved == scene.end - scene.start);
@@ -139,13 +139,13 @@ TEST_CASE("an edit costs the frames from where it takes effect", "[simulation][s
   std::vector<int> frames(static_cast<std::size_t>(scene.end - scene.start + 4));
   std::iota(frames.begin(), frames.end(), scene.start);
   std::shuffle(frames.begin(), frames.end(), random);
-  frames.resize(4);  // no two of one: the store knows what it has seen
+  frames.resize(4);  // each once, since the store already has the states of earlier edits
   for (const int k : frames) {
     Scene edited = scene;
     edit.apply(edited, k);
     CAPTURE(edit.channel, k);
     CHECK(states_of(edited, store, counts) == all_states(edited));
-    // No state comes of what acts before the second surface starts, or at the last frame.
+    // Inputs before the second surface starts, or at the last frame, do not affect any state.
     const int sampled_at = k > scene.start ? k + edit.delay : k;
     const int effect = std::max(sampled_at, edit.surface == 1 ? 6 : scene.start);
     CHECK(counts.solved == std::max(0, scene.end - effect));
@@ -165,7 +165,7 @@ TEST_CASE("what changes no bit of a state need not be solved again", "[simulatio
   s.end = 20;
   states_of(s, store, counts);
   CHECK(counts.solved == 0);
-  s.end = 40;  // a longer run goes on where the other ended
+  s.end = 40;  // a longer run continues where the other one ended
   states_of(s, store, counts);
   CHECK(counts.solved == 12);
   CHECK(counts.read == 25);
@@ -202,7 +202,7 @@ TEST_CASE("whatever decides a state is in its key", "[simulation][store]") {
     t.forces[1].group = "g";
     t.groups.push_back({.name = "g"});
   }));
-  // Only one of these is drawn anew: the rest gives the same bits.
+  // Only one of these values is random; the others give the same bits.
   Scene same = s;
   same.seed = 5;
   same.surfaces[0].tangents.sv0 = Channel<3>(Value<3>{0, 0, 0});
@@ -240,7 +240,7 @@ TEST_CASE("warnings are those of a full run, though nothing is solved", "[simula
   CHECK(counts.solved == 0);
   CHECK(read == solved);
   auto simulation = Simulation::make(s, {.store = &store}).value();
-  REQUIRE(simulation.at(s.end));  // at once
+  REQUIRE(simulation.at(s.end));  // without the frames in between
   CHECK(simulation.warnings().size() == solved.size());
 }
 
@@ -307,7 +307,7 @@ TEST_CASE("a program's own force is known by the key that it is given", "[simula
     return counts.solved;
   };
   CHECK(run(1, "") == 11);
-  CHECK(run(1, "") == 7);  // from frame 5 on nobody knows
+  CHECK(run(1, "") == 7);  // unknown from frame 5 on
   CHECK(run(2, "") == 7);
   CHECK(run(1, "one") == 7);
   CHECK(run(1, "one") == 0);

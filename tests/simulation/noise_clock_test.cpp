@@ -6,7 +6,7 @@ using namespace pliant;
 
 namespace {
 
-// Sums that depend on their order.
+// Values whose sum depends on the order.
 double rate_at(int frame) { return 0.1 + 1e-3 * (frame % 17) + 1e7 * (frame % 3 == 0 ? 1 : 0); }
 
 double sum_by_hand(int start, int frame) {
@@ -15,7 +15,7 @@ double sum_by_hand(int start, int frame) {
   return sum;
 }
 
-// How often the rate is asked for when frames are played in order, each for two surfaces.
+// Number of evaluations of the rate when frames are played in order, each for two surfaces.
 int evaluations(int frames) {
   NoiseClock clock(5);
   int count = 0;
@@ -33,7 +33,7 @@ int evaluations(int frames) {
 }  // namespace
 
 TEST_CASE("a keyed rate is asked for once a frame", "[simulation][noise]") {
-  CHECK(evaluations(1000) == 1001);  // the first frame's rate counts for what was ahead of it too
+  CHECK(evaluations(1000) == 1001);  // the first frame's rate is also used for the time before it
   CHECK(evaluations(2000) == 2001);
 }
 

@@ -44,7 +44,7 @@ TEST_CASE("the static peak is what a massless surface comes to", "[simulation][p
   s.surfaces[0].transform.scale = Value<3>{1, 2, 1};
   s.surfaces[0].transform.rotate = Value<3>{0, 30, 0};
   const auto previews = previews_of(s);
-  REQUIRE(previews.size() == 2);  // the force, and all that acts
+  REQUIRE(previews.size() == 2);  // the force, and all forces
   const double peak = baked_peaks(s).back();
   for (const Preview& preview : previews) {
     CHECK_THAT(preview.static_peak, WithinRel(peak, 1e-9));
@@ -60,12 +60,12 @@ TEST_CASE("the static peak is what a massless surface comes to", "[simulation][p
 
 TEST_CASE("the first natural frequency is the one that the surface rings with",
           "[simulation][preview]") {
-  // A blow, then nothing: crossings of zero from there on are half a period apart.
+  // A short push, then nothing: from then on zero crossings are half a period apart.
   Scene s = scene({sheet("s", 15)}, {poke("f", {0, 0, 0})}, 200);
   Surface& surface = s.surfaces[0];
   surface.material.density = 40;
   surface.material.damping = 0;
-  surface.solver.dt = 0.0005;  // backward Euler's own damping and delay are then small
+  surface.solver.dt = 0.0005;  // makes the damping and delay of backward Euler small
   s.forces[0].deformation_radius = 100;
   CurveKeys<1> keys;
   keys.keys = {{.frame = 1, .value = {3000}}, {.frame = 2, .value = {0}}};
@@ -74,7 +74,7 @@ TEST_CASE("the first natural frequency is the one that the surface rings with",
 
   const RegionPreview told = preview_of(s, Preview::Of::Force).regions.at(0);
   CHECK(told.damping_ratio == 0);
-  CHECK(told.animated.damping_ratio > 0);  // what backward Euler adds
+  CHECK(told.animated.damping_ratio > 0);  // from backward Euler
   auto simulation = Simulation::make(s).value();
   std::vector<double> crossings;
   double before = 0;
@@ -130,7 +130,7 @@ TEST_CASE("a force is told of at the frame of its greatest effect", "[simulation
     CHECK(told.largest_magnitude == -700);
     CHECK(told.largest_magnitude_frame == 10);
   }
-  // The one with the largest peak of all: each frame's load by itself, the slow way.
+  // The frame with the largest peak, found the slow way: the load of each frame alone.
   const Preview told = preview_of(s, Preview::Of::Force);
   CHECK(told.is_every_frame);
   Scene held = s;
@@ -178,12 +178,12 @@ TEST_CASE("shares tell who makes the peak", "[simulation][preview]") {
   double sum = 0;
   for (const ForceShare& one : all.shares) sum += one.share;
   CHECK_THAT(sum, WithinRel(1.0, 1e-9));
-  // The peak is the far one's, alone in its island: the others have no part in it.
+  // The peak is that of the far force, alone in its island: the others have no share.
   CHECK_THAT(all.shares[2].share, WithinRel(1.0, 1e-9));
   CHECK(all.shares[0].share == 0);
   s.forces[2].magnitude = 100.0;
   const Preview near = preview_of(s, Preview::Of::All);
-  CHECK(near.shares[0].share > 1);  // g holds it back
+  CHECK(near.shares[0].share > 1);  // g pushes against it
   CHECK(near.shares[1].share < -0.1);
   CHECK(near.shares[2].share == 0);
 }
@@ -207,7 +207,8 @@ TEST_CASE("a group is told of with what its members do there", "[simulation][pre
   CHECK_THAT(told.shares[0].share + told.shares[1].share, WithinRel(1.0, 1e-9));
   CHECK(told.shares[0].share > told.shares[1].share);
   CHECK(told.shares[1].share > 0.05);
-  // Linear: the two alone in the same region add up to no less than both together.
+  // By linearity the peaks of the two forces alone, in the same region, add up to at least that of
+  // both together.
   const double palm = preview_of(s, Preview::Of::Force, 0).static_peak;
   const double thumb = preview_of(s, Preview::Of::Force, 1).static_peak;
   CHECK(told.static_peak <= palm + thumb);
@@ -237,7 +238,7 @@ TEST_CASE("what selects nothing is told how far away it is", "[simulation][previ
 }
 
 TEST_CASE("a long range is looked at here and there", "[simulation][preview]") {
-  if (is_sanitized) return;  // its search takes minutes then, and is that of the shorter ranges
+  if (is_sanitized) return;  // the search would need minutes, and is the same as for shorter ranges
   Scene s = scene({sheet("s", 101)}, {poke("f", {0, 0, 0})}, 200'000);
   s.forces[0].shape =
       PointChannels{.center = vector_curve({{1, {-20, 0, 0}}, {200'000, {20, 0, 0}}})};

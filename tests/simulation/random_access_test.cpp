@@ -54,7 +54,7 @@ TEST_CASE("once a run has been played, a frame costs less than an interval",
   auto simulation = Simulation::make(s, {.checkpoint_bytes = kept * bytes_of_state()}).value();
   REQUIRE(simulation.at(s.end));
   CHECK(simulation.frame_counts().solved == frames);
-  // The interval as FrameCache promises it.
+  // The interval that FrameCache documents.
   const auto room = static_cast<int>(kept);
   const int interval = room == 0        ? frames
                        : frames <= room ? 1
@@ -72,7 +72,7 @@ TEST_CASE("once a run has been played, a frame costs less than an interval",
 TEST_CASE("playing backwards solves each frame about once more", "[simulation][random-access]") {
   const Scene s = moving_scene();
   const int frames = s.end - s.start;
-  // 5 checkpoints and as many others: room for an interval.
+  // 5 checkpoints and as many other frames: room for an interval.
   auto simulation = Simulation::make(s, {.checkpoint_bytes = 10 * bytes_of_state()}).value();
   REQUIRE(simulation.at(s.end));
   for (int frame = s.end; frame >= s.start; --frame) REQUIRE(simulation.at(frame));
@@ -85,7 +85,7 @@ TEST_CASE("kept frames never take memory that a solver needs", "[simulation][ran
   s.forces[0].deformation_radius = curve({{1, 4}, {12, 4}, {13, 40}});
   const SolverChoice solver = SolverChoice::Eigen;
   const auto expected = Simulation::make(s, {.solver = solver})->at(24)->surface("s").positions();
-  // What it takes without keeping anything.
+  // The memory needed without keeping any state.
   std::size_t enough = 0;
   for (std::size_t most = 1'000'000; enough == 0; most += most / 16) {
     auto simulation =

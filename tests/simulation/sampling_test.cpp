@@ -18,7 +18,7 @@ SurfaceInputs inputs_of(const Scene& scene, std::size_t surface, int frame) {
   return sample_inputs(scene, SceneSampling(scene), surface, frame);
 }
 
-// Who acts on a surface at a frame.
+// The names of the forces that act on a surface at a frame.
 Names names(const Scene& scene, int surface, int frame) {
   Names all;
   for (const ForceSource& source : inputs_of(scene, surface, frame).sources) {
@@ -38,7 +38,7 @@ TEST_CASE("a keyed rate of a noise never makes it jump", "[simulation][sampling]
     s.forces[0].shape = NoiseChannels{.rate = rate};
     return std::get<NoiseForce>(inputs_of(s, 0, frame).body.forces[0].shape).time;
   };
-  // A curve that stands still is a constant.
+  // A curve with equal values is constant.
   const Channel<1> steady = testing::curve({{0, 2.5}, {10, 2.5}});
   const Channel<1> slowing = testing::curve({{0, 2.5}, {20, 0}});
   for (int frame = s.start; frame < s.end; ++frame) {
@@ -94,7 +94,7 @@ TEST_CASE("a force in a group acts when and where both do", "[simulation][sampli
   CHECK(names(s, 1, 5) == Names{"free"});
   const auto forces = inputs_of(s, 1, 1).body.forces;
   CHECK(forces[0].deformation_radius == 4.5);
-  CHECK(forces[1].deformation_radius == 0);  // the group selects in its place
+  CHECK(forces[1].deformation_radius == 0);  // the group selects instead
   CHECK(forces[3].deformation_radius == 3);
   CHECK(forces[3].force_radius == 0);
 }
@@ -108,7 +108,7 @@ TEST_CASE("inertia is the load of the surface's own acceleration", "[simulation]
   surface.transform.scale = vector_curve({{1, {1, 1, 2}}, {12, {2, 3, 1}}});
   s.forces[0].shape = InertiaChannels{};
   s.fps = 25;
-  for (const int frame : {1, 4, 6, 12}) {  // also where it looks beyond the scene's frames
+  for (const int frame : {1, 4, 6, 12}) {  // also where it samples outside the scene's frames
     const auto inputs = inputs_of(s, 0, frame);
     const Vector3d p(0.3, -1, 2);
     const auto at = [&](int f) -> Vector3d {
@@ -171,8 +171,8 @@ TEST_CASE("a custom force is asked with its time, and its answers are looked at"
   CHECK_THAT(inputs.faults->first(),
              contains_text("force \"wind\": its unit_force at (1, 2, 0) is "));
   CHECK(std::isinf(distance(shape, {-1, 0, 0})));
-  CHECK_THAT(inputs.faults->first(), contains_text("unit_force"));  // the first one is told
-  // Without a distance it is everywhere.
+  CHECK_THAT(inputs.faults->first(), contains_text("unit_force"));  // the first fault is reported
+  // Without a distance function it acts everywhere.
   std::get<CustomForce>(s.forces[0].shape).distance = {};
   CHECK(distance(inputs_of(s, 0, 6).body.forces[0].shape, {-9, 0, 0}) == 0);
 }

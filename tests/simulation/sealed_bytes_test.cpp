@@ -22,7 +22,7 @@ TEST_CASE("sealed bytes are read as they were appended", "[simulation][sealed_by
   const std::string bytes = sealed();
   const auto held = unsealed(bytes, magic);
   REQUIRE(held);
-  CHECK(held->front() == 8);  // little endian
+  CHECK(held->front() == 8);  // little-endian
   ByteReader reader(*held);
   CHECK(reader.number() == 0x0102030405060708);
   CHECK(reader.hash() == Hash{3, 4});

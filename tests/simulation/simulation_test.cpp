@@ -16,7 +16,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// A force that travels, swells and rests for some frames.
+// A force that moves, grows and is constant for some frames.
 Force travelling() {
   Force force = poke("travelling", {});
   force.shape = PointChannels{.center = vector_curve({{1, {-4, 0, -2}}, {12, {4, 0, 3}}}),
@@ -144,7 +144,7 @@ TEST_CASE("a rigid motion of surface and forces together moves the result", "[si
 }
 
 TEST_CASE("forces that ride on a moving surface act as if nothing moved", "[simulation]") {
-  // A key at every frame takes the force along with the surface's transform.
+  // A key at every frame moves the force with the surface's transform.
   Scene original = scene({sheet("s", 21)}, {poke("f", {-2.3, 0, 1.2}), poke("g", {4, 0, -3})});
   original.surfaces[0].solver.combine = Combine::Islands;
   original.surfaces[0].solver.release = Release::Recover;
@@ -242,7 +242,7 @@ TEST_CASE("a frame outside the range and a run that fails are errors, and the ne
   Scene s = scene({sheet("a"), sheet("s")}, {poke("f", {0, 0, 0})});
   auto& material = s.surfaces[1].material;
   material.density = material.damping = 0.0;
-  material.b = material.d = 1e-170;  // so soft that the load below is beyond double
+  material.b = material.d = 1e-170;  // so soft that the load below overflows
   material.c = 2e-170;
   s.forces[0].targets = {"s"};
   CurveKeys<1> jump;
@@ -262,7 +262,8 @@ TEST_CASE("a frame outside the range and a run that fails are errors, and the ne
 }
 
 TEST_CASE("a position beyond double in world space is an error in whatever order", "[simulation]") {
-  // Only at frame 4, where nothing could be selected: at any later frame too, though it is finite.
+  // Not finite only at frame 4, where no node can be selected. Later frames fail too, although they
+  // are finite.
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
   std::get<GridSheet>(s.surfaces[0].shape).width = 1e200;
   CurveKeys<3> jump;
@@ -287,7 +288,7 @@ TEST_CASE("under a scale that is not uniform a force enters through its inverse"
     s.surfaces[0].transform.scale = scale;
     Force force = poke("f", {0, 0, 0}, 1000);
     force.shape = PointChannels{.center = Value<3>{0, 0, 0}, .direction = direction};
-    force.deformation_radius = force.force_radius = 1000.0;  // all of it, whatever the scale
+    force.deformation_radius = force.force_radius = 1000.0;  // the whole sheet, whatever the scale
     s.forces = {force};
     auto simulation = Simulation::make(s).value();
     const Field object = simulation.at(2)->surface("s").object_positions();
@@ -315,7 +316,7 @@ TEST_CASE("a run stops when asked to, and goes on afterwards", "[simulation]") {
   const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
   int steps_left = 1000;
   auto simulation = Simulation::make(s, {.should_stop = [&] { return steps_left-- == 0; }}).value();
-  steps_left = 12;  // 5 a frame
+  steps_left = 12;  // 5 per frame
   const auto stopped = simulation.at(12);
   REQUIRE_FALSE(stopped);
   CHECK(stopped.error().code == ErrorCode::Interrupted);
@@ -337,13 +338,13 @@ TEST_CASE("a region too small to solve is told once, with its frames", "[simulat
 }
 
 TEST_CASE("the number of threads changes no bit", "[simulation][threads]") {
-  // Several surfaces go at the same time, a single one goes in parts.
+  // Several surfaces are solved in parallel, a single one in parts.
   const std::vector<Force> forces{poke("f", {0.3, 0, 0.2}), poke("g", {-2, 0, 1}, -3000)};
   Scene s = GENERATE_COPY(
       scene({sheet("a", 21), sheet("b", 13), sheet("c", 17), sheet("d", 9)}, forces, 8),
       scene({sheet("a", 121), sheet("b", 13)}, forces, 8), scene({sheet("a", 121)}, forces, 8));
   if (s.surfaces.size() > 1) s.surfaces[1].enabled = false;
-  s.forces[1].deformation_radius = 100;  // all of it: more than one thread is worth its while
+  s.forces[1].deformation_radius = 100;  // the whole sheet: large enough to use several threads
   const auto all_frames = [&](int threads) {
     auto simulation = Simulation::make(s, {.threads = threads}).value();
     std::vector<Field> positions;
@@ -378,7 +379,7 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   CHECK(too_large.error().line == 4);
   CHECK_THAT(too_large.error().message,
              StartsWith("surface \"large\" takes ") && EndsWith("of the 1 GB allowed"));
-  CHECK(Simulation::check(s));  // all else about it is right
+  CHECK(Simulation::check(s));  // apart from its memory it is valid
   CHECK(Simulation::check(s, {.max_memory = 1'000'000'000}).error().message ==
         too_large.error().message);
 
@@ -386,7 +387,7 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   s = scene({sheet("s", 151)}, {poke("f", {0, 0, 0})}, 3);
   s.forces[0].deformation_radius = curve({{1, 4.5}, {2, 100}});
   const SolverChoice choice = GENERATE(SolverChoice::Auto, SolverChoice::Eigen);
-  // The surface alone takes nearly 20 MB; a plate in sine space needs less than a factor.
+  // The surface alone needs nearly 20 MB; a plate in sine space needs less than a factor.
   SimulationOptions options{.max_memory = choice == SolverChoice::Auto ? 21'000'000u : 30'000'000u,
                             .solver = choice};
   auto simulation = Simulation::make(s, options).value();
@@ -400,7 +401,7 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
                               "unknowns takes "
                             : "surface \"s\", frame 2: the factor of the plate's matrix of 22201 "
                               "unknowns takes "));
-  CHECK(simulation.at(2));  // and it goes on
+  CHECK(simulation.at(2));  // the simulation is still usable
   options.max_memory += 30'000'000;
   CHECK(Simulation::make(s, options).value().at(3));
 }
@@ -483,7 +484,7 @@ TEST_CASE("a profile tells where the time of frames goes, when asked for",
     for (std::size_t k = 0; k < stage_count; ++k) {
       const auto stage = static_cast<Stage>(k);
       CAPTURE(name_of(stage));
-      CHECK((profile[stage] > 0) == (stage != Stage::Writing));  // which is not a simulation's
+      CHECK((profile[stage] > 0) == (stage != Stage::Writing));  // a simulation does not write
     }
     CHECK(profile.total() < elapsed.count());
   }

@@ -12,7 +12,7 @@ namespace {
 
 const Hash key{1, 2};
 
-// Some of `count` nodes are away from rest, in their position, velocity or mark alone too.
+// A state with some nodes away from rest, some only in their position, velocity or mark.
 StoredState some_state(const Field& rest, bool has_marks, double share, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -60,7 +60,7 @@ TEST_CASE("a state comes back from its bytes", "[simulation][stored]") {
   CHECK_FALSE(from_bytes(bytes, {1, 3}, rest, has_marks));
   CHECK_FALSE(from_bytes(bytes, key, rest, !has_marks));
   CHECK_FALSE(from_bytes(bytes, key, some_rest(36), has_marks));
-  if (share == 0) CHECK(bytes.size() < 128);  // rest costs nothing
+  if (share == 0) CHECK(bytes.size() < 128);  // nodes at rest need no bytes
 }
 
 TEST_CASE("what no node has away from rest takes nothing", "[simulation][stored]") {
@@ -122,7 +122,7 @@ TEST_CASE("a good seal on nonsense makes no state of it", "[simulation][stored]"
   for (std::size_t size = 0; size < inner.size(); ++size) {
     CHECK_FALSE(from_bytes(sealed(inner.substr(0, size)), key, rest, true));
   }
-  // Counts and runs of any size, anywhere in the head, must not lead out of the arrays.
+  // Counts and runs of any size, anywhere in the head, must not cause access outside the arrays.
   for (std::size_t place = 16; place + 8 <= inner.size(); ++place) {
     for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{10}, std::uint64_t{1} << 60,
                                        std::numeric_limits<std::uint64_t>::max()}) {

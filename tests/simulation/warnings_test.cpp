@@ -53,13 +53,13 @@ TEST_CASE("a force that selects nothing is a warning only over the whole range",
           "[simulation][warnings]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})}, 9);
   s.surfaces[1].transform.translate = Value<3>{100, 0, 0};
-  CHECK(warnings_of(s, 9).empty());  // it touches a, and b is not named
+  CHECK(warnings_of(s, 9).empty());  // it touches a, and has no named targets
 
   s.forces[0].targets = {"a", "b"};
   const auto missed = warnings_of(s, 9);
   REQUIRE(missed.size() == 1);
   CHECK_THAT(missed[0].message(), Contains("\"f\" selects no node of \"b\" at frames 1-8"));
-  CHECK(warnings_of(s, 8).empty());  // it may still come
+  CHECK(warnings_of(s, 8).empty());  // it may still touch a surface later
 
   s.forces[0].targets.clear();
   s.forces[0].shape = PointChannels{.center = Value<3>{0, 50, 0}};
@@ -69,16 +69,16 @@ TEST_CASE("a force that selects nothing is a warning only over the whole range",
   s.forces[0].enabled = switch_at({{1, false}, {6, true}});
   CHECK_THAT(warnings_of(s, 9)[0].message(), Contains("at frames 6-8"));
   s.forces[0].enabled = false;
-  CHECK(warnings_of(s, 9).empty());  // switched off on purpose
+  CHECK(warnings_of(s, 9).empty());  // disabled on purpose
   s.forces[0].enabled = true;
   s.forces[0].shape =
       PointChannels{.center = vector_curve({{1, {0, 50, 0}}, {7, {0, 50, 0}}, {8, {0, 0, 0}}})};
-  CHECK(warnings_of(s, 9).empty());  // it comes at last
+  CHECK(warnings_of(s, 9).empty());  // it touches a surface at last
 }
 
 TEST_CASE("a force box outside the region is a warning, one that reaches out is not",
           "[simulation][warnings]") {
-  // The second force selects nothing itself: it pushes where the first one's region reaches.
+  // The second force selects nothing itself: it pushes nodes of the first one's region.
   Scene s = scene({sheet("a", 41)}, {poke("f", {0, 0, 0}), poke("g", {12, 0, 0})}, 5);
   s.forces[1].deformation_radius = 0;
   const auto outside = warnings_of(s, 5);
@@ -120,9 +120,9 @@ TEST_CASE("a magnitude that pushes nothing in the whole range is a warning, and 
   quiet = s;
   quiet.forces[0].force_radius = curve({{1, 0}, {3, 0}, {4, 3}});
   quiet.forces[0].shape = PointChannels{.center = Value<3>{0.5, 0, 0.5}};
-  CHECK(warnings_of(quiet, 5).empty());  // it does in the end
+  CHECK(warnings_of(quiet, 5).empty());  // it pushes in the end
   quiet = s;
-  quiet.forces[0].deformation_radius = 0.8;  // 2 x 2 nodes: that is what is wrong
+  quiet.forces[0].deformation_radius = 0.8;  // 2 x 2 nodes: that is the warning
   REQUIRE(warnings_of(quiet, 5).size() == 1);
   CHECK(warnings_of(quiet, 5)[0].kind == Warning::Kind::RegionTooSmall);
 }
@@ -136,7 +136,7 @@ TEST_CASE("warnings tell of islands each by itself", "[simulation][warnings]") {
   REQUIRE(small.size() == 1);
   CHECK(small[0].kind == Warning::Kind::RegionTooSmall);
   CHECK(small[0].force == "g");
-  // In a box the other force's region would hold its nodes; in its own island nothing is there.
+  // As a box, the other force's region would contain its nodes; its own island is empty.
   s.forces[1].deformation_radius = 0.0;
   s.forces[1].shape = PointChannels{.center = Value<3>{-8, 0, 0}};
   const auto nothing = warnings_of(s, 4);
@@ -181,7 +181,7 @@ TEST_CASE("tangents that no force ever selects are a warning", "[simulation][war
   s.forces.push_back(poke("f", {0, 0, 0}, 0));
   CHECK(warnings_of(s, 5).empty());
   s.surfaces[0].enabled = false;
-  CHECK(warnings_of(s, 5).empty());  // nothing is solved on purpose
+  CHECK(warnings_of(s, 5).empty());  // disabled on purpose
 }
 
 TEST_CASE("forces far apart in one box are a warning that names them", "[simulation][warnings]") {
@@ -203,12 +203,12 @@ TEST_CASE("forces far apart in one box are a warning that names them", "[simulat
   }
   s.surfaces[0].solver.combine = Combine::Box;
   Scene told = s;
-  told.origin.lines["a.combine"] = 4;  // combine="box" is written out: it is meant
+  told.origin.lines["a.combine"] = 4;  // combine="box" is given explicitly, so it is intended
   CHECK(warnings_of(told, 6).empty());
   s.forces[0].enabled = switch_at({{1, true}, {4, false}});
   REQUIRE(warnings_of(s, 6).size() == 1);
   CHECK_THAT(warnings_of(s, 6)[0].message(), Contains("at frames 1-3:"));
-  // Once all meet, here by a group's sphere, nothing is apart.
+  // If all boxes meet, here by a group's sphere, none is apart.
   s.forces[0].enabled = true;
   Group hand;
   hand.name = "hand";
@@ -219,17 +219,17 @@ TEST_CASE("forces far apart in one box are a warning that names them", "[simulat
 
 TEST_CASE("boxes that meet by a chain, or once others have met, are not apart",
           "[simulation][warnings]") {
-  // Boxes of 9 x 9 nodes. The chain stands in the scene from its ends to its middle.
+  // Boxes of 9 x 9 nodes. In the scene the chain is given from its ends to its middle.
   Scene s = scene({sheet("a", 61)}, {}, 3);
   for (const double x : {-20.0, 20.0, -13.0, 13.0, 6.0, -6.0, 0.0}) {
     s.forces.push_back(poke("f" + std::to_string(s.forces.size()), {x, 0, 0}));
   }
   CHECK(warnings_of(s, 3).empty());
-  s.forces.pop_back();  // the middle of it
+  s.forces.pop_back();  // the middle of the chain
   const auto apart = warnings_of(s, 3);
   REQUIRE(apart.size() == 1);
   CHECK(apart[0].others.size() == 5);
-  // "inside" meets neither of the others, but the box that these two make: islands would be one.
+  // "inside" meets neither of the other two, but the box around both: they would form one island.
   s.forces = {poke("inside", {6, 0, -9}), poke("low", {0, 0, -9}), poke("high", {4, 0, -1})};
   s.forces[0].deformation_radius = s.forces[0].force_radius = 1.5;
   CHECK(warnings_of(s, 3).empty());

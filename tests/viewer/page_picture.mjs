@@ -1,5 +1,5 @@
-// The picture of the page at the head of docs/viewer.md: a sheet under three forces, its curves, and
-// the numbers of a vertex. usage: node page_picture.mjs PLIANT SCENE OUT.png
+// Makes the picture of the page at the top of docs/viewer.md: a sheet under three forces, its
+// curves, and the numbers of a vertex. usage: node page_picture.mjs PLIANT SCENE OUT.png
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";

@@ -1,9 +1,9 @@
-// Looks at pages of `pliant view` in headless Chromium: what is in the scene graph, what keys and
-// pointer do, what the page says, how it stands in windows of all sizes.
+// Tests pages of `pliant view` in headless Chromium: the scene graph, keys and pointer, the page's
+// texts, its layout in windows of all sizes.
 //
 // usage: node viewer_test.mjs PLIANT EXAMPLES PICTURES [NAME…]
-// NAME: run the tests with it in their names only. Screenshots of every example go to PICTURES.
-// Needs what `script/bootstrap --viewer` installs. Ends with the line "N passed, N failed".
+// NAME: run only the tests whose names contain it. Screenshots of every example go to PICTURES.
+// Needs the packages of `script/bootstrap --viewer`. Ends with the line "N passed, N failed".
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
@@ -27,7 +27,7 @@ const test = (name, body) => tests.push([name, body]);
 
 // Files
 
-/** A float64 array as NumPy writes it: shape and numbers. */
+/** Reads a float64 array written by NumPy: shape and numbers. */
 function readNpy(file) {
   const bytes = readFileSync(file);
   const length = bytes.readUInt16LE(8);
@@ -56,11 +56,13 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 
-/** Opens a page that has to be silent: nothing in its console, nothing asked from elsewhere. */
+/**
+ * Opens a page and checks that it is silent: nothing in its console, no requests to other servers.
+ */
 async function open(url, { width = 900, height = 600, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: "dark", ...options });
   const page = await context.newPage();
-  page.setDefaultTimeout(120_000); // a machine may be busy
+  page.setDefaultTimeout(120_000); // the machine may be busy
   page.complaints = [];
   page.on("pageerror", (error) => page.complaints.push(String(error)));
   page.on("console", (message) => {
@@ -85,7 +87,7 @@ async function withPage(url, options, body) {
 const frameOf = (page) => page.evaluate(() => window.pliant.playback.frame);
 const goTo = (page, frame) => page.evaluate((to) => window.pliant.playback.goTo(to), frame);
 
-/** World positions of a surface's vertices as the scene graph has them, and the page's own bound. */
+/** World positions of a surface's vertices in the scene graph, and the page's error bound. */
 const worldPositions = (page, name) =>
   page.evaluate((wanted) => {
     const { stage, viewer } = window.pliant;
@@ -100,7 +102,7 @@ const worldPositions = (page, name) =>
     return { positions: result, error: viewer.views.find((view) => view.surface.head.name === wanted).surface.head.error };
   }, name);
 
-/** Where an object of that name stands, and how large it is: world matrix. */
+/** Position and size of the object of that name, from its world matrix. */
 const matricesOf = (page, name) =>
   page.evaluate((wanted) => {
     const { stage } = window.pliant;
@@ -214,7 +216,7 @@ test("every kind of force has its gizmo", async () => {
     const isShown = (name) => page.evaluate((wanted) => window.pliant.stage.scene.getObjectByName(`force ${wanted}`).visible, name);
     for (const name of "abcdefghij") assert.equal(await isShown(name), true, name);
     assert.equal(await isShown("k"), false);
-    // A radial force that attracts points at its centre.
+    // The arrows of a radial force that attracts point at its centre.
     const tips = await page.evaluate(() => {
       const found = [];
       window.pliant.stage.scene.traverse((object) => object.name === "b vector" && object.visible && found.push(object.children.map((part) => part.position.toArray())));
@@ -226,7 +228,7 @@ test("every kind of force has its gizmo", async () => {
     // A capsule has circles at both ends.
     const ends = await matricesOf(page, "c forceRadius");
     assert.deepEqual(ends.map(({ elements }) => elements[12]), [-2, 2]);
-    // The group has the region's circles; the force in it only its own.
+    // The group shows the circles of the region; the force in it only its own.
     assert.equal((await matricesOf(page, "i deformationRadius"))[0].elements[0], 4);
     assert.equal((await matricesOf(page, "j deformationRadius"))[0].isVisible, false);
     assert.equal((await matricesOf(page, "h vector"))[0].isVisible, true);
@@ -251,7 +253,7 @@ test("a small scene far from the origin keeps its shape", async () => {
   await withPage(pageOf(inFolder("far.xml")), {}, async (page) => {
     await goTo(page, 20);
     const { positions } = await worldPositions(page, "s");
-    // The bake's own doubles are 1e-10 apart there.
+    // The doubles of the bakes differ by 1e-10 there.
     const off = positions.reduce((most, each, k) => Math.max(most, Math.abs(each - numbers[19 * 441 * 3 + k])), 0);
     assert.ok(off < 1e-8, `${off}`);
   });
@@ -292,8 +294,8 @@ test("plays at the frame rate, and loops", async () => {
     const { fps, first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);
     await page.keyboard.press("Space");
     assert.equal(await page.getByRole("button", { name: "Pause" }).count(), 1);
-    // The page's clock and the frame that it shows, read after the page's own callback for the same picture: however busy the machine is, it leaves
-    // frames out rather than being late.
+    // The page's clock and its present frame, read after the page's own callback for the same
+    // picture. However busy the machine is, the page drops frames instead of being late.
     const sample = () => page.evaluate(() => new Promise((tell) => requestAnimationFrame((time) => tell([time, window.pliant.playback.frame]))));
     const [begin, from] = await sample();
     await page.waitForTimeout(400);
@@ -307,7 +309,7 @@ test("plays at the frame rate, and loops", async () => {
     const stopped = await frameOf(page);
     await page.waitForTimeout(150);
     assert.equal(await frameOf(page), stopped);
-    // Without the loop it ends on the last frame.
+    // Without the loop, playback ends on the last frame.
     await page.getByRole("button", { name: "Loop" }).click();
     await goTo(page, last - 1);
     await page.getByRole("button", { name: "Play", exact: true }).click();
@@ -381,7 +383,7 @@ test("numbers under the cursor are those of the vertex", async () => {
     run("bake", scene, "-o", "head.npy", "--quiet");
     const { shape, numbers } = readNpy(inFolder("head.npy"));
     await goTo(page, 30);
-    // A vertex that faces the camera, and where it is on the screen.
+    // A vertex that faces the camera, and its position on the screen.
     const { vertex, x, y } = await page.evaluate(() => {
       const { viewer, stage } = window.pliant;
       const view = viewer.views[0];
@@ -407,7 +409,7 @@ test("numbers under the cursor are those of the vertex", async () => {
     near(Number(rows.displacement), length(at(30), at(1)), 1e-3, "displacement");
     near(parseFloat(rows.velocity), length(at(30), at(29)) * 24, 1e-2, "velocity");
     rows.position.split(", ").forEach((word, k) => near(Number(word), at(30)[k], 1e-3, "position"));
-    // It follows the vertex, and goes with the cursor.
+    // The readout follows the vertex, and disappears with the cursor.
     await page.keyboard.press("ArrowRight");
     const later = await readout.textContent();
     assert.ok(later.includes(String(vertex)));
@@ -446,7 +448,7 @@ test("the legend has the peak of the bake", async () => {
     await page.getByText("Plain", { exact: true }).click();
     assert.equal(await page.locator("#legend-scale").isVisible(), false);
     assert.deepEqual(await page.locator("#legend-inks span").allTextContents(), ["deforms", "is pushed", "is solved"]);
-    await page.evaluate(() => document.activeElement.blur()); // fields keep their keys
+    await page.evaluate(() => document.activeElement.blur()); // fields keep the keys that they use
     await page.keyboard.press("g");
     assert.equal(await page.locator("#legend").isVisible(), false);
   });
@@ -464,7 +466,7 @@ test("curves are chosen, and go along with the frame", async () => {
     const track = await page.locator("#timeline").boundingBox();
     await page.mouse.click(track.x + 16 + (39 / 71) * (track.width - 32), box.y + box.height / 2);
     assert.equal(await frameOf(page), 40);
-    // Drawn with as many colours as there are components.
+    // One colour per component.
     const colours = await page.evaluate(() => {
       const canvas = document.getElementById("curve-view");
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -476,7 +478,7 @@ test("curves are chosen, and go along with the frame", async () => {
   });
 });
 
-/** Where columns of a canvas that have the cursor's colour lie in the window. */
+/** Positions in the window of the columns of a canvas that have the cursor's colour. */
 const cursorIn = (page, id) =>
   page.evaluate((wanted) => {
     const canvas = document.getElementById(wanted);
@@ -489,7 +491,7 @@ const cursorIn = (page, id) =>
       const off = Math.abs(data[k] - (colour >> 16)) + Math.abs(data[k + 1] - ((colour >> 8) & 255)) + Math.abs(data[k + 2] - (colour & 255));
       if (data[k + 3] > 40 && off < 30) counts[(k / 4) % canvas.width] += data[k + 3] / 255;
     }
-    // The line is the tallest column; it may lie between two.
+    // The line is the tallest column; it may be between two.
     const most = Math.max(...counts);
     const columns = counts.map((count, k) => [count, k]).filter(([count]) => count > 0.3 * most);
     const middle = columns.reduce((sum, [count, k]) => sum + count * (k + 0.5), 0) / columns.reduce((sum, [count]) => sum + count, 0);
@@ -512,7 +514,7 @@ for (const [width, height, ratio] of [[1280, 800, 1], [1001, 700, 1.5], [733, 80
 }
 
 test("the value at the cursor is the engine's, for each curve", async () => {
-  // Of 400 frames only some were sampled.
+  // Only some of the 400 frames were sampled.
   writeFileSync(inFolder("long.xml"), readFileSync(example("travelling"), "utf8").replace(/end="\d+"/, 'end="400"').replace('file="', `file="${examples}/`));
   const scene = inFolder("long.xml");
   const center = curve(scene, "finger.center");
@@ -530,7 +532,7 @@ test("the value at the cursor is the engine's, for each curve", async () => {
     await goTo(page, 37);
     check(await told());
     assert.equal((await told()).frame, 37);
-    // As many colours as curves.
+    // One colour per curve.
     assert.equal(new Set((await told()).rows.map((row) => row[3])).size, 3);
     const box = await page.locator("#curve-view").boundingBox();
     const track = await page.locator("#timeline").boundingBox();
@@ -540,7 +542,7 @@ test("the value at the cursor is the engine's, for each curve", async () => {
       assert.equal(now.frame, frame);
       check(now);
     }
-    // The curve under the cursor is marked: found by going down until one is.
+    // The curve under the cursor is marked: move down until one is found.
     let found = "";
     for (let y = 6; y < box.height - 24 && found === ""; y += 4) {
       await page.mouse.move(track.x + 16 + (42 / 399) * (track.width - 32), box.y + y);
@@ -572,12 +574,13 @@ test("colours of curves differ for every kind of colour vision", async () => {
       const { curves, panel } = await page.evaluate((wanted) => (window.pliant.themes.choose(wanted), window.pliant.themes.palette), theme);
       for (const [k, colour] of curves.entries()) {
         const [a, b] = [luminance(linear(colour)), luminance(linear(panel))].sort((x, y) => y - x);
-        // WCAG 1.4.11: graphics want 3 : 1.
+        // WCAG 1.4.11 requires 3 : 1 for graphics.
         assert.ok((a + 0.05) / (b + 0.05) >= 3, `${theme} ${colour} on the panel`);
         for (const other of curves.slice(k + 1)) {
           for (const [eye, rows] of Object.entries(eyes)) {
             const [p, q] = [colour, other].map((each) => oklab(times(rows, linear(each))));
-            // In OKLab about 0.02 is seen side by side; five times that where lines stand apart.
+            // In OKLab a difference of about 0.02 is visible side by side; lines apart from each
+            // other need five times that.
             assert.ok(Math.hypot(...p.map((v, c) => v - q[c])) >= 0.1, `${theme}, ${eye}: ${colour} and ${other}`);
           }
         }
@@ -616,7 +619,7 @@ test("forces are named, hidden, and shown alone", async () => {
     await page.getByRole("button", { name: "Show all forces" }).click();
     assert.equal(await shown(page), "abcdg");
     assert.doesNotMatch(page.url(), /#/);
-    // By keys alone: one stop for the tab key, arrows in the list.
+    // By keyboard only: one tab stop, arrow keys in the list.
     await row("a").getByRole("checkbox").focus();
     for (const key of ["ArrowDown", "Space"]) await page.keyboard.press(key);
     assert.equal(await shown(page), "acdg");
@@ -640,13 +643,16 @@ test("names of two hundred forces do not cover each other", async () => {
     const { length } = await page.evaluate(() => window.pliant.viewer.bake.head.forces);
     assert.ok(length > 200);
     assert.ok(names.length >= 5 && names.length <= 60, `${names.length} names`);
-    // What pushes now comes ahead of what does not, of which none is named in such a crowd.
+    // Forces that push now have labels first; with so many forces the others have none.
     const idle = await page.evaluate(() => window.pliant.viewer.bake.head.forces.filter((force) => force.magnitude && (force.magnitude[39] ?? force.magnitude[0]) === 0).map((force) => force.name));
     assert.deepEqual(names.filter((name) => idle.includes(name)), []);
   });
 });
 
-/** Puts `luminances()` into a page: the picture on the stage from 0 to 1, with its size; row 0 is the lowest. */
+/**
+ * Adds `luminances()` to a page: the luminances of the stage's picture, 0 to 1, with its size; row
+ * 0 is the bottom.
+ */
 const installLuminances = (page) =>
   page.evaluate(() => {
     window.luminances = () => {
@@ -668,7 +674,7 @@ test("a group's circles lie behind the surface", async () => {
     <group name="g" center="0 0 0" deformationRadius="2.5"><point name="a" magnitude="0" center="0 0 0"/></group></scene>`);
   await withPage(`${pageOf(inFolder("behind.xml"))}#boxes=off&regions=off&labels=off&floor=off&turn=0&tilt=80`, {}, async (page) => {
     await installLuminances(page);
-    // From above all three circles stand over the sheet.
+    // Seen from above, all three circles are over the sheet.
     const [changed, parts] = await page.evaluate(() => {
       const circles = window.pliant.stage.scene.getObjectByName("force g").children.filter((each) => each.name.endsWith("deformationRadius"));
       const draw = (isShown) => {
@@ -694,7 +700,7 @@ test("a bulge of a tenth of a sheet is plain to see by light alone", async () =>
       for (const [turn, tilt] of [[32, 28], [0, 90], [0, 60], [-70, 20], [150, 30]]) {
         await page.evaluate((look) => (location.hash = `colour=plain&gizmos=off&boxes=off&regions=off&floor=off&labels=off&${look}`), `turn=${turn}&tilt=${tilt}`);
         await page.waitForTimeout(60);
-        // Of the bulge's flanks the darker and the brighter tenth; of what is flat about all there is.
+        // The darker and the brighter tenth of the bulge's flanks; nearly all of the flat part.
         const { low, high, flat } = await page.evaluate(() => {
           const { width, height, values } = window.luminances();
           const { viewer, stage } = window.pliant;
@@ -711,10 +717,10 @@ test("a bulge of a tenth of a sheet is plain to see by light alone", async () =>
           const share = (all, part) => all.sort((a, b) => a - b)[Math.floor(part * (all.length - 1))];
           return { low: share(bulge, 0.1), high: share(bulge, 0.9), flat: [0.05, 0.5, 0.95].map((part) => share(plain, part)) };
         });
-        // Michelson's contrast between the flanks. About 0.02 can be seen at all; ten times that is plain, and the old light, from ahead, gave
-        // 0.17 to 0.19 in all these views but from above.
+        // Michelson's contrast between the flanks. About 0.02 is just visible; ten times that is
+        // clear. A light from the front gave 0.17 to 0.19 in all these views except from above.
         assert.ok((high - low) / (high + low) >= 0.25, `${colorScheme}, turned ${turn}, tilted ${tilt}: ${low} to ${high}`);
-        // The flat part lies between the two flanks, and is even.
+        // The flat part is between the two flanks, and uniform.
         assert.ok(flat[1] > low && flat[1] < high);
         assert.ok(flat[2] - flat[0] < 0.05);
       }
@@ -815,7 +821,7 @@ test("a page of 10⁴ vertices over 100 frames stays under 5 MB, and loads", asy
     <material density="40" damping="20"/></surface><noise name="n" frequency="0.4" rate="3" deformationRadius="30" forceRadius="30" magnitude="3000"/></scene>`);
   const url = pageOf(inFolder("large.xml"));
   assert.ok(statSync(fileURLToPath(url)).size < 5e6);
-  // Told, not asserted: it depends on the machine and on what else is at work there.
+  // Printed, not asserted: it depends on the machine and its load.
   const times = [];
   for (let k = 0; k < 3; ++k) {
     await withPage(url, {}, async (page) => times.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime)));
@@ -864,7 +870,7 @@ test("a save changes the page in place", async () => {
       assert.equal(await page.locator("#summary").textContent(), "60 frames · 24 fps · 3,721 vertices");
       assert.notEqual(peak, "0");
 
-      // Errors stand in the page, with their lines, over what was there.
+      // The page shows errors with their lines, over its previous content.
       const wrong = text.replace("falloff=", "falof=").replace('density="40"', 'density="forty"');
       writeFileSync(scene, wrong);
       await page.locator(".message.error").first().waitFor();
@@ -900,7 +906,7 @@ test("the address sets the look under --serve too, once", async () => {
       assert.equal(await frameOf(page), 45);
       assert.deepEqual([theme, ...display], ["light", "velocity", false]);
       near(camera[0], 1, 1e-3, "camera");
-      // A save leaves what was chosen since.
+      // A save keeps choices made since.
       await goTo(page, 12);
       await page.evaluate(() => (window.before = window.pliant.viewer.bake));
       writeFileSync(scene, text.replace('value="8000"', 'value="12000"'));
@@ -953,7 +959,7 @@ test("a page from elsewhere gets nothing, not even with the address", async () =
         await ask("read", `${address}bake`);
         await ask("root", root);
         await ask("blind", `${address}bake`, { mode: "no-cors" });
-        // The body is a request of its own.
+        // The body contains another request.
         const inner = `GET ${path}bake HTTP/1.1\r\nHost: ${new URL(root).host}\r\n\r\n`;
         await ask("smuggled", root, { method: "POST", mode: "no-cors", body: inner });
         const frame = document.createElement("iframe");
@@ -974,7 +980,7 @@ test("a page from elsewhere gets nothing, not even with the address", async () =
       for (const frame of page.frames().slice(1)) assert.equal(await frame.evaluate(() => document.getElementById("viewer")), null);
       await context.close();
     }
-    // And the person in front of it still sees it.
+    // And the user's browser still shows the page.
     await withPage(server.url, {}, async (page) => page.waitForFunction(() => window.pliant.viewer.bake !== null));
   } finally {
     elsewhere.close();
@@ -1019,7 +1025,7 @@ test("pictures have the legend, and the forces' names", async () => {
     return pixelsOf(name);
   };
   const [plain, legend, labels] = [take("l0.png", "legend=off&labels=off"), take("l1.png", "labels=off"), take("l2.png", "legend=off")];
-  // What the legend changes lies in the lower left corner, what names change does not lie there only.
+  // The legend changes pixels only in the lower left corner; names change others too.
   let [corner, elsewhere] = [0, 0];
   for (let k = 0; k < plain.length; k += 3) {
     if (Math.abs(plain[k] - legend[k]) <= 16 && Math.abs(plain[k + 1] - legend[k + 1]) <= 16) continue;
@@ -1030,7 +1036,7 @@ test("pictures have the legend, and the forces' names", async () => {
   assert.ok(corner > 800, `${corner} pixels`);
   assert.equal(elsewhere, 0);
   assert.ok(differing(plain, labels) > 100);
-  // Another peak, other colours; a force that is hidden, another picture.
+  // Another peak changes the colours; hiding a force changes the picture.
   assert.ok(differing(take("l3.png", "legend=off&labels=off&peak=100", "--frame", "12"), take("l4.png", "legend=off&labels=off", "--frame", "12")) > 500);
   assert.ok(differing(plain, take("l5.png", "legend=off&labels=off&hide=poke,bulge,crease")) > 500);
 });
@@ -1056,7 +1062,7 @@ test("movies have the frames, the size and the rate of the scene", async () => {
       assert.equal(stream.pix_fmt, "yuv420p");
       assert.equal(stream.r_frame_rate, "24000/1001");
     }
-    // Frames 12 and 16, as the picture has them: within what the codec leaves out beside thin lines.
+    // Frames 12 and 16 match the pictures, up to the codec's losses beside thin lines.
     for (const frame of [12, 16]) {
       run("view", inFolder("ntsc.xml"), "--png", "still.png", "--frames", "10:16", "--frame", String(frame), "--size", "322x242", "--quiet");
       const [still, shown] = [pixelsOf("still.png"), pixelsOf(out, frame - 10)];
@@ -1076,7 +1082,7 @@ test("a movie that is interrupted leaves nothing", async () => {
   const command = spawn(pliant, words, { stdio: ["ignore", "ignore", "pipe"], env: { ...process.env, TMPDIR: scratch } });
   let errors = "";
   command.stderr.on("data", (text) => (errors += text));
-  // ffmpeg begins its file with the first pictures.
+  // ffmpeg starts its file with the first pictures.
   const hasBegun = () => readdirSync(scratch).some((name) => name.startsWith("pliant-view-") && readdirSync(path.join(scratch, name)).includes("movie"));
   while (command.exitCode === null && !hasBegun()) await new Promise((resume) => setTimeout(resume, 20));
   assert.equal(command.exitCode, null, errors);

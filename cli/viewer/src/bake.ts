@@ -1,6 +1,6 @@
-// What `pliant view` puts into the page, and how it is read back; docs/viewer.md has the layout.
+// The data that `pliant view` puts into the page, and its decoding; docs/viewer.md has the layout.
 
-/** A parameter with a value for each frame, or one for all. */
+/** A parameter with one value per frame, or a single value for all. */
 export type Track<T> = T[];
 export type Vector = [number, number, number];
 /** First and last column, first and last row, in nodes. */
@@ -11,7 +11,7 @@ interface ArrayPlace {
   count: number;
 }
 
-/** What is drawn on a surface from a frame on. */
+/** The regions and boxes drawn on a surface, valid from a frame on. */
 export interface Marks {
   frame: number;
   regions: { solved: boolean; parts: Box[] }[];
@@ -47,7 +47,7 @@ interface SurfaceHead {
 export interface Force {
   name: string;
   kind: string;
-  /** Name of the group that it is in. */
+  /** Name of the group that contains it. */
   group?: string;
   targets: string[];
   enabled: Track<boolean>;
@@ -62,7 +62,7 @@ export interface Force {
   pull?: Track<number>;
 }
 
-/** Rows of a frame and the value's components. */
+/** Rows of a frame number and the components of the value. */
 export interface Channel {
   path: string;
   components: number;
@@ -94,7 +94,7 @@ export function at<T>(track: Track<T>, index: number): T {
   return track[Math.min(index, track.length - 1)];
 }
 
-/** A track between frames: numbers go straight, anything else stays. */
+/** A track between frames: numbers are interpolated linearly, other values stay. */
 export function between(track: Track<number>, index: number, share: number): number {
   const here = at(track, index);
   return share === 0 ? here : here + share * (at(track, index + 1) - here);
@@ -107,7 +107,7 @@ export function vectorBetween(track: Track<Vector>, index: number, share: number
   return [0, 1, 2].map((k) => here[k] + share * (next[k] - here[k])) as Vector;
 }
 
-/** One surface over all frames. Object space, from `origin`. */
+/** One surface over all frames. Object space, relative to `origin`. */
 export class BakedSurface {
   readonly rest: Float32Array;
   readonly uvs: Float32Array;
@@ -153,7 +153,7 @@ export class BakedSurface {
   }
 }
 
-/** Vertices by their nodes, those of one node as they come. */
+/** Vertices in the order of their nodes, those of one node in the order of the mesh. */
 function vertexOrder(nodes: Uint32Array, nodeCount: number): Uint32Array {
   const begins = new Uint32Array(nodeCount + 1);
   for (const node of nodes) ++begins[node + 1];
@@ -163,7 +163,7 @@ function vertexOrder(nodes: Uint32Array, nodeCount: number): Uint32Array {
   return order;
 }
 
-/** Whole numbers of steps: frames x vertices x 3, from how far each was from its prediction. */
+/** Integer displacements in steps, frames x vertices x 3, from the errors of their predictions. */
 function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Array, order: Uint32Array): Int16Array {
   const count = order.length;
   const steps = new Int16Array(predictors.length * count * 3);
@@ -188,7 +188,7 @@ function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Array, ord
         let guess = 0;
         if (before >= 0) guess = kind === 2 ? 2 * steps[before + place] : steps[before + place];
         if (earlier >= 0) guess -= steps[earlier + place];
-        steps[here + place] = guess + missed; // modulo 2^16, as an Int16Array stores
+        steps[here + place] = guess + missed; // modulo 2^16, as the Int16Array wraps
       }
     }
   }
@@ -233,7 +233,7 @@ export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
       (digits[base64.charCodeAt(read + 2)] << 6) |
       digits[base64.charCodeAt(read + 3)];
     bytes[write++] = bits >> 16;
-    bytes[write++] = bits >> 8; // past the end of the array nothing is written
+    bytes[write++] = bits >> 8; // writes past the end of the array are ignored
     bytes[write++] = bits;
   }
   return bytes;

@@ -1,5 +1,5 @@
-// Curves over frames on a canvas: grid, curves with keys and handles, the frame shown, and what is
-// under the cursor.
+// Curves over frames on a canvas: grid, curves with keys and handles, the frame shown, and the
+// values at the cursor.
 
 import type { Channel } from "./bake";
 import type { FrameAxis } from "./frame_axis";
@@ -9,21 +9,21 @@ import { diamond, niceStep, prepare, textSize } from "./timeline";
 /** A channel's value, or a component of it, as one line. */
 export interface Curve {
   channel: Channel;
-  /** Of the rows that the channel has. */
+  /** Index into the rows of the channel. */
   component: number;
-  /** Which component of a vector; empty: it is none. */
+  /** Name of the component of a vector; empty: the channel is not a vector. */
   part: string;
   colour: string;
   dash: number[];
 }
 
-/** Where the cursor is: at a frame, and near a curve or at none. */
+/** The frame at the cursor, and the curve near it; null: none. */
 export interface Hover {
   frame: number;
   curve: Curve | null;
 }
 
-/** What is drawn. */
+/** The content of the plot. */
 export interface CurvePicture {
   curves: Curve[];
   palette: Palette;
@@ -32,7 +32,7 @@ export interface CurvePicture {
   /** The frame shown. */
   time: number;
   hover: Hover | null;
-  /** Told where there is no curve. */
+  /** Shown if there is no curve. */
   empty: string;
 }
 
@@ -40,7 +40,7 @@ const top = 10;
 const reachOfCursor = 12;
 const bottomOf = (text: number) => 1.9 * text;
 
-/** What the engine gave at a whole frame: what comes after a jump there, not what led to it. */
+/** The engine's value at a whole frame: at a jump, the value after it. */
 export function valueAt({ channel, component }: Curve, frame: number): number | undefined {
   return channel.points.findLast((point) => point[0] === frame)?.[component];
 }
@@ -78,7 +78,7 @@ export class CurvePlot {
     }
   }
 
-  /** The curve that goes by nearest to a place of the window, if one does. */
+  /** The curve nearest to a position in the window, if one is near. */
   near(picture: CurvePicture, clientX: number, clientY: number): Curve | null {
     const box = this.canvas.getBoundingClientRect();
     const [atX, atY] = [clientX - box.left, clientY - box.top];
@@ -98,7 +98,7 @@ export class CurvePlot {
     return best;
   }
 
-  // One look at the page for all that is drawn.
+  // Measures the page once for the whole drawing.
   private xOf(): (frame: number) => number {
     const origin = this.axis.x(0, this.canvas);
     const { perFrame } = this.axis;
@@ -118,7 +118,7 @@ export class CurvePlot {
     const room = height - top - bottomOf(text);
     const y = (value: number) => top + ((high - value) / (high - low)) * room;
     const [left, right] = [x(first), x(Math.max(last, first + 1))];
-    // Beside the curves where there is room, else on them.
+    // Beside the curves if there is room, otherwise on them.
     const isBeside = left > 5 * text;
     const step = niceStep(((high - low) * 3 * text) / Math.max(room, 1));
     context.textBaseline = isBeside ? "middle" : "bottom";
@@ -139,7 +139,7 @@ export class CurvePlot {
     for (let frame = Math.ceil(first / frames) * frames; frame <= last; frame += frames) context.fillText(String(frame), x(frame), height - 0.45 * text);
   }
 
-  // A dot on each curve, and the value of the one under the cursor.
+  // Draws a dot on each curve, and the value of the one under the cursor.
   private drawHover(context: CanvasRenderingContext2D, picture: CurvePicture, width: number, height: number): void {
     const { curves, palette } = picture;
     const hover = picture.hover!;
@@ -218,7 +218,7 @@ function drawCurve(context: CanvasRenderingContext2D, curve: Curve, palette: Pal
   }
 }
 
-/** From a point to a line between two. */
+/** From a point to a line segment. */
 function distance(x: number, y: number, ax: number, ay: number, bx: number, by: number): number {
   const [dx, dy] = [bx - ax, by - ay];
   const length = dx * dx + dy * dy;
@@ -226,7 +226,7 @@ function distance(x: number, y: number, ax: number, ay: number, bx: number, by: 
   return Math.hypot(x - ax - share * dx, y - ay - share * dy);
 }
 
-/** What the curves, keys and handles over these frames take, with some air. */
+/** The range of values of the curves, keys and handles over these frames, with a margin. */
 function range(curves: Curve[], first: number, last: number): [number, number] {
   let low = Infinity;
   let high = -Infinity;
@@ -244,14 +244,14 @@ function range(curves: Curve[], first: number, last: number): [number, number] {
   return [low - air, high + air];
 }
 
-/** Four digits at most. */
+/** At most four digits. */
 export function numberText(value: number): string {
   const size = Math.abs(value);
   if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(1).replace("e+", "e");
   return String(Number(value.toPrecision(4)));
 }
 
-/** Seven digits at most. */
+/** At most seven digits. */
 export function valueText(value: number): string {
   return String(Number(value.toPrecision(7)));
 }

@@ -1,4 +1,4 @@
-// The curve panel: the channels that have keys, those that are shown as curves, and their values.
+// The curve panel: the list of channels with keys, the curves of the chosen ones, and their values.
 
 import type { Channel } from "./bake";
 import { CurvePlot, nameOf, valueAt, valueText, type Curve, type CurvePicture, type Hover } from "./curve_plot";
@@ -7,14 +7,14 @@ import type { Playback } from "./playback";
 import type { ThemeChoice } from "./theme";
 
 const names = ["x", "y", "z"];
-/** Beyond as many curves as there are colours. */
+/** Dash patterns, used when there are more curves than colours. */
 const dashes = [[], [6, 3], [2, 3], [8, 3, 2, 3]];
 
 export class CurvePanel {
   private channels: Channel[] = [];
   private readonly chosen = new Set<string>();
   private anchor = 0;
-  /** Which colour each curve that is shown has: it keeps it while it is shown. */
+  /** The curve that uses each colour. A curve keeps its colour while it is shown. */
   private slots: (string | undefined)[] = [];
   private hover: Hover | null = null;
   private readonly plot: CurvePlot;
@@ -39,7 +39,7 @@ export class CurvePanel {
       scrub(event);
     });
     canvas.addEventListener("pointermove", (event) => {
-      // What the engine takes are whole frames.
+      // The engine uses whole frames.
       const frame = Math.min(Math.max(Math.round(axis.frameAt(event.clientX)), playback.first), playback.last);
       this.hover = { frame, curve: this.plot.near(this.picture(), event.clientX, event.clientY) };
       if (canvas.hasPointerCapture(event.pointerId)) scrub(event);
@@ -88,7 +88,7 @@ export class CurvePanel {
     });
   }
 
-  // The first colour that is free, for each curve that is new.
+  // Gives each new curve the first free colour.
   private giveColours(): void {
     const wanted = this.shown.flatMap((channel) => componentsOf(channel).map((_, k) => `${channel.path} ${k}`));
     this.slots = this.slots.map((key) => (key !== undefined && wanted.includes(key) ? key : undefined));
@@ -99,7 +99,8 @@ export class CurvePanel {
     }
   }
 
-  // Which curve has which colour, and its value at the cursor, or at the frame shown without one.
+  // Lists the curves with their colours and values at the cursor, or without a cursor at the frame
+  // shown.
   private tell({ curves, hover }: CurvePicture): void {
     const frame = hover?.frame ?? this.playback.frame;
     const head = document.createElement("p");
@@ -131,7 +132,7 @@ export class CurvePanel {
         const isShown = this.chosen.has(channel.path);
         option.setAttribute("aria-selected", String(isShown));
         const label = document.createElement("span");
-        // A long path breaks behind the name of its element.
+        // A long path may break after the name of its element.
         label.append(...channel.path.split(/(?<=\.)/).flatMap((part, n) => (n === 0 ? [part] : [document.createElement("wbr"), part])));
         option.append(label, ...(isShown ? this.curvesOf(channel).map(swatch) : []));
         option.addEventListener("click", (event) => this.choose(k, event.ctrlKey || event.metaKey || event.shiftKey));
@@ -162,7 +163,7 @@ export class CurvePanel {
   }
 }
 
-/** Of a vector, the names of its components. */
+/** The names of a vector's components. */
 const componentsOf = ({ components }: Channel) => (components === 1 ? [""] : names.slice(0, components));
 
 function swatch(curve: Curve): HTMLElement {

@@ -1,14 +1,17 @@
-// Which forces are shown: all but those that are hidden, or some alone.
+// The forces that are shown: all except hidden ones, or only some chosen ones.
 
 import type { Force } from "./bake";
 
 export class ForceChoice {
-  /** Names, also of forces that are not there now: a save may bring them back. */
+  /** Names, also of forces that do not exist at present: a save may bring them back. */
   private readonly hidden = new Set<string>();
   private readonly alone = new Set<string>();
   private readonly listeners: (() => void)[] = [];
 
-  /** What is shown alone wins over what is hidden. A group stands for the forces in it. */
+  /**
+   * A force shown alone is shown even if it is hidden. The choice for a group is also valid for its
+   * forces.
+   */
   isShown({ name, group }: Force): boolean {
     const isIn = (names: Set<string>) => names.has(name) || (group !== undefined && names.has(group));
     return this.alone.size > 0 ? isIn(this.alone) : !isIn(this.hidden);
@@ -33,7 +36,7 @@ export class ForceChoice {
     this.tell();
   }
 
-  /** As an address says it; undefined: it says nothing. */
+  /** Sets the lists given in an address; undefined: the list does not change. */
   set(hidden: string[] | undefined, alone: string[] | undefined): void {
     const replace = (names: Set<string>, by: string[] | undefined) => {
       if (by === undefined) return;
@@ -49,14 +52,14 @@ export class ForceChoice {
     this.set([], []);
   }
 
-  /** An address with this choice in it, other words as they were. */
+  /** The address with this choice; its other words do not change. */
   writtenTo(address: string): string {
     const words = new URLSearchParams(address.replace(/^#/, ""));
     for (const [word, names] of [["hide", this.hidden], ["solo", this.alone]] as const) {
       words.delete(word);
       if (names.size > 0) words.set(word, [...names].join(","));
     }
-    // Names have no commas, and an address may: it is easier to read.
+    // Names contain no commas, and an address may contain them: easier to read.
     return words.toString().replaceAll("%2C", ",");
   }
 

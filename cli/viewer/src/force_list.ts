@@ -1,9 +1,9 @@
-// The list of forces and groups, each with what shows it, hides it, or shows it alone.
+// The list of forces and groups, with controls to show or hide each, or to show it alone.
 
 import type { Force } from "./bake";
 import type { ForceChoice } from "./force_choice";
 
-/** Groups come after the forces that are in none, each with the forces in it. */
+/** First the forces without a group, then each group followed by its forces. */
 function ordered(forces: Force[]): Force[] {
   const within = (group: string | undefined) => forces.filter((force) => force.kind !== "group" && force.group === group);
   return [...within(undefined), ...forces.filter((force) => force.kind === "group").flatMap((group) => [group, ...within(group.name)])];
@@ -71,7 +71,7 @@ export class ForceList {
     this.showAll.disabled = this.choice.isEverythingShown;
   }
 
-  // One row takes part in the order of the tab key; arrows go from row to row.
+  // Only one row is in the tab order; arrow keys move between rows.
   private makeCurrent(row: number): void {
     this.current = row;
     this.rows.forEach((each, k) => {

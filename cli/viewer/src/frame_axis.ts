@@ -1,8 +1,11 @@
-// Where frames stand between left and right: one map for the timeline and for the curves above it.
+// The map from frames to horizontal positions, shared by the timeline and the curves above it.
 
 import type { Playback } from "./playback";
 
-/** Of the timeline: room at both ends, so that the marks of the outermost frames are whole. [px] */
+/**
+ * Margin at both ends of the timeline, so that the marks of the first and last frame are not cut.
+ * [px]
+ */
 const margin = 16;
 
 export class FrameAxis {
@@ -11,19 +14,21 @@ export class FrameAxis {
     private readonly playback: Playback,
   ) {}
 
-  /** How far a frame is from another, one later. [CSS px] */
+  /** Distance between two consecutive frames. [CSS px] */
   get perFrame(): number {
     const [left, right] = this.ends();
     return (right - left) / this.length;
   }
 
-  /** Where a frame stands, from the left side of `place`, which may be any element. [CSS px] */
+  /** Position of a frame, from the left side of `place`, which may be any element. [CSS px] */
   x(frame: number, place: HTMLElement): number {
     const [left] = this.ends();
     return left + (frame - this.playback.first) * this.perFrame - place.getBoundingClientRect().left;
   }
 
-  /** The frame at a place of the window, between whole ones too, and beyond the ends. */
+  /**
+   * The frame at a position in the window; it may be fractional and outside the range of frames.
+   */
   frameAt(clientX: number): number {
     const [left] = this.ends();
     return this.playback.first + (clientX - left) / this.perFrame;

@@ -1,5 +1,6 @@
 // The thesis's feedback for a force (5.2.2): three circles for each of its two volumes, and its
-// vector from the centre. Dark, or blue, is what deforms; light, or amber, what is pushed (fig. 12).
+// vector from the centre. The deformation volume is dark or blue, the force volume light or amber
+// (fig. 12).
 
 import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -33,12 +34,12 @@ const head = new THREE.ConeGeometry(0.5, 1, 20).translate(0, -0.5, 0);
 const dot = new THREE.SphereGeometry(1, 16, 10);
 const up = new THREE.Vector3(0, 1, 0);
 
-/** Of the size of the scene, however large the radii. */
+/** As a share of the size of the scene, however large the radii. */
 const longestVector = 0.3;
 
 const toVector = (v: Vector) => new THREE.Vector3(...v);
 
-/** How a part looks, and how it shimmers through what is in front of it. */
+/** The look of a part, and its fainter look where other objects cover it. */
 class Ink {
   readonly seen: LineMaterial;
   readonly covered: LineMaterial;
@@ -78,14 +79,14 @@ class Ink {
   }
 }
 
-/** Behind everything, and faint: the region of a group is large, and is not to bury what it holds. */
+/** Faint and behind everything: the region of a group is large, and must not hide its content. */
 class BackgroundInk extends Ink {
   constructor(
     linewidth: number,
     private readonly share: number,
   ) {
     super(linewidth, 1);
-    // Among what is opaque, ahead of all of it; the colour is mixed instead.
+    // Drawn before all opaque objects; the colour is mixed instead of blended.
     this.seen.transparent = this.seen.depthTest = false;
   }
 
@@ -120,7 +121,7 @@ class Arrow {
     this.group.add(this.shaft, this.tip);
   }
 
-  /** From `from`, along `along` with its length; hidden without one. */
+  /** Points from `from` along `along`, with its length; hidden if that is 0. */
   point(from: THREE.Vector3, along: THREE.Vector3, size: number): void {
     const length = along.length();
     this.group.visible = length > 0;
@@ -152,7 +153,8 @@ class Gizmo {
     private readonly parameters: Force,
     private readonly reach: number,
   ) {
-    // So do volumes about everything that there is.
+    // Groups, and volumes with a radius above half of the scene's size, are drawn in the
+    // background.
     const isVast = (radius: Track<number> | undefined) => parameters.kind === "group" || Math.max(0, ...(radius ?? [])) > 0.5 * reach;
     this.inks = {
       deformation: isVast(parameters.deformationRadius) ? new BackgroundInk(1, 0.45) : new Ink(1.6, 0.9),
@@ -163,7 +165,8 @@ class Gizmo {
     this.group.name = `force ${parameters.name}`;
     this.strongest = Math.max(...(parameters.magnitude ?? [0]).map(Math.abs));
     const { kind } = parameters;
-    // A line's volume is a capsule, a vortex's a tube: circles at both ends, and lines between.
+    // The volume of a line is a capsule, that of a vortex a tube: circles at both ends, with lines
+    // between.
     const volumes = kind === "line" ? 2 : 1;
     const shape = kind === "vortex" ? ring : sphere;
     for (let k = 0; k < (kind === "vortex" ? 3 : volumes); ++k) {
@@ -191,18 +194,19 @@ class Gizmo {
     this.solid.color.set(this.parameters.kind === "group" ? palette.deformation : palette.force);
   }
 
-  /** Beside its middle; null: it is not shown. */
+  /** The label beside its middle; null: the force is not shown. */
   label(index: number): Label | null {
     if (!this.group.visible) return null;
     const { name, kind, magnitude } = this.parameters;
     const isGroup = kind === "group";
     const isFaint = !isGroup && (magnitude === undefined || at(magnitude, index) === 0);
-    // What pushes now, then what pushes hardest at any time, so that names do not come and go.
+    // First the forces that push now. Then by the largest magnitude at any time, so that names do
+    // not flicker.
     const rank = (isFaint ? 0 : 2) + (isGroup ? 0 : this.strongest / (1 + this.strongest));
     return { text: name, place: this.middle.position, rank, isFaint, isGroup };
   }
 
-  /** `middle` is where forces stand that are everywhere; `push` what inertia gives there. */
+  /** `middle`: the position for forces that act everywhere; `push`: the inertial force there. */
   show(index: number, share: number, isShown: boolean, middle: THREE.Vector3, push: Vector | undefined): void {
     const force = this.parameters;
     this.group.visible = isShown && at(force.enabled, index);
@@ -270,7 +274,7 @@ class Gizmo {
     for (const each of [...this.deformation, ...this.force]) each.quaternion.setFromUnitVectors(up, along.clone().divideScalar(length));
   }
 
-  // Where the force points, whatever its magnitude.
+  // The direction of the force, whatever its magnitude.
   private showCourse(from: THREE.Vector3, direction: THREE.Vector3, length: number): void {
     this.course.visible = direction.lengthSq() > 0;
     if (!this.course.visible) return;
@@ -279,7 +283,7 @@ class Gizmo {
     this.course.scale.set(1, length, 1);
   }
 
-  // Away from the middle, or towards it where the magnitude is negative.
+  // Arrows away from the middle, or towards it if the magnitude is negative.
   private burst(center: THREE.Vector3, ways: THREE.Vector3[], gap: number, length: number, headSize: number): void {
     ways.forEach((way, k) => {
       const from = center.clone().addScaledVector(way, length < 0 ? gap - length : gap);
@@ -287,7 +291,7 @@ class Gizmo {
     });
   }
 
-  // Along the ring, and inwards as far as it pulls.
+  // Arrows along the ring, turned inwards by the pull.
   private showVortex(center: THREE.Vector3, axis: THREE.Vector3, pull: number, radius: number, length: number, headSize: number): void {
     if (axis.lengthSq() === 0) {
       for (const arrow of this.arrows) arrow.group.visible = false;
@@ -307,7 +311,7 @@ class Gizmo {
   }
 }
 
-/** Two unit vectors across another. */
+/** Two unit vectors perpendicular to `along` and to each other. */
 function across(along: THREE.Vector3): [THREE.Vector3, THREE.Vector3] {
   const way = along.lengthSq() > 0 ? along.clone().normalize() : up.clone();
   const helper = Math.abs(way.y) < 0.9 ? up : new THREE.Vector3(1, 0, 0);
@@ -334,7 +338,7 @@ export class Gizmos {
     this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, isShown[k], this.middle, pushes.get(k)));
   }
 
-  /** Of those that are shown. */
+  /** The labels of the forces that are shown. */
   labels(index: number): Label[] {
     return this.gizmos.map((gizmo) => gizmo.label(index)).filter((label) => label !== null);
   }

@@ -1,4 +1,4 @@
-// Names beside the forces. Of names that would cover each other the more telling one is drawn.
+// Names beside the forces. If names would cover each other, the one with the highest rank is drawn.
 
 import * as THREE from "three";
 
@@ -8,22 +8,22 @@ export interface Label {
   text: string;
   /** World space. */
   place: THREE.Vector3;
-  /** More telling is higher. */
+  /** Higher is more important. */
   rank: number;
   isFaint: boolean;
   isGroup: boolean;
 }
 
-/** Of a picture or a page: left, top, right, bottom. [px] */
+/** Area of a picture or a page: left, top, right, bottom. [px] */
 export type Area = [number, number, number, number];
 
 const longest = 28;
-/** Of more than these, names of what does not push now are left out. */
+/** With more labels than this, forces that do not push now have none. */
 const crowd = 24;
 const shortened = (text: string) => (text.length > longest ? `${text.slice(0, longest - 1)}…` : text);
 const overlap = (a: Area, b: Area) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
-/** Draws what finds a place; `taken` is left free. Gives the texts that are drawn. */
+/** Draws the labels for which there is room outside `taken`. Returns the drawn texts. */
 export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], camera: THREE.Camera, size: { width: number; height: number; text: number }, taken: Area[], palette: Palette): string[] {
   const { width, height, text } = size;
   context.save();

@@ -1,4 +1,4 @@
-// What the colours mean: one text and drawing for the page and for pictures.
+// The meaning of the colours: the same text and drawing for the page and for pictures.
 
 import type { Area } from "./labels";
 import { numberText } from "./curve_plot";
@@ -6,7 +6,7 @@ import { ramps } from "./surface_view";
 import type { Palette } from "./theme";
 import type { Viewer } from "./viewer";
 
-/** A scene has no units of its own: lengths are those of its numbers, time is in seconds. */
+/** A scene defines no unit of length: lengths are in the units of its numbers, times in seconds. */
 const titles = { displacement: "Displacement [scene units]", velocity: "Velocity [scene units/s]" };
 
 interface Ink {
@@ -15,13 +15,13 @@ interface Ink {
 }
 
 export interface Legend {
-  /** Of the surfaces; null: they are plain. */
+  /** The colours of the surfaces; null: they are plain. */
   scale: { title: string; css: string; at: (share: number) => string; high: string } | null;
-  /** Of the lines. */
+  /** The colours of the lines. */
   inks: Ink[];
 }
 
-/** Of what is shown; null: it needs none, or is to have none. */
+/** The legend for the present display; null: not needed or not wanted. */
 export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
   const { display, bake } = viewer;
   if (!display.hasLegend || !bake) return null;
@@ -37,7 +37,7 @@ export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
   return { scale: { title: titles[colour], css: ramp.css(), at: (share) => ramp.cssAt(share), high: numberText(viewer.peak()) }, inks };
 }
 
-/** Into the page. */
+/** Shows the legend in the page. */
 export function showLegend(place: HTMLElement, legend: Legend | null): void {
   place.hidden = legend === null;
   if (!legend) return;
@@ -60,7 +60,10 @@ export function showLegend(place: HTMLElement, legend: Legend | null): void {
   );
 }
 
-/** Into a picture, with its lower left corner there; gives the area that it covers. */
+/**
+ * Draws the legend into a picture, with its lower left corner at (left, bottom). Returns the
+ * covered area.
+ */
 export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, left: number, bottom: number, text: number, palette: Palette): Area {
   const width = 15 * text;
   const line = 1.35 * text;
@@ -70,7 +73,7 @@ export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, le
   context.save();
   context.font = `${text}px system-ui, sans-serif`;
   context.textBaseline = "middle";
-  // Lines behind it would go through its numbers.
+  // A background, so that lines behind it do not cross its numbers.
   context.globalAlpha = 0.8;
   context.fillStyle = palette.background;
   context.fillRect(area[0], area[1], area[2] - area[0], area[3] - area[1]);

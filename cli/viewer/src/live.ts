@@ -1,4 +1,4 @@
-// A page from `pliant view --serve`: told of every save, it fetches what is new.
+// A page from `pliant view --serve`: notified of every save, it fetches the new bake.
 
 import type { Bake, Message } from "./bake";
 import { unpack } from "./bake";
@@ -7,7 +7,7 @@ export interface LiveListener {
   baked(bake: Bake): void;
   failed(messages: Message[]): void;
   working(): void;
-  /** Whether the command is there. */
+  /** Whether the command is reachable. */
   connected(isConnected: boolean): void;
 }
 
@@ -26,7 +26,7 @@ export function follow(listener: LiveListener): void {
   events.addEventListener("failed", (event) => listener.failed(JSON.parse((event as MessageEvent<string>).data) as Message[]));
   events.addEventListener("baked", (event) => {
     const number = Number((event as MessageEvent<string>).data);
-    if (number === shown) return; // told again after a broken connection
+    if (number === shown) return; // repeated after a broken connection
     shown = number;
     fetchBake().then(
       (bake) => listener.baked(bake),

@@ -1,4 +1,4 @@
-// What the page's address may say after #: `frame=12&colour=velocity&turn=30`.
+// The words that the page's address may have after #: `frame=12&colour=velocity&turn=30`.
 
 import type { Colour, Style } from "./surface_view";
 import type { Theme } from "./theme";

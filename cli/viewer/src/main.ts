@@ -1,4 +1,4 @@
-// The page: puts what the command baked on the stage, and ties buttons, keys and panels to it.
+// The page: puts the bake on the stage, and connects buttons, keys and panels to it.
 
 import { bytesOf, unpack, type Bake, type Message } from "./bake";
 import { numberText } from "./curve_plot";
@@ -138,7 +138,7 @@ stage.onDraw(() => {
   if (place) labelled = drawLabels(place.context, viewer.labels(), stage.camera, { ...place, text: textSize() }, [], themes.palette);
 });
 
-/** Into the address, so that it can be handed on, and to --look. */
+/** Writes the choice into the address, so that it can be shared, and passed to --look. */
 viewer.forces.onChange(() => {
   updateLegend();
   const words = viewer.forces.writtenTo(location.hash);
@@ -194,7 +194,7 @@ document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || help.open) return;
   const target = event.target as HTMLElement;
   const shortcut = shortcuts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  // Fields and buttons keep the keys that work them.
+  // Fields and buttons keep the keys that operate them.
   const isField = target.matches("input:not([type=checkbox]), select, textarea");
   const isPressed = event.key === " " && target.matches("button, input, [role=option]");
   if (!shortcut || isField || isPressed) return;
@@ -202,7 +202,7 @@ document.addEventListener("keydown", (event) => {
   shortcut(event);
 });
 
-// What is shown
+// Content
 
 function load(bake: Bake): void {
   const { head } = bake;
@@ -275,7 +275,7 @@ function goLive(): void {
   });
 }
 
-/** What the command asks for; each order has a number, from 1. */
+/** An order of the command; orders are numbered from 1. */
 type Order = PictureJob & { number?: number; look: string };
 
 async function nextOrder(done: number): Promise<Order> {
@@ -286,7 +286,9 @@ async function nextOrder(done: number): Promise<Order> {
   }
 }
 
-/** `pliant view --png` and `--movie` open the page for this only, and take pictures from it, one an order. */
+/**
+ * `pliant view --png` and `--movie` open the page only for this: it sends one picture per order.
+ */
 async function sendPictures(): Promise<void> {
   load(await fetchBake());
   for (let done = 0; ; ) {
@@ -323,5 +325,5 @@ begin().catch((error: Error) => {
   showMessages(element("messages"), [{ kind: "error", line: 0, text: `This page cannot be shown: ${error.message}` }]);
 });
 
-// For tests, and for whoever looks at a page from the console.
+// For tests, and for inspecting a page from the console.
 Object.assign(window, { pliant: { viewer, stage, playback, themes, labels: () => labelled } });

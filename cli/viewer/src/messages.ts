@@ -1,4 +1,4 @@
-// What the command has to say of the scene: errors, warnings, notes, each with its line.
+// The command's messages about the scene: errors, warnings, notes, each with its line.
 
 import type { Message } from "./bake";
 

@@ -1,4 +1,4 @@
-// Pictures of the stage: one frame, or a sheet of several, with names and legend as the page has them.
+// Pictures of the stage: one frame, or a sheet of several, with labels and legend as in the page.
 
 import { drawLabels, type Area } from "./labels";
 import { drawLegend, legendOf } from "./legend";
@@ -16,10 +16,13 @@ export interface PictureJob {
   strip: number;
 }
 
-/** Smaller pictures have room for the surfaces only. [px] */
+/** Smaller pictures show only the surfaces, without text. [px] */
 const leastForWords = { width: 240, height: 180 };
 
-/** A PNG of width x height pixels for one frame; several stand in a table, each that large. */
+/**
+ * A PNG of width x height pixels for one frame; several frames form a table of pictures of that
+ * size.
+ */
 export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob> {
   const { width, height, frames, columns, label, strip } = job;
   const isSheet = frames.length > 1;

@@ -1,10 +1,10 @@
-// The time that is shown: frames, whole ones unless asked for more.
+// The time that is shown: a whole frame, or with `isBetween` also between frames.
 
 export class Playback {
   isPlaying = false;
   isLooping = true;
   speed = 1;
-  /** Whether the shape goes on between frames. */
+  /** Whether the shape is interpolated between frames. */
   isBetween = false;
   first = 0;
   last = 0;
@@ -13,7 +13,7 @@ export class Playback {
   private lastTick = 0;
   private readonly listeners: (() => void)[] = [];
 
-  /** Takes another run of frames; the frame shown stays where it can. */
+  /** Loads a range of frames. The frame shown stays if it is in the range, unless `isNew`. */
   load(first: number, last: number, fps: number, isNew: boolean): void {
     [this.first, this.last, this.fps] = [first, last, fps];
     this.now = isNew ? first : this.clamped(this.now);
@@ -25,7 +25,7 @@ export class Playback {
     return Math.min(Math.floor(this.now + 1e-9), this.last);
   }
 
-  /** How far it is to the next one, 0 to 1. */
+  /** The fraction of the way to the next frame, 0 to 1. */
   get share(): number {
     return this.isBetween && this.now < this.last ? Math.max(this.now - this.frame, 0) : 0;
   }
@@ -72,13 +72,13 @@ export class Playback {
     return Math.min(Math.max(frame, this.first), this.last);
   }
 
-  // Frames go by the clock: a slow machine leaves some out instead of going slow.
+  // Playback follows the clock: a slow machine drops frames instead of slowing down.
   private readonly tick = (now: number) => {
     if (!this.isPlaying) return;
     const shown = this.time;
     this.now += (Math.max(now - this.lastTick, 0) / 1000) * this.fps * this.speed;
     this.lastTick = now;
-    const length = this.last - this.first + 1; // the last frame lasts as long as any
+    const length = this.last - this.first + 1; // the last frame lasts as long as the others
     if (this.now >= this.last + 1) {
       if (this.isLooping) {
         this.now = this.first + ((this.now - this.first) % length);

@@ -1,4 +1,4 @@
-// Colours for numbers: ramps that rise evenly in lightness, made in OKLab.
+// Colours for numbers: ramps with evenly rising lightness, made in OKLab.
 
 export type Rgb = [number, number, number];
 
@@ -30,7 +30,7 @@ function linearFromOklab([lightness, a, b]: Rgb): Rgb {
   ].map((value) => Math.min(Math.max(value, 0), 1)) as Rgb;
 }
 
-/** 256 colours between stops, linear light: what three.js takes as a vertex colour. */
+/** 256 colours between stops, in linear light, as three.js expects vertex colours. */
 export class Ramp {
   readonly colours = new Float32Array(256 * 3);
 
@@ -45,13 +45,13 @@ export class Ramp {
     }
   }
 
-  /** At 0 to 1. */
+  /** The colour at `share`, 0 to 1. */
   cssAt(share: number): string {
     const k = 3 * Math.round(255 * Math.min(Math.max(share, 0), 1));
     return `rgb(${Array.from(this.colours.subarray(k, k + 3), (value) => Math.round(255 * toGamma(value))).join(" ")})`;
   }
 
-  /** As the background of an element. */
+  /** The ramp as the background of an element. */
   css(): string {
     const stops: string[] = [];
     for (let k = 0; k < 256; k += 15) stops.push(this.cssAt(k / 255));

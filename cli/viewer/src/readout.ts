@@ -6,7 +6,7 @@ import type { Stage } from "./stage";
 import type { SurfaceView } from "./surface_view";
 import type { ThemeChoice } from "./theme";
 
-/** Meshes with more triangles are looked at when the cursor rests only. */
+/** Meshes with more triangles are picked only when the cursor rests. */
 const manyTriangles = 150_000;
 
 export class Readout {
@@ -43,7 +43,7 @@ export class Readout {
     this.update();
   }
 
-  /** Tells of the picked vertex at the frame that is shown now. */
+  /** Shows the picked vertex at the present frame. */
   update(): void {
     this.marker.visible = this.picked !== null;
     this.stage.invalidate();
@@ -99,7 +99,7 @@ export class Readout {
   }
 }
 
-/** Five digits, with a sign's room kept. */
+/** Five digits, with room for a sign. */
 function fixed(value: number): string {
   if (value === 0) return "0";
   const size = Math.abs(value);

@@ -1,5 +1,5 @@
-// What is selected, drawn on the surface: the rim of each region, the box of each force (thesis
-// 5.3, fig. 5 and 12).
+// Draws the selections on the surface: the rim of each region, the box of each force (thesis 5.3,
+// fig. 5 and 12).
 
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
@@ -76,9 +76,9 @@ class NodeLines {
 const lineMaterial = (linewidth: number, opacity: number) =>
   new LineMaterial({ linewidth, opacity, transparent: true, polygonOffset: true, polygonOffsetFactor: -4, polygonOffsetUnits: -4 });
 
-/** Of one surface. */
+/** The regions and boxes of one surface. */
 export class RegionView {
-  // Nearer than the surface by a hair, so that it does not hide them.
+  // Slightly nearer than the surface, so that it does not hide them.
   private readonly materials = {
     rim: lineMaterial(2.5, 1),
     small: lineMaterial(1.5, 0.4),
@@ -100,7 +100,7 @@ export class RegionView {
     view.group.add(...this.lines.map((lines) => lines.object));
   }
 
-  /** `isIdle` says which of the forces push with a magnitude of 0, `isShown` which are shown. */
+  /** `isIdle`: for each force, whether its magnitude is 0. `isShown`: whether it is shown. */
   show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[], isShown: boolean[]): void {
     const { columns, rows } = this.view.surface.head;
     const marks = this.view.surface.marksAt(frame);

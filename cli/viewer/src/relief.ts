@@ -1,4 +1,4 @@
-// How much a surface bends at each vertex, for a shading that shows relief where light alone does not.
+// The bend of a surface at each vertex, for a shading that shows relief where light alone does not.
 
 /**
  * Bends of a surface whose size is `size`, -1 to 1: below 0 in a valley, above 0 on a ridge.
@@ -6,8 +6,8 @@
  *
  * Along an edge d = p_b - p_a the normal curvature is (n_b - n_a) · d / |d|². The mean over a
  * vertex's edges, times the size, is a number without a unit. A radius of a sixth of the size gives
- * half of what there is: enough for a bulge of a tenth of a sheet, while the ripples of rain do not
- * go black.
+ * half of the full effect: enough for a bulge of a tenth of a sheet, without turning the ripples of
+ * rain black.
  */
 export function bends(p: Float32Array, n: Float32Array, edges: Uint32Array, size: number, out: Float32Array, counts: Uint8Array): void {
   out.fill(0);

@@ -1,4 +1,4 @@
-// Camera, light and floor; draws when something has changed.
+// Camera, light and floor; draws only after changes.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -8,14 +8,17 @@ import type { Palette } from "./theme";
 const restTurn = THREE.MathUtils.degToRad(32);
 const restTilt = THREE.MathUtils.degToRad(28);
 
-/** Lamps as a photographer has them, each from where it stands, seen from the camera: x to the right, y up, z towards it. */
+/**
+ * A photographer's three-point lighting. `from` is the direction of the lamp in the camera's frame:
+ * x to the right, y up, z towards the camera.
+ */
 const lamps = [
-  // The key light grazes a sheet that is seen from ahead, or from above: half of what it gives is lost there, so that a slope
-  // towards it is as much brighter as one away from it is darker.
+  // The key light hits a sheet seen from the front or from above at a low angle, with half of its
+  // effect. So a slope towards it is as much brighter as a slope away from it is darker.
   { from: [-0.95, 0.55, 0.42], colour: 0xfff6ea, strength: 3.9 },
-  // The rim light, from behind on the other side, draws the edge of what turns away.
+  // The rim light, from behind on the other side, shows edges of parts that turn away.
   { from: [0.75, 0.5, -0.7], colour: 0xe4edff, strength: 1.5 },
-  // The fill light opens the shadows of the key light.
+  // The fill light brightens the shadows of the key light.
   { from: [0.6, 0.05, 0.8], colour: 0xdde7ff, strength: 0.5 },
 ];
 const ambient = 0.75;
@@ -42,7 +45,7 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    // They come along with the camera, so that no side is ever dark.
+    // They move with the camera, so that no side is ever dark.
     for (const light of this.lights) this.camera.add(light, light.target);
     this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, ambient), this.floor);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -69,12 +72,12 @@ export class Stage {
     for (const listener of this.listeners) listener();
   }
 
-  /** After each picture. */
+  /** Calls `listener` after each drawing. */
   onDraw(listener: () => void): void {
     this.listeners.push(listener);
   }
 
-  /** What the camera shall see. */
+  /** Sets the box that the camera shows. */
   bound(box: THREE.Box3): void {
     this.box = box.clone();
     const size = Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
@@ -86,7 +89,7 @@ export class Stage {
     this.buildFloor();
   }
 
-  /** Everything in sight, from the side that the camera is on. */
+  /** Fits everything into the view, from the camera's present direction. */
   frameAll(): void {
     const center = this.box.getCenter(new THREE.Vector3());
     const toCamera = this.camera.position.clone().sub(this.controls.target);
@@ -94,7 +97,7 @@ export class Stage {
     this.lookFrom(center, toCamera.normalize());
   }
 
-  /** As seen first, or turned about the vertical and tilted, in degrees. */
+  /** Resets the view, or turns it about the vertical and tilts it; in degrees. */
   look(turn?: number, tilt?: number): void {
     const a = turn === undefined ? restTurn : THREE.MathUtils.degToRad(turn);
     const b = tilt === undefined ? restTilt : THREE.MathUtils.degToRad(tilt);
@@ -102,7 +105,7 @@ export class Stage {
     this.lookFrom(this.box.getCenter(new THREE.Vector3()), way);
   }
 
-  /** From now on of this size, whatever the page's. The view is fitted to it. */
+  /** Fixes the size of the picture, independent of the page, and fits the view to it. */
   pin(width: number, height: number): void {
     this.isPinned = true;
     this.resizeTo(width, height, 1);
@@ -134,11 +137,11 @@ export class Stage {
     const place = this.canvas.parentElement!.getBoundingClientRect();
     if (place.width === 0 || place.height === 0) return;
     this.resizeTo(place.width, place.height, Math.min(devicePixelRatio, 2));
-    // At once: what was drawn is gone.
+    // Draw at once: resizing erased the picture.
     this.draw();
   }
 
-  // The corners of the box fill the picture, less a margin.
+  // The box's corners fill the picture up to a margin.
   private lookFrom(center: THREE.Vector3, way: THREE.Vector3): void {
     const side = new THREE.Vector3(0, 1, 0).cross(way);
     if (side.lengthSq() < 1e-9) side.set(1, 0, 0);
@@ -159,7 +162,7 @@ export class Stage {
     this.invalidate();
   }
 
-  // Squares of a round size under the scene.
+  // A grid of squares of a round size under the scene.
   private buildFloor(): void {
     this.floor.clear();
     const size = this.box.getSize(new THREE.Vector3());

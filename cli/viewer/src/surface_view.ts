@@ -12,7 +12,10 @@ export type Colour = "plain" | "displacement" | "velocity";
 
 export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: displacementRamp, velocity: velocityRamp };
 
-/** p_world = transform · (origin + p), as three.js has matrices; between frames number by number. */
+/**
+ * p_world = transform · (origin + p), as a three.js matrix; between frames each number is
+ * interpolated.
+ */
 function placement(surface: BakedSurface, index: number, share: number): THREE.Matrix4 {
   const { origin, transforms } = surface.head;
   const here = at(transforms, index);
@@ -23,10 +26,10 @@ function placement(surface: BakedSurface, index: number, share: number): THREE.M
   return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
 }
 
-/** By how much a bend brightens a ridge and darkens a valley. */
+/** The factor by which a bend brightens a ridge and darkens a valley. */
 const reliefShare = 0.35;
 
-/** Colours times 1 + the share of what `relief` has for the vertex. */
+/** Multiplies colours by 1 + the share of the vertex's `relief`. */
 function showRelief(material: THREE.MeshStandardMaterial): void {
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader
@@ -34,7 +37,7 @@ function showRelief(material: THREE.MeshStandardMaterial): void {
       .replace("#include <begin_vertex>", "vRelief = relief;\n#include <begin_vertex>");
     shader.fragmentShader = shader.fragmentShader
       .replace("#include <common>", "varying float vRelief;\n#include <common>")
-      // The back is a valley where the front is a ridge.
+      // A ridge on the front is a valley on the back.
       .replace("#include <color_fragment>", `#include <color_fragment>\ndiffuseColor.rgb *= 1.0 + ${reliefShare.toFixed(2)} * (gl_FrontFacing ? vRelief : -vRelief);`);
   };
 }
@@ -49,7 +52,7 @@ function sizeOf(positions: Float32Array): number {
 export class SurfaceView {
   readonly group = new THREE.Group();
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
-  /** Of each vertex at the frame shown, world space. */
+  /** Length for each vertex at the frame shown, world space. */
   readonly displacement: Float32Array;
   readonly speed: Float32Array;
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
@@ -115,7 +118,7 @@ export class SurfaceView {
     this.measure(index, share);
   }
 
-  /** Colours by a number of each vertex, whose largest is `peak`. */
+  /** Colours the vertices by a number; `peak` has the top colour. */
   paint(colour: Colour, peak: number): void {
     const attribute = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const colours = attribute.array as Float32Array;
@@ -163,7 +166,7 @@ export class SurfaceView {
     this.lines.material.dispose();
   }
 
-  // The sum of the area vectors of the triangles around each vertex.
+  // A normal is the normalised sum of the area vectors of the triangles around its vertex.
   private turnNormals(p: Float32Array): void {
     const attribute = this.mesh.geometry.getAttribute("normal") as THREE.BufferAttribute;
     const n = attribute.array as Float32Array;
@@ -190,7 +193,8 @@ export class SurfaceView {
     relief.needsUpdate = true;
   }
 
-  // Displacement from where rest would be now; velocity as the mean since the frame before.
+  // Displacement relative to the rest position under the present transform; speed as the mean since
+  // the frame before.
   private measure(index: number, share: number): void {
     const m = this.group.matrix.elements;
     const isFirst = index === 0 && share === 0;

@@ -1,22 +1,25 @@
-// Light or dark: as the system has it, until the viewer is told otherwise.
+// Light or dark: the system's choice, unless the user chooses.
 
 export type Theme = "light" | "dark";
 
-/** Colours of what is drawn by hand; those of the page are in style.css. */
+/** Colours of the drawings on canvases and the stage; those of the page are in style.css. */
 export interface Palette {
   background: string;
   floor: string;
   floorAxis: string;
   surface: string;
   mesh: string;
-  /** The two of the thesis, fig. 12: what deforms, and what is pushed. */
+  /** The two colours of the thesis, fig. 12: deformation and force. */
   deformation: string;
   force: string;
   rim: string;
   ink: string;
   faint: string;
   panel: string;
-  /** Told apart from each other and from the panel by every kind of colour vision; a test looks. */
+  /**
+   * Distinguishable from each other and from the panel for every kind of colour vision; a test
+   * checks this.
+   */
   curves: string[];
   accent: string;
 }

@@ -1,21 +1,24 @@
-// The ruler of frames: scrub, keys as diamonds.
+// The ruler of frames, for scrubbing, with keys as diamonds.
 
 import type { FrameAxis } from "./frame_axis";
 import type { Playback } from "./playback";
 import type { ThemeChoice } from "./theme";
 
-/** 1, 2 or 5 times a power of ten, at least `least`. */
+/** The smallest of 1, 2 or 5 times a power of ten that is at least `least`. */
 export function niceStep(least: number): number {
   const power = 10 ** Math.floor(Math.log10(least));
   return [1, 2, 5, 10].map((k) => k * power).find((each) => each >= least * 0.999999)!;
 }
 
-/** The size of small text on a canvas, as that of the page goes with the window. [px] */
+/** The size of small text on a canvas: like that of the page, it depends on the window. [px] */
 export function textSize(): number {
   return 0.82 * parseFloat(getComputedStyle(document.documentElement).fontSize);
 }
 
-/** Makes a canvas as sharp as the screen; gives its size in CSS pixels, or null without one. */
+/**
+ * Gives a canvas the resolution of the screen; returns its size in CSS pixels, or null if it has
+ * none.
+ */
 export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
   const { width, height } = canvas.getBoundingClientRect();
   const context = canvas.getContext("2d");
@@ -23,7 +26,7 @@ export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingCo
   const ratio = devicePixelRatio || 1;
   const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
-  // Not the ratio itself: the sizes of the window are no whole numbers.
+  // Not the device's ratio: the sizes in the window are not integers.
   context.setTransform(w / width, 0, 0, h / height, 0, 0);
   context.clearRect(0, 0, width, height);
   return { context, width, height };
@@ -62,7 +65,7 @@ export class Timeline {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  /** To the key before (-1) or after (1) the frame shown. */
+  /** Goes to the key before (-1) or after (1) the frame shown. */
   toKey(way: -1 | 1): void {
     const { frame } = this.playback;
     const inRange = this.keyFrames.filter((key) => key >= this.playback.first && key <= this.playback.last).map(Math.round);

@@ -1,4 +1,4 @@
-// A bake on a stage: surfaces, gizmos and regions at the frame that plays.
+// A bake on a stage: surfaces, gizmos and regions at the present frame.
 
 import * as THREE from "three";
 
@@ -20,7 +20,7 @@ export interface Display {
   hasBoxes: boolean;
   hasLabels: boolean;
   hasLegend: boolean;
-  /** The number at the top of the colours; null: the largest of the animation. */
+  /** The number of the top colour; null: the largest number of the animation. */
   peak: number | null;
 }
 
@@ -44,7 +44,7 @@ export class Viewer {
     this.forces.onChange(() => this.show());
   }
 
-  /** Puts a bake in place of the one before; camera and frame stay if there was one. */
+  /** Replaces the bake; camera and frame stay if there was one before. */
   load(bake: Bake): void {
     const isNew = this.bake === null;
     this.clear();
@@ -61,7 +61,7 @@ export class Viewer {
     this.redress();
   }
 
-  /** The largest number that the colours stand for. */
+  /** The number of the top colour. */
   peak(): number {
     const { colour, peak } = this.display;
     if (peak !== null) return peak;
@@ -76,7 +76,7 @@ export class Viewer {
     return this.gizmos?.labels(this.playback.frame - this.bake.head.first) ?? [];
   }
 
-  /** After `display` or the theme has changed. */
+  /** Call after `display` or the theme has changed. */
   redress(): void {
     const { palette } = this.themes;
     this.stage.colour(palette);
@@ -119,7 +119,7 @@ export class Viewer {
   }
 }
 
-/** Where the surfaces go, and the forces stand. */
+/** The box around the surfaces over all frames, and the forces near them. */
 function boxOf(bake: Bake): THREE.Box3 {
   const box = new THREE.Box3();
   for (const { low, high } of bake.head.surfaces) box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
@@ -128,7 +128,7 @@ function boxOf(bake: Bake): THREE.Box3 {
   for (const force of bake.head.forces) {
     const radius = Math.max(0, ...(force.deformationRadius ?? []), ...(force.forceRadius ?? []));
     for (const place of [...(force.center ?? []), ...(force.from ?? []), ...(force.to ?? [])]) {
-      // One that stands far away, or is large, does not make the rest small.
+      // A force that is far away or large must not make the rest small.
       const point = new THREE.Vector3(...place);
       if (surfaces.distanceToPoint(point) > 0.5 * reach) continue;
       const room = Math.min(0.7 * radius, 0.2 * reach);

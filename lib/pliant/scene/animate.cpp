@@ -37,7 +37,7 @@ std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Attribute*
                        fmt::format("{} has no such channel{}", parent, hint(name, channels)));
 }
 
-/// How many numbers the keys' values have at most.
+/// The largest number of components among the values of the keys.
 std::size_t value_width(const tinyxml2::XMLElement& animate) {
   std::size_t width = 0;
   for (const auto* key = animate.FirstChildElement("key"); key;
@@ -53,7 +53,7 @@ bool has_boolean_values(const tinyxml2::XMLElement& animate) {
   return value && parse_boolean(value).has_value();
 }
 
-/// Stores a curve with D components in the channel, for the kinds of channels that take one.
+/// Reads a curve with D components and passes it to `store`, unless there was a problem.
 template <int D>
 void read_into(const tinyxml2::XMLElement& animate, ValueKind kind, const std::string& path,
                Findings& findings, auto&& store) {
@@ -66,7 +66,7 @@ struct CurveOfChannel {
   const std::string& path;
   Findings& findings;
 
-  /// No channel that we know: the keys are read all the same, for their own mistakes.
+  /// An unknown channel: the keys are still read, to report their own problems.
   void operator()(std::monostate) const {
     if (has_boolean_values(animate))
       read_into<1>(animate, ValueKind::Boolean, path, findings, [](auto&&) {});
@@ -91,7 +91,8 @@ struct CurveOfChannel {
     read_into<3>(animate, ValueKind::Vector, path, findings,
                  [&](Curve<3> curve) { *place = PositionChannel(std::move(curve)); });
   }
-  /// One number or three: three as soon as one key has three, then one number stands for all.
+  /// One number or three. If any key has three, the curve has three, and a single number stands for
+  /// all three.
   void operator()(TangentChannel* place) const {
     if (value_width(animate) > 1)
       read_into<3>(animate, ValueKind::Widened, path, findings,

@@ -8,8 +8,8 @@
 namespace pliant::xml {
 
 /// Reads an <animate> into the channel that its `attribute` names among `rows`, the rows of the
-/// element it stands in. `owner` is the name of the surface or force, for notes.
-/// Problems: no such channel, one that is given or animated already, everything about its keys.
+/// element that contains it. `owner` is the name of the surface or force, for notes. Problems: no
+/// such channel, a channel that is already given or animated, all problems of its keys.
 void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* const> rows,
                   const std::string& owner, Findings& findings);
 

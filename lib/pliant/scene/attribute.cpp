@@ -20,7 +20,7 @@ std::string constant_text(const Channel<D>& channel) {
   return to_text(channel.at(0));
 }
 
-/// Reads D numbers within `range` and hands them to `take`.
+/// Reads D numbers within `range` and passes them to `take`.
 template <int D, class Take>
 std::function<Reading<void>(std::string_view)> reading_values(Range range, Take take) {
   return [range, take](std::string_view text) -> Reading<void> {
@@ -51,7 +51,7 @@ Attribute channel_row(std::string_view name, Place& place, std::string_view unit
                  &place);
 }
 
-/// A tangent: one number for all of x, y, z, or three.
+/// A tangent: one number for all of x, y, z, or three numbers.
 Reading<void> read_tangent(std::string_view text, TangentChannel& place) {
   if (words_of(text).size() == 1) {
     const Reading<double> number = parse_number(text);

@@ -25,7 +25,7 @@ struct Range {
   bool excludes_least = false;
   bool excludes_zero = false;
 
-  /// "must be greater than 0", or nothing for numbers that are all within.
+  /// Complaint if a number is outside the range, such as "must be greater than 0".
   Reading<void> accept(std::span<const double> numbers) const;
 
   std::string to_text() const;  ///< `> 0`, `≥ 0`, `0 to 1`, `≠ 0`; empty: any finite number
@@ -37,28 +37,29 @@ inline constexpr Range not_negative{.least = 0};
 inline constexpr Range a_share{.least = 0, .most = 1};
 inline constexpr Range not_zero{.excludes_zero = true};
 
-/// Where the value of a channel goes, constant or animated. Empty: the attribute is no channel.
+/// Where the value of a channel is stored, constant or animated. Empty: the attribute is not a
+/// channel.
 using ChannelPlace =
     std::variant<std::monostate, Channel<1>*, Channel<3>*, std::optional<Channel<3>>*,
                  PositionChannel*, TangentChannel*, Switch*>;
 
-/// One attribute of an element while the element is read: what it takes, where its value goes, and
-/// what the file said. A table of these, one row each, is all that the reader knows of an element.
+/// One attribute of an element while the element is read: its format, where its value is stored,
+/// and how the file gave it. A table of these, one row each, defines an element for the reader.
 struct Attribute {
   AttributeFormat format;
   std::function<Reading<void>(std::string_view)> read;  ///< stores the value, or complains
   ChannelPlace channel = {};
 
-  int line = 0;              ///< where it is given or animated, 0: absent
+  int line = 0;              ///< line where it is given or animated, 0: absent
   bool is_animated = false;  ///< by an <animate>, not given as an attribute
-  bool is_sound = true;      ///< nothing was wrong with it
+  bool is_sound = true;      ///< no problem was found with it
 
-  /// Given or left at its default, without a mistake: other values may be checked against it.
+  /// Given or left at its default, without a problem: other values may be checked against it.
   bool is_constant() const { return is_sound && !is_animated; }
 };
 
-// The rows. Each stores into `place`, whose present value is the default, and which must outlive
-// the row. `unit` and `range` are for the check and for docs/scene-format.md alike.
+// The rows. Each stores its value in `place`; the value already there is the default. `place` must
+// outlive the row. `range` is checked; both `unit` and `range` must match docs/scene-format.md.
 
 Attribute channel(std::string_view name, Channel<1>& place, std::string_view unit,
                   Range range = {});
@@ -80,7 +81,7 @@ Attribute boolean(std::string_view name, bool& place);
 Attribute name_of(std::string& place);  ///< the required `name` of a surface or force
 Attribute names(std::string_view name, std::vector<std::string>& place);
 
-/// An attribute with a syntax of its own.
+/// An attribute with its own syntax.
 Attribute custom(std::string_view name, std::string_view type, std::string_view unit,
                  std::string standard, std::string range,
                  std::function<Reading<void>(std::string_view)> read);
@@ -107,16 +108,17 @@ Attribute choice(std::string_view name, E& place,
               [&place, values = std::move(values)](std::size_t chosen) { place = values[chosen]; });
 }
 
-/// A word that has no choice yet: `only`, while `later` are not supported by this version.
+/// A word with a single choice so far, `only`; those in `later` are not supported by this version.
 Attribute fixed(std::string_view name, std::string_view only, std::vector<std::string_view> later);
 
-/// An attribute that a later version brings.
+/// An attribute that only a later version will support.
 Attribute later(std::string_view name);
 
-/// The row, which the element must then have.
+/// The row as a required attribute.
 Attribute required(Attribute attribute);
 
-/// The row, with what its absence means: a default that is no value of its own.
+/// The row with a default that is not a value of the attribute: `meaning` says what its absence
+/// means.
 Attribute if_absent(Attribute attribute, std::string_view meaning);
 
 /// "is not supported by this version of pliant".

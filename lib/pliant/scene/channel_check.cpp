@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-// What is wrong with a value, in words that follow "NAME.attribute at frame F"; none: nothing.
+// The problem of a value, in words that follow "NAME.attribute at frame F"; null: no problem.
 using Complaint = std::optional<std::string>;
 
 template <int D>
@@ -142,7 +142,7 @@ class ChannelChecker {
     }
   }
 
-  // A body with tangents never comes to rest: SPEC 6.
+  // A body with tangents never comes to rest, so it cannot recover: SPEC 6.
   template <int D>
   void check_tangent(const Surface& surface, std::string_view attribute,
                      const Channel<D>& channel) {
@@ -157,7 +157,7 @@ class ChannelChecker {
     });
   }
 
-  // Whether the channel keeps `rule` at every frame; a constant one is looked at once.
+  // Whether the channel keeps `rule` at every frame; a constant one is checked once.
   template <int D, class Rule>
   bool check(const std::string& name, std::string_view attribute, const Channel<D>& channel,
              const Rule& rule) {

@@ -11,15 +11,16 @@
 
 namespace pliant {
 
-/// Which channels to check, by the name of their surface or force and their attribute. Empty: all.
+/// Selects the channels to check, by the name of their surface, force or group and by their
+/// attribute. Empty: all.
 using ChannelFilter = std::function<bool(const std::string& name, std::string_view attribute)>;
 
 /// Checks every channel at every integer frame of the scene's range against the rules of SPEC 2 and
 /// 7: finite values; density, damping >= 0; b, d > 0; c > -2 sqrt(b d); dt > 0 and at most 10^5
-/// steps a frame; radii, frequency and rate >= 0; progress within 0 to 1; a transform that can be
-/// inverted. One error a channel, at its first frame at fault, naming channel, frame and value. c
-/// is checked where b and d are, and keep their rules. `should_stop` is asked for each channel;
-/// what was not looked at is then not told of. Requires: fps > 0, start <= end.
+/// steps a frame; radii >= 0; progress within 0 to 1; a transform that can be inverted. At most one
+/// error per channel, at the first frame that breaks its rule, with channel, frame and value. c is
+/// checked only if b and d are checked and keep their rules. `should_stop` is called before each
+/// channel; once it returns true, no further channels are checked. Requires: fps > 0, start <= end.
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked = {},
                                   const StopRequest& should_stop = {});
 

@@ -18,8 +18,8 @@ struct NamedChannel {
 };
 
 /// All channels, constant ones too, surface by surface, then force by force, then group by group,
-/// each in the order of docs/scene-format.md. They point into `scene`, which must outlive them
-/// unchanged.
+/// each in the order of docs/scene-format.md. They point into `scene`, which must outlive them and
+/// not change.
 std::vector<NamedChannel> channels_of(const Scene& scene);
 
 }  // namespace pliant

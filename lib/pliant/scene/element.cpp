@@ -18,7 +18,7 @@ std::vector<std::string_view> supported_names(std::span<const Attribute> table) 
   return names;
 }
 
-/// `; it belongs in <surface>` for an element that the format knows elsewhere.
+/// `; it belongs in <surface>` for an element that the format allows elsewhere.
 std::string where_it_belongs(std::string_view name) {
   std::string places;
   for (const ElementFormat& format : scene_format()) {
@@ -67,7 +67,7 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
 
 void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
   const std::vector<std::string_view> names = supported_names(table);
-  std::vector<std::string_view> meant;  // by a misspelt attribute
+  std::vector<std::string_view> meant;  // attributes that a misspelt one probably stands for
   for (const auto* given = element.FirstAttribute(); given && !findings.is_full();
        given = given->Next()) {
     if (Attribute* row = find(table, given->Name())) {

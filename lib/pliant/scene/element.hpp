@@ -17,19 +17,19 @@ namespace pliant::xml {
 
 using Table = std::vector<Attribute>;
 
-/// An element that may stand in another, and what is done with it.
+/// An element that another may contain, and the function that reads it.
 struct Child {
   std::string_view name;
-  std::function<void(const tinyxml2::XMLElement&)> read;  ///< empty: a later version reads it
+  std::function<void(const tinyxml2::XMLElement&)> read;  ///< empty: not supported by this version
 };
 
-/// Reads the attributes of an element into the places of its table. Problems: one that the table
-/// does not know, a value that its row refuses, one that is animated too, a required one that is
-/// absent, unless a misspelt one was meant for it.
+/// Reads the attributes of an element into the places of its table. Problems: an attribute that is
+/// not in the table, a value that its row rejects, an attribute that is animated too, a required
+/// attribute that is absent, unless a misspelt one probably stands for it.
 void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings);
 
-/// Reads what stands between an element's tags. Problems: an element that is not among `children`,
-/// text. Returns whether every child was known: if not, a required one may be a misspelt one.
+/// Reads the content of an element. Problems: an element that is not among `children`, text.
+/// Returns whether every child was known: if not, an unknown one may be a required one misspelt.
 bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> children,
                    Findings& findings);
 
@@ -43,11 +43,11 @@ std::string tag(const tinyxml2::XMLElement& element);
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint);
 
-/// Writes down where what an element's table holds stands in the file, and what is not sound.
+/// Records the lines of the attributes of a table, and which attributes have problems.
 void record(const std::string& name, std::span<const Attribute> table, SceneFile& file);
 
-/// The same for what may have targets, a force or a group, once it is read: also where it stands
-/// and which surfaces it names. Requires: the table has "targets".
+/// The same for a force or a group, after it is read; also records its own line and its targets.
+/// Requires: the table has "targets".
 void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
                    const std::vector<std::string>& targets, Table& table, SceneFile& file);
 

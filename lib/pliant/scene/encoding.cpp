@@ -9,7 +9,7 @@ unsigned byte_at(std::string_view text, std::size_t at) {
   return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
 }
 
-/// The number of bytes of the character at `at`, 0 if they are no UTF-8. Source: The Unicode
+/// The number of bytes of the character at `at`, 0 if it is not valid UTF-8. Source: The Unicode
 /// Standard 15, table 3-7: the second byte's limits rule out overlong forms, surrogates and code
 /// points past U+10FFFF.
 std::size_t character_length(std::string_view text, std::size_t at) {

@@ -9,12 +9,12 @@
 namespace pliant::xml {
 
 /// Reads a <falloff> of the force `owner`: keys over s = distance / force radius, `at` from 0 to 1,
-/// held outside. Nothing if there was a problem.
+/// with the end values outside them. Null if there was a problem.
 std::optional<Curve<1>> read_falloff(const tinyxml2::XMLElement& falloff, const std::string& owner,
                                      Findings& findings);
 
-/// A force fades in one way: as its attribute says, or as its only <falloff> does. `first_line` is
-/// that of the <falloff> before, 0: this is the first.
+/// Checks that a force has only one falloff: its attribute or a single <falloff>. `first_line` is
+/// the line of an earlier <falloff>; 0: this is the first.
 void check_single_falloff(const tinyxml2::XMLElement& falloff, const Attribute& attribute,
                           int& first_line, Findings& findings);
 

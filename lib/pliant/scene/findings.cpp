@@ -10,7 +10,8 @@
 namespace pliant::xml {
 namespace {
 
-/// A file of 256 MiB may hold a problem every few bytes, and each takes some hundred bytes to tell.
+/// A file of 256 MiB may contain a problem every few bytes, and each message needs about a hundred
+/// bytes.
 constexpr std::size_t most_listed = 10'000;
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace pliant::xml {
 
-/// What reading a scene has found so far: all problems, not only the first, and what an author
-/// would want to know besides.
+/// The problems and notes found so far while reading a scene. All problems are kept, not only the
+/// first.
 class Findings {
  public:
   explicit Findings(std::string file) : file_(std::move(file)) {}
@@ -18,13 +18,15 @@ class Findings {
   void add_problem(int line, std::string message);
   void add_note(int line, std::string message);
 
-  /// How many problems were added: unchanged means that what was read in between is sound.
+  /// The number of problems added. If it has not changed, the elements read in between have no
+  /// problem.
   std::size_t problem_count() const { return problem_count_; }
 
-  /// Whether there are so many problems that further ones would not be listed: reading may stop.
+  /// Whether the list of problems is full: further ones would not be listed, so reading may stop.
   bool is_full() const;
 
-  /// All problems as one error: in the order of lines, each once. Requires: there is a problem.
+  /// All problems as one error: in the order of lines, without duplicates. Requires: there is a
+  /// problem.
   Error to_error() const;
 
   /// The notes in the order of lines.

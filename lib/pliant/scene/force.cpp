@@ -13,7 +13,7 @@
 namespace pliant::xml {
 namespace {
 
-/// Within a group the group selects, not its forces.
+/// In a group the group selects the region, so its forces must not have a deformation radius.
 void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
   Attribute& row = *find(table, "deformationRadius");
   if (row.line == 0) return;

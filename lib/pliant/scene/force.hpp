@@ -8,11 +8,11 @@
 
 namespace pliant::xml {
 
-/// A force of each kind that has an element, with its defaults, in the order of the format.
+/// One force of each kind that has an element, with its defaults, in the order of the format.
 std::vector<Force> force_kinds();
 
-/// Reads a force into `force`, which has the defaults of its kind. `group` is the group it stands
-/// in, or null: then it has no deformation radius of its own.
+/// Reads a force into `force`, which has the defaults of its kind. `group` is the group that
+/// contains it, or null; a force in a group has no deformation radius of its own.
 Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
                  SceneFile& file);
 

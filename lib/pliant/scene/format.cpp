@@ -14,7 +14,7 @@ using namespace xml;
 
 namespace {
 
-/// The formats of a table's rows. The table's places need not live any longer.
+/// The formats of a table's rows. They do not refer to the table's places.
 std::vector<AttributeFormat> formats_of(const Table& table) {
   std::vector<AttributeFormat> formats;
   for (const Attribute& row : table) formats.push_back(row.format);
@@ -34,7 +34,7 @@ ElementFormat key_element(std::string_view name, std::vector<std::string_view> p
   return {name, std::move(parents), need, formats_of(attributes_of(part, axis, ValueKind::Number))};
 }
 
-/// <key> of an <animate> and of a <falloff> differ in what places them.
+/// <key> is placed by `frame` in an <animate>, by `at` in a <falloff>.
 ElementFormat key() {
   ElementFormat format =
       key_element<KeyText<1>>("key", {"animate", "falloff"}, Need::Required, KeyAxis::Frame);

@@ -15,7 +15,7 @@
 namespace pliant::xml {
 namespace {
 
-/// A force in a group may have fewer targets than the group; others would be without effect.
+/// A force in a group may have fewer targets than the group; other targets have no effect.
 void note_idle_targets(const Group& group, std::span<const Force> forces, SceneFile& file) {
   if (group.targets.empty()) return;
   for (const Force& force : forces)

@@ -15,8 +15,8 @@ struct SceneInput {
 };
 
 /// All files that reading a scene and its meshes opens: the scene's own, if it came from one, its
-/// meshes, and what these refer to, each once. A mesh that cannot be read refers to nothing.
-/// Cost: a mesh that may refer to files is read for their names.
+/// meshes, and what these refer to, each once. For a mesh that cannot be read, only its own file.
+/// Cost: each mesh of a format that may refer to files is read to find their names.
 std::vector<SceneInput> inputs_of(const Scene& scene);
 
 }  // namespace pliant

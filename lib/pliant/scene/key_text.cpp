@@ -67,7 +67,7 @@ std::vector<std::string_view> texts_of(const Words& words) {
   return texts;
 }
 
-/// Whether an author who wrote this meant a number.
+/// Whether the author probably meant a number.
 bool looks_like_number(std::string_view text) {
   return !text.empty() && text.find_first_of("+-.0123456789") == 0;
 }
@@ -98,7 +98,7 @@ Reading<Interpolation> parse_interpolation(std::string_view text) {
   return tl::unexpected(unknown_interpolation(chosen));
 }
 
-/// A kind, or a slope.
+/// The name of a kind, or a slope.
 template <int D>
 Reading<Tangent<D>> parse_tangent(std::string_view text, ValueKind kind) {
   const std::string_view chosen = trimmed(text);
@@ -131,7 +131,7 @@ Reading<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind k
     if (!slope) return tl::unexpected("the slope: " + slope.error());
     result.slope = *slope;
   } else if (is_loop && !rest.empty()) {
-    constexpr std::int64_t most = 1LL << 53;  // beyond, a double holds no longer every count
+    constexpr std::int64_t most = 1LL << 53;  // above it, a double cannot represent every count
     const Reading<std::int64_t> count = parse_integer(rest, 1, most);
     if (!count) return tl::unexpected("the count: " + count.error());
     result.count = static_cast<double>(*count);
@@ -153,7 +153,7 @@ Reading<Handle<D>> parse_handle(std::string_view text, ValueKind kind) {
   return Handle<D>{*frames, *value};
 }
 
-/// Four numbers, of which the two times lie within the segment.
+/// Four numbers; the two times must be within the segment.
 Reading<std::array<double, 4>> parse_control(std::string_view text) {
   std::array<double, 4> control{};
   if (Reading<void> read = parse_numbers(text, control); !read)
@@ -163,7 +163,7 @@ Reading<std::array<double, 4>> parse_control(std::string_view text) {
   return control;
 }
 
-/// A row whose `parse(text)` gives what `place` takes.
+/// A row that stores the result of `parse(text)` in `place`.
 template <class Place, class Parse>
 Attribute parsed(std::string_view name, Place& place, std::string_view type, std::string_view unit,
                  std::string standard, std::string range, Parse parse) {
@@ -252,7 +252,7 @@ Table attributes_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
 template <int D>
 Table attributes_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
   Table table;
-  if (axis == KeyAxis::Frame)  // a <falloff> is held outside its keys
+  if (axis == KeyAxis::Frame)  // a <falloff> keeps its end values outside its keys
     table = {
         required(custom("attribute", "word", "", "", "a channel of its element",
                         [](std::string_view) { return Reading<void>(); })),

@@ -18,7 +18,7 @@ enum class ValueKind {
   Boolean,  ///< `true` or `false`, kept as 1 and 0
 };
 
-/// What keys are placed along.
+/// The axis along which keys are placed.
 enum class KeyAxis {
   Frame,    ///< time, of an <animate>
   Falloff,  ///< s = distance / force radius, 0 to 1, of a <falloff>
@@ -33,14 +33,14 @@ constexpr std::string_view place_name(KeyAxis axis) {
 template <int D>
 Reading<Value<D>> parse_value(std::string_view text, ValueKind kind);
 
-/// A handle as it is written: `frames value`, relative to its key.
+/// A handle as the file gives it: `frames value`, relative to its key.
 template <int D>
 struct Handle {
   double frames = 0;
   Value<D> value = {};
 };
 
-/// What a <key> says; what it leaves open, its <animate> or the curve rules decide.
+/// The attributes of a <key>. For absent ones the <animate> or the curve rules decide.
 template <int D>
 struct KeyText {
   double frame = 0;
@@ -60,13 +60,13 @@ struct KeyText {
   std::optional<Value<D>> left = {};
 };
 
-/// What an <animate> or a <falloff> says besides its keys.
+/// The attributes of an <animate> or a <falloff>.
 template <int D>
 struct AnimateText {
   Extrapolation<D> before = {};
   Extrapolation<D> after = {};
-  Tangent<D> tangent = {};           ///< of keys that say nothing
-  Interpolation interpolation = {};  ///< of keys that say nothing
+  Tangent<D> tangent = {};           ///< of keys that give none
+  Interpolation interpolation = {};  ///< of keys that give none
   Overshoot overshoot = Overshoot::Limit;
 };
 

@@ -58,10 +58,10 @@ class CurveReader {
   std::vector<int> key_lines_;
   int loop_line_ = 0;
   int uncontrolled_line_ = 0;       // of the last key if it inherits cubicBezier and has no control
-  std::optional<double> previous_;  // the frame of the key before, where it could be read
+  std::optional<double> previous_;  // frame of the key before, if it was readable
   int previous_line_ = 0;
 
-  // The key that is being read. Its table refers to it, and both serve for all keys in turn.
+  // The current key. Its table refers to it, and both are reused for every key.
   KeyText<D> key_;
   Table key_table_;
 };
@@ -154,7 +154,7 @@ void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
   previous_line_ = element.GetLineNum();
 }
 
-/// A boolean channel steps: what shapes a way between two values has no meaning for it.
+/// A boolean channel steps: attributes that shape the motion between two values are a problem.
 template <int D>
 void CurveReader<D>::check_stepping(const tinyxml2::XMLElement& element, Table& table,
                                     const Interpolation& interpolation) {
@@ -212,8 +212,8 @@ Interpolation CurveReader<D>::interpolation_of(const tinyxml2::XMLElement& eleme
   return next;
 }
 
-/// A key that inherits cubicBezier needs a control if a segment starts there. At the last key none
-/// does, unless an inner loop copies it.
+/// A key that inherits cubicBezier needs a control if a segment starts at it. None starts at the
+/// last key, unless an inner loop copies it.
 template <int D>
 void CurveReader<D>::check_last_control(bool has_segment) {
   if (uncontrolled_line_ != 0 && has_segment)
@@ -223,7 +223,7 @@ void CurveReader<D>::check_last_control(bool has_segment) {
   uncontrolled_line_ = 0;
 }
 
-/// One side of the key: what it says, else what it says for both sides, else the default.
+/// One side of the key: its own tangent, otherwise that for both sides, otherwise the default.
 template <int D>
 Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_in) {
   const std::string_view name = is_in ? "in" : "out";
@@ -265,8 +265,8 @@ void CurveReader<D>::read_loop(const tinyxml2::XMLElement& element) {
   loop_line_ = element.GetLineNum();
 }
 
-/// The curve's own rules for a loop again, told at its line instead of a key's. Requires: all keys
-/// were read without a problem.
+/// Checks the curve's rules for a loop again, to report problems at the loop's line instead of a
+/// key's. Requires: all keys were read without a problem.
 template <int D>
 void CurveReader<D>::check_loop() {
   if (!curve_.loop) return;

@@ -13,12 +13,12 @@
 namespace pliant::xml {
 namespace {
 
-// Far beyond any scene, and short of what would take gigabytes or hours: tinyxml2 keeps a hundred
-// bytes for each element and attribute, and calls itself for each level.
+// Far above any real scene, but below sizes that would need gigabytes or hours: tinyxml2 stores
+// about a hundred bytes for each element and attribute, and recurses once per level.
 constexpr std::size_t deepest = 50;
 constexpr std::size_t longest_name = 100;
-constexpr std::size_t most_attributes = 100;     // of one element
-constexpr std::size_t most_markup = 20'000'000;  // elements and attributes of the file
+constexpr std::size_t most_attributes = 100;     // per element
+constexpr std::size_t most_markup = 20'000'000;  // elements and attributes per file
 
 constexpr std::string_view one_scene = "; a scene file holds one <scene>";
 
@@ -44,7 +44,7 @@ bool is_reference(std::string_view name) {
          is_xml_character(code_point);
 }
 
-/// Walks through a text once, tag by tag.
+/// Scans a text once, tag by tag.
 class MarkupScanner {
  public:
   MarkupScanner(std::string_view text, Findings& findings) : text_(text), findings_(findings) {}
@@ -72,12 +72,12 @@ class MarkupScanner {
   char next() const { return text_[at_]; }
   bool stands(std::string_view ahead) const { return text_.substr(at_).starts_with(ahead); }
   void skip_blanks();
-  std::string_view take(std::size_t count);  ///< goes on, counting lines
+  std::string_view take(std::size_t count);  ///< advances, counting lines
   std::string_view take_name();
-  /// What is ahead of `end`, which is passed over; stops at the end of the file.
+  /// The text before `end`, then skips `end`; a problem if the file ends first.
   std::string_view take_until(std::string_view end, std::string_view what);
 
-  // Of a file that is no scene in all likelihood nothing is quoted.
+  // Messages do not quote a file that is probably not a scene.
   void add(int line, std::string_view message) {
     const bool is_other = has_root_ && !is_scene_;
     if (is_other && is_stopped_) return;
@@ -85,7 +85,7 @@ class MarkupScanner {
                                          : fmt::format("malformed XML: {}", message));
     is_stopped_ = is_stopped_ || is_other;
   }
-  /// Adds a problem after which the rest cannot be understood.
+  /// Adds a problem after which the rest cannot be parsed, and stops.
   void stop(int line, std::string_view message) {
     if (is_stopped_) return;
     add(line, message);
@@ -99,7 +99,7 @@ class MarkupScanner {
   std::vector<Open> open_;  // from the root inwards
   bool has_root_ = false;
   bool is_scene_ = false;    // the root is a <scene>
-  bool is_prologue_ = true;  // nothing but the declaration and other instructions so far
+  bool is_prologue_ = true;  // only the declaration and other instructions so far
   std::size_t markup_count_ = 0;
   bool is_stopped_ = false;
 };
@@ -339,7 +339,7 @@ bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_
 }
 
 void MarkupScanner::check_references(std::string_view text, int line) {
-  constexpr std::size_t longest = 12;  // of &#x10FFFF; with a few zeros
+  constexpr std::size_t longest = 12;  // enough for &#x10FFFF; with a few leading zeros
   std::size_t counted = 0;
   for (std::size_t at = text.find('&'); at != std::string_view::npos; at = text.find('&', at + 1)) {
     line += static_cast<int>(std::count(text.begin() + counted, text.begin() + at, '\n'));

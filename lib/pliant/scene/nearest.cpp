@@ -13,8 +13,8 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Slips between two words: Damerau's distance in its "optimal string alignment" form, where a
-/// swapped pair is not edited again. Three rows of the usual table: i-2, i-1, i.
+/// Typing errors between two words: Damerau's distance in its "optimal string alignment" form, in
+/// which a swapped pair is not edited again. Three rows of the usual table: i-2, i-1, i.
 std::size_t slips(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1);
   std::vector<std::size_t> above(b.size() + 1);
@@ -39,7 +39,7 @@ std::size_t slips(std::string_view a, std::string_view b) {
 
 std::optional<std::string_view> nearest_word(std::string_view word,
                                              std::span<const std::string_view> candidates) {
-  constexpr std::size_t longest = 64;  // no word of the format is near a longer one
+  constexpr std::size_t longest = 64;  // no word of the format is near a longer word
   if (word.size() > longest) return std::nullopt;
   std::optional<std::string_view> best;
   std::size_t fewest = longest;
@@ -56,7 +56,8 @@ std::optional<std::string_view> nearest_word(std::string_view word,
 }
 
 std::string hint(std::string_view word, std::span<const std::string_view> candidates) {
-  constexpr std::size_t most_compared = 1000;  // of a scene's own names; the format has fewer
+  constexpr std::size_t most_compared = 1000;  // limits the names of a scene; the format has fewer
+                                               // words
   constexpr std::size_t most_listed = 24;
   candidates = candidates.first(std::min(candidates.size(), most_compared));
   const std::optional<std::string_view> near = nearest_word(word, candidates);

@@ -19,7 +19,7 @@ bool is_position(const Attribute& row) {
   return std::holds_alternative<PositionChannel*>(row.channel);
 }
 
-/// The waypoints as they stand, with their lines.
+/// The waypoints in the order of the file, with their lines.
 struct Waypoints {
   std::vector<Value<3>> places;
   std::vector<int> lines;
@@ -34,11 +34,12 @@ void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Fi
   waypoints.lines.push_back(element.GetLineNum());
 }
 
-/// The position that is meant, marked as taken; null where there is none, which is a problem.
+/// The row of the position that `attribute` names, marked as animated; null if there is none, which
+/// is a problem.
 Attribute* find_position(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
                          Findings& findings) {
   const tinyxml2::XMLAttribute* given = element.FindAttribute("attribute");
-  if (!given) return nullptr;  // told with the other attributes
+  if (!given) return nullptr;  // reported with the other attributes
   const std::string name(trimmed(given->Value()));
   Attribute* row = find(rows, name);
   if (!row || !is_position(*row)) {

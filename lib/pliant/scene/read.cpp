@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t largest_file = std::size_t{256} << 20U;  // bytes
 
-/// Appends the children that have a name, right or wrong in all else, and those of groups.
+/// Appends all children that have a valid name, whatever their other problems, and those of groups.
 void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& named) {
   for (const auto* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
     if (const auto* name = child->FindAttribute("name"); name && is_name(name->Value()))
@@ -70,7 +70,7 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   return scene;
 }
 
-/// Reads a document whose root is a <scene> in all likelihood.
+/// Reads a document whose root is probably a <scene>.
 std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneFile& file) {
   const tinyxml2::XMLElement& root = *document.RootElement();
   constexpr std::string_view expected[] = {"scene"};
@@ -92,7 +92,7 @@ Result<Scene> load_scene(const std::string& file, const std::string& root) {
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
                           const std::string& root) {
-  // An empty root would be each mesh's own folder.
+  // An empty root would mean each mesh's own folder.
   const std::string own = folder.empty() ? "." : folder;
   SceneFile file{.folder = folder,
                  .root = root.empty() ? own : root,

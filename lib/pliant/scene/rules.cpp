@@ -31,7 +31,7 @@ bool is_force_element(std::string_view element) {
          });
 }
 
-/// The line of the last of these attributes that is given, else `line`.
+/// The largest line of these attributes that are given, but at least `line`.
 int last_line(std::span<Attribute> table, std::initializer_list<std::string_view> names,
               int line = 0) {
   for (const std::string_view name : names) line = std::max(line, find(table, name)->line);
@@ -106,7 +106,7 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
   std::vector<std::string_view> surfaces;  // each once, in the order of the file
   for (const Surface& surface : scene.surfaces)
     if (names.insert(surface.name).second) surfaces.push_back(surface.name);
-  if (names.contains("")) return;  // a surface without a readable name may be the one that is meant
+  if (names.contains("")) return;  // a target may mean a surface with an unreadable name
 
   for (const Targets& listed : targets)
     for (const std::string& target : listed.surfaces) {
@@ -127,7 +127,7 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
 }
 
 void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file) {
-  std::map<std::string_view, int> times;  // a name has been given
+  std::map<std::string_view, int> times;  // times that a name is used
   for (const Named& one : named) ++times[one.name];
   const auto is_sound = [&](const std::string& name, std::string_view attribute) {
     const auto found = times.find(name);

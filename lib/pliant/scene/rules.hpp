@@ -10,9 +10,9 @@
 
 namespace pliant::xml {
 
-// Rules between values that are each right by themselves. A rule is not checked where one of its
-// values was not readable, is animated (`check_channels` checks those frame by frame), or is
-// refused already; a value that breaks one is no longer sound.
+// Rules between values that are each valid alone. A rule is not checked if one of its values is
+// unreadable, animated (`check_channels` checks those frame by frame), or already rejected. A value
+// that breaks a rule is marked as not sound.
 
 /// end >= start, and at most 10^6 frames. SCENE FORMAT, scene.
 void check_frames(const Scene& scene, std::span<Attribute> table, Findings& findings);
@@ -24,7 +24,7 @@ void check_nodes(const GridSheet& grid, std::span<Attribute> table, int line, Fi
 void check_well_posed(const MaterialChannels& material, std::span<Attribute> table,
                       Findings& findings);
 
-/// At most 10^5 steps a frame. SPEC 2, 4. `line` stands in where dt is not written.
+/// At most 10^5 steps a frame. SPEC 2, 4. `line` is reported if dt is not given.
 void check_steps(const SolverSettings& solver, std::span<Attribute> table, double fps, int line,
                  Findings& findings);
 
@@ -38,14 +38,14 @@ struct Named {
 /// Names are unique.
 void check_unique(std::span<const Named> named, Findings& findings);
 
-/// `targets` name surfaces. `named` are all named children of the scene, also those that could not
-/// be read: what is wrong with them is told elsewhere.
+/// `targets` name surfaces. `named` contains all named children of the scene, also those that could
+/// not be read: their problems are reported elsewhere.
 void check_targets(const Scene& scene, std::span<const Targets> targets,
                    std::span<const Named> named, Findings& findings);
 
-/// What a run would refuse besides, so that a file with problems tells all of them at once:
-/// channels that break their rule at a frame, mesh files that cannot be opened. Looks only at what
-/// is sound.
+/// Also checks what a run would reject, so that all problems of a file are reported at once:
+/// channels that break their rule at a frame, and mesh files that cannot be opened. Only sound
+/// values are checked.
 void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file);
 
 }  // namespace pliant::xml

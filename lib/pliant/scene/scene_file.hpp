@@ -11,9 +11,9 @@
 
 namespace pliant::xml {
 
-/// The surfaces that a force names; checked once all surfaces are known.
+/// The surfaces that a force or group names; checked once all surfaces are known.
 struct Targets {
-  std::string element;  ///< of the force: `point`
+  std::string element;  ///< name of the element: `point`
   std::vector<std::string> surfaces;
   int line = 0;
 };
@@ -25,15 +25,15 @@ struct NamedMesh {
   int line = 0;
 };
 
-/// A scene file while it is read: where it is, and what has been found in it.
+/// A scene file while it is read: its location, and the findings so far.
 struct SceneFile {
-  std::filesystem::path folder;  ///< that mesh paths are relative to
-  std::filesystem::path root;    ///< that what meshes refer to lies in
+  std::filesystem::path folder;  ///< mesh paths are relative to it
+  std::filesystem::path root;    ///< contains the files that meshes refer to
   SceneOrigin origin;
   Findings findings;
   std::vector<Targets> targets = {};
   std::vector<NamedMesh> meshes = {};
-  /// `NAME.attribute` of those with a mistake: their values are not what the author means.
+  /// `NAME.attribute` of those with a problem: their values are not those of the author.
   std::set<std::string, std::less<>> unsound = {};
 };
 

@@ -12,7 +12,7 @@
 namespace pliant::xml {
 namespace {
 
-/// An element that stands at most once in a surface, with its table.
+/// An element that a surface contains at most once, with its table.
 struct Part {
   Table table;
   int line = 0;  ///< of the element, 0: absent
@@ -89,8 +89,8 @@ std::string SurfaceReader::title() const {
                                : fmt::format("{} {}", tag(element_), in_quotes(surface_.name));
 }
 
-/// Whether this shape is the surface's; a second one is a problem, but is read for its own
-/// mistakes.
+/// Whether this is the surface's first shape. A second one is a problem, but is still read to
+/// report its own problems.
 bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
   if (shape_line_ == 0) {
     shape_line_ = element.GetLineNum();
@@ -141,7 +141,8 @@ void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
   read_children(element, children, file_.findings);
 }
 
-/// Directly in the surface an <animate> may name a channel of any of its parts: the names differ.
+/// An <animate> directly in the surface may name a channel of any of its parts, as all names
+/// differ.
 void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
   std::vector<Attribute*> rows;
   for (Table* table :

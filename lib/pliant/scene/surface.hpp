@@ -5,8 +5,8 @@
 
 namespace pliant::xml {
 
-/// Reads a <surface> with all that stands in it. `fps` is known if it was read without a mistake;
-/// without it, the number of steps in a frame is not checked.
+/// Reads a <surface> with all its content. `fps` is null if it was not read without a problem; then
+/// the number of steps per frame is not checked.
 Surface read_surface(const tinyxml2::XMLElement& element, std::optional<double> fps,
                      SceneFile& file);
 

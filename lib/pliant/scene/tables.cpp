@@ -50,7 +50,7 @@ Table attributes_of(InertiaChannels&) { return {}; }
 
 Table attributes_of(CustomForce&) { return {}; }
 
-/// The format has one version so far; another one is not misread as this one.
+/// The format has one version so far; any other is a problem, not read as this one.
 Attribute version() {
   return custom("version", "integer", "", "1", "1", [](std::string_view text) -> Reading<void> {
     const Reading<std::int64_t> number = parse_integer(text, 1, std::numeric_limits<int>::max());
@@ -70,7 +70,7 @@ Attribute frame_rate(double& fps) {
                 });
 }
 
-/// A path relative to the scene's folder becomes one that can be opened.
+/// Makes a path relative to the scene's folder into one that can be opened.
 Attribute mesh_path(std::string& path, const std::filesystem::path& folder) {
   return required(custom("file", "path", "", "", "", [&path, folder](std::string_view text) {
     if (trimmed(text).empty()) return Reading<void>(tl::unexpected(std::string("names no file")));

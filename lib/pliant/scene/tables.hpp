@@ -4,10 +4,10 @@
 
 namespace pliant::xml {
 
-// What each element's attributes are: one row each. The default is the value that the place holds.
-// A new attribute is a member in scene.hpp, a row here and a row in docs/scene-format.md.
+// The attributes of each element, one row each. The default is the present value of the place. A
+// new attribute needs a member in scene.hpp, a row here and a row in docs/scene-format.md.
 
-/// What a <path> says besides its waypoints.
+/// The attributes of a <path>.
 struct PathText {
   Channel<1> progress = 0;  ///< share of the length, 0 to 1
   bool is_closed = false;
@@ -26,7 +26,7 @@ Table attributes_of(TransformChannels& transform);
 Table attributes_of(MaterialChannels& material);
 Table attributes_of(TangentChannels& tangents);
 Table attributes_of(SolverSettings& solver);
-Table attributes_of(Force& force);  ///< what all kinds share, then what `force.shape` adds
+Table attributes_of(Force& force);  ///< those of all kinds, then those of `force.shape`
 Table attributes_of(Group& group);
 Table attributes_of(PathText& path);
 Table attributes_of(Waypoint& waypoint);

@@ -13,7 +13,7 @@
 namespace pliant::xml {
 namespace {
 
-/// Words for how many numbers a vector has.
+/// The number of numbers in words: `one number`.
 std::string counted_numbers(std::size_t count) {
   static constexpr std::string_view words[] = {"no number", "one number", "two numbers",
                                                "three numbers", "four numbers"};
@@ -30,7 +30,7 @@ std::string trailing_complaint(std::string_view word, std::string_view rest,
   return fmt::format("not {}: {} stands after {}", what, in_quotes(rest), number);
 }
 
-/// Reads a whole word by from_chars; `what` names what it should have been.
+/// Reads a whole word by from_chars; `what` names the expected kind.
 template <class T>
 Reading<T> parse_word(std::string_view word, std::string_view what) {
   if (word.empty()) return tl::unexpected(fmt::format("is empty; {} is required", what));
@@ -47,7 +47,7 @@ Reading<T> parse_word(std::string_view word, std::string_view what) {
   return number;
 }
 
-/// Also refuses what from_chars takes: `nan`, `inf`.
+/// Also rejects `nan` and `inf`, which from_chars accepts.
 Reading<double> parse_finite(std::string_view word) {
   Reading<double> number = parse_word<double>(word, "a number");
   if (number && !std::isfinite(*number)) return tl::unexpected(std::string("not a finite number"));
@@ -137,9 +137,9 @@ Reading<double> parse_rate(std::string_view text) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 60;  // bytes; what a line of a terminal has room for
+  constexpr std::size_t longest = 60;  // bytes; fits on a line of a terminal
   std::string_view shown = text.substr(0, longest);
-  if (shown.size() < text.size())  // not within a character: continuation bytes are 10xxxxxx
+  if (shown.size() < text.size())  // do not cut within a character: continuation bytes are 10xxxxxx
     while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U)
       shown.remove_suffix(1);
   std::string result = "\"";

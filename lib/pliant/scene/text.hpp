@@ -9,10 +9,10 @@
 
 #include <tl/expected.hpp>
 
-/// What reading a scene from XML is made of; programs need only read.hpp and format.hpp.
+/// The parts of the scene reader; programs need only read.hpp and format.hpp.
 namespace pliant::xml {
 
-/// What a text means, or why it means nothing: words that follow `<grid> width="1,5": `.
+/// The value of a text, or a complaint: words that follow `<grid> width="1,5": `.
 template <class T>
 class [[nodiscard]] Reading : public tl::expected<T, std::string> {
  public:
@@ -41,7 +41,7 @@ Reading<std::int64_t> parse_integer(std::string_view text, std::int64_t least, s
 /// A whole number in [0, 2^64).
 Reading<std::uint64_t> parse_natural(std::string_view text);
 
-/// As many numbers as `numbers` holds, separated by blanks; on a complaint `numbers` is as before.
+/// Exactly `numbers.size()` numbers, separated by blanks; on a complaint `numbers` is unchanged.
 Reading<void> parse_numbers(std::string_view text, std::span<double> numbers);
 
 /// `true` or `false`.
@@ -50,8 +50,8 @@ Reading<bool> parse_boolean(std::string_view text);
 /// A number greater than 0, or a fraction of two such as `24000/1001`: the double quotient.
 Reading<double> parse_rate(std::string_view text);
 
-/// The text in double quotes, fit for one line of a message: control characters become blanks, and
-/// of a long text only the beginning is shown.
+/// The text in double quotes, for one line of a message: control characters become blanks, and a
+/// long text is cut.
 std::string in_quotes(std::string_view text);
 
 /// `one, two, three`.

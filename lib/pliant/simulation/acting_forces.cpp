@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Whether a force of magnitude 1 is another one at another frame, the surface standing still.
+// Whether a force of magnitude 1 changes between frames, on a surface that does not move.
 struct Changes {
   bool operator()(const PointChannels& point) const {
     return point.center.is_animated() || point.direction.is_animated();
@@ -27,7 +27,10 @@ struct Changes {
     return noise.center.is_animated() || noise.frequency.is_animated() ||
            noise.rate.is_animated() || noise.rate.at(0)[0] != 0;
   }
-  bool operator()(const InertiaChannels&) const { return false; }  // none, on what stands still
+  bool operator()(const InertiaChannels&) const {
+    return false;
+  }  // 0 on a surface that does not
+     // move
   bool operator()(const CustomForce&) const { return true; }
 };
 
@@ -64,7 +67,7 @@ ActingForces::ActingForces(const Scene& scene, const Surface& surface,
 
 BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& faults) const {
   BodyInputs inputs = sample_body(scene_, surface_, frame);
-  std::vector<const Group*> selecting;  // for each force
+  std::vector<const Group*> selecting;  // one for each enabled force
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const Force& force = scene_.forces[forces_[k]];
     if (!pliant::is_enabled(force, group_of_[k], frame)) continue;

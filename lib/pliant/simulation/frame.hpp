@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// One surface at one frame. A value of its own: it may outlive the simulation.
+/// One surface at one frame. Owns its data: it may outlive the simulation.
 class SurfaceFrame {
  public:
   SurfaceFrame() = default;
@@ -21,7 +21,7 @@ class SurfaceFrame {
   const std::string& name() const { return name_; }
 
   /// #vertices x 3 in the order of the mesh, world space [length]. Computed from the object-space
-  /// positions at each call, in the memory of `reuse`.
+  /// positions at each call; reuses the memory of `reuse`.
   Field positions(Field reuse = {}) const {
     return to_world(transform_, object_positions_, std::move(reuse));
   }
@@ -35,7 +35,7 @@ class SurfaceFrame {
   double peak_displacement() const { return peak_displacement_; }
 
  private:
-  friend class Simulation;  // fills it anew
+  friend class Simulation;  // refills it
 
   std::string name_;
   Field object_positions_;
@@ -54,13 +54,13 @@ class Frame {
   /// In the order of the scene.
   std::span<const SurfaceFrame> surfaces() const { return surfaces_; }
 
-  /// nullptr when the scene has no surface of that name: for names that are data.
+  /// The surface of that name, or null: for names from input data.
   const SurfaceFrame* find_surface(std::string_view name) const;
 
-  /// Requires: the scene has a surface of that name.
+  /// The surface of that name. Requires: it exists.
   const SurfaceFrame& surface(std::string_view name) const;
 
-  /// What to say of a name that no surface has: the name, the nearest one, and which there are.
+  /// A message about a name that no surface has: the name, the nearest name and all names.
   std::string no_surface_text(std::string_view name) const;
 
  private:

@@ -40,10 +40,10 @@ void FrameCache::keep(int frame, States states) {
   frame_count_ = std::max(frame_count_, frame - first_frame_);
   widen();
   while (kept_.size() >= *room_ || !share_.try_resize((kept_.size() + 1) * bytes_of_one_)) {
-    // Where memory is short, there is no more room than what is taken already.
+    // If memory is short, the room is limited to the present use.
     limit_room(kept_.size());
     if (*room_ == 0) return;
-    if (turns_.empty()) return;  // checkpoints only, and this frame is none
+    if (turns_.empty()) return;  // only checkpoints are left, and this frame is not one
     kept_.erase(turns_.front());
     turns_.pop_front();
   }
@@ -80,7 +80,8 @@ void FrameCache::limit_room(std::size_t count) {
   if (*room_ > 0) widen();
 }
 
-// To the interval that fits the room; checkpoints that are none any more stand last in the row.
+// Widens the interval until it fits the room. Frames that are no longer checkpoints are queued as
+// the most recently used.
 void FrameCache::widen() {
   const auto frames = static_cast<std::size_t>(frame_count_);
   if (frames <= *room_ || *room_ == 0) return;

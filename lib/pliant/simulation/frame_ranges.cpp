@@ -9,8 +9,8 @@
 namespace pliant {
 
 void FrameRanges::add(int frame) {
-  // The first range that ends at frame - 1 or later is the only one that may hold or touch it from
-  // the left; the one after it may touch from the right.
+  // Only the first range that ends at frame - 1 or later can contain the frame or touch it from the
+  // left; the next range may touch it from the right.
   auto range = std::lower_bound(ranges_.begin(), ranges_.end(), frame - 1,
                                 [](const auto& r, int f) { return r.second < f; });
   if (range == ranges_.end() || frame + 1 < range->first) {
@@ -42,7 +42,7 @@ void FrameRanges::add(const FrameRanges& other) {
 
 std::string FrameRanges::to_string(std::size_t most) const {
   PLIANT_EXPECTS(most >= 1);
-  // One that is left out would take as much to say.
+  // A summary of a single range would be as long as the range.
   const bool is_all = ranges_.size() <= most || ranges_.size() - 1 == most;
   const std::size_t told = is_all ? ranges_.size() : most;
   std::string text;

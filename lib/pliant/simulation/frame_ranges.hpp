@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// A set of frames, kept as ranges.
+/// A set of frames, stored as ranges.
 class FrameRanges {
  public:
   /// Adds a frame; adding one twice changes nothing.
@@ -17,8 +17,8 @@ class FrameRanges {
   /// Adds all frames of `other`.
   void add(const FrameRanges& other);
 
-  /// As an author reads it: "3", "3-7, 12". Of more than `most` ranges only so many, and what is
-  /// left out: "3-7, 12 and 80 more ranges to 960". Requires: most >= 1.
+  /// Text for an author: "3", "3-7, 12". With more than `most` ranges, only the first ones and a
+  /// summary of the others: "3-7, 12 and 80 more ranges to 960". Requires: most >= 1.
   std::string to_string(std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
   const std::vector<std::pair<int, int>>& ranges() const { return ranges_; }

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Whole frames one after another: `for (int frame : simulation.frames())`. In place of
-/// std::views::iota, which Clang 14 cannot read in GCC 12's library.
+/// A range of integer frames: `for (int frame : simulation.frames())`. Instead of std::views::iota,
+/// which Clang 14 cannot compile with GCC 12's library.
 class FrameSequence {
  public:
   class Iterator {
@@ -30,7 +30,7 @@ class FrameSequence {
     friend bool operator==(const Iterator&, const Iterator&) = default;
 
    private:
-    long frame_ = 0;  // one past the last frame may be past the last int
+    long frame_ = 0;  // long, since the end iterator may exceed the range of int
   };
 
   /// Both ends included. Requires: first <= last + 1.

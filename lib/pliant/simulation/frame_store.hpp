@@ -10,12 +10,12 @@
 
 namespace pliant {
 
-/// Keeps what simulations computed beyond their own life, each surface's state at each frame under
-/// a key made of all that it came from: a simulation that comes to a key that is there reads the
-/// state and solves nothing. So an edit that takes effect at frame k costs the frames from k on.
+/// Stores states beyond the life of a simulation: each surface's state at each frame, under a key
+/// computed from everything that determines it. A simulation reads a stored state instead of
+/// solving it. So an edit that takes effect at frame k costs only the frames from k on.
 ///
-/// A store may lose anything at any time; what it gives back is checked, and never changes a
-/// result. Several simulations, in several threads, may use one.
+/// A store may lose states at any time; what it returns is checked, and never changes a result.
+/// Thread-safe: several simulations may share one.
 class FrameStore {
  public:
   FrameStore() = default;
@@ -23,20 +23,21 @@ class FrameStore {
   FrameStore& operator=(const FrameStore&) = delete;
   virtual ~FrameStore() = default;
 
-  /// Whether `read` is likely to give something.
+  /// Whether `read` will probably succeed.
   virtual bool holds(const Hash& key) = 0;
 
-  /// What was written under the key, or nothing. More bytes than `most` are none of ours.
+  /// The bytes written under the key, or null. A state has at most `most` bytes; longer ones are
+  /// not ours.
   virtual std::optional<std::string> read(const Hash& key, std::size_t most) = 0;
 
-  /// Keeps the bytes if it can. There is nothing to be done about it if it cannot.
+  /// Stores the bytes if possible; failure is not an error.
   virtual void write(const Hash& key, std::string_view bytes) = 0;
 
-  /// What `read` gave is damaged.
+  /// Removes bytes that were found damaged.
   virtual void discard(const Hash& key) = 0;
 };
 
-/// A store in memory: for edits within one program. What was used longest ago goes first.
+/// A store in memory, for edits within one program. Removes the least recently used states first.
 class MemoryFrameStore final : public FrameStore {
  public:
   explicit MemoryFrameStore(std::size_t byte_budget);
@@ -47,7 +48,7 @@ class MemoryFrameStore final : public FrameStore {
   void write(const Hash& key, std::string_view bytes) override;
   void discard(const Hash& key) override;
 
-  std::size_t bytes() const;  ///< kept now
+  std::size_t bytes() const;  ///< stored at present
   std::size_t byte_budget() const;
 
  private:

@@ -29,11 +29,11 @@ std::size_t bytes_of(const GridSheet& sheet) {
 }
 
 std::size_t bytes_to_run(std::size_t vertex_count) {
-  // Vectors for each node: rest in the mapping and in the body, position and velocity as they are
-  // and as the frame makes them; load, displacement and velocity of the plate, and twice as many in
-  // a solver with sparse factors; the frame in object space, in world space and in the writer's
-  // order; and some to spare. And the text of an OBJ file, or the index arrays and sorted (u,v)
-  // that finding the grid needs, which is less.
+  // Vectors per node: rest in the mapping and in the body; position and velocity, present and new;
+  // load, displacement and velocity of the plate, twice as many in a solver with sparse factors;
+  // the frame in object space, in world space and in the writer's order; and some spare. In
+  // addition the text of an OBJ file; finding the grid needs less, for index arrays and sorted
+  // (u,v).
   constexpr std::size_t vectors = 24;
   constexpr std::size_t text = 200;
   return vertex_count * (vectors * bytes_of_vector + text);

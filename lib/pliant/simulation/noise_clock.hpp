@@ -6,12 +6,12 @@
 
 namespace pliant {
 
-/// The sum that a keyed rate of a noise makes over the frames, so that its pattern never jumps; not
-/// for other rooms. docs/model.md, "Forces".
+/// The sum of a noise's keyed rate over the frames, so that its pattern never jumps; not for other
+/// rooms. docs/model.md, "Forces".
 ///
-/// Frame by frame it asks for the rate once each. Any other frame costs no more than `stride` times
-/// once the frames ahead of it have been passed. The sum is taken in one order whatever is asked
-/// for first, so it has the same bits. Safe from several threads at once.
+/// In frame order it evaluates the rate once per frame. Any other frame needs at most `stride`
+/// evaluations, once the frames before it have been summed. The order of summation does not depend
+/// on the order of calls, so the bits are the same. Thread-safe.
 class NoiseClock {
  public:
   explicit NoiseClock(int start) : start_(start) {}
@@ -49,9 +49,9 @@ class NoiseClock {
 
   std::mutex mutex_;
   int start_;
-  int frame_ = 0;  // whose sum `sum_` is
+  int frame_ = 0;  // the frame of `sum_`
   double sum_ = 0;
-  std::vector<double> marks_;  // the sums at start, start + stride, …, as far as was gone
+  std::vector<double> marks_;  // the sums at start, start + stride, …, as far as summed
 };
 
 }  // namespace pliant

@@ -16,17 +16,17 @@
 namespace pliant {
 namespace {
 
-constexpr double searched_nodes = 1.5e8;  // by the search for frames of greatest effect, in all
+constexpr double searched_nodes = 1.5e8;  // for the search for frames of greatest effect, in all
 constexpr double played_nodes = 3e8;      // steps of nodes, in all
-constexpr double shared_nodes = 1e8;      // solved for shares, for each preview
+constexpr double shared_nodes = 1e8;      // solved for shares, per preview
 
-// A preview in the making, with the forces that it is of.
+// A preview under construction, with its forces.
 struct Case {
   Preview preview;
   ActingForces acting;
 };
 
-// What comes of one surface.
+// Makes the previews of one surface.
 class SurfacePreviewer {
  public:
   SurfacePreviewer(const Simulation& simulation, std::size_t surface, double most_searched,
@@ -50,7 +50,7 @@ class SurfacePreviewer {
       for (const int frame : frames) {
         const BodyInputs inputs = inputs_of(one, frame);
         if (inputs.forces.empty()) continue;
-        // The last one selects: a group's region stands behind its forces.
+        // The last one selects: the region of a group follows its forces.
         const auto [to_vertex, to_centre] = body_.distances(inputs, inputs.forces.back());
         const double radius = inputs.forces.back().deformation_radius;
         const bool is_nearer =
@@ -65,7 +65,7 @@ class SurfacePreviewer {
     return {};
   }
 
-  // Plays the case, unless that would take more steps of nodes than there are left.
+  // Plays the case, unless that needs more steps of nodes than `nodes_left`.
   Result<void> play(Case& one, double& nodes_left) {
     if (nodes_left < body_.least_cost() * (scene_.end - first_)) return {};
     PlayedPeak played{0, scene_.start};
@@ -88,7 +88,8 @@ class SurfacePreviewer {
  private:
   BodyInputs inputs_of(const Case& one, int frame) { return one.acting.at(frame, body_.faults()); }
 
-  // The frames at which the case may have its greatest effect, evenly spaced where they are many.
+  // The frames at which the case may have its greatest effect; if there are many, evenly spaced
+  // ones.
   std::vector<int> frames_of(Case& one) {
     Preview& preview = one.preview;
     const bool is_force = preview.of == Preview::Of::Force;
@@ -123,7 +124,7 @@ class SurfacePreviewer {
     return frames;
   }
 
-  // Takes the frame where its effect is the greatest so far.
+  // Sets the case's frame to this one if its effect is the greatest so far.
   Result<void> look_at(Case& one, int frame) {
     Preview& preview = one.preview;
     const BodyInputs inputs = inputs_of(one, frame);
@@ -144,7 +145,7 @@ class SurfacePreviewer {
     return {};
   }
 
-  // All that is told of the frame of greatest effect.
+  // Fills in the results at the frame of greatest effect.
   Result<void> tell(Case& one) {
     Preview& preview = one.preview;
     const BodyInputs inputs = inputs_of(one, *preview.frame);
@@ -182,7 +183,7 @@ class SurfacePreviewer {
     return {};
   }
 
-  // What each force has to do with the peak. Requires: the body is settled under all of them.
+  // Computes the share of each force in the peak. Requires: the body is settled under all of them.
   Result<void> share(Case& one, const BodyInputs& inputs, int unknowns) {
     Preview& preview = one.preview;
     const std::vector<std::size_t> enabled = one.acting.enabled_at(*preview.frame);
@@ -213,11 +214,11 @@ class SurfacePreviewer {
   const Scene& scene_;
   const Surface& surface_;
   PreviewBody body_;
-  int first_, last_;  // frames whose solve is shown
+  int first_, last_;  // frames whose solve affects the animation
   double most_frames_;
 };
 
-// The cases of a surface, in the order in which they are told.
+// The cases of a surface, in the order of the results.
 std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
   const Surface& surface = scene.surfaces[index];
   std::vector<std::size_t> all_forces, all_groups;
@@ -302,8 +303,8 @@ Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
     for (Case& one : cases[k]) {
       if (auto looked = previewer.look(one); !looked) return fail(looked.error());
     }
-    // Each surface has its part of the steps; what it leaves is the next one's. All forces come
-    // first, being what the animation shows.
+    // Each surface has its part of the steps; unused steps are for the next ones. `All` is played
+    // first, since that is the animation.
     double part = nodes_left / (surfaces - static_cast<double>(k));
     nodes_left -= part;
     std::vector<Case*> order = {&cases[k].back()};

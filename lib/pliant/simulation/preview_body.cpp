@@ -11,11 +11,11 @@
 namespace pliant {
 namespace {
 
-// Patches of other outlines than rectangles have a sparse factor, which takes long for many nodes.
+// Patches whose outline is not a rectangle need a sparse factor, which is slow for many nodes.
 constexpr int most_masked_unknowns = 50'000;
 
-// Of the vibrations that a node shows the one that is seen: share by period. The largest share
-// alone might be that of a bundle of fast ones, which are gone at once.
+// The vibration of a node that is most visible: the one with the largest product of share and
+// period. By share alone it might be one of a bundle of fast ones, which fade at once.
 double seen_lambda(std::span<const ExcitedMode> modes) {
   const auto weight = [](const ExcitedMode& mode) {
     return std::abs(mode.share) / std::sqrt(mode.lambda);
@@ -45,7 +45,8 @@ Body PreviewBody::make(Reference reference) const {
 
 Result<void> PreviewBody::reserve() {
   if (real_) return {};
-  // A field has three numbers a node; a body keeps five of all nodes, and four of what is solved.
+  // A field has three numbers per node; a body keeps five fields of all nodes, and four of the
+  // solved ones.
   const bool has_two = settings_.reference != Reference::Rest;
   const std::size_t bytes =
       static_cast<std::size_t>(node_count()) * 9 * 3 * sizeof(double) * (has_two ? 2 : 1);
@@ -105,7 +106,7 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   return least_cost() + static_cast<double>(report_.unknown_count()) * report_.steps.count;
 }
 
-// Of the nodes of a box, row by row; object space.
+// The displacements of a box's nodes, row by row; object space.
 Field PreviewBody::displacements(const Box& box) const {
   const Grid& grid = mapping_.grid;
   Field ways(Eigen::Index{box.columns()} * box.rows(), 3);
@@ -169,7 +170,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
                            moved->interior};
   if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
 
-  // The one that a run takes for such a region.
+  // The same choice of solver as a run makes for such a region.
   const bool is_spectral =
       moved->is_rectangle() && worth_transforming(system.grid, system.stiffness);
   const auto solver =

@@ -27,7 +27,7 @@ struct MakeMesh {
   ReadLimits limits;
 };
 
-// What making a shape takes, as far as it is known ahead.
+// The memory for making a shape, as far as it is known in advance.
 struct BytesToMake {
   std::size_t operator()(const GridSheet& sheet) const {
     const auto vertex_count = static_cast<std::size_t>(sheet.columns) * sheet.rows;
@@ -36,7 +36,8 @@ struct BytesToMake {
   std::size_t operator()(const MeshFile& file) const { return bytes_per_byte * size_of(file.path); }
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
 
-  // What a mesh file refers to, which is known once there is memory for the file itself.
+  // The files that a mesh file refers to; known only after reading the file, which needs memory
+  // itself.
   static std::size_t of_references(const MeshFile& file) {
     std::size_t bytes = 0;
     for (const auto& reference : mesh_references(file.path, file.root)) bytes += size_of(reference);
@@ -44,11 +45,11 @@ struct BytesToMake {
   }
 
  private:
-  // A file and the mesh read from it; a reader may need it twice more on the way.
+  // The file and its mesh; a reader may need the same amount twice more while reading.
   static constexpr std::size_t bytes_per_byte = 4;
 
   static std::size_t size_of(const std::filesystem::path& file) {
-    std::error_code unknown;  // of a file that is not there: reading it says so
+    std::error_code unknown;  // if the file does not exist, reading it reports that
     const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
     return unknown ? 0 : static_cast<std::size_t>(bytes);
   }
@@ -58,7 +59,7 @@ struct BytesToMake {
 
 namespace {
 
-// Sizes a surface's share of the memory.
+// Resizes a surface's share of the memory.
 Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& origin,
                   MemoryShare& memory) {
   if (memory.try_resize(bytes)) return {};
@@ -73,7 +74,8 @@ Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& 
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                   MemoryShare& memory, const StopRequest& should_stop) {
   const auto at_scene = [&](Error error) {
-    // A file that cannot be opened is the scene's mistake; one with bad contents speaks for itself.
+    // An unreadable file is reported as a problem of the scene; an error in its contents already
+    // names the file.
     if (error.code == ErrorCode::Unreadable)
       return fail(unreadable_mesh(error, surface.name, origin));
     if (error.file.empty()) {

@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// A surface as it is before anything acts on it.
+/// A surface before any force acts on it.
 struct RestShape {
   std::string name;  ///< of the surface
   Mesh mesh;
@@ -19,19 +19,19 @@ struct RestShape {
 };
 
 /// Makes or reads a surface's mesh and finds its grid. Errors: those of `read_mesh` and
-/// `check_mesh`; what `find_grid` finds, at the surface's line in the scene.
+/// `check_mesh`; those of `find_grid`, with the surface's line in the scene.
 ///
-/// `memory` is sized to what the shape and its body will take, before a sheet is made and once a
-/// file is read. Errors, besides: OutOfMemory when the budget has less; Interrupted where
-/// `should_stop` says so while assimp reads.
+/// `memory` is resized to the needs of the shape and its body, before a sheet is made or after a
+/// file is read. Further errors: OutOfMemory if the budget has less; Interrupted if `should_stop`
+/// returns true while assimp reads.
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                   MemoryShare& memory, const StopRequest& should_stop = {});
 
-/// Whether `make_rest_shape` would succeed; a sheet is not made for it.
+/// Checks that `make_rest_shape` would succeed, without making sheets.
 Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
                               MemoryShare& memory, const StopRequest& should_stop = {});
 
-/// The same as the first without a limit to memory.
+/// The first function without a limit to memory.
 Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin);
 
 }  // namespace pliant

@@ -19,12 +19,12 @@ struct Extent {
   double peak_displacement = 0;
 };
 
-// Whether all nodes are finite in world space, and their largest distance from rest there. In lanes
-// beside each other: one pass over the nodes.
+// Whether all nodes are finite in world space, and their largest distance from rest there. One pass
+// over the nodes, in parallel lanes.
 Extent extent_of(const Transform& transform, const Field& positions, const Field& rest) {
   constexpr int lanes = 32;
   alignas(64) double largest[lanes] = {};     // squared distance
-  alignas(64) double not_finite[lanes] = {};  // 0, or NaN once something was not
+  alignas(64) double not_finite[lanes] = {};  // 0, or NaN after the first value that is not finite
   const Matrix3d& a = transform.linear;
   const Eigen::Index count = positions.rows();
   for (Eigen::Index first = 0; first < count; first += lanes) {
@@ -87,7 +87,7 @@ std::vector<Error> Simulation::Run::add_bodies() {
 void Simulation::Run::add_body(const Surface& surface, RestShape rest_shape, MemoryShare share) {
   const SolverSettings& solver = surface.solver;
   const GridMapping& mapping = rest_shape.mapping;
-  // Surfaces go at the same time; a single one has the threads to itself.
+  // Several surfaces are solved in parallel; a single one uses all threads.
   ThreadPool* const threads = scene_.surfaces.size() == 1 ? &threads_ : nullptr;
   const BodySettings settings{solver.stepping, solver.reference, solver.measure, solver.combine,
                               solver.release};
@@ -98,9 +98,9 @@ void Simulation::Run::add_body(const Surface& surface, RestShape rest_shape, Mem
   shares_.push_back(std::move(share));
 }
 
-// The error with the surface and the frame that it befell.
+// The error with its surface and frame.
 Error Simulation::Run::located(Error error, const Surface& surface, int frame) const {
-  if (error.code == ErrorCode::Interrupted) {  // no surface is at fault
+  if (error.code == ErrorCode::Interrupted) {  // no surface caused it
     return {ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame)};
   }
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
@@ -109,15 +109,15 @@ Error Simulation::Run::located(Error error, const Surface& surface, int frame) c
   return error;
 }
 
-// To a frame of the range, or back to the start where that fails.
+// Advances to a frame of the range; back to the start if that fails.
 Result<void> Simulation::Run::reach(int frame) {
   if (frame < scene_.start || frame > scene_.end) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("frame {} is outside the scene's frames {} to {}", frame, scene_.start,
                             scene_.end));
   }
-  // When it fails, some bodies may have stepped and others not: start over, so that the next call
-  // is sound. What is thrown is a custom force's.
+  // On failure some bodies may have stepped and others not: rewind, so that the next call is valid.
+  // Only custom forces throw.
   Result<void> reached;
   try {
     reached = go_to(frame);
@@ -144,7 +144,7 @@ Result<FrameReport> Simulation::Run::report(int frame) {
   return report;
 }
 
-// Of the frame that the bodies hold.
+// The report at the bodies' present frame.
 Result<SurfaceReport> Simulation::Run::report_of(std::size_t index) const {
   const Surface& surface = scene_.surfaces[index];
   SurfaceReport report;
@@ -201,7 +201,7 @@ Result<Frame> Simulation::Run::at(int frame, Frame reuse) {
 Result<void> Simulation::Run::go_to(int frame) {
   const std::optional<int> kept = cache_.latest_until(frame);
   if (frame < frame_ || kept > frame_) rewind(frame);
-  // Frames that were never passed are read one by one, for what they leave for warnings.
+  // Frames not passed before are read one by one, for their warnings.
   if (store_ && frame <= furthest_frame_) read_latest(frame);
   while (frame_ < frame) {
     if (auto stepped = step(); !stepped) return stepped;
@@ -213,7 +213,7 @@ Result<void> Simulation::Run::go_to(int frame) {
   return {};
 }
 
-// Who goes back once is likely to go back a little further next.
+// After going back once, a request for a frame shortly before is likely.
 void Simulation::Run::keep(bool is_going_back) {
   const bool is_wanted = is_going_back ? cache_.wants(frame_) : cache_.wants_checkpoint(frame_);
   if (!is_wanted) return;
@@ -221,8 +221,8 @@ void Simulation::Run::keep(bool is_going_back) {
   cache_.keep(frame_, states());
 }
 
-// From the output of frame_ to that of the next frame. The surfaces know nothing of each other, so
-// they may go at the same time; what they report is looked at in their order.
+// Advances from the output of frame_ to that of the next frame. The surfaces are independent, so
+// they may be solved in parallel; their reports are processed in their order.
 Result<void> Simulation::Run::step() {
   step_surfaces();
   bool is_solved = false, is_read = false;
@@ -250,7 +250,7 @@ void Simulation::Run::step_surfaces() {
     return stepped.is_stepped && !stepped.report &&
            stepped.report.error().code == ErrorCode::OutOfMemory;
   };
-  // Kept frames are worth less than the next one.
+  // Drop kept frames to make room for the next one.
   if (std::any_of(stepped_.begin(), stepped_.end(), lacks_memory) && cache_.give_way()) {
     threads_.for_each(bodies_.size(), [&](std::size_t k) {
       if (lacks_memory(stepped_[k])) step_surface(k);
@@ -298,7 +298,7 @@ Profile Simulation::Run::profile() const {
   return all;
 }
 
-// Whether nothing can act on a surface at a frame: the next one is like this one.
+// Whether a surface is not solved at a frame, so its state does not change.
 bool Simulation::Run::is_idle(const Surface& surface, int frame) const {
   return !surface.enabled || frame < start_frame(surface);
 }
@@ -309,7 +309,7 @@ std::vector<Warning> Simulation::Run::warnings() const {
       scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
                                      ranges.front().second == scene_.end - 1);
   std::vector<Warning> warnings = warnings_.warnings(is_complete);
-  // Who writes combine="box" out knows what it does.
+  // An author who writes combine="box" explicitly needs no warning.
   std::erase_if(warnings, [&](const Warning& warning) {
     return warning.kind == Warning::Kind::ForcesApart &&
            scene_.origin.lines.contains(warning.surface + ".combine");
@@ -321,7 +321,7 @@ std::vector<Warning> Simulation::Run::warnings() const {
   return warnings;
 }
 
-// Back to a kept frame, or to the start, where all is at rest.
+// Goes back to a kept frame, or to the start, where all bodies are at rest.
 void Simulation::Run::rewind(int frame) {
   const std::optional<int> kept = cache_.latest_until(frame);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {

@@ -46,12 +46,12 @@ class Simulation::Run {
   Profile profile() const;
 
  private:
-  /// A surface's way from one frame to the next; kept for its memory.
+  /// A surface's step from one frame to the next; reused to avoid allocations.
   struct Stepped {
-    bool is_stepped = false;  // in the frame in hand
-    bool is_read = false;     // from the store, rather than solved
+    bool is_stepped = false;  // in the present frame
+    bool is_read = false;     // read from the store, not solved
     SurfaceInputs inputs;
-    Result<StepReport> report;  // of the frame solved last, or why there is none
+    Result<StepReport> report;  // of the last solved frame, or its error
     StepFacts facts;
   };
 
@@ -86,8 +86,8 @@ class Simulation::Run {
   std::vector<MemoryShare> shares_;  // one a surface
   std::vector<RestShape> rest_shapes_;
   std::vector<Body> bodies_;  // one a surface
-  int frame_;                 // whose output the bodies hold
-  int furthest_frame_;        // that was ever computed
+  int frame_;                 // the frame of the bodies' state
+  int furthest_frame_;        // computed so far
   FrameCache cache_;
   FrameStore* store_;
   std::vector<KeyChain> keys_;  // one a surface
@@ -98,7 +98,7 @@ class Simulation::Run {
   StopRequest should_stop_;
   WarningLog warnings_;
   std::vector<Stepped> stepped_;   // one a surface; kept for its memory
-  std::vector<Profile> profiles_;  // one a surface; empty: no profiling
+  std::vector<Profile> profiles_;  // one per surface; empty: no profiling
 };
 
 }  // namespace pliant

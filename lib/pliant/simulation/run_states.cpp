@@ -44,7 +44,8 @@ bool Simulation::Run::has_marks(std::size_t surface) const {
   return !bodies_[surface].state().unsettled.empty();
 }
 
-// Takes what a surface's step makes from the store, if it is there. An interrupted run ends here.
+// Reads the result of a surface's step from the store, if it is there. An interrupted run ends
+// here.
 bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   Stepped& stepped = stepped_[index];
@@ -61,7 +62,7 @@ bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
   return true;
 }
 
-// Gives the store what a surface's step made, if it is sound.
+// Writes the result of a surface's step to the store, unless it is faulty.
 void Simulation::Run::write_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   const Stepped& stepped = stepped_[index];
@@ -70,7 +71,8 @@ void Simulation::Run::write_surface(std::size_t index, const Hash& key) {
   store_->write(key, to_bytes(key, body.state(), stepped.facts, body.rest()));
 }
 
-// On to the latest frame until `frame` that the store has whole, if one is later than this one.
+// Advances to the latest frame up to `frame` for which the store has all states, if it is later
+// than the present frame.
 void Simulation::Run::read_latest(int frame) {
   for (int candidate = frame; candidate > frame_; --candidate) {
     auto states = stored_states(candidate);

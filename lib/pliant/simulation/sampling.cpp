@@ -20,8 +20,8 @@ Vector3d sample_tangent(const TangentChannel& channel, int frame) {
 }
 
 // -rho (X(f+1) - 2 X(f) + X(f-1)) p fps^2 for a surface's transform X, as a function of the point
-// in the world, X(f) p. In differences, so that a surface at rest or in even motion has an exact 0
-// of it as far as its transforms do.
+// X(f) p in the world. It is computed from differences of transforms, so that it is exactly 0 for a
+// surface at rest or in uniform motion if these differences are exact.
 InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
   const Transform before = sample_transform(surface.transform, frame - 1);
   const Transform now = sample_transform(surface.transform, frame);
@@ -48,7 +48,7 @@ std::string place_text(const Vector3d& p) {
   return fmt::format("({}, {}, {})", p.x(), p.y(), p.z());
 }
 
-// The program's functions at one time, their answers looked at before anything counts on them.
+// The program's functions at one time, with checks of their results.
 FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
                             const ForceTime& time, const std::shared_ptr<ForceFaults>& faults) {
   // By value: a report of a frame may outlive the scene.
@@ -77,12 +77,12 @@ struct SampleShape {
   const Surface& surface;
   int frame;
   const std::shared_ptr<ForceFaults>& faults;
-  NoiseClock* clock;  // null: none is kept
+  NoiseClock* clock;  // null: the sum is computed here
 
   double seconds() const { return frame / scene.fps; }
 
-  // The cells of time that have passed by the frame, each frame at its own rate, so that the
-  // pattern never jumps. docs/model.md, "Forces".
+  // The time in cells at the frame, summed with the rate of each frame, so that the pattern never
+  // jumps. docs/model.md, "Forces".
   double noise_cells(const Channel<1>& rate) const {
     if (!rate.is_animated() || frame <= scene.start) return rate.at(frame)[0] * seconds();
     const auto rate_at = [&](int earlier) { return rate.at(earlier)[0]; };
@@ -229,7 +229,7 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
     const auto* const custom = std::get_if<CustomForce>(&force.shape);
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
                               custom ? std::string_view(custom->key) : std::string_view()});
-    // Those of groups are not known yet: below 0 stands which one is meant.
+    // The selectors of groups are not known yet: -1 - place stands for them.
     selectors.push_back(group ? -1 - place : static_cast<int>(selectors.size()));
   }
   const std::size_t member_count = selectors.size();

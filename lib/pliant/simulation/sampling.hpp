@@ -16,13 +16,12 @@ namespace pliant {
 
 // From channels to the values of one frame; not for other rooms.
 
-/// What custom forces answered that is no answer: a distance that is negative or no number, a force
-/// that is not finite. The run goes on with "out of reach" and 0 in its place, to be ended by
-/// whoever asked for the inputs.
+/// Invalid results of custom forces: a negative or NaN distance, a force that is not finite. They
+/// are replaced by "out of reach" and 0; the caller that sampled the inputs must end the run.
 class ForceFaults {
  public:
   void add(std::string message);
-  std::string first() const;  ///< naming the force, the place and the answer; empty: none
+  std::string first() const;  ///< names the force, the position and the value; empty: none
   void clear();
 
  private:
@@ -30,56 +29,57 @@ class ForceFaults {
   std::string first_;
 };
 
-/// Who stands behind a sampled force: a force, or the region of a group.
+/// The origin of a sampled force: a force, or the region of a group.
 struct ForceSource {
   std::string_view name;
-  std::string_view kind;  ///< the scene's word for it: point, ..., group; "custom"
+  std::string_view kind;  ///< the name of its element: point, ..., group; "custom"
   std::span<const std::string> targets;
-  bool selects = true;        ///< false: it is in a group, which selects
-  std::string_view key = {};  ///< of a custom force
+  bool selects = true;        ///< false: its group selects instead
+  std::string_view key = {};  ///< `CustomForce::key`
 };
 
-/// What acts on `surface` at `frame`. Refers to the scene, which must outlive it unchanged.
+/// The inputs of one surface's step at a frame. Refers to the scene, which must outlive it and not
+/// change.
 struct SurfaceInputs {
   BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups
-  std::vector<ForceSource> sources;  ///< of `body.forces`; the selector of one in a group is that
-                                     ///< of the group
-  std::shared_ptr<ForceFaults> faults;    ///< shared by the custom ones among the forces
-  std::vector<int> group_selectors = {};  ///< kept for its memory
+  std::vector<ForceSource> sources;     ///< of `body.forces`; the selector of a force in a group is
+                                        ///< that of the group
+  std::shared_ptr<ForceFaults> faults;  ///< shared by the custom forces
+  std::vector<int> group_selectors = {};  ///< reused to avoid allocations
 };
 
-/// The time of a noise whose rate is keyed, in a scene that starts at that frame; null: of any
-/// other force.
+/// A clock for a noise with a keyed rate, in a scene that starts at `start`; null for any other
+/// force.
 std::unique_ptr<NoiseClock> clock_of(const Force& force, int start);
 
-/// What is the same in all frames of a scene, found once: who acts on whom, and how far the time of
-/// noises with a keyed rate has come. Holds indices only, so the scene may move, but not change.
-/// Safe from several threads at once.
+/// Data for sampling that are the same at all frames of a scene: which forces act on which surface,
+/// and the clocks of noises with a keyed rate. Stores only indices, so the scene may move, but not
+/// change. Thread-safe.
 class SceneSampling {
  public:
   explicit SceneSampling(const Scene& scene);
 
   const SurfaceTargets& targets(std::size_t surface) const { return targets_[surface]; }
 
-  /// Of a noise whose rate is keyed; null: of any other force.
+  /// The clock of a noise with a keyed rate; null for any other force.
   NoiseClock* clock(std::size_t force) const { return clocks_[force].get(); }
 
  private:
   std::vector<SurfaceTargets> targets_;
-  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // one a force
+  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // one per force
 };
 
-/// The same without the forces.
+/// The inputs of a surface without forces.
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);
 
-/// What acts on a surface, by its index in the scene that `sampling` was made of. In the memory of
-/// `reuse`, earlier inputs or none: nothing is allocated then but for a program's own functions.
+/// The inputs of a surface, by its index in the scene for which `sampling` was made. Reuses the
+/// memory of `reuse`, earlier inputs or empty ones: then only custom functions allocate.
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
                             int frame, SurfaceInputs reuse = {});
 
-/// A force as it acts on `surface`; that of a group selects no region. Custom ones tell `faults`.
-/// `clock` is its own; null: the time of a noise with a keyed rate is summed up anew, frame by
-/// frame.
+/// A force as it acts on `surface`; a force in a group selects no region. Invalid results of custom
+/// forces are added to `faults`. `clock` is that of the force; null: the time of a noise with a
+/// keyed rate is summed again from the start.
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
                           const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock = nullptr);
 
@@ -88,11 +88,11 @@ SampledForce sample_group(const Group& group, int frame);
 
 Transform sample_transform(const TransformChannels& channels, int frame);
 
-/// The group that a force is in; null: none.
+/// The group of a force; null: none.
 const Group* group_of(const Scene& scene, const Force& force);
 
-/// Whether a force, and the group that it is in, if any, acts at a frame, on a surface. For all
-/// pairs of them `SceneSampling` has looked that up.
+/// Whether a force, and its group if it has one, is enabled at a frame, and targets a surface.
+/// `SceneSampling` knows the targets of all pairs.
 bool is_enabled(const Force& force, const Group* group, int frame);
 bool targets(const Force& force, const Group* group, const std::string& surface);
 

@@ -10,22 +10,22 @@
 
 namespace pliant {
 
-// Bytes that begin with a magic and end with a seal, the hash of all that is ahead of it; numbers
-// in them take 8 bytes, little endian. Not for other rooms.
+// Bytes that begin with a magic number and end with a seal, the hash of all bytes before it;
+// numbers have 8 bytes, little-endian. Not for other rooms.
 
 void append(std::string& bytes, const void* from, std::size_t size);
 void append(std::string& bytes, std::uint64_t number);
 void append(std::string& bytes, const Hash& hash);
 
-/// The end of what is appended.
+/// Appends the seal; nothing may follow.
 void append_seal(std::string& bytes);
 
-/// What stands between the magic and the seal; nothing where the bytes begin otherwise, or where
-/// one of them is not as it was sealed.
+/// The bytes between the magic number and the seal; null if the magic number differs or any byte
+/// has changed since sealing.
 std::optional<std::string_view> unsealed(std::string_view bytes, std::string_view magic);
 
-/// Takes bytes from the front, which outlive it. What is not there is taken as zeros, or none, and
-/// told by `is_sound`.
+/// Reads bytes from the front. Requires: the bytes outlive it. Reading past the end returns zeros
+/// or no bytes, and makes `is_sound` false.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}

@@ -18,7 +18,8 @@
 namespace pliant {
 namespace {
 
-// All as one: those of the scene's file first, each file's in the order of its lines, each once.
+// All errors as one: those of the scene's file first, those of a file in the order of lines,
+// without duplicates.
 tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin& origin) {
   std::vector<Error> all;
   for (Error& error : errors) {
@@ -72,7 +73,7 @@ Result<void> Simulation::check(const Scene& scene, const SimulationOptions& opti
 
   errors = check_channels(scene, {}, options.should_stop);
   MemoryBudget memory(options.max_memory);
-  std::vector<MemoryShare> shares;  // what surfaces would take together
+  std::vector<MemoryShare> shares;  // of all surfaces together
   for (const Surface& surface : scene.surfaces) {
     if (options.should_stop && options.should_stop()) return interrupted();
     shares.emplace_back(&memory);

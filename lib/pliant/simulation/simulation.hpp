@@ -24,101 +24,100 @@ namespace pliant {
 
 class FrameStore;
 
-/// How a simulation runs; none of it but the solver changes a result, and that by some 1e-9 of it
-/// at most: docs/model.md.
+/// Options of a simulation's run. Only the solver changes results, by a relative 1e-9 or so at
+/// most: docs/model.md.
 struct SimulationOptions {
-  /// Memory for kept states, so that going back in time is quick: `FrameCache` tells what a frame
-  /// then costs. [bytes]
+  /// Memory for kept states, so that earlier frames are quick to reach: see `FrameCache` for the
+  /// cost of a frame. [bytes]
   std::size_t checkpoint_bytes = std::size_t{256} << 20;
 
-  /// Memory that surfaces, solvers and kept states may take together; what does not fit is refused
-  /// before it is allocated. Kept states give way to solvers. [bytes]
+  /// Memory that surfaces, solvers and kept states may use together; more is refused before it is
+  /// allocated. Kept states are dropped if solvers need the memory. [bytes]
   std::size_t max_memory = std::numeric_limits<std::size_t>::max();
 
   /// Threads that work on several surfaces at the same time, or on the parts of a single one, the
   /// caller's among them. >= 1
   int threads = 1;
 
-  /// Who solves. Requires: available in this build.
+  /// The solver. Requires: available in this build.
   SolverChoice solver = SolverChoice::Auto;
 
-  /// Whether `Simulation::profile` is kept.
+  /// Whether times are measured for `Simulation::profile`.
   bool profile = false;
 
-  /// Doubles in the solver's vectors, as far as the machine lets us choose: to show that they
-  /// change no bit.
+  /// The most doubles per vector of the solver's kernels, as far as the machine offers a choice:
+  /// for tests that it changes no bit.
   int most_lanes = widest_lanes;
 
-  /// Asked ahead of every surface that is read, while assimp reads one, and ahead of every time
-  /// step, by any of the threads;
-  /// `make` and `at` then fail with Interrupted.
+  /// Called before every surface is read, while assimp reads one, and before every time step, from
+  /// any of the threads. If it returns true, `make` and `at` fail with Interrupted.
   StopRequest should_stop = {};
 
-  /// Where states are kept beyond this simulation, so that another one, of the same scene or of an
-  /// edited one, need not solve again what is the same. Outlives the simulation; none: nowhere.
+  /// Stores states beyond this simulation, so that another simulation, of the same or an edited
+  /// scene, need not solve unchanged frames again. Outlives the simulation; null: states are not
+  /// stored.
   FrameStore* store = nullptr;
 };
 
-/// What it took to get at frames, each time one was gone to from the frame before it.
+/// How frames were reached, counted each time the simulation advances by a frame.
 struct FrameCounts {
-  int solved = 0;  ///< frames for which a surface was stepped
-  int read = 0;    ///< frames for which all that moves came out of the store
+  int solved = 0;  ///< frames for which at least one surface was solved
+  int read = 0;    ///< frames whose moving surfaces were all read from the store
 };
 
 /// All bodies of a scene over its frames. Thesis 5.3; SPEC 6.
 ///
 /// The output of a frame is the mesh before that frame's solve: at the start frame it is the rest
 /// mesh, and the first motion shows one frame later. Frames are computed in order from the scene's
-/// first one, whatever order they are asked for in, so they have the same bits in any order.
-/// Two simulations may run in two threads; one may not.
+/// first one, whatever the order of the calls, so their bits do not depend on that order. Different
+/// simulations may be used in different threads; a single one is not thread-safe.
 class Simulation {
  public:
   /// Reads the meshes, finds the grids and checks every channel at every frame of the range.
-  /// Errors: every problem found, with file and line where the scene came from a file; OutOfMemory
-  /// where a surface is larger than `max_memory`; Interrupted.
+  /// Errors: every problem found, with file and line if the scene is from a file; OutOfMemory if a
+  /// surface is larger than `max_memory`; Interrupted.
   static Result<Simulation> make(Scene scene, const SimulationOptions& options = {});
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Whether `make` would succeed, as far as it is known without making the sheets of the scene:
-  /// reads its mesh files and looks at all channels. A scene without a surface is all right.
-  /// Errors: as `make`.
+  /// Checks that `make` would succeed, as far as possible without making the scene's sheets: reads
+  /// its mesh files and checks all channels. A scene without a surface is valid. Errors: as `make`.
   static Result<void> check(const Scene& scene, const SimulationOptions& options = {});
 
   /// The scene's frames, start to end.
   FrameSequence frames() const;
 
-  /// One frame, in any order. Cost: the solves between it and the latest kept or current frame
-  /// ahead; once the run has been played through, less than one interval of the `FrameCache`, and
-  /// none where the store has it. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed,
-  /// OutOfMemory, Interrupted, naming surface and frame; NotFinite also where a custom force gives
-  /// no sound answer, naming it too. What a custom force throws goes on to the caller.
+  /// One frame, in any order. Cost: the solves from the latest kept or current frame before it;
+  /// once the run has been played through, less than one interval of the `FrameCache`, and none if
+  /// the store has the frame. Errors: InvalidInput outside `frames()`; NotFinite, SolverFailed,
+  /// OutOfMemory, Interrupted, naming surface and frame; NotFinite also if a custom force returns
+  /// an invalid value, naming the force. Exceptions of a custom force pass to the caller.
   ///
-  /// The frame takes the memory of `reuse`, an earlier frame or none. Playing on with it allocates
-  /// nothing while regions keep their shape, but for checkpoints, stores, functions of a program's
-  /// own, what recovers, and solvers with sparse factors.
+  /// The frame reuses the memory of `reuse`, an earlier frame or an empty one. Playing on with it
+  /// allocates nothing while regions keep their shape, except for checkpoints, stores, custom
+  /// functions, recovering nodes, and solvers with sparse factors.
   Result<Frame> at(int frame, Frame reuse = {});
 
-  /// What the solve at a frame takes from its mesh, in any order: regions, forces, steps. A surface
-  /// that is not solved at the frame has an empty report. The last frame's solve is told of like
-  /// any other, though no frame shows it. Cost and errors: as `at`.
+  /// The solve at a frame, in any order: regions, forces, steps. A surface that is not solved at
+  /// the frame has an empty report. The last frame's solve is reported too, although no frame shows
+  /// it. Cost and errors: as `at`.
   Result<FrameReport> report(int frame);
 
-  /// What a surface, by its index in the scene, hands on at the frame that `report` last gave; at
-  /// the first one ahead of any.
+  /// The state of a surface, by its index in the scene, at the frame of the last `report`; before
+  /// any, at the first frame.
   const BodyState& state(std::size_t surface) const;
 
-  /// The state at a frame as sealed bytes, to go on from in another process: `restore`. Cost and
+  /// The state at a frame as sealed bytes, to continue in another process with `restore`. Cost and
   /// errors: as `at`.
   Result<std::string> state_bytes(int frame);
 
-  /// Goes to the frame whose `state_bytes` these are, and gives its number; frames from there on
-  /// have the same bits as without. Errors: InvalidInput where the bytes are damaged, or the state
-  /// is not this scene's at that frame under this engine and solver: what acts until then must be
-  /// the same, what comes later need not. Of a custom force without a key nothing is known; whoever
-  /// restores answers for it. Warnings then lack those of frames that were never computed here.
+  /// Restores the state of `state_bytes`, and returns its frame; later frames have the same bits as
+  /// without. Errors: InvalidInput if the bytes are damaged, or the state is not that of this scene
+  /// at that frame under this engine and solver: all inputs up to the frame must be the same, later
+  /// ones may differ. A custom force without a key cannot be checked; the caller is responsible for
+  /// it. Warnings then lack those of frames that were not computed here.
   Result<int> restore(std::string_view state_bytes);
 
   const Scene& scene() const;
@@ -126,21 +125,21 @@ class Simulation {
   /// The surfaces at rest, in the order of the scene.
   std::span<const RestShape> rest_shapes() const;
 
-  /// What the frames computed, or read, so far gave reason to warn about, each cause once with its
-  /// frames. What happens in no frame at all, such as a force that selects nothing, is told once
-  /// all frames have been.
+  /// The warnings of the frames computed or read so far, each cause once with its frames. A warning
+  /// about something that never happens, such as a force that selects nothing, is included only
+  /// after all frames.
   std::vector<Warning> warnings() const;
 
-  /// What the surfaces take, and a frame of each, without their solvers' factors. [bytes]
+  /// The memory of the surfaces and a frame of each, without their solvers' factors. [bytes]
   std::size_t surface_memory() const;
 
-  /// What the surfaces' solvers had to do so far, added up.
+  /// The work of all surfaces' solvers so far.
   SolverCounts solver_counts() const;
 
   FrameCounts frame_counts() const;
 
-  /// How long the frames computed so far took, by stage and added up over surfaces that went at the
-  /// same time; nothing without `SimulationOptions::profile`. A caller may add to it what it knows.
+  /// The times of the frames computed so far, by stage, summed over surfaces that were solved in
+  /// parallel; empty without `SimulationOptions::profile`. A caller may add its own stages.
   Profile profile() const;
 
  private:

@@ -11,10 +11,10 @@
 namespace pliant {
 namespace {
 
-// Everything below takes its values apart by structured bindings: a member that is added to one of
-// them is an error here, and cannot be forgotten in the keys.
+// The functions below use structured bindings for their values, so that a new member causes a
+// compile error here and cannot be forgotten in the keys.
 
-// What is hashed, one after another in a fixed order. Numbers go in by their bits.
+// The data to hash, in a fixed order. Numbers are added by their bits.
 class Ingredients {
  public:
   void add(std::uint64_t number) {
@@ -134,7 +134,7 @@ class Ingredients {
     const auto& [linear, origin, offset] = force;
     add_all(linear, origin, offset);
   }
-  void add(const FunctionForce&) {}  // known by the key that its program gave it
+  void add(const FunctionForce&) {}  // identified by the key from its program
 
   void add(const SampledForce& force) {
     const auto& [shape, magnitude, deformation_radius, force_radius, falloff, falloff_curve] =
@@ -172,7 +172,7 @@ Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
   ingredients.add(hash_of(rest));
   ingredients.add(settings);
   ingredients.add(solver);
-  // Which of the sparse ones a choice comes down to.
+  // The available solvers decide which sparse solver a choice means.
   for (const SolverKind kind : available_solvers()) ingredients.add(name_of(kind));
   return ingredients.hash();
 }

@@ -13,23 +13,23 @@ namespace pliant {
 
 struct SurfaceInputs;
 
-// Names for states, made of everything that a state comes from. Not for other rooms.
+// Keys for states, computed from everything that determines a state. Not for other rooms.
 
-/// Of a surface at rest under this engine: its grid and rest positions, the choices of its body and
-/// who solves. Another engine, one whose sources differ in a byte, gives other keys.
+/// The key of a surface at rest under this engine: from its grid and rest positions, the settings
+/// of its body and the solver. An engine whose sources differ in any byte gives other keys.
 Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
               SolverChoice solver);
 
-/// Of any state of a surface that nothing better is known of.
+/// The key of a state of a surface that has no key of its own; see `next_key`.
 Hash unnamed_key(const Hash& rest);
 
-/// Of the state that a step at `frame` with these inputs makes of the state of key `before`. None
-/// where a custom force without a key of its own acts: nobody knows what its functions will do.
+/// The key of the state after a step at `frame` with these inputs from the state with key `before`.
+/// Null if a custom force without a key acts: the results of its functions are unknown.
 std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, int frame);
 
-/// The keys of one surface's states, from the first frame on. Two of one key are the same, bit for
-/// bit, and what a key tells of a frame is what was sampled until then: not how the scene says it,
-/// nor what comes later.
+/// The keys of one surface's states, from the first frame on. States with the same key are
+/// bit-identical. A key depends only on the values sampled until its frame: not on how the scene
+/// expresses them, nor on later values.
 class KeyChain {
  public:
   explicit KeyChain(const Hash& rest) : keys_{rest} {}
@@ -42,7 +42,8 @@ class KeyChain {
 
   const Hash& rest() const { return *keys_.front(); }
 
-  /// One more frame, after a step at scene frame `frame`; null: nothing acted, the state stays.
+  /// Appends a frame, after a step at scene frame `frame`; null: nothing acted, so the state did
+  /// not change.
   void append(const SurfaceInputs* inputs, int frame);
 
  private:

@@ -19,7 +19,7 @@ bool moves_any(std::span<const Patch> patches, const Box& box) {
   return false;
 }
 
-// Whether any two of the boxes meet; the one then takes the other in.
+// Whether any two of the boxes meet; if so, merges them.
 bool merge_two(std::vector<Box>& boxes) {
   for (std::size_t a = 0; a < boxes.size(); ++a) {
     for (std::size_t b = a + 1; b < boxes.size(); ++b) {
@@ -39,7 +39,7 @@ ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport
   const bool is_solved = !report.patches_of_force(k).empty();
   const bool reaches =
       is_solved && overlaps(report.selection.regions[selected.region], selected.force);
-  // What a union solves may lie elsewhere altogether.
+  // The solved part of a union may be somewhere else.
   const bool is_elsewhere =
       combine == Combine::Union && !moves_any(report.patches_of_force(k), selected.deformation);
   const bool has_magnitude = inputs.body.forces[k].magnitude != 0;
@@ -49,7 +49,7 @@ ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport
   facts.touches = !inputs.sources[k].selects || !selected.deformation.is_empty() || reaches;
   facts.is_lost =
       std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
-  // What another warning tells of this frame is not told twice.
+  // Another warning about this frame replaces this one.
   const bool is_here = reaches || (facts.touches && selected.force.is_empty());
   const bool is_told = facts.is_lost || (is_elsewhere && !selected.deformation.is_empty());
   facts.is_push_awaited = is_solved && has_magnitude && is_here && !is_told;
@@ -60,7 +60,7 @@ ForceFacts facts_of(std::size_t k, const SurfaceInputs& inputs, const StepReport
 }  // namespace
 
 bool falls_apart(const Selection& selection, std::vector<Box>& room) {
-  // Most often all boxes meet the first one, or what has met it.
+  // Usually all boxes meet the first one, or boxes merged with it.
   Box met;
   for (bool grows = true; grows && met != selection.region;) {
     grows = false;
@@ -110,7 +110,8 @@ void add_facts(WarningLog& log, std::string_view surface, int frame, const Surfa
     if (of_force.is_outside) log.add(OutsideRegion, surface, force, frame);
     if (of_force.is_lost) log.add(LostNodes, surface, force, frame);
     if (of_force.is_apart) log.add(ForcesApart, surface, force, frame);
-    // A force that names its targets is expected to touch each; one for all surfaces, some of them.
+    // A force with named targets is expected to affect each of them; a force without, at least one
+    // surface.
     const std::string_view place = source.targets.empty() ? std::string_view() : surface;
     if (source.selects) {
       log.expect(SelectsNothing, place, force, frame);

@@ -8,19 +8,20 @@
 
 namespace pliant {
 
-// What a step leaves behind for warnings, apart from the names of a scene: it can be kept with the
-// state that the step made. Not for other rooms.
+// Facts about a step, for warnings. They contain no names of the scene, so they can be stored with
+// the state that the step computed. Not for other rooms.
 
-/// Of a force, in the order of the step's inputs.
+/// The facts about one force.
 struct ForceFacts {
   bool is_too_small = false;     ///< it selects nodes, but too few are solved
-  bool is_outside = false;       ///< it has a magnitude, and its box lies outside the region
-  bool touches = false;          ///< it selects a node, or reaches the region
-  bool is_push_awaited = false;  ///< its magnitude should move something, in this frame or another
+  bool is_outside = false;       ///< its magnitude is not 0, and its force box is outside the
+                                 ///< region
+  bool touches = false;          ///< it selects a node, or its force box reaches the region
+  bool is_push_awaited = false;  ///< it is expected to move a node, at this frame or another
   bool pushes = false;           ///< it moves a node
-  bool is_lost = false;          ///< it holds nodes of the rest mesh, but none as it stands
+  bool is_lost = false;          ///< it pushes nodes of the rest mesh, but none of the present mesh
 
-  bool is_apart = false;  ///< boxes that do not meet make one region, and its own is one of them
+  bool is_apart = false;  ///< boxes that do not meet form one region, and its own is one of them
 
   friend bool operator==(const ForceFacts&, const ForceFacts&) = default;
 };
@@ -28,22 +29,22 @@ struct ForceFacts {
 struct StepFacts {
   bool is_solved = false;
   std::vector<ForceFacts> forces = {};
-  std::vector<Box> room = {};  ///< to work in, no fact
+  std::vector<Box> room = {};  ///< scratch memory, not a fact
 
   friend bool operator==(const StepFacts& a, const StepFacts& b) {
     return a.is_solved == b.is_solved && a.forces == b.forces;
   }
 };
 
-/// Whether what the forces select would be several islands, in a region that is one box. `room`: to
-/// work in.
+/// Whether the boxes of the forces would form several islands, in a region that is one box. `room`:
+/// scratch memory.
 bool falls_apart(const Selection& selection, std::vector<Box>& room);
 
-/// In the memory of `reuse`, facts of an earlier step or none.
+/// Reuses the memory of `reuse`: facts of an earlier step, or empty.
 StepFacts facts_of(const SurfaceInputs& inputs, const StepReport& report, Combine combine,
                    StepFacts reuse = {});
 
-/// Tells the log of one surface's step at a frame.
+/// Adds the facts of one surface's step at a frame to the log.
 void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
                const StepFacts& facts);
 

@@ -30,8 +30,9 @@ bool is_at_rest(const BodyState& state, const Field& rest, Eigen::Index node) {
   return state.unsettled.empty() || state.unsettled[static_cast<std::size_t>(node)] == 0;
 }
 
-// Of x, y and z of the positions, then of the velocities, a bit each that is set where any node has
-// it away from rest: what is pushed along an axis has four of them at rest throughout.
+// One bit for each of x, y and z of the positions, then of the velocities, set if the component of
+// any node differs from rest. On a surface pushed along one axis, four of the six are at rest
+// everywhere.
 using Columns = std::uint64_t;
 
 bool holds(Columns columns, int component) { return (columns >> component & 1u) != 0; }
@@ -82,7 +83,7 @@ ForceFacts facts_of(unsigned bits) {
   return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
 }
 
-// The runs that follow, as far as they lie within the nodes and in order; else none and unsound.
+// Reads runs. Null if they are not within the nodes or not ascending.
 std::optional<std::vector<Run>> read_runs(ByteReader& reader, std::uint64_t node_count) {
   const std::uint64_t count = reader.number();
   if (count > reader.left() / sizeof(Run)) return {};
@@ -118,14 +119,15 @@ void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, C
 
 constexpr std::size_t bytes_of_node = 6 * sizeof(double) + 1;
 
-// What a state takes at most besides its runs and nodes.
+// The most bytes of a state besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
   return magic.size() + 2 * sizeof(Hash) + 6 * sizeof(std::uint64_t) + force_count;
 }
 
-// More than this no state takes: at worst every other node is away from rest, or all are.
+// An upper bound for the bytes of a state: in the worst case every other node is away from rest, or
+// all are.
 std::size_t most_bytes(Eigen::Index node_count) {
-  constexpr std::size_t forces = 1'000'000;  // more nobody has
+  constexpr std::size_t forces = 1'000'000;  // more than any scene has
   const auto nodes = static_cast<std::size_t>(node_count);
   return most_head(forces) + (nodes + 1) / 2 * sizeof(Run) + nodes * bytes_of_node;
 }

@@ -12,25 +12,24 @@
 
 namespace pliant {
 
-// One surface's state as bytes. docs/caching.md tells the layout. Not for other rooms.
+// One surface's state as bytes. docs/caching.md describes the layout. Not for other rooms.
 
-/// A state and what the step that made it leaves for warnings.
+/// A state, and the facts for warnings of the step that computed it.
 struct StoredState {
   BodyState state;
   StepFacts facts = {};
 };
 
-/// The bytes under a seal. Nodes at rest without velocity take nothing. `rest` is #nodes x 3.
+/// Sealed bytes. Nodes at rest without velocity need no bytes. `rest` is #nodes x 3.
 std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
                      const Field& rest);
 
-/// What `to_bytes` was given, bit for bit; nothing where a byte is another, or where these are the
-/// bytes of another key or another kind of body. `has_marks` tells whether states of the body have
-/// `unsettled`.
+/// The arguments of `to_bytes`, bit-identical; null if a byte has changed, or if the bytes are of
+/// another key or another kind of body. `has_marks`: whether states of the body have `unsettled`.
 std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
                                       bool has_marks);
 
-/// The state under a key of a store, as `from_bytes`; what is damaged is discarded.
+/// The state under a key of a store, as `from_bytes`; damaged bytes are discarded from the store.
 std::optional<StoredState> read_stored(FrameStore& store, const Hash& key, const Field& rest,
                                        bool has_marks);
 

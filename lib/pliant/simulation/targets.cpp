@@ -16,7 +16,7 @@ class Surfaces {
     for (const std::size_t k : all_) named_.emplace(scene.surfaces[k].name, k);
   }
 
-  // Of those names, in the order of the scene; all where there are none.
+  // The surfaces with these names, in the order of the scene; no names: all surfaces.
   std::vector<std::size_t> of(const std::vector<std::string>& targets) const {
     if (targets.empty()) return all_;
     std::vector<std::size_t> found;
@@ -35,10 +35,10 @@ class Surfaces {
   std::map<std::string_view, std::size_t> named_;
 };
 
-// Where a group acts, and the place it has there among the groups.
+// The surfaces on which a group acts, and its index among the groups of each.
 struct GroupPlaces {
   std::vector<std::size_t> surfaces = {};  // ascending
-  std::vector<int> places = {};            // one each
+  std::vector<int> places = {};            // one for each surface
 
   int place_at(std::size_t surface) const {
     const auto found = std::lower_bound(surfaces.begin(), surfaces.end(), surface);
@@ -65,7 +65,7 @@ std::vector<SurfaceTargets> targets_of(const Scene& scene) {
     const bool is_member = group != groups.end();
     for (const std::size_t surface : surfaces.of(scene.forces[force].targets)) {
       const int place = is_member ? group->second.place_at(surface) : -1;
-      if (is_member && place < 0) continue;  // the group does not act there
+      if (is_member && place < 0) continue;  // the group does not act on this surface
       targets[surface].forces.push_back({force, place});
     }
   }

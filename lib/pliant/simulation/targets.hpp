@@ -7,19 +7,19 @@
 
 namespace pliant {
 
-// Who acts on whom, looked up by name once for a scene; not for other rooms.
+// Which forces act on which surfaces, looked up by name once per scene; not for other rooms.
 
-/// What may act on one surface, in the order of the scene and whether enabled or not.
+/// The forces and groups that target one surface, enabled or not, in the order of the scene.
 struct SurfaceTargets {
   struct Member {
     std::size_t force = 0;  ///< index in the scene
-    int group = -1;         ///< index in `groups` of the group that it is in; -1: none
+    int group = -1;         ///< index of its group in `groups`; -1: none
   };
   std::vector<Member> forces = {};
   std::vector<std::size_t> groups = {};  ///< indices in the scene
 };
 
-/// One for each surface. Cost: once over all targets, and what comes out.
+/// One for each surface. Cost: linear in the number of targets and the size of the result.
 std::vector<SurfaceTargets> targets_of(const Scene& scene);
 
 }  // namespace pliant

@@ -11,19 +11,19 @@
 
 namespace pliant {
 
-/// Warnings gathered by cause, each with all its frames.
+/// Collects warnings by cause, each with all its frames.
 class WarningLog {
  public:
   void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
 
-  /// Something that should happen in some frame of the range and may in this one. It is a warning
-  /// with all these frames when it `happened` in none.
+  /// Notes that something is expected to happen at some frame of the range, perhaps this one. If it
+  /// `happened` at none, it becomes a warning with all these frames.
   void expect(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
   void happened(Warning::Kind kind, std::string_view surface, std::string_view force);
 
-  /// In order of kind, surface and force. What never happened is told once the range is complete.
-  /// Forces that are apart on one surface come as one warning. Which names are groups is not known
-  /// here.
+  /// In the order of kind, surface and force. Expectations that never happened are included only if
+  /// the range is complete. All forces that are apart on one surface form one warning. `is_group`
+  /// is not set here.
   std::vector<Warning> warnings(bool is_range_complete) const;
 
  private:
@@ -39,7 +39,7 @@ class WarningLog {
     std::string force;
     operator CauseView() const { return {kind, surface, force}; }
   };
-  // Looks a cause up without a copy of its names.
+  // Finds a cause without copying its names.
   struct Before {
     using is_transparent = void;
     bool operator()(const CauseView& a, const CauseView& b) const { return a < b; }

@@ -19,7 +19,7 @@ std::string names_text(const std::string& first, const std::vector<std::string>&
   return is_long ? text + fmt::format(" and {} more", others.size() - told) : text;
 }
 
-// More than this no line of text is read through.
+// Authors do not read longer lists.
 constexpr std::size_t most_ranges = 8;
 
 }  // namespace

@@ -7,23 +7,23 @@
 
 namespace pliant {
 
-/// Something that a run met and an author would want to know; the run goes on.
+/// A likely mistake of the author, found during a run; the run continues.
 struct Warning {
   enum class Kind {
     RegionTooSmall,  ///< fewer than 3 x 3 nodes selected: not solved
-    LostNodes,       ///< a force holds nodes of the rest mesh, but none as it stands
-    OutsideRegion,   ///< a force with a magnitude has its box outside the solved region
-    SelectsNothing,  ///< an enabled force touches no node in the whole range
-    PushesNothing,   ///< a force with a magnitude pushes no node that moves, in the whole range
-    NeverStarts,     ///< the surface's start frame is behind the last frame that is solved
+    LostNodes,       ///< a force pushes nodes of the rest mesh, but none of the present mesh
+    OutsideRegion,   ///< the force box of a force with a magnitude is outside the solved region
+    SelectsNothing,  ///< an enabled force selects no node and reaches no region, in the whole range
+    PushesNothing,   ///< a force with a magnitude pushes no moving node in the whole range
+    NeverStarts,     ///< the surface's start frame is after the last solved frame
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
-    ForcesApart,     ///< boxes that do not meet make one region, since `combine` is box
+    ForcesApart,     ///< boxes that do not meet form one region, since `combine` is box
   };
   Kind kind = Kind::RegionTooSmall;
-  std::string surface;  ///< empty: any, of a force that selects nothing anywhere
-  std::string force;    ///< or group; empty: the surface itself is meant
+  std::string surface;  ///< empty: all, for a force that selects nothing on any surface
+  std::string force;    ///< or group; empty: the warning is about the surface itself
   FrameRanges frames;
-  std::vector<std::string> others = {};  ///< of forces that are apart: those besides `force`
+  std::vector<std::string> others = {};  ///< for ForcesApart: the forces besides `force`
   bool is_group = false;                 ///< whether `force` is the region of a group
 
   /// One line for an author, frames included.
