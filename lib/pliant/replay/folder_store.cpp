@@ -24,7 +24,7 @@ constexpr std::string_view ending = ".state";
 constexpr std::size_t key_digits = 32;
 constexpr std::int64_t second = 1'000'000'000;  // [ns]
 
-// A part of a file that nobody has written to for so long is what a killed process left.
+// A part of a file that has not been written to for so long was left by a killed process.
 constexpr std::int64_t abandoned_after = 600 * second;
 
 class Descriptor {
@@ -47,20 +47,20 @@ std::int64_t now() {
   return std::int64_t{time.tv_sec} * second + time.tv_nsec;
 }
 
-// The key that a file of ours is named by.
+// The key in the name of a file of this store.
 std::optional<Hash> key_in(std::string_view name) {
   if (name.size() != key_digits + ending.size() || !name.ends_with(ending)) return {};
   return to_hash(name.substr(0, key_digits));
 }
 
-// Whether it is the name of a file of ours that is being written, as `AtomicFile` gives it.
+// Whether it is the name of an unfinished file of this store, as made by `AtomicFile`.
 bool is_part(std::string_view name) {
   const std::size_t size = key_digits + ending.size();
   return name.starts_with('.') && name.ends_with(".part") && name.size() > 1 + size &&
          key_in(name.substr(1, size));
 }
 
-// What a file of that many bytes takes of a disk that gives out pages.
+// The space of a file of that many bytes on a disk that allocates pages.
 std::size_t on_disk(std::size_t bytes) {
   constexpr std::size_t page = 4096;
   return (bytes + page - 1) / page * page;
@@ -107,7 +107,7 @@ bool FolderFrameStore::holds(const Hash& key) {
 }
 
 std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t most) {
-  // A link or a pipe of that name is not ours, and must not keep us waiting.
+  // A link or a pipe of that name is not a file of this store, and must not block.
   const Descriptor file(
       ::open(file_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
@@ -115,10 +115,10 @@ std::optional<std::string> FolderFrameStore::read(const Hash& key, std::size_t m
     return {};
   }
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  // What cannot be whole is handed over as far as it goes, to be found out.
+  // A file that cannot be complete is returned as far as it can be read; the caller detects it.
   std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)), '\0');
   if (!read_all(file.number(), bytes)) return {};
-  futimens(file.number(), nullptr);  // used now; where that is not allowed, it goes sooner
+  futimens(file.number(), nullptr);  // marks it as used; without permission, it is removed sooner
   return bytes;
 }
 
@@ -151,7 +151,7 @@ int FolderFrameStore::damaged_count() const {
   return damaged_count_;
 }
 
-// Whether so many more bytes may go to the disk.
+// Whether that many more bytes may be written to the disk.
 bool FolderFrameStore::take_room(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   if (!trouble_.empty() || bytes > byte_budget_) return false;
@@ -177,8 +177,8 @@ std::vector<FolderFrameStore::Entry> FolderFrameStore::entries() const {
     if (!S_ISREG(status.st_mode)) continue;
     const std::int64_t used = std::int64_t{status.st_mtim.tv_sec} * second + status.st_mtim.tv_nsec;
     if (!key && now() - used < abandoned_after) continue;
-    // Of this run's own each rank holds half as many as the one before: the bits of a key are as
-    // good as random, and the same for whoever asks.
+    // Of this run's own files each rank has half as many as the one before: the bits of a key are
+    // as good as random, and the same for every process.
     const bool is_ours = key && used >= opened_;
     entries.push_back({place->path(), on_disk(static_cast<std::size_t>(status.st_size)), used,
                        is_ours ? 1 + std::countr_zero(key->low)
@@ -188,7 +188,7 @@ std::vector<FolderFrameStore::Entry> FolderFrameStore::entries() const {
   return entries;
 }
 
-// Counts what is there, and where it is too much removes some of it.
+// Counts the files, and removes some if they use too much space.
 void FolderFrameStore::make_room(std::size_t bytes) {
   std::vector<Entry> there = entries();
   std::sort(there.begin(), there.end(), [](const Entry& a, const Entry& b) {
@@ -198,7 +198,7 @@ void FolderFrameStore::make_room(std::size_t bytes) {
   for (const Entry& entry : there) bytes_ += entry.bytes;
   is_counted_ = true;
   const bool is_full = bytes_ + bytes > byte_budget_;
-  // With some to spare, so that this is not to be done for each file.
+  // Leaves some spare space, so that this need not be done for each file.
   const std::size_t spare = byte_budget_ / 16;
   for (const Entry& entry : there) {
     if (entry.rank >= 0 && (!is_full || bytes_ + bytes + spare <= byte_budget_)) break;
