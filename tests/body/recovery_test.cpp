@@ -59,8 +59,7 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
   BodyInputs in = inputs_of({press(-6, -5, 2e5), press(-1, 1, -3e5, 4.5), press(9, 9, 1e5)});
   in.dynamics = {4000, 8000};
   for (int frame = 0; frame < 6; ++frame) REQUIRE(body.step(in)->is_solved);
-  in.forces = {press(-6, -5, 0)};  // moves on: its region does not contain the nodes that the
-                                   // others left
+  in.forces = {press(-6, -5, 0)};  // moves on: its region excludes the others' nodes
   REQUIRE(body.step(in)->recovering > 0);
   in.forces.clear();
   std::vector<Region> before;

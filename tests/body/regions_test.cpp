@@ -97,8 +97,7 @@ TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
 
 TEST_CASE("a union that is a box is solved as that box, to the bit", "[body][union]") {
   const NodeSheet s = hilly_sheet(31, 21);
-  const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // beside each
-                                                                                 // other
+  const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // adjacent
   Body one = body_with(s, Combine::Union), box = body_with(s, Combine::Box);
   for (int frame = 0; frame < 8; ++frame) {
     REQUIRE(one.step(with_tangents(inputs_of(forces)))->is_solved);

@@ -263,8 +263,7 @@ TEST_CASE("tangents act at the ends of a union and nowhere else", "[plate][union
   Field unknowns = with_interior(grid, interior, zero, felt);
   for (int j = 0; j < 13; ++j) {
     for (int i = 0; i < 13; ++i) {
-      const bool is_beside_u1 = i == 11 && j >= 1 && j <= 5;  // the inner side, at i = 6, has no
-                                                              // tangent
+      const bool is_beside_u1 = i == 11 && j >= 1 && j <= 5;  // not the inner side, at i = 6
       CHECK((unknowns(grid.node(i, j), 0) != 0) == is_beside_u1);
     }
   }

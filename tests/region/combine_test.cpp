@@ -82,8 +82,7 @@ TEST_CASE("a merged box that meets a third takes it in", "[region][islands]") {
   // The first two share one node; only their common box reaches the third.
   const std::vector<Box> boxes{{0, 2, 0, 2}, {2, 6, 2, 6}, {5, 8, 0, 1}};
   CHECK(merged(boxes) == std::vector<Box>{{0, 8, 0, 6}});
-  CHECK(merged(std::vector<Box>{{0, 2, 0, 2}, {3, 5, 0, 2}}).size() == 2);  // neighbours do not
-                                                                            // share a node
+  CHECK(merged(std::vector<Box>{{0, 2, 0, 2}, {3, 5, 0, 2}}).size() == 2);  // no shared node
 }
 
 TEST_CASE("the interior of a union is the nodes whose four cells are inside", "[region][union]") {

@@ -136,8 +136,7 @@ TEST_CASE("a vector without length that is lengthened keeps its value", "[timeli
   const double root = (0.8 - std::sqrt(1.2 * 0.4)) / 2;
   legal.keys[1].in = of_handle(-root, 0.75);
   for (double t = 0; t <= 1; t += 0.125) {
-    CHECK_THAT(at(make(keys), t), WithinAbs(at(make(legal), t), 1e-7));  // t = 8/9 is a vertical
-                                                                         // tangent
+    CHECK_THAT(at(make(keys), t), WithinAbs(at(make(legal), t), 1e-7));  // vertical at t = 8/9
   }
 }
 

@@ -50,8 +50,7 @@ struct StepReport {
   std::vector<std::vector<Patch>> patches;  ///< of each region; empty: it is too small to solve
   bool is_solved = false;                   ///< whether there is any unknown
   TimeSteps steps;                          ///< of the solve
-  std::vector<int> lost;  ///< forces that select nodes on the rest mesh, but none on the current
-                          ///< one
+  std::vector<int> lost;  ///< forces that select nodes on the rest mesh, but none now
   std::vector<bool>
       pushing;         ///< of each force: whether it moves any node; in the order of the inputs
   int recovering = 0;  ///< nodes that are solved because they are not back at rest

@@ -18,7 +18,7 @@ enum class Measure {
   Rest,     ///< on the rest mesh, for forces that push their own nodes out of reach
 };
 
-/// What happens to nodes that leave the region. SPEC 6.
+/// The behaviour of nodes that leave the region. SPEC 6.
 enum class Release {
   Freeze,   ///< they stay in place, as in the thesis
   Recover,  ///< they are solved until they are back at rest

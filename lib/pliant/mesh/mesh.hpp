@@ -13,8 +13,7 @@ namespace pliant {
 /// Names of faces: of materials or of groups.
 struct FaceNames {
   std::vector<std::string> names;  ///< in the order of their first use by a face
-  std::vector<int> of_faces;       ///< #faces: index into `names`, -1: none; empty: no face has a
-                                   ///< name
+  std::vector<int> of_faces;       ///< #faces: index into `names`, -1: none; empty: no names
 
   friend bool operator==(const FaceNames&, const FaceNames&) = default;
 };

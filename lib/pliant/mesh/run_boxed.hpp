@@ -51,7 +51,6 @@ struct BoxedEnd {
 ///
 /// `should_stop` is called twenty times a second. Thread-safe. Errors: Unreadable if the system
 /// cannot start the process; Interrupted.
-/// Errors: Unreadable where the system starts no process; Interrupted.
 Result<BoxedEnd> run_boxed(std::string_view program, const std::vector<std::string>& arguments,
                            int input, const BoxLimits& limits, const StopRequest& should_stop);
 

@@ -24,8 +24,7 @@ struct StencilWeights {
 
   double centre, beside_u, beside_v;
   double corner;  ///< of the four diagonal neighbours
-  double two_u;   ///< of nodes two steps away along u; a rim node beside a node adds as much to its
-                  ///< centre
+  double two_u;   ///< of those two steps away; a rim beside the node adds it to the centre
   double two_v;
 };
 

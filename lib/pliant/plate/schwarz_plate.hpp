@@ -67,8 +67,7 @@ class SchwarzPlate {
   struct Part {
     Box box;  // of interior nodes
     SpectralPlate* plate = nullptr;
-    std::vector<DomainRows::Edge> facing;  // nodes of `box` on sides with interior nodes beyond
-                                           // them
+    std::vector<DomainRows::Edge> facing;  // nodes of `box` beside interior nodes outside it
     std::vector<long> around;              // interior nodes outside `box` that the stencil reaches
   };
   // A field on all nodes, surrounded by rows of zeros; 0 at nodes that are not interior.

@@ -235,8 +235,7 @@ void SinePlan::make_powers() {
   std::vector<double> kernel(2 * static_cast<std::size_t>(whole), 0.0);
   const auto set = [&](int place, long power, const TurnPoint& turn) {
     const long halved = power * ((L + 1) / 2) % L;
-    const double sine = turn_point(halved, L).sine / whole;  // divided by the length, for the
-                                                             // inverse
+    const double sine = turn_point(halved, L).sine / whole;  // over the length, for the inverse
     kernel[2 * static_cast<std::size_t>(place)] = sine * turn.cosine;
     kernel[2 * static_cast<std::size_t>(place) + 1] = -sine * turn.sine;
   };

@@ -35,8 +35,7 @@ struct SineView {
   const int* places = nullptr;     ///< with stages: index of wave number k after them, for k < L/2
   const double* chirp = nullptr;   ///< with a chirp: cos and sin of pi j^2/L, j < L
   PairsView in, out;               ///< with powers: (L-1)/2 pairs each, in the order of the powers
-  const double* kernel = nullptr;  ///< of a convolution: transformed, in the order that the stages
-                                   ///< produce
+  const double* kernel = nullptr;  ///< of a convolution: transformed, in the order of the stages
 };
 
 /// Doubles that a sine transform needs per lane, for its points and its workspace.
@@ -120,7 +119,7 @@ struct SpectralKernels {
   /// Transforms `lanes` columns at once: `points` is (length - 1) x lanes, `work` as `sine_work`.
   void (*sine_transform)(const SineView& view, double* points, double* work);
 
-  /// One chunk of the transforms across: nodes [first, last) along, one per lane.
+  /// One chunk of the transforms across: those at nodes [first, last) along.
   void (*in_across)(const TransformView& view, const double* field, int first, int last,
                     double* between, double* work);
   /// One chunk of the transforms along: columns [first, last) between.

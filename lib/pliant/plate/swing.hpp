@@ -29,8 +29,7 @@ Swing stepped_swing(double lambda, const Dynamics& dynamics, const TimeSteps& st
 /// When a body at rest that is put under a load stays near its displacement under that load.
 struct Settling {
   double time = 0;         ///< between two frames, when it stays near from then on [s]
-  int frames = 0;          ///< the first frame from which on it stays near; frame 0 is that of the
-                           ///< load
+  int frames = 0;          ///< the first frame from which on it stays near; 0 is the load's
   bool is_counted = true;  ///< false: it takes too long to count; `time` is that of the slowest
                            ///< part's envelope, and `frames` corresponds to it
 };

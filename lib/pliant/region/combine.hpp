@@ -19,8 +19,7 @@ enum class Combine {
 /// inside; the others are the rim.
 struct Region {
   Box box;                 ///< smallest box around all parts; in nodes
-  std::vector<Box> parts;  ///< boxes whose cells form the region; `box` alone if the region is a
-                           ///< box
+  std::vector<Box> parts;  ///< boxes whose cells form the region; `box` itself if it is one
 
   friend bool operator==(const Region&, const Region&) = default;
 };

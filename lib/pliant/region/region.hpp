@@ -15,10 +15,8 @@ namespace pliant {
 /// The boxes of one force, and the region it acts in.
 struct ForceSelection {
   Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: there are none
-  Box force;         ///< box of the nodes nearer than the force radius; may extend beyond the
-                     ///< region
-  int selector = 0;  ///< index of the force whose deformation box this one uses; usually the force
-                     ///< itself
+  Box force;         ///< box of the nodes nearer than the force radius; may exceed the region
+  int selector = 0;  ///< index of the force whose deformation box it uses; usually the force itself
   int region = -1;   ///< index of the region it acts in; -1: none
 
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
@@ -26,11 +24,9 @@ struct ForceSelection {
 
 /// The region selection of thesis 5.3, fig. 5; SPEC 5.
 struct Selection {
-  Box region;                          ///< smallest box around all regions; empty: no nodes are
-                                       ///< selected
+  Box region;                          ///< smallest box around all regions; empty: there are none
   std::vector<ForceSelection> forces;  ///< in the order of the forces
-  std::vector<Region> regions;         ///< in the order of `combine`, including those too small to
-                                       ///< solve
+  std::vector<Region> regions;         ///< in the order of `combine`, also those too small to solve
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };

@@ -62,7 +62,7 @@ class FolderFrameStore final : public FrameStore {
 
   mutable std::mutex mutex_;       // guards the members below
   bool is_counted_ = false;        // whether `bytes_` is known
-  std::size_t bytes_ = 0;          // on the disk, when last counted, and what was written since
+  std::size_t bytes_ = 0;          // on the disk at the last count, plus those written since
   std::size_t bytes_written_ = 0;  // since the last count
   std::string trouble_;
   int damaged_count_ = 0;

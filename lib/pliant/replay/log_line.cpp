@@ -15,8 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view seal_member = ",\"seal\":\"";
-constexpr std::string_view end_member = "{\"frames\":";  // distinguishes it from a frame without
-                                                         // parsing
+constexpr std::string_view end_member = "{\"frames\":";  // recognised without parsing the line
 
 // A path may be text that is not UTF-8; a scene never is.
 std::string to_line(const Json& json) {

@@ -10,8 +10,7 @@ namespace pliant::timeline {
 struct Course {
   std::vector<double> values;    ///< of the keys [unit]
   std::vector<double> arrivals;  ///< end values of the segments before the keys [unit]
-  std::vector<bool> jumps;  ///< whether a key has a `left` that is used: both its sides are open
-                            ///< ends
+  std::vector<bool> jumps;  ///< whether a key has a `left` that is used: open ends on both sides
   std::vector<double> lengths;  ///< of the segments [frames]
   std::vector<double> secants;  ///< slopes of the straight lines, to `arrivals` [unit/frame]
   std::vector<bool> is_bezier;  ///< of the segments

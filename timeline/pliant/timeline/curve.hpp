@@ -31,7 +31,6 @@ using ValueRange = timeline::Bounds<D>;
 /// Between the keys a value is finite for all keys. Outside them a slope or an offset may make it
 /// infinite, and the velocity is infinite at a vertical tangent; the caller checks. The value is
 /// NaN only for a frame that is NaN.
-/// frame that is NaN gives NaN, and nothing else does.
 template <int D>
 class Curve {
  public:

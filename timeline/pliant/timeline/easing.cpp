@@ -252,8 +252,7 @@ void Easing::add_extrema_of_ease_in(double from, double to, Places& places) cons
       if (arc.foot > 0) places.add(1 - arc.foot / 2.75);
     }
   } else if (ease_ == Ease::Elastic) {
-    places.add(0x1p-50);  // In(0) = 0 by definition, but its limit there is not 0: a step of up to
-                          // A'/1024
+    places.add(0x1p-50);  // In(0) = 0 by definition, but In jumps there by up to A'/1024
     add_extrema_of_elastic(from, to, places);
   }
 }

@@ -11,8 +11,7 @@ namespace pliant::timeline {
 template <int D>
 struct Handle {
   double frames = 0;    ///< >= 0
-  Value<D> value = {};  ///< relative to the key or, for the right one, to the end value of the
-                        ///< segment [unit]
+  Value<D> value = {};  ///< relative to the key or, on the right, to the segment's end value [unit]
 
   /// As the `out` tangent of the left key, or as the `in` tangent of the right one.
   Tangent<D> as_tangent(bool is_out) const;

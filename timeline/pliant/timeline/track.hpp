@@ -18,8 +18,7 @@ template <int D>
 struct Track {
   std::vector<double> frames;        ///< of the keys, strictly increasing, at least one
   std::vector<Value<D>> values;      ///< of the keys
-  std::vector<Value<D>> arrivals;    ///< end value of the segment before a key; for the first key:
-                                     ///< its `left`
+  std::vector<Value<D>> arrivals;    ///< end value of the segment before a key; first: its `left`
   KeySearch search;                  ///< over `frames`
   std::vector<Segment<D>> segments;  ///< one fewer than keys
   std::vector<TimeCubic> times;      ///< of the Bézier segments
