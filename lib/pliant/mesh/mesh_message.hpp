@@ -22,8 +22,8 @@ namespace pliant {
 //             16 f64, the transform by rows; u32 number of parts; of each:
 //               text material, u32 sets of (u,v) as bits, u32 is_lit, u32 has_uvs
 //               u32 vertices, u32 faces, u32 corners
-//               f32 3 a vertex; if is_lit f32 3 a vertex; if has_uvs f32 2 a vertex
-//               u32 a face: its corners; u32 a corner: its vertex
+//               f32 3 per vertex; if is_lit f32 3 per vertex; if has_uvs f32 2 per vertex
+//               u32 per face: its corners; u32 per corner: its vertex
 //   u64 message_end
 
 inline constexpr std::uint64_t message_begin = 0x31'48'53'45'4d'49'4c'50;  // "PLIMESH1"
