@@ -22,7 +22,7 @@ Sheet sheet(int count = 17) {
   return {mapping->grid, mapping->rest};
 }
 
-// A sheet with hills, so that its rest shape is not what the equation without reference wants.
+// A sheet with hills, so that its rest shape is not a solution of the equation without reference.
 Sheet relief(int count = 17) {
   Sheet s = sheet(count);
   for (int node = 0; node < s.grid.node_count(); ++node) {
@@ -88,13 +88,13 @@ TEST_CASE("velocity is carried by node from the last solve, across frames withou
   REQUIRE(body.step(inputs({poke(-2, 0)}))->is_solved);
   const BodyState after = body.state();
 
-  // Frames without a solve, for want of forces or of a region, change nothing.
+  // Frames without a solve, because there is no force or no region, change nothing.
   for (int frame = 0; frame < 3; ++frame) REQUIRE_FALSE(body.step(inputs({}))->is_solved);
   REQUIRE_FALSE(body.step(inputs({poke(100, 0)}))->is_solved);
   REQUIRE_FALSE(body.step(inputs({poke(0, 0, 1, 0.6)}))->is_solved);
   CHECK(body.state() == after);
 
-  // A solve elsewhere that overlaps takes over what lies inside it and drops all else.
+  // A solve elsewhere that overlaps keeps the velocity of nodes inside it and resets all others.
   const auto second = body.step(inputs({poke(2, 0, 0)})).value();
   REQUIRE(second.is_solved);
   const Box& region = second.selection.region;
@@ -109,7 +109,7 @@ TEST_CASE("velocity is carried by node from the last solve, across frames withou
   REQUIRE(expected.step(inputs({poke(2, 0, 0)}))->is_solved);
   CHECK(expected.state() == body.state());
 
-  // What the second region did not hold is frozen and carries nothing.
+  // Nodes outside the second region are frozen and have no velocity.
   int frozen = 0;
   for (int j = 0; j < s.grid.rows; ++j) {
     for (int i = 0; i < s.grid.columns; ++i) {
@@ -159,7 +159,7 @@ TEST_CASE("reference=\"none\" smooths relief away without any load", "[body]") {
 
 TEST_CASE("superposition holds on a fixed region", "[body]") {
   const Sheet s = relief();
-  // A force of magnitude 0 holds the region; measure="rest" keeps every box where it is.
+  // A force of magnitude 0 selects the region; measure="rest" keeps every box in place.
   const auto moved = [&](std::vector<SampledForce> forces) {
     forces.push_back(poke(0, 0, 0, 100));
     Body body(s.grid, s.rest, {.measure = Measure::Rest});

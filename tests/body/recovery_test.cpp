@@ -54,12 +54,12 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
           "[body][recover]") {
   const NodeSheet s = hilly_sheet(31, 31);
   const Combine how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
-  // Little damping, so that it rings and nodes come to pass 0 again and again.
+  // Little damping, so that it rings and nodes pass 0 again and again.
   Body body = body_with(s, Release::Recover, how);
   BodyInputs in = inputs_of({press(-6, -5, 2e5), press(-1, 1, -3e5, 4.5), press(9, 9, 1e5)});
   in.dynamics = {4000, 8000};
   for (int frame = 0; frame < 6; ++frame) REQUIRE(body.step(in)->is_solved);
-  in.forces = {press(-6, -5, 0)};  // moves on: its region does not hold what the others left
+  in.forces = {press(-6, -5, 0)};  // moves on: its region excludes the others' nodes
   REQUIRE(body.step(in)->recovering > 0);
   in.forces.clear();
   std::vector<Region> before;
@@ -70,7 +70,7 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
     REQUIRE(++frames < 3000);
     for (const Region& region : report.selection.regions) {
       if (!before.empty()) REQUIRE(is_inside(region, before));
-      // The rim is at rest, so nothing holds what is inside away from it.
+      // The rim is at rest, so no displacement of the rim keeps the interior away from rest.
       for (const Patch& patch : patches_of(region)) {
         for (int i = patch.box.i0; i <= patch.box.i1; ++i) {
           REQUIRE(body.state().positions.row(s.grid.node(i, patch.box.j0)) ==
@@ -121,7 +121,7 @@ TEST_CASE("a recovering node counts as selected, with its neighbours", "[body][r
   const Box first = pressed.selection.region;
   REQUIRE(first == Box{4, 10, 7, 13});
   const auto report = body.step(inputs_of({press(8, 0, 2e5)})).value();
-  CHECK(report.recovering == 25);  // all that moved
+  CHECK(report.recovering == 25);  // all nodes that moved
   CHECK(report.selection.region == Box{4, 26, 7, 13});
   CHECK(report.selection.forces[0].deformation == Box{20, 26, 7, 13});
 }

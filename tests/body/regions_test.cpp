@@ -8,7 +8,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// Boxes are measured at rest, so that they stay where they are whatever the force does.
+// Boxes are measured at rest, so that they stay in place for any force.
 Body body_with(const NodeSheet& s, Combine how) {
   return Body(s.grid, s.rest, {.measure = Measure::Rest, .combine = how});
 }
@@ -81,7 +81,7 @@ TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
   Body body = body_with(s, Combine::Islands);
   REQUIRE(body.step(inputs_of({a, b})));
   const BodyState after = body.state();
-  // A solve of one island takes what it left there and drops what it left at the other.
+  // A solve of one island continues with its velocity, and resets the velocity of the other island.
   REQUIRE(body.step(inputs_of({b})));
   Body expected = body_with(s, Combine::Islands);
   BodyState start = after;
@@ -97,7 +97,7 @@ TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
 
 TEST_CASE("a union that is a box is solved as that box, to the bit", "[body][union]") {
   const NodeSheet s = hilly_sheet(31, 21);
-  const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // side by side
+  const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // adjacent
   Body one = body_with(s, Combine::Union), box = body_with(s, Combine::Box);
   for (int frame = 0; frame < 8; ++frame) {
     REQUIRE(one.step(with_tangents(inputs_of(forces)))->is_solved);
@@ -172,7 +172,7 @@ TEST_CASE("a node beyond double in world space is an error, not a force that sel
 }
 
 TEST_CASE("a frame is taken whole or not at all", "[body][islands]") {
-  // Three islands of different sizes, and nodes that settle ahead of the solve.
+  // Three islands of different sizes, and nodes that settle before the solve.
   const NodeSheet s = hilly_sheet(61, 21);
   const std::vector<SampledForce> wide{press(-20, 0, 3e4, 5.5), press(0, 1, 4e4, 6.5),
                                        press(20, 0, -5e4, 4.5)};
@@ -201,7 +201,7 @@ TEST_CASE("a frame is taken whole or not at all", "[body][islands]") {
   CHECK(interrupted >= 3);  // in each island
   CHECK(body.state() == uninterrupted.state());
 
-  // The last island goes beyond double, the others do not.
+  // The last island overflows a double, the others do not.
   const BodyState sound = body.state();
   std::vector<SampledForce> boundless = narrow;
   boundless[2].magnitude = 1e308;
@@ -220,7 +220,7 @@ TEST_CASE("a step in the memory of an earlier report is the same step", "[body][
   Body body(s.grid, s.rest, settings), fresh(s.grid, s.rest, settings);
   StepReport former;
   for (int frame = 0; frame < 24; ++frame) {
-    // Comes, stays, moves and goes, and with a second one at times.
+    // Appears, stays, moves and disappears; sometimes with a second one.
     std::vector<SampledForce> forces;
     if (frame % 8 < 5) forces.push_back(press(-10 + frame / 4, 0, 3e4));
     if (frame % 6 < 4) forces.push_back(press(-4, 2, -2e4, 4.5));

@@ -22,7 +22,7 @@ inline NodeSheet flat_sheet(int columns, int rows) {
   return {mapping->grid, mapping->rest};
 }
 
-/// With hills, so that the rest shape is not what the equation without reference wants.
+/// With hills, so that the rest shape is not a solution of the equation without reference.
 inline NodeSheet hilly_sheet(int columns, int rows) {
   NodeSheet s = flat_sheet(columns, rows);
   for (int node = 0; node < s.grid.node_count(); ++node) {

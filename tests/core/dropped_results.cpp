@@ -1,5 +1,5 @@
-// Not linked into anything: the compiler must take this file as it is, and refuse it with any one
-// of the macros. tests/core/CMakeLists.txt
+// Not linked into anything: the compiler must accept this file without macros, and reject it with
+// any one of them. tests/core/CMakeLists.txt
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/text.hpp"

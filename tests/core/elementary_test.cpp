@@ -10,7 +10,7 @@ using namespace pliant;
 
 namespace {
 
-// Error in ulps of the exact value.
+// Error relative to the exact value, in ulps.
 double ulps(double value, long double exact) {
   const auto nearest = static_cast<double>(exact);
   const double ulp = std::nextafter(std::abs(nearest), std::numeric_limits<double>::infinity()) -
@@ -23,7 +23,8 @@ double ulps(double value, long double exact) {
 TEST_CASE("elementary functions lie within an ulp of long double", "[core][elementary]") {
   const double x = GENERATE(take(200, random(-30.0, 30.0)));
   CAPTURE(x);
-  // 1.0 ulp is SLEEF's promise for its u10 functions; half an ulp more for our measure's rounding.
+  // SLEEF guarantees 1.0 ulp for its u10 functions; half an ulp more for the rounding of our
+  // measurement.
   CHECK(ulps(exp_of(x), std::exp(static_cast<long double>(x))) <= 1.5);
   CHECK(ulps(sin_of(x), std::sin(static_cast<long double>(x))) <= 1.5);
   CHECK(ulps(cos_of(x), std::cos(static_cast<long double>(x))) <= 1.5);
@@ -51,7 +52,7 @@ TEST_CASE("sine and cosine of degrees agree with radians and repeat exactly",
   CAPTURE(degrees);
   CHECK(std::abs(sine - std::sin(radians)) <= 4e-16L);
   CHECK(std::abs(cosine - std::cos(radians)) <= 4e-16L);
-  // A whole number of turns of an angle that is exact changes no bit.
+  // A whole number of turns of an exact angle changes no bit.
   const double eighths = std::round(degrees * 8) / 8;
   CHECK(sine_cosine_of_degrees(eighths).sine ==
         sine_cosine_of_degrees(eighths + 360.0 * 1024).sine);

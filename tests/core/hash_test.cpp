@@ -5,7 +5,7 @@
 using namespace pliant;
 
 TEST_CASE("a hash is that of the xxhsum program", "[core][hash]") {
-  // Published test values of XXH3, 128 bits, seed 0: of nothing, and of the letter a.
+  // Published test values of XXH3, 128 bits, seed 0: of the empty text, and of the letter a.
   CHECK(to_text(hash_of("")) == "99aa06d3014798d86001c324468d497f");
   CHECK(to_text(hash_of("a")) == "a96faf705af16834e6c632b61e964e1f");
 }

@@ -22,7 +22,7 @@ TEST_CASE("shares of a budget never add up to more than it", "[core][memory]") {
     CHECK(b.try_resize(90));
     CHECK(budget.available() == 0);
   }
-  CHECK(budget.available() == 90);  // b is gone
+  CHECK(budget.available() == 90);  // b is destroyed
   {
     const MemoryShare moved = std::move(a);
     CHECK(moved.bytes() == 10);
@@ -39,7 +39,7 @@ TEST_CASE("a share that was moved from knows its budget no more", "[core][memory
     MemoryShare b = std::move(a);
     REQUIRE(b.try_resize(70));
   }
-  budget.reset();  // which `a` outlives
+  budget.reset();  // `a` outlives the budget
   CHECK(a.try_resize(200));
 }
 

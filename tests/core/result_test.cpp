@@ -22,10 +22,10 @@ TEST_CASE("what acts on a terminal or is no UTF-8 is told by its bytes", "[core]
   CHECK(printable(std::string_view("\0", 1)) == "\\x00");
   CHECK(printable("\xc2\x9b[2J") == "\\xc2\\x9b[2J");               // CSI as one character
   CHECK(printable("a\xe2\x80\xae.exe") == "a\\xe2\\x80\\xae.exe");  // right to left from here on
-  CHECK(printable("\xe2\x80\xa8") == "\\xe2\\x80\\xa8");            // another line
+  CHECK(printable("\xe2\x80\xa8") == "\\xe2\\x80\\xa8");            // line separator
   for (const char* sound : {"", "plain", "ü", "日本", "🌊", "\xc2\xa0", "\xef\xbf\xbd"})
     CHECK(printable(sound) == sound);
-  // Cut short, not begun, longer than need be, a surrogate, beyond the last character.
+  // Truncated, without a start, overlong, a surrogate, beyond the last code point.
   CHECK(printable("\xc3") == "\\xc3");
   CHECK(printable("\x9b\xc3z") == "\\x9b\\xc3z");
   CHECK(printable("\xc0\x8a") == "\\xc0\\x8a");

@@ -11,7 +11,7 @@ using namespace pliant;
 namespace {
 
 Field random_points(int count) {
-  std::srand(5);  // Eigen's Random draws from rand
+  std::srand(5);  // Eigen's Random uses rand
   return Field::Random(count, 3);
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("quarter turns keep a lattice exact", "[core][transform]") {
 TEST_CASE("a flattening transform is not invertible", "[core][transform]") {
   CHECK_FALSE(make_transform({0, 0, 0}, {30, 0, 0}, {1, 0, 1}, RotateOrder::Xyz).is_invertible());
   CHECK(make_transform({0, 0, 0}, {30, 0, 0}, {1e-30, 1, 1}, RotateOrder::Xyz).is_invertible());
-  // 1 / 1e-320 is beyond double.
+  // 1 / 1e-320 overflows a double.
   CHECK_FALSE(
       make_transform({0, 0, 0}, {0, 0, 0}, {1, 1e-320, 1}, RotateOrder::Xyz).is_invertible());
 }

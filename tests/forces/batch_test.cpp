@@ -14,7 +14,7 @@ double number(std::mt19937& random, double extent) {
   return std::uniform_real_distribution<double>(-extent, extent)(random);
 }
 
-// Now and then with components that are 0 or alike, where rounding and ties are at home.
+// Sometimes with components that are 0 or equal, for which rounding and ties are frequent.
 Vector3d place(std::mt19937& random, double extent) {
   Vector3d p{number(random, extent), number(random, extent), number(random, extent)};
   const auto kind = random() % 4;
@@ -86,7 +86,8 @@ TEST_CASE("no position of a box is nearer than the bound says", "[forces][batch]
   int tight = 0, far = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     const double extent = std::pow(10.0, number(random, 6));
-    // A box that is small beside its place, so that rounding matters; or flat, or a single point.
+    // A box that is small relative to its coordinates, so that rounding matters; or flat, or a
+    // single point.
     const double size = trial % 3 == 0 ? 1e-12 * extent : 0.1 * extent;
     const Vector3d corner = place(random, extent);
     Vector3d low = corner, high = corner;
@@ -109,7 +110,7 @@ TEST_CASE("no position of a box is nearer than the bound says", "[forces][batch]
       }
     }
   }
-  // It is worth something, and met exactly.
+  // The bound is useful, and sometimes exact.
   CHECK(far > 5000);
   CHECK(tight > 500);
 }

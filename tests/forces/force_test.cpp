@@ -25,7 +25,7 @@ class RandomVectors {
   std::mt19937 random_{3};
 };
 
-// The segment's closest point by a search that knows no formula.
+// The segment's closest point by a search, without a formula.
 double searched_distance(const LineForce& line, const Vector3d& p) {
   double low = 0, high = 1;
   const auto at = [&](double t) { return (p - (line.from + t * (line.to - line.from))).norm(); };
@@ -65,7 +65,7 @@ struct Move {
   ForceShape operator()(const VortexForce& f) const {
     return VortexForce{point(f.center), rotation * f.axis, f.pull};
   }
-  ForceShape operator()(const NoiseForce& f) const {  // its lattice keeps the world's directions
+  ForceShape operator()(const NoiseForce& f) const {  // its lattice keeps the axes of the world
     return NoiseForce{point(f.center), f.frequency, f.time, f.seed};
   }
   ForceShape operator()(const InertiaForce& f) const {
@@ -94,7 +94,8 @@ TEST_CASE("distances are those to the centre or to the segment", "[forces]") {
     const Vector3d p = vector(), a = vector(), b = vector();
     CHECK_THAT(distance(PointForce{a, b}, p), WithinAbs((p - a).norm(), 1e-15 * 20));
     CHECK_THAT(distance(RadialForce{a}, p), WithinAbs((p - a).norm(), 1e-15 * 20));
-    // The search stops where the distance is flat: sqrt(eps) along the segment, eps in distance.
+    // The search stops at a flat minimum of the distance: sqrt(eps) along the segment, eps in
+    // distance.
     const LineForce line{a, b, {}};
     CHECK_THAT(distance(line, p), WithinAbs(searched_distance(line, p), 1e-13));
   }
@@ -119,7 +120,7 @@ TEST_CASE("directions are unit vectors or zero", "[forces]") {
 }
 
 TEST_CASE("a direction along one axis is an ordinary direction", "[forces]") {
-  // The listing of thesis 5.3 zeroes the force when any component of the direction is 0.
+  // The listing of thesis 5.3 sets the force to 0 if any component of the direction is 0.
   CHECK(unit_force(PointForce{{0, 0, 0}, {0, 7, 0}}, {1, 1, 1}) == Vector3d(0, 1, 0));
   CHECK(unit_force(PointForce{{0, 0, 0}, {0, 0, -1e-300}}, {1, 1, 1}) == Vector3d(0, 0, -1));
   CHECK(unit_force(PointForce{{0, 0, 0}, {1e300, 0, 0}}, {1, 1, 1}) == Vector3d(1, 0, 0));
@@ -140,7 +141,7 @@ TEST_CASE("a line force without direction pushes away from the segment", "[force
   for (int trial = 0; trial < 100; ++trial) {
     const LineForce line{vector(), vector(), {}};
     const Vector3d p = vector();
-    // Its direction is the gradient of the distance.
+    // The unit force is the gradient of the distance.
     const Vector3d n = unit_force(line, p);
     const double h = 1e-6;
     for (int k = 0; k < 3; ++k) {
@@ -156,7 +157,7 @@ TEST_CASE("a line force without direction is 0 on the segment itself", "[forces]
   for (int trial = 0; trial < 200; ++trial) {
     const LineForce line{vector(), vector(), {}};
     const double t = trial / 199.0;
-    // t from + ... is rounded, so the point lies beside the segment by some ulps.
+    // t from + ... is rounded, so the point is some ulps off the segment.
     CHECK(unit_force(line, line.from + t * (line.to - line.from)) == Vector3d::Zero());
   }
 }
@@ -205,7 +206,7 @@ TEST_CASE("a uniform force is at distance 0 and the same everywhere", "[forces]"
 }
 
 TEST_CASE("a vortex turns about its axis by the right hand", "[forces][vortex]") {
-  // About +y through (2, 0, 0): from the far side of +x it pushes towards -z.
+  // About +y through (2, 0, 0): a point on the +x side is pushed towards -z.
   const VortexForce vortex{{2, 0, 0}, {0, 5, 0}, 0};
   CHECK(distance(vortex, {5, 7, 4}) == 5);
   CHECK(unit_force(vortex, {6, -1, 0}) == Vector3d(0, 0, -1));
@@ -226,7 +227,7 @@ TEST_CASE("a vortex goes along circles, and pull goes straight in", "[forces][vo
     CHECK_THAT(distance(both, p), WithinAbs(outward.norm(), 1e-14));
     CHECK((unit_force(turning, p) - circle).norm() < 1e-14);
     CHECK((unit_force(both, p) - (circle - pull * outward.normalized())).norm() < 1e-13);
-    // Odd about the axis: half a turn turns the force round.
+    // Odd about the axis: half a turn reverses the force.
     const Vector3d opposite = p - 2 * outward;
     CHECK((unit_force(both, p) + unit_force(both, opposite)).norm() < 1e-12);
   }
@@ -241,7 +242,7 @@ TEST_CASE("a vortex is 0 on its axis, and none without one", "[forces][vortex]")
   }
   const VortexForce none{{1, 2, 3}, Vector3d::Zero(), 2};
   CHECK(unit_force(none, {4, 6, 3}) == Vector3d::Zero());
-  CHECK(distance(none, {4, 6, 3}) == 5);  // as a segment of no length is a point
+  CHECK(distance(none, {4, 6, 3}) == 5);  // like a segment of no length, it is a point
 }
 
 TEST_CASE("inertia is an affine load", "[forces][inertia]") {

@@ -15,7 +15,7 @@ using pliant::testing::WithinAbs;
 
 namespace {
 
-// An even random place in a large part of space and time.
+// A uniformly random place in a large part of space and time.
 struct Sample {
   Vector3d place;
   double time;
@@ -34,7 +34,7 @@ std::vector<Sample> samples(int count, double extent) {
   return all;
 }
 
-// Moves a place along one of the four axes of space-time.
+// Noise at a place moved along one of the four axes of space-time.
 Vector3d noise_along(const Sample& from, int axis, double by, std::uint64_t seed = 9) {
   Sample moved = from;
   (axis < 3 ? moved.place[axis] : moved.time) += by;
@@ -55,7 +55,7 @@ TEST_CASE("noise lies in -1 to 1 and is 0 on average", "[forces][noise]") {
   }
   CHECK(largest <= 1);
   CHECK(largest > 0.75);
-  // A corner's variance is 1/3; a blend keeps on average m^4 of it, m = mean of w^2 + (1-w)^2.
+  // A corner's variance is 1/3; on average a blend has m^4 of it, m = mean of w^2 + (1-w)^2.
   double m = 0;
   for (int k = 0; k < 1000; ++k) {
     const double f = (k + 0.5) / 1000, w = f * f * f * (f * (6 * f - 15) + 10);
@@ -104,16 +104,16 @@ TEST_CASE("noise takes the corner's vector at a corner", "[forces][noise]") {
 TEST_CASE("noise and its first two derivatives go on across cells", "[forces][noise]") {
   const int axis = GENERATE(0, 1, 2, 3);
   for (Sample sample : samples(50, 20)) {
-    // At a face between two cells the one-sided differences meet.
+    // At a face between two cells the one-sided differences are equal.
     double& coordinate = axis < 3 ? sample.place[axis] : sample.time;
     coordinate = std::round(coordinate);
     const double h = 1e-4;
     const auto f = [&](double by) { return noise_along(sample, axis, by); };
-    CHECK((f(h) - f(-h)).norm() < 1e-8);                           // both derivatives vanish: h^3
+    CHECK((f(h) - f(-h)).norm() < 1e-8);                           // both derivatives are 0: h^3
     CHECK(((f(2 * h) - 2 * f(h) + f(0)) / (h * h)).norm() < 0.2);  // 60 h times a change
     CHECK(((f(-2 * h) - 2 * f(-h) + f(0)) / (h * h)).norm() < 0.2);
   }
-  // Nowhere steep: the weight rises by 15/8 a cell at most, between values at most 2 apart.
+  // Nowhere steep: the weight changes by at most 15/8 per cell, between values at most 2 apart.
   for (const Sample& sample : samples(200, 20)) {
     const double h = 1e-5;
     const Vector3d slope = (noise_along(sample, axis, h) - noise_along(sample, axis, -h)) / (2 * h);
@@ -140,7 +140,7 @@ TEST_CASE("noise forgets itself over one cell", "[forces][noise]") {
 TEST_CASE("noise has hardly anything beyond one wave a cell", "[forces][noise]") {
   const int axis = GENERATE(0, 3);
   constexpr int cells = 64, per_cell = 8, count = cells * per_cell;
-  // Away from other faces; a Hann window, since a stretch of noise does not close.
+  // Far from other faces; a Hann window, since a stretch of noise is not periodic.
   std::vector<double> power(count / 2);
   for (const Sample& start : samples(6, 100)) {
     std::vector<double> values(count);
@@ -159,7 +159,7 @@ TEST_CASE("noise has hardly anything beyond one wave a cell", "[forces][noise]")
   double below = 0, beyond = 0;
   for (int wave = 0; wave < count / 2; ++wave) (wave <= cells ? below : beyond) += power[wave];
   CHECK(beyond < 0.01 * (below + beyond));
-  // And it is no constant: most lies between a tenth of a wave and one wave a cell.
+  // It is not constant: most of the power is between a tenth of a wave and one wave per cell.
   double slow = 0;
   for (int wave = 0; wave < cells / 10; ++wave) slow += power[wave];
   CHECK(slow < 0.5 * (below + beyond));
@@ -189,6 +189,6 @@ TEST_CASE("noise has a value however far away", "[forces][noise]") {
     CHECK(then.cwiseAbs().maxCoeff() <= 1);
     CHECK(here == smooth_noise(1, {far, 0.5, 0.25}, 0.125));
   }
-  // As fine as a double goes, neighbours differ.
+  // Even at the limit of double precision, neighbours differ.
   CHECK(smooth_noise(1, {9e15, 0, 0}, 0) != smooth_noise(1, {9e15 + 2, 0, 0}, 0));
 }

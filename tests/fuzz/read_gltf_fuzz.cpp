@@ -1,4 +1,4 @@
-// Any bytes at all as a glTF: what is read is a sound mesh, and what is not has one line.
+// Arbitrary bytes as a glTF: the result is a valid mesh or a one-line error.
 
 #include <cstddef>
 #include <cstdint>

@@ -14,14 +14,14 @@ inline Mesh dressed_sheet() {
   Mesh mesh = make_mesh({.columns = 4, .rows = 3, .width = 3, .depth = 2});
   mesh.object = "Sheet";
   mesh.uvs.push_back({0.25, 0.75});
-  mesh.corner_uvs[5] = static_cast<int>(mesh.uvs.size()) - 1;  // of a vertex that others share
+  mesh.corner_uvs[5] = static_cast<int>(mesh.uvs.size()) - 1;  // of a vertex shared by other faces
   mesh.corner_normals = shared_normals(mesh, {{}, {}, {Shading::flat, 1, 1, 1, 1, 1}});
   mesh.materials = {{"Skin red", "Steel"}, {0, 0, 1, 1, 0, -1}};
   mesh.groups = {{"left"}, {0, -1, -1, 0, 0, 0}};
   return mesh;
 }
 
-/// A bump that grows: vertex `middle` rises by 0.1 a frame, all others stay.
+/// A growing bump: vertex `middle` rises by 0.1 per frame, all others stay.
 inline std::vector<Field> bump(const Field& rest, int middle, int frames) {
   std::vector<Field> all;
   for (int k = 0; k < frames; ++k) {

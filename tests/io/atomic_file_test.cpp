@@ -71,7 +71,7 @@ TEST_CASE("what cannot be written is an error that names the file", "[io][atomic
 }
 
 TEST_CASE("a full disk is an error and leaves nothing", "[io][atomic_file]") {
-  // The limit on a file's size stands for the end of the disk.
+  // The limit on a file's size simulates a full disk.
   const ScratchFolder folder;
   auto file = AtomicFile::create(folder.file("a.bin"));
   REQUIRE(file);

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A glTF file taken apart by what the format says, without the writer's code.
+/// A glTF file parsed according to the format, without the writer's code.
 struct Gltf {
   json root;
   std::string numbers;
@@ -129,7 +129,7 @@ TEST_CASE("glTF gives every frame to a rounding", "[io][gltf]") {
   const Gltf gltf(written(folder, GENERATE("a.glb", "a.gltf"), mesh, frames));
   for (std::size_t frame = 0; frame < 5; ++frame) {
     const auto positions = gltf.shape(0, frame);
-    REQUIRE(positions.size() > 36);  // a seam and a hard edge split vertices off
+    REQUIRE(positions.size() > 36);  // a seam and a hard edge split vertices
     for (int vertex = 0; vertex < 12; ++vertex) {
       for (int k = 0; k < 3; ++k) {
         const double exact = frames[frame](vertex, k);
@@ -167,7 +167,7 @@ TEST_CASE("offsets are sparse where that is smaller", "[io][gltf]") {
   const Gltf moved(written(folder, "b.glb", mesh, dense));
   const json& target = moved.root["meshes"][0]["primitives"][0]["targets"][0];
   CHECK_FALSE(moved.root["accessors"][target["POSITION"].get<std::size_t>()].contains("sparse"));
-  // Normals do not change when all moves alike: no byte for them.
+  // Normals do not change if all vertices move alike: they need no bytes.
   const json& normals = moved.root["accessors"][target["NORMAL"].get<std::size_t>()];
   CHECK_FALSE(normals.contains("sparse"));
   CHECK_FALSE(normals.contains("bufferView"));
@@ -210,7 +210,7 @@ TEST_CASE("vertices of the mesh come first, then those split off", "[io][gltf]")
     for (int k = 0; k < 3; ++k)
       CHECK(positions[static_cast<std::size_t>(3 * vertex + k)] ==
             static_cast<float>(mesh.positions(vertex, k)));
-  // Three vertices of the flat face are others' too, and one has two (u,v).
+  // Three vertices of the flat face also belong to other faces, and one has two (u,v).
   CHECK(positions.size() == 3 * (12 + 3 + 1));
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("assimp finds materials, shading and (u,v) of a glTF", "[io][gltf]") {
   Assimp::Importer importer;
   const aiScene* const scene = importer.ReadFile(folder.file("a.glb").string(), 0);
   REQUIRE(scene);
-  REQUIRE(scene->mNumMeshes == 3);  // a material each
+  REQUIRE(scene->mNumMeshes == 3);  // one per material
   REQUIRE(scene->mMeshes[0]->mNumAnimMeshes == 2);
   CHECK(scene->mMeshes[0]->mAnimMeshes[1]->mVertices[5].y == 0.2f);
   CHECK(scene->mNumAnimations == 1);
@@ -258,7 +258,7 @@ TEST_CASE("a placed surface is a node that moves", "[io][gltf]") {
     Placement turned = placement(frame);
     turned.scale = Vector3d::Ones();
     CHECK((rotation - make_transform(turned).linear).cwiseAbs().maxCoeff() < 1e-6);
-    if (frame > 1) {  // the short way round
+    if (frame > 1) {  // the shorter way
       float dot = 0;
       for (int k = 0; k < 4; ++k) dot += q[k] * q[k - 4];
       CHECK(dot >= 0);
@@ -294,7 +294,7 @@ TEST_CASE("an unfinished glTF leaves nothing", "[io][gltf]") {
 
 namespace {
 
-/// Names of the files that hold numbers of STEM.gltf.
+/// Names of the files with numbers of STEM.gltf.
 std::vector<std::string> numbers_of(const ScratchFolder& folder, const std::string& stem) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -350,7 +350,7 @@ TEST_CASE("numbers that no glTF names any more are removed, others stay", "[io][
   CHECK(second != first);
   for (const std::string& other : others) CHECK(std::filesystem::exists(folder.file(other)));
 
-  // A copy goes on referring to what it was made with.
+  // A copy still refers to the numbers it was made with.
   std::filesystem::copy(folder.file("a.gltf"), folder.file("copy.GLTF"));
   written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 4));
   CHECK(numbers_of(folder, "a").size() == 2);
@@ -365,8 +365,8 @@ TEST_CASE("a placement that glTF cannot hold is an error with its place", "[io][
   const double inf = std::numeric_limits<double>::infinity();
   struct Case {
     Placement placement;
-    const char* single;  // what glTF says
-    const char* twice;   // what USD says; none: it holds it
+    const char* single;  // glTF's message; null: no error
+    const char* twice;   // USD's message; null: no error
   };
   const std::vector<Case> cases = {
       {{{0, 1e300, 0}}, "translate of 1e+300, which is beyond the single precision", nullptr},
@@ -424,7 +424,7 @@ TEST_CASE("numbers that are not what their name says are nobody's to remove", "[
   written(folder, "a.gltf", mesh, {mesh.positions, mesh.positions});
   CHECK(folder.entry_count() == 3);
   written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 2));
-  CHECK(folder.entry_count() == 3);  // the numbers of before are gone
+  CHECK(folder.entry_count() == 3);  // the old numbers are removed
   CHECK(read_file(mine).value() == "precious");
 }
 

@@ -25,7 +25,7 @@ void check_refused(const std::filesystem::path& file, const char* words) {
   CHECK(place.error().code == ErrorCode::InvalidInput);
   CHECK(place.error().file == file.string());
   CHECK_THAT(place.error().message, Contains(words));
-  const auto created = AtomicFile::create(file);  // nothing gets past it
+  const auto created = AtomicFile::create(file);  // nothing passes the check
   REQUIRE_FALSE(created);
   CHECK(created.error().message == place.error().message);
 }
@@ -62,7 +62,7 @@ TEST_CASE("what is no regular file is not replaced", "[io][output_place]") {
 TEST_CASE("names go as far as the folder allows", "[io][output_place]") {
   const ScratchFolder folder;
   for (const char* letter : {"n", "\xc3\xbc", "\xf0\x9f\x8c\x8a"}) {
-    std::string name(3, '.');  // so that no character ends where the name is cut
+    std::string name(3, '.');  // so that no character ends at the cut
     while (name.size() + std::string_view(letter).size() <= 255) name += letter;
     name.resize(255, 'e');
     auto file = AtomicFile::create(folder.file(name));
@@ -80,7 +80,7 @@ TEST_CASE("paths go as far as the system allows", "[io][output_place]") {
   std::filesystem::path deep = folder.path();
   while (deep.string().size() + 201 < 4090) deep /= std::string(200, 'd');
   std::filesystem::create_directories(deep);
-  // With the zero at its end the path has just the 4096 bytes that the system takes.
+  // With its terminating zero the path has exactly the 4096 bytes that the system allows.
   const auto file = deep / std::string(4095 - deep.string().size() - 1, 'f');
   REQUIRE(file.string().size() == 4095);
   auto created = AtomicFile::create(file);

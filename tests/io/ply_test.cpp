@@ -14,9 +14,9 @@ using namespace pliant::testing;
 
 namespace {
 
-/// A PLY file as these tests expect it, taken apart without pliant's own reader.
+/// A PLY file as these tests expect it, parsed without pliant's own reader.
 struct PlyFile {
-  std::vector<std::string> header;            // lines, `comment` left out
+  std::vector<std::string> header;            // lines without `comment`
   std::vector<std::vector<double>> vertices;  // the numbers of each
   std::vector<std::vector<int>> faces;
   bool ends_there = false;
@@ -32,7 +32,7 @@ struct PlyFile {
       width += line.starts_with("property double");
       if (line.starts_with("property list uint ")) count_size = 4;
     }
-    const auto take = [&](auto number, std::size_t size) {  // of a little-endian machine
+    const auto take = [&](auto number, std::size_t size) {  // on a little-endian machine
       stream.read(reinterpret_cast<char*>(&number), static_cast<std::streamsize>(size));
       return number;
     };

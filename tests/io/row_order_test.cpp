@@ -17,7 +17,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// More rows than go into a file at a time, and not a multiple of them.
+// More rows than are written at a time, and not a multiple of that number.
 const Mesh& large_mesh() {
   static const Mesh mesh = make_mesh({.columns = 131, .rows = 129});
   return mesh;

@@ -33,7 +33,7 @@ TEST_CASE("a sequence is probed ahead, and the probe leaves nothing", "[io][sequ
 
 namespace {
 
-/// Writes frames 1, 2, … and gives what became of their files.
+/// Writes frames 1, 2, … and returns the counts of kept and written files.
 FileCounts resumed(AnimationPlan plan, const std::vector<std::vector<Field>>& frames) {
   plan.resume = true;
   plan.first_frame = 1;
@@ -68,9 +68,9 @@ TEST_CASE("a sequence that is resumed keeps what would be written, and nothing e
   std::string flipped = bytes_of(6);
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 1);
   folder.write(file(6), flipped);
-  folder.write(file(7), bytes_of(8));             // whole, of another frame
-  folder.write(file(13), "beyond the last one");  // is none of this bake's
-  // 8, 10 and 11 are not there.
+  folder.write(file(7), bytes_of(8));             // complete, but of another frame
+  folder.write(file(13), "beyond the last one");  // not a file of this bake
+  // 8, 10 and 11 are missing.
   const auto before = std::filesystem::last_write_time(folder.file(file(2)));
 
   const FileCounts counts = resumed(plan, {frames});
@@ -91,7 +91,7 @@ TEST_CASE("what another scene or mesh wrote is written again", "[io][sequence]")
   AnimationPlan plan = plan_of(folder.file("a.obj"), mesh);
   auto frames = bump(mesh.positions, 4, 6);
   REQUIRE(write_all(plan, {frames}));
-  frames[3](4, 1) += 1e-9;  // a key in the middle; the first and the last frame are as they were
+  frames[3](4, 1) += 1e-9;  // a key in the middle; the first and the last frame are unchanged
   FileCounts counts = resumed(plan, {frames});
   CHECK(counts.kept == 5);
   CHECK(counts.written == 1);

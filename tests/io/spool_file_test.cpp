@@ -10,7 +10,7 @@ using namespace pliant::testing;
 TEST_CASE("spooled bytes come in order behind what is written first", "[io][spool_file]") {
   const ScratchFolder folder;
   auto spool = SpoolFile::create(folder.file("a.bin")).value();
-  CHECK(folder.entry_count() == 0);  // it has no name, so nothing can be left of it
+  CHECK(folder.entry_count() == 0);  // it has no name, so nothing can be left behind
   std::string expected = "head";
   for (int k = 0; k < 5000; ++k) {
     const std::string piece(static_cast<std::size_t>(k), static_cast<char>(k));

@@ -14,7 +14,7 @@ using namespace pliant::testing;
 
 namespace {
 
-/// The numbers of one sample of an attribute, looked for in the text.
+/// The numbers of one sample of an attribute, found in the text.
 std::vector<double> sample(const std::string& text, const std::string& attribute, int frame) {
   const std::size_t begin = text.find(attribute + ".timeSamples = {");
   REQUIRE(begin != std::string::npos);

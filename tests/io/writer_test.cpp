@@ -76,7 +76,7 @@ TEST_CASE("a folder in the way is told ahead", "[io][writer]") {
     REQUIRE_FALSE(writer);
     CHECK(writer.error().code == ErrorCode::InvalidInput);
     CHECK_THAT(writer.error().message, Contains("it is a folder"));
-    // A path below a file: nobody may write there, not even root.
+    // A path below a file: nobody can write there, not even root.
     folder.write("file", "");
     CHECK_FALSE(make_writer(plan(folder.file("file") / ("a" + ending), mesh)));
   }
@@ -95,13 +95,13 @@ TEST_CASE("what is in the way of any file is told ahead", "[io][writer]") {
     const ScratchFolder folder;
     std::filesystem::create_symlink(folder.file("nowhere"), folder.file(name));
     std::string ending = std::filesystem::path(name).extension().string();
-    if (std::string_view(name) == "a.obj") ending = ".pc2";  // the mesh beside
+    if (std::string_view(name) == "a.obj") ending = ".pc2";  // the mesh beside the cache
     AnimationPlan in_the_way = plan(folder.file("a" + ending), mesh);
     in_the_way.last_frame = 5;
     refused(in_the_way, "symbolic link");
     CHECK(folder.entry_count() == 1);
   }
-  // The digits beside and behind the stem count too.
+  // The digits of the frame and of the numbers file count too.
   const ScratchFolder folder;
   const std::string stem(250, 'n');
   refused(plan(folder.file(stem + ".gltf"), mesh), "the folder allows 255");

@@ -8,7 +8,7 @@
 
 namespace pliant::testing {
 
-/// The program of boxed/misbehave.cpp, which does what its second argument says.
+/// The program of boxed/misbehave.cpp; its second argument selects its behaviour.
 inline const std::string& misbehaving() {
   static const std::string program = read_file(PLIANT_MISBEHAVING).value();
   return program;

@@ -13,7 +13,8 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// A square of two triangles with (u,v), sparse positions and indices: whatever is read is here.
+// A square of two triangles with (u,v), sparse positions and indices: uses every feature that is
+// read.
 std::string whole_gltf() {
   const GltfParts parts{
       R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":2,)"
@@ -43,7 +44,7 @@ std::string small_glb() {
   return gltf.glb(meshes, cloth_node);
 }
 
-// Either a sound mesh or one line; out of memory of exactly that size.
+// The result is a valid mesh or a one-line error; the bytes are in a buffer of exactly their size.
 void check_harmless(const std::string& bytes) {
   const auto mesh = parse_exactly(bytes);
   if (mesh) CHECK(check_mesh(*mesh));
@@ -194,7 +195,7 @@ TEST_CASE("a few bytes of glTF make no more elements than they can hold", "[mesh
     CHECK_THAT(gltf_complaint(zeros(count, one)),
                contains_text("accessors[0] has " + count + " elements, and 0 were read before it"));
   }
-  // Not by using them again, either.
+  // Nor by reading the same accessors again.
   const std::string fan = R"({"attributes":{"POSITION":0},"mode":6})";
   const std::string many = fan + repeated("," + fan, 99);
   CHECK_THAT(gltf_complaint(zeros("300000", many)),
@@ -324,7 +325,7 @@ TEST_CASE("no prefix or mutation of a glTF does harm", "[mesh][read_gltf]") {
       for (int k = 0; k < 2; ++k) mutant[random() % mutant.size()] = static_cast<char>(random());
       check_harmless(mutant);
     }
-    // What stays JSON: digits for digits, and whole pieces moved elsewhere.
+    // Changes that keep it JSON: digits replaced by digits, and whole pieces moved elsewhere.
     const std::string digits = "0123456789";
     for (int trial = 0; trial < 3000; ++trial) {
       std::string mutant = whole;

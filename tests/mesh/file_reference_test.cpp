@@ -79,11 +79,11 @@ TEST_CASE("a reference that leads out of the root is refused", "[mesh][file_refe
                       "folder",
                       uri, at.shot.string()));
   }
-  // A folder whose name begins like the root's is another one.
+  // A folder whose name begins like the root's is a different one.
   fs::create_directory(at.inside / "shots");
   std::ofstream(at.inside / "shots" / "own.bin") << "another";
   CHECK_THAT(at.bytes("../shots/own.bin"), contains_text("which lies outside"));
-  // What it leads to may come to be there.
+  // The target of the link may be created later.
   CHECK_THAT(at.bytes("dangling.bin"), EndsWith("\"dangling.bin\", a link that leads nowhere"));
   CHECK_THAT(at.bytes("/etc/passwd"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("%2Fetc%2Fpasswd"), contains_text("which is an absolute path"));

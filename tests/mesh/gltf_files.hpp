@@ -21,7 +21,7 @@ inline std::string gltf_mesh(const std::string& primitives, const std::string& n
   return fmt::format("{{\"name\":\"{}\",\"primitives\":[{}]}}", name, primitives);
 }
 
-/// Out of memory of exactly that size, so that a sanitizer sees a byte read too many.
+/// Parses from a buffer of exactly that size, so that a sanitizer detects any read beyond it.
 inline Result<Mesh> parse_exactly(std::string_view bytes, const std::string& object = {},
                                   int uv_set = 0, const ReadReference& read_reference = {}) {
   const std::unique_ptr<char[]> memory(new char[bytes.size()]);
@@ -29,7 +29,7 @@ inline Result<Mesh> parse_exactly(std::string_view bytes, const std::string& obj
   return parse_gltf({memory.get(), bytes.size()}, "a.gltf", read_reference, object, uv_set);
 }
 
-/// The one line that refuses a glTF; "none": it is read.
+/// The one-line error for a glTF; "none": it can be read.
 inline std::string gltf_complaint(std::string_view bytes, const std::string& object = {},
                                   int uv_set = 0, const ReadReference& read_reference = {}) {
   const auto mesh = parse_exactly(bytes, object, uv_set, read_reference);
@@ -39,13 +39,13 @@ inline std::string gltf_complaint(std::string_view bytes, const std::string& obj
   return to_lines(mesh.error()).front();
 }
 
-/// A glTF put together by hand: each part as JSON without its brackets, and the bytes of its only
+/// A glTF assembled by hand: each part as JSON without its brackets, and the bytes of its only
 /// buffer.
 struct GltfParts {
   std::string accessors, views, primitives;
   std::string bytes;
   std::string nodes = cloth_node;
-  std::string more = {};  ///< further members of the file, with a comma behind them
+  std::string more = {};  ///< further members of the file, with a comma after them
 
   std::string text() const {
     return fmt::format(

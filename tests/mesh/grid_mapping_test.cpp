@@ -62,7 +62,7 @@ TEST_CASE("any range of (u,v) makes a grid, with its own spacings", "[mesh][grid
 }
 
 TEST_CASE("uneven (u,v) count as even up to a hundredth of the spacing", "[mesh][grid_mapping]") {
-  // The corners of the lattice stay, so that its extent does not change.
+  // The corners of the lattice are not moved, so that its extent is the same.
   Mesh mesh = sheet();
   const double hu = 1.0 / 8;
   mesh.uvs[22][0] += 0.0099 * hu;
@@ -72,7 +72,7 @@ TEST_CASE("uneven (u,v) count as even up to a hundredth of the spacing", "[mesh]
 }
 
 TEST_CASE("vertices of one node move together", "[mesh][grid_mapping]") {
-  // A copy of vertex 13, as an exporter makes where normals split, used by one face.
+  // A copy of vertex 13, as made by an exporter that splits vertices by normal, used by one face.
   Mesh mesh = sheet();
   const int copy = mesh.vertex_count();
   mesh.positions.conservativeResize(copy + 1, 3);
@@ -94,7 +94,7 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
   Mesh mesh = sheet();
   std::string expected;
   SECTION("a seam") {
-    // Vertex 2 is a corner of two faces; in the second it takes the (u,v) of another node.
+    // Vertex 2 is a corner of two faces; in the second it gets the (u,v) of another node.
     mesh.corner_uvs[4] = 40;
     REQUIRE(mesh.corner_vertices[4] == 1);
     CHECK_THAT(complaint(mesh), Contains("vertex 1 has several (u,v)") && Contains(": a seam"));
@@ -128,12 +128,12 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
     expected = "even lattice";
   }
   SECTION("an empty node") {
-    // Node (4,2) goes: its vertex takes the place of its neighbour, which it then shares.
+    // Node (4,2) becomes empty: its vertex moves to the neighbouring node, which it then shares.
     mesh.uvs[22] = mesh.uvs[23];
     mesh.positions.row(22) = mesh.positions.row(23);
     mesh.uvs.push_back({0, 0});
     expected = "no vertex lies at (u,v) = (0.5, 0.4), node (4, 2)";
-    // One vertex more, so that their number does not tell.
+    // One more vertex, so that the number of vertices does not reveal the error.
     mesh.positions.conservativeResize(55, 3);
     mesh.positions.row(54) = mesh.positions.row(23);
     mesh.face_sizes.push_back(3);
@@ -143,7 +143,7 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
   SECTION("too few vertices") {
     mesh.uvs[22] = mesh.uvs[23];
     mesh.positions.row(22) = mesh.positions.row(23);
-    for (auto& uv : mesh.uvs) uv[0] = uv[0] == 1 ? 1 + 1.0 / 8 : uv[0];  // and one column is gone
+    for (auto& uv : mesh.uvs) uv[0] = uv[0] == 1 ? 1 + 1.0 / 8 : uv[0];  // a column is missing
     expected = "";
   }
   CHECK_THAT(complaint(mesh), Contains(expected) && Contains("must form an even grid"));
@@ -178,13 +178,13 @@ Mesh torus(double gap) {
 
 TEST_CASE("vertices in one place with other (u,v) are a seam", "[mesh][grid_mapping]") {
   const double diagonal = std::sqrt(8.0 * 8 + 2 * 2 + 8 * 8);
-  // Rounding keeps the ends of the torus 1e-15 apart.
+  // Rounding leaves the ends of the torus 1e-15 apart.
   CHECK_THAT(complaint(torus(0)), Contains(" are in one place, but have the (u,v) (0, 0) and (") &&
                                       Contains(": a seam; a surface that is closed"));
   CHECK_THAT(complaint(torus(0.9e-6 * diagonal)), Contains(": a seam"));
   CHECK(complaint(torus(1.2e-6 * diagonal)) == "none");
 
-  Mesh folded = sheet();  // within, exactly the same place is one
+  Mesh folded = sheet();  // inside, only exactly equal positions are one place
   folded.positions.row(31) = folded.positions.row(21);
   CHECK_THAT(complaint(folded), Contains("vertices 21 and 31 are in one place"));
   folded.positions(31, 1) += 1e-12;
@@ -203,7 +203,7 @@ TEST_CASE("a seam is found wherever cells of the search divide", "[mesh][grid_ma
     mesh.positions.col(0).array() += 1000 * unit(random);
     Eigen::RowVector3d away(unit(random) - 0.5, 0, unit(random) - 0.5);
     away *= (trial % 2 == 0 ? 0.99e-6 : 1.01e-6) * diagonal / away.norm();
-    mesh.positions.row(20 + 9 - 2) = mesh.positions.row(18) + away;  // both of the first column
+    mesh.positions.row(20 + 9 - 2) = mesh.positions.row(18) + away;  // both in the first column
     CHECK((complaint(mesh) == "none") == (trial % 2 == 1));
   }
 }

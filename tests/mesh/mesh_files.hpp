@@ -21,7 +21,7 @@ inline Mesh small_sheet(bool triangles) {
   return make_mesh({.columns = 3, .rows = 3, .width = 2, .depth = 4, .triangles = triangles});
 }
 
-/// An unsigned integer of so many bytes, little endian.
+/// An unsigned integer of `size` bytes, little-endian.
 inline std::string little_endian(std::uint64_t number, int size) {
   std::string bytes;
   for (int k = 0; k < size; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
@@ -41,10 +41,10 @@ inline std::string base64(const std::string& bytes) {
   return text;
 }
 
-/// Puts a glTF file together; its v is written running down, as the format has it.
+/// Builds a glTF file; its v points downwards, as the format requires.
 class Gltf {
  public:
-  /// The mesh's triangles, and any further sets of (u,v), one pair a vertex. Gives the JSON.
+  /// The mesh's triangles, and any further sets of (u,v), one pair per vertex. Returns the JSON.
   std::string primitive(const Mesh& mesh,
                         std::vector<std::vector<std::array<double, 2>>> more_uvs = {}) {
     std::vector<float> positions;
@@ -124,7 +124,7 @@ inline std::vector<double> numbers_of(const Mesh& mesh) {
   return numbers;
 }
 
-/// Triangles whose vertices have a (u,v) each, as an OBJ.
+/// Triangles whose vertices each have a (u,v), as an OBJ.
 inline std::string obj_text(const Mesh& mesh) {
   std::string obj;
   for (int k = 0; k < mesh.vertex_count(); ++k) {
@@ -157,7 +157,7 @@ inline std::string collada_source(const std::string& id, const std::vector<doubl
       id, numbers.size(), fmt::join(numbers, " "), numbers.size() / width, width, params);
 }
 
-/// A <polylist> of Collada: faces first..last of the mesh. The second set turns u and v round.
+/// A <polylist> of Collada: faces first..last of the mesh. The second set exchanges u and v.
 inline std::string collada_faces(const Mesh& mesh, std::size_t first, std::size_t last,
                                  bool has_two_sets) {
   std::vector<int> indices;
@@ -214,7 +214,7 @@ struct FbxLink {
   std::string property = {};
 };
 
-/// What an FBX file holds besides `cloth` (model 21) below `parent` (20) below the root (0).
+/// The content of an FBX file besides `cloth` (model 21) below `parent` (20) below the root (0).
 struct FbxMore {
   std::vector<int> models = {};
   std::vector<FbxLink> links = {};
@@ -223,7 +223,7 @@ struct FbxMore {
   int version = 7400;            ///< binary files only
 };
 
-/// An FBX file as text: `cloth` below `parent`, which is moved by 1 2 3 and scaled by 2.
+/// An FBX file as text: `cloth` below `parent`, which is translated by 1 2 3 and scaled by 2.
 inline std::string fbx_text(const Mesh& mesh, const FbxMore& more = {}) {
   const auto uvs = uv_numbers_of(mesh);
   const auto uv_layer = [&](int index) {
@@ -263,7 +263,7 @@ inline std::string fbx_text(const Mesh& mesh, const FbxMore& more = {}) {
       fmt::join(polygons, ","), uv_layer(0), uv_layer(1), layer(0), layer(1), models, links);
 }
 
-/// One node of a binary FBX file: end, counts, name, properties, nodes within. The numbers have
+/// One node of a binary FBX file: end, counts, name, properties, child nodes. The numbers have
 /// `width` bytes, 4 up to version 7.4 and 8 from 7.5 on.
 struct FbxNode {
   std::string name;
@@ -376,7 +376,7 @@ inline std::string fbx_binary(const Mesh& mesh, const FbxMore& more = {}) {
   return bytes + std::string(25 + 160, '\0');
 }
 
-/// Checks what a mesh is made of; not how it is shaded.
+/// Compares meshes except for their shading.
 inline void check_equal(const Mesh& mesh, const Mesh& expected) {
   CHECK(mesh.positions == expected.positions);
   CHECK(mesh.uvs == expected.uvs);

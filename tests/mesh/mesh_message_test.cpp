@@ -17,7 +17,7 @@ using namespace pliant::testing;
 
 namespace {
 
-/// What the reader answers for a file of the sheet: two faces of triangles and more.
+/// The reader's answer for a file of the sheet: two faces of triangles and more.
 std::string true_message() {
   const ScratchFolder folder;
   const int input = open(folder.write("a.fbx", fbx_binary(small_sheet(false))).c_str(), O_RDONLY);
@@ -27,8 +27,8 @@ std::string true_message() {
   return end.value().answer;
 }
 
-/// Parses bytes that lie in memory of just their size, and looks at all that is told of: an address
-/// sanitizer sees what reaches past them.
+/// Parses bytes in a buffer of exactly their size, and reads all that the message refers to: an
+/// address sanitizer detects any read beyond the end.
 std::optional<double> sum_of_all(const std::string& bytes) {
   const auto exact = std::make_unique<char[]>(bytes.size());
   std::copy(bytes.begin(), bytes.end(), exact.get());
@@ -95,7 +95,7 @@ TEST_CASE("no answer reads past its end", "[mesh][mesh_message]") {
       check(mutant);
     }
   }
-  for (int trial = 0; trial < 20000; ++trial) {  // counts are what matters: near the beginning
+  for (int trial = 0; trial < 20000; ++trial) {  // counts matter most: near the beginning
     std::string mutant = whole;
     for (int k = 0; k < 3; ++k) mutant[random() % 220] = static_cast<char>(random());
     check(mutant);

@@ -10,7 +10,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// A cube of side 2 around the origin: 8 vertices, 6 quads that turn outward.
+// A cube of side 2 around the origin: 8 vertices, 6 quads with outward orientation.
 Mesh cube() {
   Mesh mesh;
   mesh.positions.resize(8, 3);
@@ -66,7 +66,7 @@ TEST_CASE("where there is no normal it points up", "[mesh][normals]") {
 }
 
 TEST_CASE("equal normals at equal places are one, across a seam too", "[mesh][normals]") {
-  Mesh mesh;  // two quads that meet in vertices of their own
+  Mesh mesh;  // two quads that meet but have separate vertices
   mesh.positions.resize(8, 3);
   mesh.positions << 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 0, 1, 0, 0, 1, 0, 1, 2, 1, 1, 2, 1, 0;
   mesh.face_sizes = {4, 4};

@@ -44,7 +44,7 @@ std::string sheet_collada(const std::string& nodes, const std::string& asset = "
   return collada(sheet, collada_faces(sheet, 0, 4, false), nodes, asset);
 }
 
-/// The sheet as FBX and Collada give it: a vertex for each corner.
+/// The sheet as FBX and Collada store it: a vertex for each corner.
 Mesh by_corner(const Mesh& mesh) {
   Mesh corners;
   corners.face_sizes = mesh.face_sizes;
@@ -59,7 +59,7 @@ Mesh by_corner(const Mesh& mesh) {
   return corners;
 }
 
-/// A Collada file of the sheet of quads, changed.
+/// A Collada file of the sheet of quads, with one text replaced.
 std::string changed_collada(const std::string& from, const std::string& to) {
   std::string text = sheet_collada(collada_node("n", instance));
   REQUIRE(text.find(from) != std::string::npos);
@@ -86,7 +86,7 @@ TEST_CASE("Collada and FBX keep quads, with a vertex for each corner", "[mesh][r
 TEST_CASE("(u,v) point the same way as in OBJ", "[mesh][read_assimp]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(true);
-  for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not its own mirror image
+  for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not symmetric in v
   const GridMapping of_obj = find_grid(parse_obj(obj_text(sheet), "a.obj").value()).value();
   const auto file = folder.write(
       "a.dae", collada(sheet, collada_faces(sheet, 0, 8, false), collada_node("n", instance)));
@@ -110,7 +110,7 @@ TEST_CASE("the transforms of a node and of all above it apply", "[mesh][read_ass
   const Mesh mesh = read_assimp(folder.write("a.dae", sheet_collada(nodes))).value();
   const Field expected = (transform * sheet.positions.transpose()).transpose();
   CHECK((mesh.positions - expected).cwiseAbs().maxCoeff() < 8 * float_error);
-  CHECK(mesh.corner_vertices == sheet.corner_vertices);  // a mirror turns no face round
+  CHECK(mesh.corner_vertices == sheet.corner_vertices);  // a mirror does not reverse faces
 }
 
 TEST_CASE("without a transform positions keep their bits", "[mesh][read_assimp]") {
@@ -276,8 +276,8 @@ TEST_CASE("of a file that is something else nothing is told", "[mesh][read_assim
   }
 }
 
-// What assimp 5.2 makes of each is its own affair: a crash, an error, a mesh even. Ours is that it
-// does us no harm, takes no time without end, and is told in one line.
+// The result of assimp 5.2 for each file does not matter: a crash, an error, even a mesh. It must
+// not harm this process, must end, and must be reported in one line.
 TEST_CASE("files made to break assimp break nothing of ours", "[mesh][read_assimp]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
@@ -299,7 +299,7 @@ TEST_CASE("files made to break assimp break nothing of ours", "[mesh][read_assim
               "<triangles count=\"2\"><input semantic=\"TEXCOORD\" source=\"#t\" offset=\"0\"/>"
               "<p>0 1 2 0 2 3</p></triangles>",
               node);
-  // A skin with fewer joints than its weights refer to, and more counts than weights.
+  // A skin with fewer joints than its weights refer to, and with more counts than weights.
   std::string skin =
       sheet_collada(collada_node("n",
                                  "<instance_controller url=\"#c\"><skeleton>#j</skeleton>"
@@ -409,7 +409,7 @@ TEST_CASE("no prefix or mutation of a mesh file does harm", "[mesh][read_assimp]
       if (mesh) CHECK(check_mesh(*mesh));
       if (!mesh) CHECK(to_lines(mesh.error()).front().find('\n') == std::string::npos);
     };
-    // A process for each: not all prefixes, but no two files at the same ones.
+    // A process for each: not all prefixes, but different ones for each file.
     for (std::size_t length = random() % 29; length < whole.size(); length += 29)
       check(whole.substr(0, length));
     for (int trial = 0; trial < 100; ++trial) {

@@ -84,14 +84,14 @@ TEST_CASE("reading ends when its caller wants to stop", "[mesh][read_boxed]") {
   CHECK(mesh.error().code == ErrorCode::Interrupted);
 }
 
-// The whole way of an answer: the file is what the program answers.
+// An answer through all stages: the file contains the answer of the program.
 TEST_CASE("no answer makes a mesh that is none", "[mesh][read_boxed]") {
   const ScratchFolder folder;
   const int input = open(folder.write("a.fbx", fbx_binary(small_sheet(false))).c_str(), O_RDONLY);
   std::string whole =
       run_boxed(reader(), {"fbx", "", "0"}, input, box_limits(0, SIZE_MAX), {})->answer;
   close(input);
-  // The object is then found under the name of what the program is asked to do.
+  // The object then has the name of the behaviour requested from the program.
   whole.replace(whole.find("cloth"), 5, "echo");
   const std::size_t length_at = 8 + 4 + 4;
   whole[length_at] = 4;

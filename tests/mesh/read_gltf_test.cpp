@@ -123,7 +123,7 @@ TEST_CASE("glTF's modes of triangles are read, points and lines passed over", "[
 
 TEST_CASE("(u,v) point the same way in a glTF and in an OBJ", "[mesh][read_gltf]") {
   Mesh sheet = small_sheet(true);
-  for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not its own mirror image
+  for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not symmetric in v
   Gltf gltf;
   const std::string meshes = gltf_mesh(gltf.primitive(sheet));
   const GridMapping of_obj = find_grid(parse_obj(obj_text(sheet), "a.obj").value()).value();
@@ -164,7 +164,7 @@ TEST_CASE("integers of a glTF are numbers, or shares of their largest", "[mesh][
 }
 
 TEST_CASE("elements of a glTF may lie apart in their buffer", "[mesh][read_gltf]") {
-  // x y z u v of each vertex; nothing behind the last v.
+  // x y z u v of each vertex; no bytes after the last v.
   const GltfParts parts{
       R"({"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
       R"({"bufferView":0,"byteOffset":12,"componentType":5126,"count":3,"type":"VEC2"})",
@@ -216,7 +216,7 @@ TEST_CASE("the transforms of a glTF's node and of all above it apply", "[mesh][r
     const Mesh mesh = parse_exactly(gltf.text(meshes, parent + child)).value();
     const Field moved = (expected * sheet.positions.transpose()).transpose();
     CHECK((mesh.positions - moved).cwiseAbs().maxCoeff() < 1e-14);  // in double, of numbers to 8
-    CHECK(mesh.corner_vertices == sheet.corner_vertices);           // a mirror turns no face round
+    CHECK(mesh.corner_vertices == sheet.corner_vertices);           // mirroring reverses no face
   }
 }
 
@@ -298,7 +298,7 @@ TEST_CASE("a glTF mesh's primitives become one", "[mesh][read_gltf]") {
   CHECK(merged.corner_uvs == merged.corner_vertices);
   CHECK(parse_exactly(gltf.text(gltf_mesh(both), cloth_node), "weave")->vertex_count() == 18);
 
-  // Over the same vertices: these are there once, and a grid is found.
+  // With the same vertices: these are read once, and a grid is found.
   const Mesh shared = parse_exactly(gltf.text(gltf_mesh(first + "," + first), cloth_node)).value();
   CHECK(shared.vertex_count() == 9);
   CHECK(shared.face_sizes.size() == 16);

@@ -155,7 +155,7 @@ TEST_CASE("no prefix or mutation of an OBJ file does harm", "[mesh][read_obj]") 
   const std::string text =
       "o a\n" + obj_quad + "f 1/1 2/2 3/3 4/4\nf -4/-4 \\\n -3/-3 -2/-2\no b\nf 1 2 3\n";
   for (std::size_t length = 0; length <= text.size(); ++length) {
-    // A buffer of just that length, so that the sanitizer sees one byte too many.
+    // A buffer of exactly that length, so that the sanitizer detects any read beyond it.
     const std::vector<char> bytes(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length));
     (void)parse_obj({bytes.data(), bytes.size()}, "m.obj", "a");
   }
@@ -200,7 +200,7 @@ TEST_CASE("an OBJ file says what is smooth", "[mesh][read_obj]") {
   CHECK(normals("s off\nf 1 2 3\nf 1 3 4\n") == Numbers{0, 0, 0, 1, 1, 1});
   CHECK(normals("s 0\nf 1 2 3\ns 1\nf 1 3 4\n") == Numbers{0, 0, 0, 1, 2, 3});
   CHECK(normals("s 1\nf 1 2 3\ns 2\nf 1 3 4\n") == Numbers{0, 1, 2, 3, 4, 5});
-  // By value: the first and the third are one.
+  // By value: the first and the third are equal.
   CHECK(normals(vn + "f 1//1 2//1 3//1\nf 1//3 3//2 4//2\n") == Numbers{0, 1, 2, 0, 3, 4});
   CHECK(normals(vn + "s off\nf 1//1 2//1 3//1\n") == Numbers{0, 0, 0});
 }

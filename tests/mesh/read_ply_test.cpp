@@ -35,7 +35,7 @@ std::string big_endian(std::uint64_t number, int size) {
   return {bytes.rbegin(), bytes.rend()};
 }
 
-/// A sheet with a number of every type beside what is read.
+/// A sheet with a number of every type besides those that are read.
 std::string binary(const Mesh& mesh, bool is_big) {
   const auto number = [&](std::uint64_t bits, int size) {
     return is_big ? big_endian(bits, size) : little_endian(bits, size);
@@ -214,7 +214,7 @@ TEST_CASE("no prefix of a PLY file is taken for the whole", "[mesh][read_ply]") 
   for (const std::string& whole : {ply_quad, binary(sheet, false), binary(sheet, true)}) {
     REQUIRE(ply_complaint(whole) == "none");
     for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
-      // A buffer of just that length, so that the sanitizer sees one byte too many.
+      // A buffer of exactly that length, so that the sanitizer detects any read beyond it.
       const std::vector<char> bytes(whole.begin(),
                                     whole.begin() + static_cast<std::ptrdiff_t>(length));
       CHECK_FALSE(parse_ply({bytes.data(), bytes.size()}, "m.ply"));

@@ -52,7 +52,7 @@ std::size_t open_files() {
 
 bool has_children() { return waitpid(-1, nullptr, WNOHANG) != -1 || errno != ECHILD; }
 
-// Whether some process was started with this among its arguments.
+// Whether there is a process with this argument.
 bool is_running(const std::string& argument) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/proc", ignored)) {
@@ -133,7 +133,7 @@ TEST_CASE("a boxed program leaves no process and no open file behind", "[mesh][r
 TEST_CASE("a boxed program reaches nothing but its input and its answer", "[mesh][run_boxed]") {
   const std::string secret = "secret";
   setenv("PLIANT_TEST_SECRET", secret.c_str(), 1);
-  const int inheritable = open("/dev/null", O_RDONLY);  // as a careless program has them open
+  const int inheritable = open("/dev/null", O_RDONLY);  // as careless programs leave them open
   const auto end = act("escape");
   close(inheritable);
   unsetenv("PLIANT_TEST_SECRET");

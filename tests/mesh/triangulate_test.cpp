@@ -43,7 +43,7 @@ TEST_CASE("convex faces become fans around their first corner", "[mesh][triangul
 }
 
 TEST_CASE("faces that are not convex are covered once", "[mesh][triangulate]") {
-  // An arrow head, an L and a comb; none of them is a fan around any first corner.
+  // An arrow head, an L and a comb; none of them is a fan around its first corner.
   std::vector<std::array<double, 2>> points = GENERATE(
       std::vector<std::array<double, 2>>{{0, 0}, {2, -2}, {0, 2}, {-2, -2}},
       std::vector<std::array<double, 2>>{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}},
@@ -71,7 +71,7 @@ TEST_CASE("faces that are not convex are covered once", "[mesh][triangulate]") {
   const Triangles triangles = triangulate(mesh);
   CHECK(triangles.size() == points.size() - 2);
   for (const auto& triangle : triangles) {
-    CHECK(area(mesh, triangle) > 0);  // none is turned over, so none overlaps another
+    CHECK(area(mesh, triangle) > 0);  // none is reversed, so none overlap
     sum += area(mesh, triangle);
   }
   CHECK(sum == whole);

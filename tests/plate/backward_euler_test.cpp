@@ -16,7 +16,7 @@ using pliant::testing::WithinRel;
 
 namespace {
 
-// Every test runs over every solver of this build.
+// Every test runs with every solver of this build.
 std::vector<SolverChoice> choices() {
   std::vector<SolverChoice> all{SolverChoice::Spectral, SolverChoice::Eigen};
   if (is_available(SolverChoice::Cholmod)) all.push_back(SolverChoice::Cholmod);
@@ -35,7 +35,7 @@ Field solve_static(SolverChoice choice, const Grid& grid, const Stiffness& stiff
   return solver->advance(problem, {1, 1}, std::move(state)).value().displacement;
 }
 
-// Order seen between errors at spacings h, h/2, h/4: the smaller of the two ratios.
+// Observed order from errors at spacings h, h/2, h/4: the smaller of the two ratios.
 double observed_order(const std::vector<double>& errors) {
   return std::min(std::log2(errors[0] / errors[1]), std::log2(errors[1] / errors[2]));
 }
@@ -56,13 +56,13 @@ TEST_CASE("a uniform load on the clamped square gives 0.00126532 q with order 2"
   }
   CHECK(observed_order(errors) >= 1.9);
   const double extrapolated = centres[2] + (centres[2] - centres[1]) / 3;
-  CHECK_THAT(extrapolated, WithinAbs(0.00126532, 3e-8));  // O(h^4) is left
+  CHECK_THAT(extrapolated, WithinAbs(0.00126532, 3e-8));  // the remaining error is O(h^4)
 }
 
 TEST_CASE("a manufactured solution with rim and tangents converges with order 2",
           "[plate][euler]") {
   const SolverChoice choice = GENERATE_CHOICE();
-  // A tangent is one value for a whole edge, so w must not vary in slope along any:
+  // A tangent is one value for a whole edge, so the slope of w must be constant along each edge:
   // w = sin(2u + 1) + cos(3v), F = 16 b sin(2u + 1) + 81 d cos(3v).
   const Stiffness s{1.5, 0.5, 0.75};
   std::vector<double> errors;

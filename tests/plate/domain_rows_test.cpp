@@ -40,12 +40,12 @@ TEST_CASE("runs of rows hold each interior node once, in order", "[plate][schwar
 
 TEST_CASE("a sum in lanes takes each product once", "[plate][schwarz]") {
   for (long count = 0; count < 40; ++count) {
-    std::vector<double> a(40, 1e300), b(40, 1e300);  // what is beyond would be seen
+    std::vector<double> a(40, 1e300), b(40, 1e300);  // numbers beyond the end would be noticed
     double expected = 0;
     for (long k = 0; k < count; ++k) {
       a[k] = static_cast<double>(k + 1);
       b[k] = static_cast<double>(3 * k - 7);
-      expected += a[k] * b[k];  // whole numbers: exact in any order
+      expected += a[k] * b[k];  // integers: exact in any order
     }
     LaneSum sum;
     sum.add(a.data(), b.data(), count / 2);

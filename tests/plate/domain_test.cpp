@@ -30,20 +30,20 @@ InteriorMask mask_of(const Grid& grid, const std::function<bool(int, int)>& is_c
   return mask;
 }
 
-// All cells but a quarter.
+// All cells except a quarter.
 InteriorMask ell(const Grid& grid) {
   return mask_of(
       grid, [&](int i, int j) { return !(2 * i >= grid.columns - 1 && 2 * j >= grid.rows - 1); });
 }
 
-// SPEC 4 and 5 by another way: every node of the domain has a value or, beyond the rim, stands for
-// the node it mirrors; the stencil is a product of one-dimensional ones, summed in a map.
+// SPEC 4 and 5 computed in another way: every node of the domain has a value or, beyond the rim, is
+// the mirror image of a node; the stencil is a product of one-dimensional ones, summed in a map.
 class SlowPlate {
  public:
   SlowPlate(const PlateSystem& system, InteriorMask interior)
       : system_(system), interior_(std::move(interior)) {}
 
-  // Row of the matrix, by node.
+  // Row of the matrix, as a map from nodes to weights.
   std::map<int, double> row(int i, int j) const {
     const auto& [b, c, d] = system_.stiffness;
     const double hu = system_.grid.hu, hv = system_.grid.hv;
@@ -82,7 +82,7 @@ class SlowPlate {
   }
 
  private:
-  // The node that is (di, dj) away, or that the ghost there mirrors.
+  // The node at offset (di, dj), or the node that the ghost there mirrors.
   int seen(int i, int j, int di, int dj) const {
     const bool is_far = std::abs(di) + std::abs(dj) == 2;
     const bool is_ghost = is_far && !is_interior(system_.grid.node(i + di / 2, j + dj / 2));
@@ -93,7 +93,7 @@ class SlowPlate {
   InteriorMask interior_;
 };
 
-// Boxes as forces select them, as one connected plate.
+// Boxes like those of forces, as one connected plate.
 std::pair<Grid, InteriorMask> random_union(std::mt19937& random) {
   const auto pick = [&](int low, int high) {
     return std::uniform_int_distribution<int>(low, high)(random);
@@ -114,7 +114,7 @@ std::pair<Grid, InteriorMask> random_union(std::mt19937& random) {
 
 }  // namespace
 
-// Those that solve any outline.
+// The solvers for any outline.
 std::vector<SolverKind> direct_solvers() {
   std::vector<SolverKind> kinds = available_solvers();
   std::erase(kinds, SolverKind::Spectral);
@@ -200,15 +200,15 @@ TEST_CASE("solvers agree with dense Cholesky on unions and keep what they can",
   system.shift = 8;
   REQUIRE(solver->factor(system));
   CHECK(solver->counts().analyses == 1);
-  REQUIRE(solver->factor({grid, {1, 2, 1}, 8}));  // as large, but no L
+  REQUIRE(solver->factor({grid, {1, 2, 1}, 8}));  // as large, but not an L
   CHECK(solver->counts().analyses == 2);
   REQUIRE(solver->factor({grid, {1, 2, 1}, 7, ell(grid)}));
   CHECK(solver->solve(f).value() == w);
 }
 
 TEST_CASE("an L-shape converges with order 2", "[plate][union]") {
-  // Clamped on the whole outline: a product of squares that vanishes doubly on all six sides, of
-  // which two meet in the inner corner.
+  // Clamped on the whole outline: a product of squares with double zeros on all six sides, of which
+  // two meet in the inner corner.
   const auto square = [](double x) { return x * x; };
   const auto w_exact = [&](double u, double v) {
     return square(u * (1 - u) * v * (1 - v)) * square(square(0.5 - u)) * square(square(0.5 - v));
@@ -263,7 +263,7 @@ TEST_CASE("tangents act at the ends of a union and nowhere else", "[plate][union
   Field unknowns = with_interior(grid, interior, zero, felt);
   for (int j = 0; j < 13; ++j) {
     for (int i = 0; i < 13; ++i) {
-      const bool is_beside_u1 = i == 11 && j >= 1 && j <= 5;  // the inner side, at i = 6, is none
+      const bool is_beside_u1 = i == 11 && j >= 1 && j <= 5;  // not the inner side, at i = 6
       CHECK((unknowns(grid.node(i, j), 0) != 0) == is_beside_u1);
     }
   }

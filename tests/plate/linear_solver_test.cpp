@@ -13,7 +13,7 @@ using namespace pliant;
 using pliant::testing::dense_operator;
 using pliant::testing::unit_grid;
 
-// Every test runs over every solver of this build: they share errors and tolerance.
+// Every test runs with every solver of this build: they share errors and tolerance.
 #define GENERATE_SOLVER() GENERATE(from_range(available_solvers()))
 
 TEST_CASE("solvers agree with dense Cholesky", "[plate][solver]") {
@@ -28,12 +28,13 @@ TEST_CASE("solvers agree with dense Cholesky", "[plate][solver]") {
     const Field w = solver->solve(f).value();
     const Eigen::MatrixXd dense = dense_operator(system);
     const Field expected = dense.llt().solve(f);
-    // Backward stable both: the forward error is the condition number times a few eps. In sine
-    // space the diagonal comes close to 0 with c close to its bound, which no edge makes up for.
+    // Both are backward stable: the forward error is the condition number times a few eps. In sine
+    // space the diagonal is close to 0 if c is close to its bound, which the edges do not
+    // compensate.
     const double near_bound = stiffness.c < 0 ? 2 / (2 + stiffness.c) : 1;
     const double condition = near_bound * dense.norm() * dense.inverse().norm();
     CHECK((w - expected).norm() <= 50 * condition * 1.1e-16 * expected.norm());
-    // And the residual is small whatever the condition.
+    // The residual is small for any condition.
     CHECK((dense * w - f).norm() <= 1e-14 * near_bound * (dense.norm() * w.norm() + f.norm()));
   }
 }
@@ -53,14 +54,14 @@ TEST_CASE("solvers keep what they can", "[plate][solver]") {
   CHECK(solver->solve(f).value() == w);
   CHECK(counts() == std::array{1l, 1l, 2l});
 
-  system.stiffness.c = 1;  // other coefficients: the pattern stays
+  system.stiffness.c = 1;  // other coefficients: the same pattern
   REQUIRE(solver->factor(system));
   CHECK(counts() == std::array{1l, 2l, 2l});
   system.grid = unit_grid(7, 9);  // as many unknowns, another pattern
   REQUIRE(solver->factor(system));
   CHECK(counts() == std::array{2l, 3l, 2l});
 
-  // Coming back gives the same bits as coming first.
+  // A return to the first system gives the same bits as the first time.
   REQUIRE(solver->factor({unit_grid(9, 7), {1, 2, 1}, 5}));
   CHECK(solver->solve(f).value() == w);
 }
@@ -77,7 +78,7 @@ TEST_CASE("solvers refuse a matrix that is not positive definite", "[plate][solv
   CHECK_THAT(factored.error().message,
              Catch::Matchers::Contains(std::to_string(unknown_count(bad.grid)) + " unknowns") &&
                  Catch::Matchers::Contains("pivot"));
-  // A failure leaves the solver fit for the next system.
+  // After a failure the solver works for the next system.
   const PlateSystem good{bad.grid, {1, 2, 1}, 1};
   REQUIRE(solver->factor(good));
   const Field f = Field::Ones(unknown_count(good.grid), 3);
@@ -86,7 +87,7 @@ TEST_CASE("solvers refuse a matrix that is not positive definite", "[plate][solv
 
 TEST_CASE("ill-conditioned plates are solved to the last digits", "[plate][solver]") {
   // Static: the condition number is about 3e7 for the square and far beyond for the sliver, so a
-  // plain factorisation loses 8 digits and more. The yardstick is refined until nothing changes.
+  // plain factorisation loses 8 digits and more. The reference is refined until it does not change.
   const auto solver = make_solver(GENERATE_SOLVER());
   const Grid grid = GENERATE(unit_grid(121, 121), unit_grid(5, 400));
   const PlateSystem system{grid, {1, 2, 1}, 0};

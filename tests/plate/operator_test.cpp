@@ -52,7 +52,7 @@ TEST_CASE("the first natural frequency of the clamped square plate is 35.985",
                          .eigenvalues()[0]);
   };
   const double coarse = frequency(11), fine = frequency(21);
-  CHECK_THAT(fine + (fine - coarse) / 3, WithinRel(35.985, 2e-3));  // O(h^4) is left
+  CHECK_THAT(fine + (fine - coarse) / 3, WithinRel(35.985, 2e-3));  // the remaining error is O(h^4)
   CHECK(std::abs(fine - 35.985) < std::abs(coarse - 35.985) / 3.5);
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("the residual is that of the matrix", "[plate][operator]") {
 }
 
 TEST_CASE("the residual has digits left where double has none", "[plate][operator]") {
-  // f is the rounded product of A with w: what is left is what rounding f took, and no more.
+  // f is the rounded product of A with w: the residual is just the rounding error of f.
   const Grid grid = unit_grid(40, 40);
   const PlateSystem system{grid, {1, 2, 1}, 0};
   const Field w = Field::Random(unknown_count(grid), 3);

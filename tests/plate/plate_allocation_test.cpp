@@ -1,5 +1,5 @@
-// From the second frame on a plate in sine space allocates nothing, nor does a union of rectangles.
-// An executable of its own, since it counts what everyone allocates.
+// From the second frame on, a plate in sine space allocates nothing, nor does a union of
+// rectangles. An executable of its own, since it counts all allocations of the program.
 
 #include <cstdio>
 #include <cstdlib>
@@ -32,7 +32,7 @@ bool is_free_of_allocations(const char* name, PlateSolver& solver, PlateProblem 
   return before > 0 && after == before;
 }
 
-// All but a quarter.
+// All except a quarter.
 InteriorMask three_quarters(const Grid& grid) {
   InteriorMask interior(static_cast<std::size_t>(grid.node_count()), 0);
   for (int j = 1; j < grid.rows - 1; ++j) {

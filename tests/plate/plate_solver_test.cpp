@@ -27,7 +27,7 @@ TEST_CASE("the automatic choice looks at the problem alone", "[plate][solver]") 
   };
   const auto automatic = make_plate_solver();
   long solves = 0;
-  for (const int side : {60, 5, 61, 4, 60}) {  // from one to the other and back
+  for (const int side : {60, 5, 61, 4, 60}) {  // from one solver to the other and back
     const Grid grid = unit_grid(side, side + 1);
     const PlateProblem problem = problem_on(grid, 2);
     const SolverKind direct = available_solvers().front();
@@ -42,7 +42,7 @@ TEST_CASE("the automatic choice looks at the problem alone", "[plate][solver]") 
     CHECK(automatic->counts().solves == (solves += 3));
     CHECK(automatic->memory() == expected_solver->memory());
   }
-  // Where the diagonal of the sines would lose digits, the matrix is factored.
+  // If the diagonal of the sines would lose digits, the matrix is factored.
   CHECK(worth_transforming(unit_grid(60, 60), {1, -1.9, 1}));
   CHECK_FALSE(worth_transforming(unit_grid(60, 60), {1, -1.99999, 1}));
   CHECK_FALSE(worth_transforming(unit_grid(300, 3), {1, 2, 1}));  // rows too short

@@ -21,7 +21,7 @@ TEST_CASE("a stiffness is elliptic just above c = -2 sqrt(bd)", "[plate]") {
 }
 
 TEST_CASE("a stiffness at the very bound is not elliptic", "[plate]") {
-  // Two roots of 2 multiply to a little more than 2, which would let c = -4 pass.
+  // Two roots of 2 multiply to a little more than 2, so c = -4 would be accepted.
   const double b = GENERATE(2.0, 3.0, 5.0, 7.0, 0.1);
   CHECK_FALSE(Stiffness{b, -2 * b, b}.is_elliptic());
   CHECK(Stiffness{b, std::nextafter(-2 * b, 0), b}.is_elliptic());

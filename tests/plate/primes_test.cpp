@@ -44,5 +44,5 @@ TEST_CASE("the powers of a primitive root are all residues but 0", "[plate][prim
     CHECK(static_cast<long>(powers.size()) == prime - 1);
     CHECK(powers.count(0) == 0);
   }
-  CHECK(primitive_root(2147483647) == 7);  // as is well known
+  CHECK(primitive_root(2147483647) == 7);  // a known value
 }

@@ -23,7 +23,8 @@ bool is_interior(const UnionPlate& plate, const Box& box) {
   return true;
 }
 
-// Rectangles of interior nodes that none can be made larger, and all nodes in one of them.
+// Rectangles of interior nodes, none of which can be enlarged, and which together contain all
+// nodes.
 void check_cover(const UnionPlate& plate, const std::vector<Box>& cover) {
   InteriorMask covered(plate.interior.size(), 0);
   for (const Box& box : cover) {
@@ -108,7 +109,7 @@ TEST_CASE("ragged outlines are not covered", "[plate][cover]") {
   UnionPlate ragged = pliant::testing::ell(81);
   std::mt19937 random(3);
   for (int j = 1; j < 80; ++j) {
-    // A side that goes in and out from row to row, as nodes that recover leave it.
+    // A side that goes in and out from row to row, as recovering nodes leave it.
     for (int i = 70 + static_cast<int>(random() % 8); i < 80; ++i) {
       ragged.interior[ragged.grid.node(i, j)] = 0;
     }

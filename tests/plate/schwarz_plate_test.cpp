@@ -31,14 +31,14 @@ Result<void> prepare(SchwarzPlate& schwarz, const PlateSystem& system) {
   return schwarz.prepare(system.grid, system.interior, system.stiffness, system.shift);
 }
 
-// For a load on all nodes, from a guess of 0.
+// The solution for a load on all nodes, from a guess of 0.
 Field solved(SchwarzPlate& schwarz, const UnionPlate& plate, const Field& load) {
   Field solution = Field::Zero(plate.grid.node_count(), 3);
   REQUIRE(schwarz.solve(load_view(plate, load), view(plate, solution)));
   return interior_of(plate.grid, plate.interior, solution);
 }
 
-// By a factor, right to the last digits: refined with residuals in extended precision.
+// By a factorisation, exact to the last digits: refined with residuals in extended precision.
 Field refined(const PlateSystem& system, const Field& f) {
   const auto solver = make_solver();
   REQUIRE(solver->factor(system));
@@ -76,7 +76,8 @@ TEST_CASE("rectangles together are as exact as a refined factor", "[plate][schwa
       REQUIRE(prepare(schwarz, system));
       const Field solution = solved(schwarz, plate, load);
       const Field exact = refined(system, f);
-      // The last change is 1e-14; what it leaves is a tenth, or about as much where c is negative.
+      // The last change is 1e-14; the error after it is a tenth of that, or about as large if c is
+      // negative.
       const double error = (solution - exact).norm() / exact.norm();
       CHECK(error <= (stiffness.c < 0 ? 1e-13 : 1e-14));
     }
@@ -97,7 +98,8 @@ TEST_CASE("steps over rectangles are those of a factored matrix", "[plate][schwa
         CAPTURE(plate.name, dynamics.density, dynamics.damping, dt, count);
         const PlateState a = schwarz->advance(problem, {count, dt}, state).value();
         const PlateState b = direct->advance(problem, {count, dt}, state).value();
-        // A velocity is a difference over dt: the roundings of the displacement, over dt.
+        // A velocity is a difference divided by dt, so it has the rounding errors of the
+        // displacement divided by dt.
         const double scale = b.displacement.norm();
         CHECK((a.displacement - b.displacement).norm() <= 1e-11 * scale);
         CHECK((a.velocity - b.velocity).norm() <= 1e-11 * (b.velocity.norm() + scale / dt));
@@ -136,7 +138,7 @@ TEST_CASE("a round over the rectangles is symmetric and positive definite", "[pl
         const double xbx = x_in.col(k).dot(bx.col(k)), yby = y_in.col(k).dot(by.col(k));
         CHECK(xbx > 0);
         CHECK(yby > 0);
-        // Cauchy and Schwarz give the scale.
+        // The Cauchy-Schwarz inequality gives the scale.
         CHECK(std::abs(xby - ybx) <= 1e-13 * std::sqrt(xbx * yby));
       }
     }
@@ -175,7 +177,7 @@ TEST_CASE("no bit of a union depends on threads or on what was kept", "[plate][s
     ThreadPool threads(count);
     check(*make_schwarz_plate_solver(nullptr, &threads));
   }
-  // Other coefficients, another outline and a system it fails at in between.
+  // Other coefficients, another outline and a system on which it fails, in between.
   PlateProblem other = problem;
   other.stiffness = {1, 2, 1};
   REQUIRE(plain->advance(other, steps, state));

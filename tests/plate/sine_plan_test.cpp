@@ -11,7 +11,7 @@ using namespace pliant;
 
 namespace {
 
-// `lanes` columns through a sine transform.
+// Transforms `lanes` columns.
 std::vector<double> transformed(const SinePlan& plan, const SpectralKernels& kernels,
                                 std::vector<double> points) {
   std::vector<double> work(static_cast<std::size_t>(sine_work(plan.view()) * kernels.lanes));
@@ -29,7 +29,7 @@ std::vector<double> random_points(int count) {
   return points;
 }
 
-// By the definition, in extended precision, the angle reduced in whole numbers.
+// By the definition, in extended precision; the angle is reduced in integers.
 std::vector<long double> defined(int length, const std::vector<double>& x) {
   const long double pi = std::acos(-1.0L);
   std::vector<long double> sines;
@@ -51,8 +51,8 @@ double norm(const std::vector<double>& x) {
   return std::sqrt(sum);
 }
 
-// Smooth, odd and even, with each radix; squares, twice and three times a large prime; all primes
-// to 600, and larger ones whose halves are smooth and are not.
+// Lengths with small primes only, odd and even, with each radix; squares, twice and three times a
+// large prime; all primes to 600, and larger ones whose halves have small primes only, or not.
 std::vector<int> lengths() {
   std::vector<int> lengths{2,  4,  6,   8,   9,   10,  12,  14,  16,  18,  20,  21,  22,
                            25, 26, 30,  60,  100, 128, 143, 243, 360, 400, 480, 625, 1000,
@@ -87,7 +87,7 @@ TEST_CASE("a point of a turn is right to an ulp or two", "[plate][spectral]") {
       CHECK(std::abs(static_cast<double>(std::sin(angle) - point.sine)) <= 2.3e-16);
     }
   }
-  CHECK(turn_point(1, 4).cosine == 0);  // exact where the value is
+  CHECK(turn_point(1, 4).cosine == 0);  // exact if the value is representable
   CHECK(turn_point(1, 2).sine == 0);
 }
 
@@ -106,8 +106,8 @@ TEST_CASE("the sine transform is what its definition says", "[plate][spectral]")
       for (int k = 0; k < points; ++k) {
         difference.push_back(static_cast<double>(expected[k] - y[k * kernels.lanes + lane]));
       }
-      // The transform is sqrt(L/2) times an orthogonal one; a few roundings a stage. A convolution
-      // has two transforms, and a chirp turns all points by rounded angles twice.
+      // The transform is sqrt(L/2) times an orthogonal one, with a few roundings per stage. A
+      // convolution has two transforms, and a chirp rotates all points by rounded angles twice.
       const double stages = plan.view().chirp ? 8 : plan.view().kernel ? 4 : 2;
       CHECK(norm(difference) <= stages * 2.2e-16 * std::sqrt(length / 2.0) * norm(column));
     }
@@ -177,9 +177,9 @@ TEST_CASE("a sine transform keeps to the room that it asks for", "[plate][spectr
         is_within = is_within && work[used + k] == 7 && points[x.size() + k] == 7;
       }
       CHECK(is_within);
-      CHECK(work[used - 1] != 7);  // and it uses all of it
+      CHECK(work[used - 1] != 7);  // it uses all of the workspace
       points.resize(x.size());
-      CHECK((points == transformed(plan, kernels, x)));  // whatever was in it
+      CHECK((points == transformed(plan, kernels, x)));  // for any previous content
     }
   }
 }

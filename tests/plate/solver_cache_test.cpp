@@ -29,9 +29,9 @@ TEST_CASE("each outline keeps its solver while it is among those of the frame",
   cache.keep_only({&both[1], 1});
   solve(small);
   CHECK(cache.counts().factorizations == 2);
-  CHECK(solve(large) == first);  // anew, with the same bits
+  CHECK(solve(large) == first);  // computed again, with the same bits
   CHECK(cache.counts().factorizations == 3);
-  CHECK(cache.counts().solves == 17);  // those of the solver that went are counted
+  CHECK(cache.counts().solves == 17);  // includes those of the destroyed solver
 }
 
 TEST_CASE("solvers that are let go give their memory back", "[plate][solver_cache]") {

@@ -13,7 +13,7 @@ using pliant::testing::unit_grid;
 
 namespace {
 
-// ||A||, or a little more: the largest eigenvalue of the simply supported plate and the edges.
+// ||A||, or a little more: the largest eigenvalue of the simply supported plate plus the edges.
 double operator_norm(const PlateSystem& system) {
   const Grid& grid = system.grid;
   const Stiffness& stiffness = system.stiffness;
@@ -23,7 +23,7 @@ double operator_norm(const PlateSystem& system) {
   return shift + 1.5 * (stiffness.b * u * u + stiffness.d * v * v) + std::abs(stiffness.c) * u * v;
 }
 
-// What 2 sqrt(bd) is above -c, the diagonal loses where the edges give: docs/model.md.
+// The diagonal loses digits as -c approaches 2 sqrt(bd): docs/model.md.
 double loss(const Stiffness& stiffness) {
   return std::max(1.0, stiffness.least_c() / (stiffness.least_c() - stiffness.c));
 }
@@ -32,14 +32,14 @@ double backward_error(const PlateSystem& system, const Field& w, const Field& f)
   return residual(system, w, f).norm() / (operator_norm(system) * w.norm() + f.norm());
 }
 
-// b : c : d; the last ones close to where c may not come.
+// b : c : d; in the last ones c is close to its bound.
 constexpr Stiffness ratios[] = {{1, 2, 1},   {1, 0, 1},    {1, 20, 1},     {100, 2, 1},
                                 {1, 2, 100}, {1, -1.9, 1}, {1, -1.999, 1}, {4, -11.9, 9}};
-// A static plate, and steps from huge to tiny ones.
+// A static plate, and steps from very long to very short.
 constexpr double shifts[] = {0, 1e-3, 1e5, 1e14};
 
-// Against a solution that is right to the last digits: refined with residuals in extended
-// precision. Gives the backward error.
+// Compares with a solution that is exact to the last digits: refined with residuals in extended
+// precision. Returns the backward error.
 double check_errors(const PlateSystem& system, const Field& f) {
   const auto solver = make_solver(SolverKind::Spectral);
   REQUIRE(solver->factor(system));
@@ -59,7 +59,7 @@ void check_errors(const Grid& grid, const Stiffness& stiffness, double shift) {
   check_errors({grid, stiffness, shift}, Field::Random(unknown_count(grid), 3));
 }
 
-// And beside a factored matrix, by backward error.
+// Compares with a factored matrix, by backward error.
 void check_beside_direct(const PlateSystem& system) {
   const auto& [b, c, d] = system.stiffness;
   CAPTURE(system.grid.columns, system.grid.rows, b, c, d, system.shift);
@@ -119,7 +119,7 @@ TEST_CASE("the spectral solver is as exact as a double allows on squares, for ot
   }
 }
 
-// Factors of this size take a while: each ratio at one step, each step at two ratios.
+// Factors of this size need a while: each ratio with one step, each step with two ratios.
 TEST_CASE("the spectral solver is as exact as a double allows on 150 x 200 nodes",
           "[plate][spectral]") {
   for (int k = 0; k < 8; ++k) check_beside_direct({unit_grid(150, 200), ratios[k], shifts[k % 4]});
@@ -139,7 +139,7 @@ TEST_CASE("the spectral solver is as exact as a factor on 401 x 401 nodes", "[pl
   check_beside_direct({unit_grid(401, 401), {1, 2, 1}, shifts[1]});
 }
 
-// A static plate is the hardest.
+// A static plate is the hardest case.
 TEST_CASE("the spectral solver stays exact on 401 x 401 nodes at every ratio",
           "[plate][spectral]") {
   for (const Stiffness& stiffness : ratios) {
@@ -165,7 +165,8 @@ TEST_CASE("steps in sine space are those of a factored matrix", "[plate][spectra
         CAPTURE(grid.columns, grid.rows, dynamics.density, dynamics.damping, dt, count);
         const PlateState a = spectral->advance(problem, {count, dt}, state).value();
         const PlateState b = direct->advance(problem, {count, dt}, state).value();
-        // A velocity is a difference over dt: the roundings of the displacement, over dt.
+        // A velocity is a difference divided by dt, so it has the rounding errors of the
+        // displacement divided by dt.
         const double scale = b.displacement.norm();
         CHECK((a.displacement - b.displacement).norm() <= 1e-11 * scale);
         CHECK((a.velocity - b.velocity).norm() <= 1e-11 * (b.velocity.norm() + scale / dt));

@@ -22,8 +22,8 @@ double derivative(int p, int n, double x) {
 }  // namespace
 
 TEST_CASE("the stencil is exact on polynomials up to degree 5", "[plate][stencil]") {
-  // Each difference has an error of order h^2 in the derivative two orders higher: 0 up to
-  // degree 5.
+  // Each difference has an error of order h^2 in the derivative two orders higher: 0 up to degree
+  // 5.
   const Grid grid{9, 8, 0.25, 0.5};
   const Stiffness stiffness{1.5, -0.7, 2.5};
   for (int p = 0; p <= 5; ++p) {
@@ -32,7 +32,7 @@ TEST_CASE("the stencil is exact on polynomials up to degree 5", "[plate][stencil
       const Field w =
           sampled(grid, [&](double u, double v) { return std::pow(u, p) * std::pow(v, q); });
       const Field lw = apply_stencil(grid, stiffness, {}, w);
-      for (int j = 2; j <= grid.rows - 3; ++j) {  // no ghost in reach
+      for (int j = 2; j <= grid.rows - 3; ++j) {  // no ghost in the stencil
         for (int i = 2; i <= grid.columns - 3; ++i) {
           const double u = i * grid.hu, v = j * grid.hv;
           const double exact = stiffness.b * derivative(p, 4, u) * derivative(q, 0, v) +
@@ -56,8 +56,7 @@ TEST_CASE("the stencil's error beyond degree 5 is h^2/6 times the sixth derivati
 }
 
 TEST_CASE("ghost nodes with tangents are exact up to degree 2", "[plate][stencil]") {
-  // w = p(u) q(v) of degree 2 in each: fourth differences vanish if and only if the ghosts are
-  // right.
+  // w = p(u) q(v) of degree 2 in each: fourth differences are 0 exactly if the ghosts are right.
   const Grid grid = GENERATE(Grid{3, 3, 0.5, 0.25}, Grid{4, 3, 0.5, 0.25}, Grid{5, 9, 0.25, 0.125});
   const double width = (grid.columns - 1) * grid.hu, depth = (grid.rows - 1) * grid.hv;
   const Stiffness stiffness{1.5, 0.75, 2.5};

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double frame_length = 1.0 / 24;
 
-// The slow way: eq. (8) with a single unknown, a load of lambda that would hold it at 1, from rest.
-// The unknown at each frame.
+// An independent slow path: eq. (8) with a single unknown, from rest, under a load of lambda, for
+// which the final value is 1. The unknown at each frame.
 std::vector<double> played(double lambda, const Dynamics& dynamics, const TimeSteps& steps,
                            int frames) {
   const auto& [rho, eta] = dynamics;
@@ -35,7 +35,7 @@ std::vector<double> played(double lambda, const Dynamics& dynamics, const TimeSt
   return shown;
 }
 
-// Frames from which on all that is played stays within 5 % of 1.
+// The first frame from which on all values are within 5 % of 1.
 int settled_frames(const std::vector<double>& shown) {
   int settled = static_cast<int>(shown.size());
   while (settled > 0 && std::abs(shown[static_cast<std::size_t>(settled) - 1] - 1) <= 0.05) {
@@ -47,8 +47,7 @@ int settled_frames(const std::vector<double>& shown) {
 }  // namespace
 
 TEST_CASE("a vibration in frames is what the steps make of it", "[plate][swing]") {
-  // Crossings of the place of rest are half a period apart, and tops next to each other tell the
-  // damping.
+  // Crossings of the rest position are half a period apart, and successive maxima give the damping.
   for (const double lambda : {400.0, 2000.0}) {
     for (const double eta : {0.0, 3.0}) {
       for (const TimeSteps& steps : {TimeSteps{1, frame_length}, TimeSteps{5, frame_length / 5},
@@ -58,8 +57,8 @@ TEST_CASE("a vibration in frames is what the steps make of it", "[plate][swing]"
         const Swing swing = stepped_swing(lambda, dynamics, steps, frame_length);
         REQUIRE(swing.damping_ratio > 0);
         REQUIRE(swing.damping_ratio < 1);
-        // w - 1 = exp(-decay t) (p cos(omega t) + q sin(omega t)) in frames: three of them in a row
-        // obey a recurrence with just these coefficients.
+        // w - 1 = exp(-decay t) (p cos(omega t) + q sin(omega t)) in frames: any three in a row
+        // satisfy a recurrence with these coefficients.
         const double omega = 2 * std::numbers::pi * swing.frequency;
         const double decay =
             omega * swing.damping_ratio / std::sqrt(1 - swing.damping_ratio * swing.damping_ratio);
@@ -84,7 +83,8 @@ TEST_CASE("short steps leave a vibration as nature has it", "[plate][swing]") {
   const double damped =
       natural.frequency * std::sqrt(1 - natural.damping_ratio * natural.damping_ratio);
   CHECK_THAT(stepped.frequency, WithinRel(damped, 1e-4));
-  // Each step of backward Euler takes energy away: half of omega dt is what it adds at first.
+  // Each step of backward Euler removes energy: to first order it adds half of omega dt to the
+  // damping.
   const Swing coarse = stepped_swing(500, {3, 0}, {100, frame_length / 100}, frame_length);
   CHECK_THAT(coarse.damping_ratio, WithinRel(std::sqrt(500.0 / 3) * frame_length / 100 / 2, 0.01));
 }
@@ -130,7 +130,7 @@ TEST_CASE("several vibrations settle together", "[plate][swing]") {
   const TimeSteps steps{5, frame_length / 5};
   const auto slow = played(100, dynamics, steps, 5000);
   const auto fast = played(3000, dynamics, steps, 5000);
-  for (const double share : {0.03, 0.5, 1.3}) {  // the last one: they are against each other
+  for (const double share : {0.03, 0.5, 1.3}) {  // the last one: opposite signs
     std::vector<double> shown;
     for (std::size_t k = 0; k < slow.size(); ++k) {
       shown.push_back(share * slow[k] + (1 - share) * fast[k]);

@@ -28,10 +28,10 @@ TEST_CASE("overshoot steps run the loop of the thesis", "[plate][time_steps]") {
   const auto count = [](double dt) {
     return divide_interval(1.0 / 24, dt, Stepping::Overshoot).count;
   };
-  CHECK(count(0.01) == 5);  // 0.04 falls short of 1/24, 0.05 passes it
+  CHECK(count(0.01) == 5);  // 0.04 is less than 1/24, 0.05 is more
   CHECK(count(1) == 1);
   CHECK(count(1.0 / 240) == 10);  // ten times 1/240 is 1/24 in double precision, too
-  // Eleven times 1/264 is an ulp short of 1/24: the loop runs once more, and the thesis's did.
+  // Eleven times 1/264 is an ulp less than 1/24: the loop runs once more, as the thesis's did.
   double sum = 0;
   for (int k = 0; k < 11; ++k) sum += 1.0 / 264;
   CHECK(sum < 1.0 / 24);

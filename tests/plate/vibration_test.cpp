@@ -19,7 +19,7 @@ double smallest(const Grid& grid, const Stiffness& stiffness,
   return smallest_eigenvalue(*solver, {grid, stiffness, 0}).value();
 }
 
-// The slow way: all eigenvalues of the full matrix.
+// An independent slow path: all eigenvalues of the full matrix.
 double smallest_of_all(const Grid& grid, const Stiffness& stiffness) {
   const Eigen::MatrixXd matrix = assemble_upper({grid, stiffness, 0});
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>(),
@@ -89,7 +89,7 @@ TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate]
     const Eigen::MatrixXd matrix = assemble_upper(system);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
         matrix.selfadjointView<Eigen::Upper>());
-    // What a load on a few nodes, off the middle, holds.
+    // The displacement under a load on a few nodes, off the middle.
     const Eigen::Index size = unknown_count(system);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(size);
     load(size / 3) = 2;
@@ -103,7 +103,7 @@ TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate]
     CHECK_THAT(shares, WithinRel(1.0, 1e-9));
     CHECK(std::is_sorted(modes.begin(), modes.end(),
                          [](const auto& a, const auto& b) { return a.lambda < b.lambda; }));
-    // The slowest ones, each by itself.
+    // The slowest modes, individually.
     const std::size_t compared = std::min<std::size_t>(modes.size(), size == 130 ? 4 : 1);
     for (std::size_t k = 0; k < compared; ++k) {
       const auto vector = all.eigenvectors().col(static_cast<Eigen::Index>(k));
@@ -126,7 +126,7 @@ TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[pl
   const auto modes = excited_modes(*solver, system, shape, 3).value();
   const double first = smallest_eigenvalue(*solver, system).value();
   for (const ExcitedMode& mode : modes) {
-    if (mode.lambda < 2 * first) CHECK(std::abs(mode.share) < 1e-9);  // by rounding
+    if (mode.lambda < 2 * first) CHECK(std::abs(mode.share) < 1e-9);  // rounding error
   }
   CHECK(modes.size() > 2);
 }

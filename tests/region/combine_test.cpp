@@ -31,7 +31,7 @@ bool share_a_node(const Box& a, const Box& b) {
   return false;
 }
 
-// SPEC 5 word for word: any two that meet become one, until none do.
+// SPEC 5 word for word: any two boxes that share a node become one, until none do.
 std::vector<Box> merged_one_by_one(std::vector<Box> boxes) {
   std::erase_if(boxes, [](const Box& box) { return box.is_empty(); });
   for (bool is_done = false; !is_done;) {
@@ -82,7 +82,7 @@ TEST_CASE("a merged box that meets a third takes it in", "[region][islands]") {
   // The first two share one node; only their common box reaches the third.
   const std::vector<Box> boxes{{0, 2, 0, 2}, {2, 6, 2, 6}, {5, 8, 0, 1}};
   CHECK(merged(boxes) == std::vector<Box>{{0, 8, 0, 6}});
-  CHECK(merged(std::vector<Box>{{0, 2, 0, 2}, {3, 5, 0, 2}}).size() == 2);  // neighbours: no node
+  CHECK(merged(std::vector<Box>{{0, 2, 0, 2}, {3, 5, 0, 2}}).size() == 2);  // no shared node
 }
 
 TEST_CASE("the interior of a union is the nodes whose four cells are inside", "[region][union]") {
@@ -142,7 +142,7 @@ TEST_CASE("a union that is a box is that box", "[region][union]") {
   CHECK(combine(halves, Combine::Union) == combine(std::vector<Box>{{2, 8, 1, 9}}, Combine::Box));
   CHECK(patches_of(combine(halves, Combine::Union)[0]) ==
         std::vector<Patch>{Patch{{2, 8, 1, 9}, {}}});
-  // A column between them makes it two.
+  // With a column of nodes between them they are two.
   const std::vector<Region> apart =
       combine(std::vector<Box>{{2, 5, 1, 9}, {6, 8, 1, 9}}, Combine::Union);
   REQUIRE(apart.size() == 1);
@@ -156,7 +156,7 @@ TEST_CASE("thin boxes have cells but no interior, lines have neither", "[region]
   const std::vector<Region> strip = combine(std::vector<Box>{{1, 2, 0, 9}}, Combine::Union);
   REQUIRE(strip.size() == 1);
   CHECK(patches_of(strip[0]).empty());
-  // Two strips side by side have an interior together, and so has a strip along a box.
+  // Two adjacent strips have an interior together, and so has a strip beside a box.
   CHECK(patches_of(combine(std::vector<Box>{{1, 2, 0, 9}, {2, 3, 0, 9}}, Combine::Union)[0]) ==
         std::vector<Patch>{Patch{{1, 3, 0, 9}, {}}});
   const std::vector<Region> wider =

@@ -7,7 +7,7 @@ using namespace pliant;
 
 namespace {
 
-// Node (i,j) stands at (i, 0, j).
+// Node (i,j) is at (i, 0, j).
 Field lattice(const Grid& grid) {
   Field nodes(grid.node_count(), 3);
   for (int node = 0; node < grid.node_count(); ++node) {
@@ -25,7 +25,7 @@ const Grid grid{30, 20, 1, 1};
 }  // namespace
 
 TEST_CASE("a force acts in the island that its deformation box is part of", "[region][islands]") {
-  // The third reaches into the first's island with its force box, the fourth selects nothing.
+  // The force box of the third extends into the first's island; the fourth selects nothing.
   const std::vector<SampledForce> forces{at(5, 5, 3, 2), at(8, 7, 3, 2), at(22, 12, 3, 18),
                                          at(5, 5, 0, 4)};
   const Field nodes = lattice(grid);
@@ -51,7 +51,7 @@ TEST_CASE("in a box and a union a force acts wherever its box reaches", "[region
     REQUIRE(selection.regions.size() == 1);
     for (const ForceSelection& force : selection.forces) CHECK(force.region == 0);
     const Field load = assemble_load(grid, nodes, forces, selection);
-    CHECK(load(0, 1) == 6);  // both
+    CHECK(load(0, 1) == 6);  // both forces
   }
 }
 
@@ -91,5 +91,5 @@ TEST_CASE("a push counts the nodes that move, and only them", "[region]") {
   SampledForce idle = force;
   std::get<PointForce>(idle.shape).direction.setZero();
   CHECK_FALSE(pushes(grid, nodes, idle, selection.forces[0].force, patches));
-  CHECK_FALSE(pushes(grid, nodes, force, {0, 3, 0, 20}, patches));  // the rim only
+  CHECK_FALSE(pushes(grid, nodes, force, {0, 3, 0, 20}, patches));  // only the rim
 }

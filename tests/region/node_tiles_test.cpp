@@ -20,7 +20,7 @@ Vector3d place(std::mt19937& random) {
   return {number(random, -6, 6), number(random, -2, 2), number(random, -6, 6)};
 }
 
-// A hilly sheet of several tiles whose last ones are cut off.
+// A hilly sheet of several tiles; the last ones are incomplete.
 Field hills(const Grid& grid, std::mt19937& random) {
   Field nodes(grid.node_count(), 3);
   for (int j = 0; j < grid.rows; ++j) {
@@ -85,7 +85,7 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
     for (int k = 0; k < 16; ++k) {
       SampledForce& force = forces.emplace_back();
       force.shape = shape(random, k);
-      // Every other radius is just the distance of some node, or the number above it.
+      // Every other radius equals the distance of some node, or is the next larger number.
       const auto node = static_cast<Eigen::Index>(random() % grid.node_count());
       const double delta = distance(force.shape, nodes.row(node).transpose());
       ties += k % 2;
@@ -102,7 +102,7 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
       partial += !selected.force.is_empty() && selected.force != grid.box();
     }
     CHECK(selection == select_region(grid, nodes, forces, Combine::Islands));
-    // Again: what follows from boxes that stay, stays.
+    // Again: if the boxes are unchanged, so is the rest.
     const Selection before = selection;
     CHECK(reselect(selection, tiles, forces, Combine::Islands));
     CHECK(selection == before);

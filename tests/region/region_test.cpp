@@ -13,8 +13,8 @@ using namespace pliant;
 
 namespace {
 
-// SPEC 5 read word for word, over (u,v) values instead of node indices, and with none of the
-// library's distance code. u and v are the node's own coordinates on the sheet.
+// SPEC 5 word for word, over (u,v) values instead of node indices, and without the library's
+// distance code. u and v are the node's own coordinates on the sheet.
 struct UvBox {
   double u_min = std::numeric_limits<double>::infinity(), u_max = -u_min;
   double v_min = u_min, v_max = -u_min;
@@ -33,7 +33,7 @@ double brute_distance(const ForceShape& shape, const Vector3d& p) {
   const auto& line = std::get<LineForce>(shape);
   const Vector3d along = line.to - line.from;
   const double t = (p - line.from).dot(along) / along.squaredNorm();
-  if (!(t > 0)) return (p - line.from).norm();  // behind, or a segment of no length
+  if (!(t > 0)) return (p - line.from).norm();  // behind the segment, or a segment of no length
   if (t >= 1) return (p - line.to).norm();
   return (p - line.from - t * along).norm();
 }
@@ -75,7 +75,7 @@ Situation random_lattice(std::mt19937& random) {
       s.nodes.row(s.grid.node(i, j)) << i, pick(random, 0, 1), j;
   }
   for (int k = pick(random, 0, 4); k > 0; --k) {
-    // Braces evaluate from the left.
+    // Braces evaluate from left to right.
     s.forces.push_back({.shape = lattice_shape(random),
                         .magnitude = double(pick(random, -5, 5)),
                         .deformation_radius = double(pick(random, 0, 6)),
@@ -137,7 +137,7 @@ TEST_CASE("regions and force boxes are those of a brute-force reading", "[region
     }
     REQUIRE(row == load.rows());
   }
-  // The random situations are worth something.
+  // The random situations include enough of these cases.
   CHECK(ties > 1000);
   CHECK(overlaps > 200);
   CHECK(empty > 100);

@@ -75,7 +75,7 @@ TEST_CASE("a folder gives back what was put there, to any process", "[replay][st
     CHECK(reader->holds(some_key(1)));
     CHECK(reader->read(some_key(1), 100) == "one");
     CHECK(reader->read(some_key(2), 100) == "");
-    CHECK(reader->read(some_key(1), 2) == "on");  // for the seal to find out
+    CHECK(reader->read(some_key(1), 2) == "on");  // truncated: its seal detects this
   }
   store->discard(some_key(1));
   CHECK_FALSE(store->holds(some_key(1)));
@@ -152,7 +152,7 @@ TEST_CASE("what else lies in the folder is left alone", "[replay][store]") {
   auto store = open(scratch.path(), 3 * page);
   for (const std::uint64_t number : {1, 3, 4}) {
     CHECK_FALSE(store->holds(some_key(number)));
-    CHECK_FALSE(store->read(some_key(number), 100));  // nor does it wait for a writer
+    CHECK_FALSE(store->read(some_key(number), 100));  // it does not wait for a writer either
   }
   for (std::uint64_t number = 10; number < 50; ++number) store->write(some_key(number), "text");
   for (const std::string& there : {std::string("notes.txt"), to_text(some_key(2)), "x" + name,
@@ -175,7 +175,7 @@ TEST_CASE("the budget of disk space is kept", "[replay][store]") {
     }
     CHECK(store->trouble().empty());
   }
-  // Most of the room is used.
+  // Most of the budget is used.
   CHECK(bytes_in(scratch.path()) >= budget / 2 / (2 * page) * (2 * page));
 }
 
@@ -222,7 +222,7 @@ TEST_CASE("what a killed process left half written goes after a while", "[replay
   CHECK_FALSE(store->holds(some_key(1)));
   store->write(some_key(3), "text");
   CHECK_FALSE(fs::exists(scratch.file(part)));
-  CHECK(fs::exists(scratch.file(fresh)));  // somebody may be at it
+  CHECK(fs::exists(scratch.file(fresh)));  // another process may be writing it
 }
 
 TEST_CASE("a folder that cannot be one is an error", "[replay][store]") {
@@ -250,7 +250,7 @@ TEST_CASE("runs share a folder at the same time", "[replay][store][threads]") {
   const ScratchFolder scratch;
   const Scene s = moving_scene();
   const auto expected = all_states(s);
-  // With room for all, and with so little that they drive each other's states out.
+  // With room for all, and with so little that they evict each other's states.
   const std::size_t budget = GENERATE(plenty, std::size_t{100'000});
   std::atomic<int> wrong = 0;
   std::vector<std::jthread> threads;

@@ -31,7 +31,7 @@ ReplayHeader small_header() {
   return header;
 }
 
-// Numbers that are hard to write and read again.
+// Numbers for which a round trip through text is difficult.
 ReplayFrame small_frame(int number, bool has_states) {
   ReplayFrame frame;
   frame.number = number;
@@ -62,7 +62,7 @@ std::string write_small_log(const std::filesystem::path& file) {
   return read_file(file).value();
 }
 
-// The first error that reading the whole log meets; none: the log is sound.
+// The first error in reading the whole log; nullopt: the log is sound.
 std::optional<Error> trouble_in(const std::filesystem::path& file) {
   auto log = ReplayLogReader::open(file);
   if (!log) return log.error();
@@ -234,7 +234,7 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
     CHECK(trouble->code == ErrorCode::InvalidInput);
     CHECK(trouble->line == 2);
   }
-  // The same with what belongs there is sound, as far as it goes.
+  // The same line with the right content is accepted; the log is then truncated in line 3.
   CHECK(trouble_in(folder, lines[0] + resealed(R"({"frame":-1,"surfaces":[)" + digest + "}," +
                                                    digest + "}]}",
                                                seal_of(lines[0])))

@@ -21,7 +21,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-// Two surfaces under a force that travels and rests; the second one has a start of its own.
+// Two surfaces under a force that moves and rests; the second one has a start frame of its own.
 constexpr std::string_view scene_text = R"(<scene version="1" start="1" end="10">
   <surface name="sheet"><grid columns="13" rows="11" width="12" depth="10"/></surface>
   <surface name="other">
@@ -83,12 +83,12 @@ std::string record(const std::filesystem::path& scene, const std::filesystem::pa
   return read_file(log).value();
 }
 
-// What a comparison says, a line each.
+// The lines of a comparison or of its error.
 std::vector<std::string> said(const Result<ReplayVerdict>& verdict) {
   return verdict ? verdict->lines() : to_lines(verdict.error());
 }
 
-// Reads a log, changes it and writes it again: what another machine would have recorded.
+// Reads a log, changes it and writes it again, as if another machine had recorded it.
 template <class Change>
 void rewrite(const std::filesystem::path& from, const std::filesystem::path& to,
              const Change& change) {

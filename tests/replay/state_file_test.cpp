@@ -64,7 +64,7 @@ TEST_CASE("a state of something else is refused", "[replay][state]") {
   const Field expected = Simulation::make(s)->at(12)->surface("s").positions();
   CHECK(simulation.at(12)->surface("s").positions() == expected);
 
-  // The force of a program: it is its own to know.
+  // A force of the program: pliant cannot compare its function; the program must keep it the same.
   Scene own = s;
   own.forces[0].shape =
       CustomForce{.unit_force = [](const Vector3d&, const ForceTime&) -> Vector3d {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-// The one place that knows which Catch2 this is: Debian 12 has version 2, others 3.
+// The only file that depends on the version of Catch2: Debian 12 has version 2, others 3.
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
 #else
@@ -14,7 +14,7 @@ namespace pliant::testing {
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-/// Matches a text that holds `part`.
+/// Matches a text that contains `part`.
 inline auto contains_text(const std::string& part) {
 #if __has_include(<catch2/catch_all.hpp>)
   return Catch::Matchers::ContainsSubstring(part);

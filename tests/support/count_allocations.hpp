@@ -1,9 +1,9 @@
 #pragma once
 
-// Counts every allocation of the executable that includes this, in one file, and of all libraries
-// that it is linked with: what goes by malloc, calloc, realloc and the aligned ones, as Eigen's and
-// CHOLMOD's do, and operator new, which asks malloc. Built with a sanitizer, which has these for
-// itself, only what goes by operator new.
+// Counts every allocation of the executable that includes this in one file, and of all libraries
+// linked to it: by malloc, calloc, realloc and the aligned functions, as in Eigen and CHOLMOD, and
+// by operator new, which calls malloc. With a sanitizer, which replaces these functions itself,
+// counts operator new only.
 
 #include <atomic>
 #include <cerrno>
@@ -32,7 +32,7 @@ inline void* counted(void* memory) {
 
 #if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 
-// glibc's own, under names that nobody replaces; its free takes what they give.
+// glibc's own functions, under names that nothing replaces; its free accepts their memory.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -70,7 +70,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
 
 using pliant::testing::counted;
 
-// Not inlined, or GCC sees free() beside an operator new that it did not inline, and warns.
+// Not inlined: otherwise GCC sees free() beside an operator new that it did not inline, and warns.
 
 [[gnu::noinline]] void* operator new(std::size_t size) {
   return counted(std::malloc(size > 0 ? size : 1));
@@ -79,7 +79,7 @@ using pliant::testing::counted;
   const auto unit = static_cast<std::size_t>(alignment);
   return counted(std::aligned_alloc(unit, (size + unit - 1) / unit * unit));
 }
-// std::stable_sort asks this one. The sanitizers' own would not match the deletes below.
+// std::stable_sort calls this one. The sanitizers' own would not match the deletes below.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return operator new(size);
 }

@@ -11,7 +11,7 @@
 
 namespace pliant::testing {
 
-/// What a process of its own says on stderr ahead of a broken requirement that ends it, in `act`.
+/// The stderr output of a child process that runs `act` until a broken requirement ends it.
 template <class Act>
 std::string last_words(const Act& act) {
   int ends[2];

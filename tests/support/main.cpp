@@ -6,5 +6,5 @@ int main(int count, char* arguments[]) { return Catch::Session().run(count, argu
 #include <catch2/catch.hpp>
 #endif
 
-// assimp 5.2 loses memory when it refuses a file. Read by the address sanitizer only.
+// assimp 5.2 leaks memory when it refuses a file. Used by the address sanitizer only.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }

@@ -7,9 +7,9 @@
 
 namespace pliant::testing {
 
-/// A scene with something of everything that has a state: surfaces that start late and that
-/// recover, a moving transform, forces that come and go, in a group too, noise at a keyed rate, a
-/// drawn falloff. Frames 3 to 28.
+/// A scene with every feature that has a state: surfaces that start late and that recover, a moving
+/// transform, forces that are switched on and off, also in a group, noise at a keyed rate, an
+/// authored falloff curve. Frames 3 to 28.
 inline Scene moving_scene() {
   Surface first = sheet("first", 11);
   first.transform.rotate = vector_curve({{3, {0, 0, 0}}, {28, {0, 40, 5}}});
@@ -40,7 +40,7 @@ inline Scene moving_scene() {
   return s;
 }
 
-/// The channel's samples at frames until `last`, each held for a frame, and then `value`.
+/// The channel's samples at frames until `last`, each constant for a frame, and then `value`.
 inline Curve<1> sampled_until(const Channel<1>& channel, int last, double value) {
   CurveKeys<1> keys;
   for (int frame = 0; frame <= last + 1; ++frame) {
@@ -52,7 +52,7 @@ inline Curve<1> sampled_until(const Channel<1>& channel, int last, double value)
   return Curve<1>::make(std::move(keys)).value();
 }
 
-/// A frame's state as bytes, those of all surfaces: two are the same where every bit is.
+/// The state of all surfaces at a frame as bytes: equal exactly if bit-identical.
 inline std::string state_at(Simulation& simulation, int frame) {
   return simulation.state_bytes(frame).value();
 }

@@ -8,7 +8,7 @@
 
 namespace pliant::testing {
 
-/// A .npy file of float64 as its header says it is, read without the writer's code.
+/// A .npy file of float64 parsed according to its header, without the writer's code.
 struct NpyFile {
   std::string header;      ///< the Python literal
   std::size_t offset = 0;  ///< of the numbers in the file

@@ -30,7 +30,7 @@ inline PlateState random_state(const Grid& grid) {
   return {Field::Random(grid.node_count(), 3), Field::Random(grid.node_count(), 3)};
 }
 
-/// The system's matrix column by column from the stencil, which knows nothing of the assembly.
+/// The system's matrix, column by column from the stencil, independent of the assembly.
 inline Eigen::MatrixXd dense_operator(const PlateSystem& system) {
   const int n = unknown_count(system.grid);
   Eigen::MatrixXd dense(n, n);

@@ -18,8 +18,8 @@ inline constexpr bool is_sanitized = true;
 inline constexpr bool is_sanitized = false;
 #endif
 
-/// So many random cases, or a tenth of them with a sanitizer, whose subject is the code that they
-/// run rather than their numbers, and which takes ten times as long.
+/// `count` random cases, or a tenth of them with a sanitizer, which checks the code that they run
+/// rather than their numbers, and which needs ten times as long.
 constexpr int rounds(int count) { return is_sanitized ? count / 10 : count; }
 
 }  // namespace pliant::testing

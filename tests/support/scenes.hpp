@@ -80,7 +80,7 @@ inline double largest_difference(const Field& a, const Field& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
-/// The largest displacement of a vertex from where it is in the first frame.
+/// The largest distance of a vertex from its position in the first frame.
 inline double peak(const std::vector<Field>& frames) {
   double largest = 0;
   for (const Field& frame : frames) {

@@ -9,7 +9,7 @@
 
 namespace pliant::testing {
 
-/// A new empty folder that goes with its owner.
+/// A new empty folder that its owner's destructor removes.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -25,7 +25,7 @@ class ScratchFolder {
 
   std::filesystem::path file(std::string_view name) const { return path_ / name; }
 
-  /// Writes a file and gives its path.
+  /// Writes a file and returns its path.
   std::filesystem::path write(std::string_view name, std::string_view text) const {
     std::ofstream(file(name), std::ios::binary) << text;
     return file(name);

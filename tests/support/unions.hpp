@@ -8,7 +8,7 @@
 
 namespace pliant::testing {
 
-/// A plate whose outline is that of boxes together.
+/// A plate whose outline is the union of boxes.
 struct UnionPlate {
   std::string name;
   Grid grid;
@@ -27,7 +27,8 @@ inline UnionPlate ell(int side) {
   return union_plate("L", side, {{0, e, 0, e / 2}, {0, e / 2, 0, e}});
 }
 
-/// Outlines that forces make, on `side` nodes: with arms, with a hole, joined by a strip or a neck.
+/// Outlines that forces can make, on `side` nodes: with arms, with a hole, joined by a strip or a
+/// neck.
 inline std::vector<UnionPlate> union_plates(int side) {
   const int e = side - 1;
   const int a = e / 3;

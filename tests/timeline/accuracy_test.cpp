@@ -11,8 +11,8 @@
 namespace pliant::testing {
 namespace {
 
-/// Two keys with tangents of any legal length: in the square, on its edges, on the ellipse (where
-/// time stands still inside), or thirds.
+/// Two keys with tangents of any legal lengths: in the square, on its edges, on the ellipse (for
+/// which time stops somewhere inside), or thirds.
 std::vector<Key<1>> random_segment(Whim& whim) {
   double a = whim.between(0, 1);
   double b = whim.between(0, 1);
@@ -60,7 +60,7 @@ TEST_CASE("a value is that of the exact curve at a time within 4 ulp", "[timelin
     const long double before = exact.value(std::max(early, start));
     const long double here = exact.value(frame);
     const long double after = exact.value(std::min(late, end));
-    // The value itself rounds some ten times, each at most 2^-53 of the largest control value.
+    // The value itself has about ten roundings, each at most 2^-53 of the largest control value.
     double size = 0;
     for (const long double each : exact.v) {
       size = std::max(size, std::fabs(static_cast<double>(each)));
@@ -75,7 +75,7 @@ TEST_CASE("a value is that of the exact curve at a time within 4 ulp", "[timelin
     const bool is_level = steepness <= 1e3 * height;
     if (is_level) {
       ++level;
-      // A curve that is flatter than its values are high has their roundings too.
+      // A curve whose range is smaller than its values has their rounding errors too.
       worst_where_level = std::max(worst_where_level, (off - rounding) / height);
     }
     if (is_within && worst_where_level <= 1e-12) continue;

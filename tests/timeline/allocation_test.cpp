@@ -1,4 +1,5 @@
-// Evaluation does not allocate. An executable of its own, since it counts what everyone allocates.
+// Evaluation does not allocate. An executable of its own, since it counts all allocations of the
+// program.
 
 #include <cstdio>
 

@@ -8,7 +8,7 @@
 
 #include "pliant/timeline/curve.hpp"
 
-// Short ways to write keys down, and random ones.
+// Short functions for writing keys, and random keys.
 
 namespace pliant::testing {
 
@@ -61,7 +61,7 @@ inline Curve<1> make(const CurveKeys<1>& keys) { return Curve<1>::make(keys).val
 
 inline double at(const Curve<1>& curve, double frame) { return curve.value(frame)[0]; }
 
-/// A seeded source of authors' whims.
+/// A seeded source of random choices of an author.
 class Whim {
  public:
   explicit Whim(std::uint64_t seed) : bits_(seed) {}
@@ -71,7 +71,7 @@ class Whim {
   }
   int upto(int last) { return std::uniform_int_distribution<int>(0, last)(bits_); }
   bool once_in(int n) { return upto(n - 1) == 0; }
-  /// Sizes from 10^low to 10^high, evenly over the powers.
+  /// Sizes from 10^low to 10^high, uniform in the exponent.
   double size(double low, double high) { return std::pow(10.0, between(low, high)); }
 
   Tangent<1> tangent(bool is_out, double span) {

@@ -11,7 +11,7 @@ namespace {
 
 using timeline::Bernstein;
 
-/// By de Casteljau.
+/// The value by de Casteljau's algorithm.
 double value_of(Bernstein polynomial, double u) {
   for (std::size_t count = polynomial.size(); count > 1; --count) {
     for (std::size_t i = 0; i + 1 < count; ++i) {

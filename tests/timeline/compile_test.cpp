@@ -97,7 +97,7 @@ TEST_CASE("slopes beyond all numbers are an error", "[timeline][compile]") {
   CHECK(curve.error().message.find("rises beyond all numbers within its segment") !=
         std::string::npos);
   for (Key<1>& each : keys.keys) each.next.kind = SegmentKind::Linear;
-  CHECK(Curve<1>::make(keys).has_value());  // nobody reads the slopes
+  CHECK(Curve<1>::make(keys).has_value());  // the slopes are not read
 }
 
 TEST_CASE("segments arrive at left values, except steps", "[timeline][compile]") {

@@ -29,7 +29,7 @@ TEST_CASE("default lengths reproduce any cubic", "[timeline][curve]") {
     for (int i = 0; i < 20; ++i) {
       const double t = whim.between(-5, keys.back().frame);
       CAPTURE(a, b, c, t);
-      // Values reach 100; a dozen roundings.
+      // Values are up to 100; a dozen roundings.
       REQUIRE_THAT(at(curve, t), WithinAbs(f(t), 3e-13));
       REQUIRE_THAT(curve.velocity(t)[0], WithinAbs(slope(t), 1e-11));
     }
@@ -62,7 +62,7 @@ TEST_CASE("general lengths agree with a bisection in long double", "[timeline][c
     }
     for (int i = 0; i < 10; ++i) {
       const double t = whim.between(keys.front().frame, keys.back().frame);
-      // The exact value at a frame within 4 ulp, and a few roundings of the value itself.
+      // The exact value at a frame within 4 ulp, plus a few roundings of the value itself.
       const long double near[] = {reference_value(reference, t - 4.0L * ulp(t)),
                                   reference_value(reference, t),
                                   reference_value(reference, t + 4.0L * ulp(t))};
@@ -92,15 +92,15 @@ TEST_CASE("the curve is a finite function of time, whatever the tangents", "[tim
     for (const Key<1>& each : keys.keys) {
       is_sound = is_sound && at(*curve, each.frame) == each.value[0];
     }
-    if (is_sound) continue;  // one assertion per curve would take most of the time
+    if (is_sound) continue;  // one assertion per curve would need most of the time
     CAPTURE(round);
     REQUIRE(is_sound);
   }
 }
 
 TEST_CASE("time never runs backwards inside a Bezier segment", "[timeline][curve]") {
-  // A curve whose values are its own times, x(u) = y(u): slopes 1 and lengths as corrected. Then
-  // the value at t is t, however wild the lengths.
+  // A curve whose values are its own times, x(u) = y(u): slopes 1 and corrected lengths. Then the
+  // value at t is t for any lengths.
   Whim whim(4);
   for (int round = 0; round < rounds(15000); ++round) {
     CurveKeys<1> keys;
@@ -123,7 +123,7 @@ TEST_CASE("keys may be moved and scaled in time and value", "[timeline][curve]")
   Whim whim(5);
   for (int round = 0; round < rounds(3000); ++round) {
     CurveKeys<1> keys = whim.keys(5);
-    // Powers of two and whole shifts of dyadic frames carry no rounding: equal bits, no tolerance.
+    // Powers of two and integer shifts of dyadic frames are exact: equal bits, no tolerance.
     for (Key<1>& each : keys.keys) each.frame = std::round(each.frame * 1024) / 1024;
     bool is_increasing = true;
     for (std::size_t k = 1; k < keys.keys.size(); ++k) {
@@ -170,7 +170,7 @@ TEST_CASE("keys may be moved and scaled in time and value", "[timeline][curve]")
     for (int i = 0; i < 10; ++i) {
       const double t = whim.upto(80 * 1024) / 1024.0 - 40;
       CAPTURE(round, t);
-      // Around frame 0, and only there, a segment is solved with more digits.
+      // Near frame 0, and only there, a segment is solved with more digits.
       REQUIRE(at(moved_curve, t + 512) == at(moved_on_curve, t + 1024));
       REQUIRE(at(raised_curve, t) == -4 * at(curve, t));
       REQUIRE(at(stretched_curve, 8 * t) == at(curve, t));
@@ -185,8 +185,8 @@ TEST_CASE("velocity is the slope of the value", "[timeline][curve]") {
     const CurveKeys<1> keys = whim.keys(5);
     const Curve<1> curve = make(keys);
     const double t = whim.between(keys.keys.front().frame - 3, keys.keys.back().frame + 3);
-    // Differences over steps that shrink: they must approach the velocity, unless something happens
-    // at this very frame (a key, a vertical, a corner of an easing).
+    // Differences over decreasing steps must approach the velocity, unless this very frame is
+    // special (a key, a vertical tangent, a corner of an easing).
     const double v = curve.velocity(t)[0];
     double best = std::numeric_limits<double>::infinity();
     for (double h = 1e-3; h > 1e-8; h /= 4) {
@@ -205,7 +205,7 @@ TEST_CASE("one-sided limits are the limits", "[timeline][curve]") {
     const CurveKeys<1> keys = whim.keys(4);
     const Curve<1> curve = make(keys);
     for (const Key<1>& each : keys.keys) {
-      if (each.next.ease == Ease::Elastic) continue;  // starts with a step, by rule
+      if (each.next.ease == Ease::Elastic) continue;  // starts with a step by definition
       const double v = curve.left_velocity(each.frame)[0];
       const double h = 1e-9;
       const double before = at(curve, each.frame - h);

@@ -16,7 +16,7 @@ using timeline::Progress;
 
 constexpr long double pi = std::numbers::pi_v<long double>;
 
-/// The easings as they are written down, in long double.
+/// The easings as documented, in long double.
 struct Formula {
   Interpolation next;
   long double length;
@@ -103,9 +103,9 @@ TEST_CASE("easings follow their formulas on every side", "[timeline][easing]") {
         const Easing easing(next, length, change);
         const Formula formula{next, length, change};
         for (int i = 0; i <= 16; ++i) {
-          const double u = i / 16.0;  // 1 - u carries no rounding
+          const double u = i / 16.0;  // 1 - u is exact
           CAPTURE(ease, side, round, u, length, change);
-          // Elastic: the angle grows with length/period, and its rounding with it.
+          // Elastic: the angle grows with length/period, and so does its rounding error.
           const double angle =
               1 + length / std::fabs(next.period.value_or(0) != 0 ? *next.period : 0.3 * length);
           const double tolerance = 4e-15 * (next.ease == Ease::Elastic ? 10 * angle : 1.0) *

@@ -21,14 +21,14 @@ double size_of(const Curve<1>& curve) {
   return std::max({size, std::fabs(range.low[0]), std::fabs(range.high[0])});
 }
 
-/// How far a value lies outside of what a curve has within `reach` frames of a frame: so that what
-/// rounding does to time counts for nothing, however steep the curve.
+/// How far a value is outside the range of a curve within `reach` frames of a frame: so rounding
+/// errors of time do not count, however steep the curve is.
 double miss(double value, const Curve<1>& curve, double frame, double reach) {
   const auto range = curve.range(frame - reach, frame + reach);
   return std::max({0.0, range.low[0] - value, value - range.high[0]});
 }
 
-/// A random curve, with an inner loop at times.
+/// A random curve, sometimes with an inner loop.
 Curve<1> some_curve(Whim& whim, int most) {
   for (;;) {
     CurveKeys<1> keys = whim.keys(most);
@@ -64,7 +64,7 @@ std::vector<double> key_frames(const Curve<1>& curve) {
   return frames;
 }
 
-/// Whether slopes agree, where they are not so steep that rounding of time decides.
+/// Whether slopes agree, unless they are so steep that the rounding of time dominates.
 bool slopes_agree(double a, double b, double size) {
   if (!(std::fabs(a) < 100 * size) || !(std::fabs(b) < 100 * size)) return true;
   return std::fabs(a - b) <= 1e-7 * (1 + size);
@@ -125,7 +125,7 @@ TEST_CASE("a key put into a curve leaves its velocities", "[timeline][edit]") {
     const double frame = some_frame(whim, curve);
     const auto edited = insert_key(curve, frame);
     if (!edited) continue;
-    // A key's value is rounded, and with it the slope to a key close by.
+    // A key's value is rounded, and so is the slope to a nearby key.
     double nearest = 1;
     for (const double t : key_frames(curve)) nearest = std::min(nearest, std::fabs(t - frame));
     if (nearest < 1e-4) continue;
@@ -144,8 +144,9 @@ TEST_CASE("a key put into a curve leaves its velocities", "[timeline][edit]") {
       const double step = 1e-7 * (1 + std::fabs(t));
       check(t, edited->velocity(t + step)[0], curve.velocity(t + step)[0]);
       check(t, edited->left_velocity(t - step)[0], curve.left_velocity(t - step)[0]);
-      // At a key without a handle that the other one reaches, the slope is a quotient of
-      // roundings, before as well as after; then it is not that beside.
+      // At a key without a handle, which the handle of the other key reaches, the slope is a
+      // quotient of rounding errors, both before and after; then it is not the slope beside the
+      // key.
       const auto settles = [&](const Curve<1>& any) {
         const double right = any.velocity(t)[0] - any.velocity(t + step)[0];
         const double left = any.left_velocity(t)[0] - any.left_velocity(t - step)[0];
@@ -190,8 +191,8 @@ void check_equivariance(std::uint64_t seed, bool is_reversed, double growth, con
     };
     for (int i = 0; i < 10; ++i) {
       const double t = some_frame(whim, curve);
-      // What rounding does to a frame, here and where it goes; a copy of the keys adds up what it
-      // does to their span.
+      // The rounding error of a frame, before and after the edit; a copy of the keys accumulates
+      // the rounding errors of their span.
       const double copies = std::fabs(t - first) / (last - first + 1e-3);
       const double reach =
           16 * epsilon * (std::fabs(t) + 100 + std::fabs(map(t)) / growth) * (1 + copies);
@@ -202,14 +203,15 @@ void check_equivariance(std::uint64_t seed, bool is_reversed, double growth, con
       check(t, std::max({0.0, low - value, value - high}));
     }
     for (const Key<1>& key : curve.keys().keys) {
-      // On a key the limits count one by one; copies of an inner loop round their frames anew.
+      // At a key the limits are compared individually; copies of an inner loop round their frames
+      // again.
       if (is_reversed || curve.keys().loop) break;
       const double t = key.frame;
       check(t, std::fabs(at(*edited, map(t)) - rise(at(curve, t))));
       check(t, std::fabs(edited->left_value(map(t))[0] - rise(curve.left_value(t)[0])));
     }
     CAPTURE(worst_frame, at(curve, worst_frame), at(*edited, map(worst_frame)));
-    // A slope outside the keys has what rounding does to the span that it comes from.
+    // A slope outside the keys has the rounding error of the span from which it is computed.
     const double tolerance = 1e-12 + 64 * epsilon * 100 / shortest_span(curve);
     if (worst > tolerance) REQUIRE(worst <= tolerance);
   }
@@ -256,7 +258,7 @@ TEST_CASE("a curve reversed twice is the curve", "[timeline][edit]") {
       },
       [](double t) { return t; }, [](double v) { return v; });
 
-  // About frame 0 nothing is rounded: then the keys are the same, numbers included.
+  // About frame 0 there is no rounding: then the keys are the same, numbers included.
   std::vector<Key<1>> keys = {key(0, 1, of_slope(0.25)), key(4, 2, of_handle(0, 0)), key(9, -1)};
   keys[1].in = of_handle(-1, 0.5);
   keys[1].out = of_handle(2, 0.5);
@@ -320,7 +322,7 @@ TEST_CASE("edits leave tangents automatic where they may", "[timeline][edit]") {
     CHECK(kinds_stay(scale(curve, {0, 1.1, {0}, {0.7}}).value()));
     CHECK(kinds_stay(reverse(curve, 0.1).value()));
   }
-  // Inserting writes down only what looks at the new key.
+  // Inserting writes as numbers only the tangents that depend on the new key.
   const Curve<1> edited = insert_key(make(keys), 55).value();
   CHECK(edited.keys().keys[4].in.kind == TangentKind::Auto);
   CHECK(edited.keys().keys[4].out.kind == TangentKind::Auto);
@@ -389,7 +391,7 @@ TEST_CASE("deleting an inserted key restores the curve", "[timeline][edit]") {
     ++rejoined;
     for (int i = 0; i < 4; ++i) {
       const double t = some_frame(whim, curve);
-      // The handles are rebuilt from their parts, the smaller ones with fewer digits.
+      // The handles are reconstructed from their parts, the smaller ones with fewer digits.
       const double off = miss(at(*restored, t), curve, t, 1e-10);
       if (off <= 1e-9 * (size_of(curve) + std::fabs(at(curve, t)))) continue;
       CAPTURE(round, frame, t, at(curve, t), at(*restored, t));

@@ -10,7 +10,7 @@ namespace {
 TEST_CASE("pairs hold sums and products exactly", "[timeline][exact_sum]") {
   Whim whim(91);
   for (int round = 0; round < rounds(2000); ++round) {
-    // Integers of at most 62 bits in sum and product: exact to compare against.
+    // Integers with at most 62 bits in sum and product: an exact reference.
     const std::int64_t a = static_cast<std::int64_t>(whim.between(-0x1p31, 0x1p31));
     const std::int64_t b = static_cast<std::int64_t>(whim.between(-0x1p31, 0x1p31));
     const auto x = static_cast<double>(a);

@@ -10,7 +10,7 @@
 namespace pliant::testing {
 namespace {
 
-/// Keys at dyadic frames, so that copies can be written down without rounding.
+/// Keys at dyadic frames, so that copies can be written without rounding.
 CurveKeys<1> cycle() {
   CurveKeys<1> keys;
   keys.keys = {key(1, 2, of_slope(1)), key(2.5, 5, of_slope(-1)),
@@ -19,12 +19,13 @@ CurveKeys<1> cycle() {
   return keys;
 }
 
-/// The same keys with `copies` copies of the cycle written out behind, as keys.
+/// The same keys followed by `copies` copies of the cycle, written out as keys.
 CurveKeys<1> written_out(const CurveKeys<1>& keys, int copies, double offset) {
   CurveKeys<1> written = keys;
   const double span = keys.keys.back().frame - keys.keys.front().frame;
   for (int n = 1; n <= copies; ++n) {
-    // On the joint the earlier copy's last key stays; what follows starts from the first key.
+    // At the joint the earlier copy's last key stays; the segment after it starts like the first
+    // key's.
     Key<1>& joint = written.keys.back();
     const Key<1>& first = keys.keys.front();
     joint.next = first.next;
@@ -52,11 +53,11 @@ TEST_CASE("repeatOffset equals the curve with the copies written out", "[timelin
     CAPTURE(t);
     REQUIRE_THAT(at(curve, t), WithinAbs(at(reference, t), 1e-13));
     REQUIRE_THAT(curve.velocity(t)[0], WithinAbs(reference.velocity(t)[0], 1e-13));
-    if (t == 1) continue;  // left of the first key this curve repeats, the reference holds
+    if (t == 1) continue;  // left of the first key this curve repeats, the reference is constant
     REQUIRE_THAT(curve.left_value(t)[0], WithinAbs(reference.left_value(t)[0], 1e-13));
     REQUIRE_THAT(curve.left_velocity(t)[0], WithinAbs(reference.left_velocity(t)[0], 1e-13));
   }
-  // Ahead of the keys every copy stands lower by the offset.
+  // Before the keys every copy is lower by the offset.
   for (double t = -40; t < 1; t += 0.0625) {
     CAPTURE(t);
     const double copies = std::ceil((1 - t) / 8);
@@ -79,10 +80,10 @@ TEST_CASE("mirror returns on its own way", "[timeline][extrapolated]") {
     REQUIRE(curve.velocity(9 + d)[0] == 0 - curve.left_velocity(9 - d)[0]);
     REQUIRE(curve.left_velocity(9 + d)[0] == 0 - curve.velocity(9 - d)[0]);
   }
-  // Running backwards over a stepNext, the jump comes from the other side.
+  // When a stepNext runs backwards, its jump is on the other side.
   CHECK(at(curve, 14) == 3);
   CHECK(curve.left_value(14)[0] == 7);
-  // Where the curve arrives with a jump forwards, it leaves the joint with that jump backwards.
+  // A copy that ends with a jump at a joint is followed by a mirrored copy with the reverse jump.
   CHECK(at(curve, 9) == 8);
   CHECK(curve.left_value(9)[0] == 6);
   CHECK(curve.left_value(17)[0] == 2);
@@ -175,7 +176,7 @@ TEST_CASE("the line is level where the curve has no slope to continue",
   CHECK(at(make(keys), 5) == 4);
   keys.keys[1].left = std::nullopt;
   keys.keys[0].next.kind = SegmentKind::Bezier;
-  keys.keys[1].in = of_handle(0, -2);  // a vertical
+  keys.keys[1].in = of_handle(0, -2);  // a vertical tangent
   CHECK(at(make(keys), 5) == 4);
 }
 
@@ -229,7 +230,8 @@ TEST_CASE("the range is tight", "[timeline][extrapolated]") {
   CHECK(hill.range(0.75, 1).high[0] == 0.75);
   CHECK(hill.range(10, 12345.5).high[0] == 1);
   CHECK(hill.range(1.25, 1.25).low[0] == 0.75);
-  // A repeated stepNext never shows its first key's value again: the joint is the last key's.
+  // A repeated stepNext has its first key's value only once: at the joint it has the last key's
+  // value.
   CurveKeys<1> steps = {.keys = {key(0, -9, of_segment(SegmentKind::StepNext)), key(2, 5)}};
   steps.after.kind = OutsideKind::Repeat;
   CHECK(make(steps).range(0.5, 20).low[0] == 5);

@@ -1,5 +1,5 @@
-// Keys at any distance that two numbers can have: what a curve answers between and beside them is a
-// number, and finite.
+// Keys at any distance that two numbers can have: the values of a curve between and beside them are
+// finite numbers.
 
 #include <array>
 #include <cmath>
@@ -27,7 +27,7 @@ struct Way {
   Interpolation next;
   Tangent<1> out = {};
   Tangent<1> in = {};
-  bool is_upright = false;  // somewhere its slope is infinite by itself
+  bool is_upright = false;  // its slope is infinite somewhere, not by overflow
 };
 
 std::vector<Way> easings() {
@@ -75,7 +75,7 @@ std::vector<Way> beziers(double length) {
                       {},
                       of_handle(share * length, 0.5),
                       of_handle(-(share / 3) * length, 2)};
-    // Handles of no length, and those that `limit` makes legal, may stand upright.
+    // Handles of no length, and those that `limit` makes legal, may be vertical.
     ways.push_back(handles);
     ways.back().is_upright = true;
   }
@@ -100,7 +100,7 @@ std::vector<Way> all_ways(double length) {
   return ways;
 }
 
-// The keys, what is beside them, and a few frames between.
+// The keys, the frames next to them, and a few frames between.
 std::vector<double> frames_of(double start, double end) {
   std::vector<double> frames = {start,
                                 end,
@@ -128,7 +128,7 @@ void check_finite(const Curve<1>& curve, double frame, bool is_upright) {
   }
 }
 
-// Whether there is such a curve; to be refused is not wrong.
+// Whether there is such a curve; an error is also correct.
 bool check_curve(const Way& way, double start, double length, double change) {
   CurveKeys<1> keys;
   keys.keys = {key(start, 0, way.next), key(start + length, change)};
@@ -141,7 +141,7 @@ bool check_curve(const Way& way, double start, double length, double change) {
     return false;
   }
   for (const double frame : frames_of(start, start + length)) {
-    // Outside the keys a slope may carry a value beyond all numbers.
+    // Outside the keys a slope may make a value overflow.
     if (frame >= start && frame <= start + length) check_finite(*curve, frame, way.is_upright);
   }
   return true;
@@ -167,7 +167,7 @@ TEST_CASE("keys at any distance give finite values and velocities", "[timeline][
 }
 
 TEST_CASE("easings are the same at every length of their segment", "[timeline][easing]") {
-  // Sixteen of the least frames there are, against sixteen whole ones; nothing is rounded.
+  // Sixteen of the least positive frames, compared with sixteen whole frames; nothing is rounded.
   for (const Way& way : easings()) {
     if (way.next.period.value_or(0) != 0) continue;
     const Curve<1> tiny = make({key(0, 1, way.next), key(16 * least, 4)});
@@ -188,7 +188,7 @@ TEST_CASE("a velocity beyond all numbers is the largest of them", "[timeline][cu
   CHECK(std::isfinite(falling.velocity(0)[0]));
   CHECK(falling.value(0)[0] == 1);
   CHECK(falling.value(least)[0] == 0);
-  // It is no slope to go on with outside the keys: as where it is infinite.
+  // The slope cannot be continued outside the keys: as if it were infinite.
   CurveKeys<1> keys;
   keys.keys = {key(0, 0, of_segment(SegmentKind::Linear)), key(least, 1)};
   keys.after.kind = OutsideKind::Linear;

@@ -21,7 +21,7 @@ std::size_t slow(const std::vector<double>& frames, double frame) {
 TEST_CASE("the search finds the later segment at a key", "[timeline][key_search]") {
   Whim whim(81);
   for (int round = 0; round < 400; ++round) {
-    // Gaps over many powers of ten: nearly all keys share one bucket.
+    // Gaps of many orders of magnitude: nearly all keys share one bucket.
     std::vector<double> frames = {whim.between(-100, 100)};
     const double least = whim.once_in(2) ? -9 : 0;
     const int count = 1 + whim.upto(40);

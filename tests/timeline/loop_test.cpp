@@ -67,7 +67,7 @@ TEST_CASE("a loop without copies changes nothing, and says so", "[timeline][loop
 
 TEST_CASE("hidden keys are noted", "[timeline][loop]") {
   const Curve<1> curve = make(looped(1, 1));
-  REQUIRE(curve.notes().size() == 2);  // frames -3 and 4; frame 9 lies behind the last copy's end 8
+  REQUIRE(curve.notes().size() == 2);  // frames -3 and 4; frame 9 is after the last copy's end 8
   CHECK(curve.notes()[0].key == 1);
   CHECK(curve.notes()[1].key == 5);
   CHECK(curve.notes()[0].message ==

@@ -106,7 +106,7 @@ TEST_CASE("contain cuts at the segment's length, always", "[timeline][overshoot]
 }
 
 TEST_CASE("corrections keep slopes and scale vectors", "[timeline][overshoot]") {
-  // Contain, so that the expected segment can be written down with legal lengths.
+  // Contain, so that the expected segment can be written with legal lengths.
   const auto curve_of = [](const Tangent<1>& out, const Tangent<1>& in) {
     CurveKeys<1> keys;
     keys.keys = {key(0, 0), key(4, 3)};
@@ -136,7 +136,7 @@ TEST_CASE("a vector without length that is lengthened keeps its value", "[timeli
   const double root = (0.8 - std::sqrt(1.2 * 0.4)) / 2;
   legal.keys[1].in = of_handle(-root, 0.75);
   for (double t = 0; t <= 1; t += 0.125) {
-    CHECK_THAT(at(make(keys), t), WithinAbs(at(make(legal), t), 1e-7));  // t = 8/9 is a vertical
+    CHECK_THAT(at(make(keys), t), WithinAbs(at(make(legal), t), 1e-7));  // vertical at t = 8/9
   }
 }
 

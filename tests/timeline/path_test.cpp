@@ -29,8 +29,8 @@ double distance(const Value<3>& a, const Value<3>& b) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
-/// The centripetal spline by the pyramid of Barry and Goldman, which shares no formula with the
-/// path: `count` places on the piece from p[1] to p[2].
+/// The centripetal spline by Barry and Goldman's pyramid, which has no formula in common with Path:
+/// `count` points on the piece from p[1] to p[2].
 Places pyramid(const Places& p, int count) {
   double t[4] = {0, 0, 0, 0};
   for (int k = 0; k < 3; ++k) t[k + 1] = t[k] + std::sqrt(distance(p[k], p[k + 1]));
@@ -53,7 +53,8 @@ Places pyramid(const Places& p, int count) {
   return places;
 }
 
-/// The length of a polygon, with the error of its chords taken off (they are short by h^2).
+/// The length of a polygon, extrapolated to remove the error of its chords (they are too short by
+/// h^2).
 double length_of(const Places& fine) {
   double all = 0, every_other = 0;
   for (std::size_t k = 1; k < fine.size(); ++k) all += distance(fine[k - 1], fine[k]);
@@ -61,7 +62,7 @@ double length_of(const Places& fine) {
   return all + (all - every_other) / 3;
 }
 
-/// Each piece of an open path with the waypoints that shape it; beyond the ends, mirrored ones.
+/// Each piece of an open path with the waypoints that determine it; mirrored ones beyond the ends.
 std::vector<Places> pieces_of(const Places& waypoints) {
   Places all = waypoints;
   const auto mirrored = [](const Value<3>& end, const Value<3>& next) {
@@ -87,7 +88,7 @@ TEST_CASE("a share of the way is that share of the length", "[timeline][path]") 
     total += lengths.back();
   }
   CHECK_THAT(path.length(), WithinRel(total, 1e-9));
-  // The waypoints stand where the lengths of the pieces say.
+  // The waypoints are at the cumulative lengths of the pieces.
   double walked = 0;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     CHECK(distance(path.at(walked / total), waypoints[k]) < 1e-8 * total);
@@ -109,7 +110,7 @@ TEST_CASE("even progress is even speed", "[timeline][path]") {
   const double step = path.length() / steps;
   for (int k = 0; k < steps; ++k) {
     const double chord = distance(path.at(k / double(steps)), path.at((k + 1) / double(steps)));
-    // Chords are short by curvature^2 step^2 / 24, of which the sharpest bend here makes 4e-3.
+    // Chords are too short by curvature^2 step^2 / 24, which is 4e-3 at the sharpest bend here.
     CHECK(chord <= step * (1 + 1e-9));
     CHECK(chord > step * (1 - 1e-2));
   }
@@ -135,7 +136,7 @@ TEST_CASE("a closed path has no corner where it closes", "[timeline][path]") {
   double along = 0;
   for (int c = 0; c < 3; ++c) along += (here[c] - before[c]) * (after[c] - here[c]);
   CHECK_THAT(along / (distance(before, here) * distance(here, after)), WithinAbs(1, 1e-6));
-  // A square's corners: by symmetry a quarter of the way is a waypoint.
+  // A square's corners: by symmetry a quarter of the length is a waypoint.
   const Path square = Path::make({{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, true).value();
   CHECK(distance(square.at(0.25), {0, 1, 0}) < 1e-12);
   CHECK(distance(square.at(0.75), {0, -1, 0}) < 1e-12);
@@ -150,7 +151,7 @@ TEST_CASE("waypoints on a line make a straight way", "[timeline][path]") {
 }
 
 TEST_CASE("a way that turns back is walked to its turning point", "[timeline][path]") {
-  // At the middle waypoint the speed of the spline's own parameter vanishes.
+  // At the middle waypoint the speed of the spline in its own parameter is 0.
   const Path path = Path::make({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}).value();
   CHECK_THAT(path.length(), WithinRel(2.0, 1e-12));
   CHECK(distance(path.at(0.5), {1, 0, 0}) < 1e-9);

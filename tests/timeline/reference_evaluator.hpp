@@ -8,8 +8,8 @@
 
 namespace pliant::testing {
 
-/// A Bézier segment as its four control points, solved by bisection in long double: slow, plain,
-/// and written without a look at the engine. Requires: time does not run backwards.
+/// A Bézier segment as its four control points, solved by bisection in long double: slow, simple,
+/// and independent of the engine. Requires: time does not run backwards.
 struct ReferenceSegment {
   long double t[4];
   long double v[4];
@@ -32,8 +32,8 @@ struct ReferenceSegment {
   long double value(long double frame) const { return bernstein(v, parameter(frame)); }
 };
 
-/// Keys whose tangents are slopes with lengths (a third of the segment when absent), Bézier
-/// throughout, no overshoot.
+/// Keys whose tangents are slopes with lengths (a third of the segment when absent), all segments
+/// Bézier, no overshoot.
 inline std::vector<ReferenceSegment> reference_segments(const std::vector<Key<1>>& keys) {
   std::vector<ReferenceSegment> segments;
   for (std::size_t k = 0; k + 1 < keys.size(); ++k) {

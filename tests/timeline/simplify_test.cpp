@@ -42,7 +42,7 @@ TEST_CASE("a baked sine needs few keys", "[timeline][simplify]") {
     CAPTURE(max_error, result.error, sampled, result.keys.keys.size());
     CHECK(result.error <= max_error);
     CHECK(sampled <= result.error * (1 + 1e-9) + 1e-13);
-    CHECK(sampled >= 0.99 * result.error);  // what is reported is what is reached
+    CHECK(sampled >= 0.99 * result.error);  // the reported bound is reached
     CHECK(result.keys.keys.size() < last_count);
     last_count = result.keys.keys.size();
     CHECK(result.error > last_error);

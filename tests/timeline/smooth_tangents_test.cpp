@@ -54,7 +54,7 @@ TEST_CASE("free tangents have continuous acceleration", "[timeline][smooth]") {
     CurveKeys<1> keys = random_keys(whim, 2 + whim.upto(10), TangentKind::Free);
     const bool is_periodic = whim.once_in(2);
     if (is_periodic) keys.after.kind = OutsideKind::RepeatOffset;
-    // Now and then a key of another kind: its neighbours reckon with its slope.
+    // Sometimes a key of another kind: its neighbours use its slope.
     std::size_t other = 0;
     if (keys.keys.size() > 4 && whim.once_in(2)) {
       other = 2;
@@ -89,7 +89,7 @@ TEST_CASE("smooth tangents never overshoot, and accelerate steadily but at fixed
   for (int round = 0; round < rounds(1000); ++round) {
     CurveKeys<1> keys = random_keys(whim, 3 + whim.upto(10), TangentKind::Smooth);
     if (whim.once_in(2)) {
-      // A long climb: few extrema, so that the system has something to say.
+      // A long climb: few extrema, so that most slopes come from the system.
       double value = 0;
       for (Key<1>& each : keys.keys) each.value[0] = value += whim.size(-1, 1);
     }
@@ -135,7 +135,7 @@ TEST_CASE("a run that meets a flat side is flat there", "[timeline][smooth]") {
   keys.keys[1].in = of_kind(TangentKind::Flat);
   const Slopes flat = tangent_slopes(keys.keys, keys.before, keys.after, 0);
   CHECK(flat.out[1] == 0);
-  keys.keys[1].in = of_slope(3);  // another slope parts the key: a natural end
+  keys.keys[1].in = of_slope(3);  // another slope separates the key's sides: a natural end
   const Slopes natural = tangent_slopes(keys.keys, keys.before, keys.after, 0);
   CHECK_THAT(2 * natural.out[1] + natural.in[2], WithinAbs(3 * 2, 1e-13));
 }

@@ -118,7 +118,7 @@ TEST_CASE("a left value parts the tangents of its key", "[timeline][tangents]") 
   const Slopes eased = slopes_of(with_kinds(keys, TangentKind::Auto));
   CHECK(eased.in[1] == 0);
   CHECK(eased.out[1] == 0);
-  // After a step the left value counts for nothing.
+  // After a step the left value is not used.
   CurveKeys<1> stepped = keys;
   stepped.keys[0].next.kind = SegmentKind::Step;
   CHECK(slopes_of(with_kinds(stepped, TangentKind::Spline)).in[1] == 3);

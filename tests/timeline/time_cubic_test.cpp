@@ -36,8 +36,7 @@ TEST_CASE("the time solve meets the frame within 3 ulp of it", "[timeline][time_
     const double start = whim.once_in(3) ? 0 : whim.between(-50, 50);
     const double end = start + whim.size(-3, 3);
     const double span = end - start;
-    // Lengths anywhere in the square, often on its edges, or on the ellipse, where time stands
-    // still.
+    // Lengths anywhere in the square, often on its edges, or on the ellipse, for which time stops.
     double a = whim.once_in(4) ? static_cast<double>(whim.upto(1)) : whim.between(0, 1);
     double b = whim.once_in(4) ? static_cast<double>(whim.upto(1)) : whim.between(0, 1);
     if (whim.once_in(4)) {
@@ -77,7 +76,7 @@ TEST_CASE("the time solve ends at once where nothing is left to solve", "[timeli
 }
 
 TEST_CASE("frames beside a key keep all their digits", "[timeline][time_cubic]") {
-  // x(q) = 3 q² - 2 q³ over ten frames: q = √(d/30) but for terms of higher order.
+  // x(q) = 3 q² - 2 q³ over ten frames: q = √(d/30) up to terms of higher order.
   const TimeCubic after(0, 10, {0, 0}, {0, 0});
   const TimeCubic before(-10, 0, {0, 0}, {0, 0});
   for (const double distance : {1e-12, 1e-40, 1e-150, 1e-290}) {
@@ -88,8 +87,8 @@ TEST_CASE("frames beside a key keep all their digits", "[timeline][time_cubic]")
 }
 
 TEST_CASE("the middle of a segment around frame 0 keeps its digits too", "[timeline][time_cubic]") {
-  // The curve x(q) - 10 = 20 q² (3 - 2 q) - 10 has the slope 30 at q = 1/2: frame t lies t/30
-  // beyond.
+  // The curve x(q) - 10 = 20 q² (3 - 2 q) - 10 has the slope 30 at q = 1/2: the place of frame t is
+  // t/30 beyond it.
   const TimeCubic time(-10, 10, {0, 0}, {0, 0});
   for (const double frame : {1e-10, 3e-16, 1e-20}) {
     const TimeCubic::Place place = time.place_of(frame);

@@ -76,7 +76,7 @@ struct Distances {
   }
 };
 
-// The unit force where it is the same everywhere.
+// The unit force if it is the same everywhere.
 struct CommonUnitForce {
   std::optional<Vector3d> operator()(const PointForce& force) const {
     return normalised(force.direction);
@@ -132,9 +132,9 @@ BatchNumbers strengths(const SampledForce& force, const BatchNumbers& distance, 
   return strength;
 }
 
-// Rounding keeps order: of a component p >= low > c, the difference p - c as computed is not below
-// low - c as computed, and so on through squares, sums and the root. So what follows from the
-// smallest differences is a bound without any allowance.
+// Rounding is monotone: for a component p >= low > c, the computed p - c is not below the computed
+// low - c, and the same is true for squares, sums and the root. So the distance computed from the
+// smallest differences is a bound without an extra tolerance.
 double gap_to_box(double low, double high, double from, double to) {
   if (low > to) return low - to;
   return high < from ? from - high : 0;
@@ -157,8 +157,8 @@ struct LeastDistance {
   double operator()(const InertiaForce&) const { return 0; }
   double operator()(const FunctionForce&) const { return 0; }
 
-  // To the box around the segment, where the closest point lies but for its rounding: three
-  // operations on numbers no larger than |from| + |to|.
+  // To the bounding box of the segment, which contains the closest point except for its rounding:
+  // three operations on numbers no larger than |from| + |to|.
   double operator()(const LineForce& line) const {
     Vector3d gap;
     for (int k = 0; k < 3; ++k) {
@@ -171,9 +171,9 @@ struct LeastDistance {
     return bound >= 0 ? bound : 0;
   }
 
-  // A distance changes no faster than the position: that from the middle, less half the diagonal.
-  // The computed ones are off by less than 16 roundings of the offset from the centre each, and by
-  // the squares of components below 1e-150, which are lost.
+  // A distance changes no faster than the position: the distance of the middle minus half the
+  // diagonal. Each computed distance is off by less than 16 roundings of the offset from the
+  // centre, and by the squares of components below 1e-150, which underflow.
   double operator()(const VortexForce& vortex) const {
     const Vector3d middle = low + 0.5 * (high - low);
     const double reach = length((high - middle).cwiseMax(middle - low));

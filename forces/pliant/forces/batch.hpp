@@ -5,11 +5,10 @@
 
 namespace pliant {
 
-// Forces asked about many positions at once. The numbers are those of the same questions asked one
-// by one, to the last bit: the same exact operations in the same order, several positions beside
-// each other.
+// Forces evaluated at many positions at once. The results are bit-identical to those of single
+// positions: the same operations in the same order, for several positions in parallel.
 
-/// The most positions of a batch.
+/// The most positions in a batch.
 inline constexpr int batch_size = 32;
 
 /// One vector for each of up to `batch_size` positions, component by component.
@@ -27,14 +26,15 @@ struct BatchNumbers {
   alignas(64) double of[batch_size] = {};
 };
 
-/// `distance` from each. [length]
+/// `distance` at each position. [length]
 BatchNumbers distances(const ForceShape& shape, const Batch& points);
 
-/// Adds `force_at` each position to `sums`, number `first` on. Requires: force.force_radius > 0.
+/// Adds `force_at` of each position to `sums`, from index `first` on. Requires: force.force_radius
+/// > 0.
 void add_forces(const SampledForce& force, const Batch& points, int first, Batch& sums);
 
-/// A lower bound of what `distance` gives, its rounding included, for every position whose
-/// components lie between those of `low` and `high`. A program's own function has none but 0.
+/// A lower bound of `distance`, rounding included, for every position whose components are between
+/// those of `low` and `high`. For a program's own function the bound is 0.
 double least_distance(const ForceShape& shape, const Vector3d& low, const Vector3d& high);
 
 }  // namespace pliant

@@ -2,9 +2,9 @@
 
 namespace pliant {
 
-/// How a force fades with s = distance / force radius. SPEC 7.
+/// How a force decreases with s = distance / force radius. SPEC 7.
 enum class Falloff {
-  Constant,  ///< 1: the thesis
+  Constant,  ///< 1, as in the thesis
   Linear,    ///< max(0, 1-s)
   Smooth,    ///< x^2 (3 - 2x), x = clamp(1-s, 0, 1)
   Gaussian,  ///< exp(-4.5 s^2)

@@ -17,15 +17,16 @@ Vector3d closest_point(const LineForce& line, const Vector3d& p) {
   return line.from + t * along;
 }
 
-// From the closest point of the vortex's line to p; from its centre when it has no axis.
+// The vector from the closest point of the vortex's axis to p; from its centre if the axis is zero.
 Vector3d from_axis(const VortexForce& vortex, const Vector3d& p) {
   const Vector3d offset = p - vortex.center;
   const Vector3d axis = normalised(vortex.axis);
   return offset - dot(offset, axis) * axis;
 }
 
-// On a segment or an axis there is no way out. The closest point is rounded, so "on" means within a
-// few ulps of the coordinates it was computed from; the direction of what is left would be noise.
+// On a segment or an axis there is no outward direction. The closest point is rounded, so "on"
+// means within a few ulps of the coordinates from which it was computed; the direction of the
+// remaining vector would be noise.
 bool is_rounding(const Vector3d& outward, double extent) {
   return largest_component(outward) <= 8 * std::numeric_limits<double>::epsilon() * extent;
 }

@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-// A force at one frame: its parameters sampled, in world space. Pure functions of a position.
-// SPEC 7. Every kind answers the same two questions about a position p [length]:
-//   distance(p)    what selects, >= 0 [length]
+// A force at one frame: its parameters sampled, in world space. Pure functions of a position. SPEC
+// 7. Every kind has two functions of a position p [length]:
+//   distance(p)    decides which nodes are selected, >= 0 [length]
 //   unit_force(p)  the force per unit of magnitude and falloff; for most kinds a unit vector or 0
 // The force on a node is magnitude x falloff(distance / force radius) x unit_force.
 
@@ -34,8 +34,8 @@ struct RadialForce {
   Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// Acts around the segment from..to, along `direction` or, without one, away from the segment, on
-/// which it is 0.
+/// Acts around the segment from..to, along `direction`; without one, away from the segment, and 0
+/// on the segment.
 struct LineForce {
   Vector3d from = {0, 0, 0};               ///< world [length]
   Vector3d to = {1, 0, 0};                 ///< world [length]; may equal `from`
@@ -45,7 +45,7 @@ struct LineForce {
   Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// The same everywhere, like gravity: at distance 0 from everything.
+/// The same everywhere, like gravity: every distance is 0.
 struct UniformForce {
   Vector3d direction = {0, 1, 0};  ///< any length; zero: no force
 
@@ -53,18 +53,19 @@ struct UniformForce {
   Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// Turns about the line through `center` along `axis`, by the right hand, and draws towards it; 0
-/// on the line itself. With an `axis` of length 0 it is no force, and distances are to `center`.
+/// Rotates about the line through `center` along `axis`, by the right-hand rule, and pulls towards
+/// it; 0 on the line itself. With an `axis` of length 0 the force is 0, and distances are to
+/// `center`.
 struct VortexForce {
   Vector3d center = {0, 0, 0};  ///< world [length]
   Vector3d axis = {0, 1, 0};    ///< any length
-  double pull = 0;              ///< inward share, the turning one being 1; < 0: outward
+  double pull = 0;              ///< inward part, relative to the rotating part; < 0: outward
 
   double distance(const Vector3d& p) const;      ///< to the line
   Vector3d unit_force(const Vector3d& p) const;  ///< of length sqrt(1 + pull^2)
 };
 
-/// Wavers in space and time: `smooth_noise` on a lattice that has a corner at `center`.
+/// Varies in space and time: `smooth_noise` on a lattice that has a corner at `center`.
 struct NoiseForce {
   Vector3d center = {0, 0, 0};  ///< world [length]
   double frequency = 1;         ///< [cells/length]
@@ -75,8 +76,8 @@ struct NoiseForce {
   Vector3d unit_force(const Vector3d& p) const;  ///< components in [-1, 1]
 };
 
-/// What a surface's own motion does to it, at distance 0 from everything: an affine load,
-/// offset + linear (p - origin).
+/// The inertial load of a surface's own motion; every distance is 0. An affine function, offset +
+/// linear (p - origin).
 struct InertiaForce {
   Matrix3d linear = Matrix3d::Zero();
   Vector3d origin = {0, 0, 0};  ///< world [length]
@@ -86,7 +87,7 @@ struct InertiaForce {
   Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// An embedding program's own kind, at one frame. Requires: both functions are there.
+/// A kind of force of an embedding program, at one frame. Requires: neither function is empty.
 struct FunctionForce {
   std::function<double(const Vector3d& p)> distance;
   std::function<Vector3d(const Vector3d& p)> unit_force;
@@ -102,23 +103,23 @@ struct SampledForce {
   double deformation_radius = 1;  ///< [length], >= 0; 0: selects no region
   double force_radius = 1;        ///< [length], >= 0; 0: pushes nothing
   Falloff falloff = Falloff::Constant;
-  /// Drawn by hand over s = distance / force radius, in place of `falloff`; what lies beyond s = 1
-  /// is as at 1. It belongs to the scene.
+  /// An authored curve over s = distance / force radius that replaces `falloff`; for s > 1 its
+  /// value at 1 is used. Null: `falloff`. Owned by the scene.
   const Curve<1>* falloff_curve = nullptr;
 };
 
-/// A sphere that selects a region and pushes nothing: what a group is. The forces in the group have
+/// A sphere that selects a region and pushes nothing, as a group does. The forces in the group have
 /// a deformation radius of 0, so that "strictly less" selects nothing for them. SPEC 7.
 SampledForce region_sphere(const Vector3d& center, double deformation_radius);
 
-/// Distance from p that selects. [length]
+/// Distance from p that decides the selection. [length]
 double distance(const ForceShape& shape, const Vector3d& p);
 
 /// The force at p per unit of magnitude and falloff.
 Vector3d unit_force(const ForceShape& shape, const Vector3d& p);
 
-/// The force on a node at p, wherever p lies: the force box is the caller's concern.
-/// Requires: force_radius > 0. [length b/uv^4]
+/// The force on a node at p, for any p: the caller checks the force box. Requires: force_radius >
+/// 0. [length b/uv^4]
 Vector3d force_at(const SampledForce& force, const Vector3d& p);
 
 }  // namespace pliant

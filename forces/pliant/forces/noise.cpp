@@ -15,7 +15,7 @@ constexpr std::uint64_t mixed(std::uint64_t bits) {
   return bits ^ (bits >> 31U);
 }
 
-// A cell of the lattice along one axis, and how far into it.
+// A cell of the lattice along one axis, and the position in it.
 struct Place {
   std::int64_t cell = 0;
   double weight = 0;  // of the cell's far corner, eq. (20)
@@ -25,8 +25,8 @@ Place place_at(double coordinate) {
   if (!std::isfinite(coordinate)) return {};
   const double floor = std::floor(coordinate);
   const double f = coordinate - floor;
-  // Beyond 2^53 there is no fraction left, beyond 2^63 no integer: the lattice repeats after 2^62
-  // cells. fmod is exact.
+  // Beyond 2^53 there is no fraction, beyond 2^63 no integer: the lattice repeats after 2^62 cells.
+  // fmod is exact.
   constexpr double period = 4611686018427387904.0;
   return {static_cast<std::int64_t>(std::fmod(floor, period)), f * f * f * (f * (6 * f - 15) + 10)};
 }
@@ -43,7 +43,7 @@ Vector3d lattice_vector(std::uint64_t seed, std::int64_t x, std::int64_t y, std:
   for (const std::int64_t index : {x, y, z, t}) {
     hash = mixed(hash ^ static_cast<std::uint64_t>(index));
   }
-  // Eq. (19): three times 21 bits, the largest of which is 1.
+  // Eq. (19): three groups of 21 bits, the largest of which maps to 1.
   constexpr std::uint64_t largest = (1U << 21U) - 1;
   Vector3d vector;
   for (unsigned k = 0; k < 3; ++k) {

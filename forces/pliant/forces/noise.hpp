@@ -6,13 +6,13 @@
 
 namespace pliant {
 
-/// A vector that wavers smoothly in space and time, each component in [-1, 1] and 0 on average.
+/// A vector that varies smoothly in space and time, each component in [-1, 1] and 0 on average.
 ///
-/// Every corner of the space-time lattice has a vector drawn from (seed, corner) alone, and the
-/// sixteen corners around a place are blended by weights whose first and second derivatives vanish
-/// at the corners: twice continuously differentiable, with hardly anything beyond one wave a cell.
-/// docs/model.md, eq. (18) to (20), has the definition. `place` and `time` are counted in cells;
-/// where one is so large that it is no longer finite it counts as 0.
+/// Every corner of the space-time lattice has a vector that depends on (seed, corner) only. The
+/// sixteen corners around a place are blended with weights whose first and second derivatives are 0
+/// at the corners: twice continuously differentiable, with hardly any frequency above one wave per
+/// cell. docs/model.md, eq. (18) to (20), has the definition. `place` and `time` are counted in
+/// cells; a coordinate that is not finite counts as 0.
 Vector3d smooth_noise(std::uint64_t seed, const Vector3d& place, double time);
 
 /// The vector of one corner of the lattice, each component one of 2^21 evenly spaced values.

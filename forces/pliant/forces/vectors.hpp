@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-// Small vector algebra whose sums are written out, so that their order is stated and no library
-// chooses it; not for other rooms.
+// Small vector algebra with the sums written out, so that their order is fixed here and not by a
+// library. Internal to forces.
 
 inline double dot(const Vector3d& a, const Vector3d& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
@@ -27,7 +27,8 @@ inline double largest_component(const Vector3d& a) {
 
 /// The unit vector along `a`; 0 for the vector of length 0.
 inline Vector3d normalised(const Vector3d& a) {
-  // Scaled by the largest component first: the square of a tiny or huge length would be lost.
+  // Scaled by the largest component first: the square of a tiny or huge length would underflow or
+  // overflow.
   const double largest = largest_component(a);
   if (largest == 0) return Vector3d::Zero();
   const Vector3d scaled = a / largest;

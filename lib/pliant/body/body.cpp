@@ -16,7 +16,7 @@ double length(const Eigen::RowVector3d& a) {
   return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-// Tangents belong to the sides that lie at the ends of the whole region; SPEC 5.
+// Tangents apply to the sides at the ends of the whole region; SPEC 5.
 EdgeTangents tangents_of(const Patch& patch, const Region& region, EdgeTangents tangents) {
   if (patch.box.i0 != region.box.i0) tangents.su0.setZero();
   if (patch.box.i1 != region.box.i1) tangents.su1.setZero();
@@ -31,14 +31,14 @@ std::vector<std::vector<Patch>> patches_of(const Selection& selection) {
   return patches;
 }
 
-// Whether a force holds nodes at rest, to deform or to push, that it does not hold as things stand.
+// Whether a force has a box on the rest mesh, deformation or force box, that is empty now.
 bool is_lost(const ForceSelection& at_rest, const ForceSelection& now) {
   return (now.deformation.is_empty() && !at_rest.deformation.is_empty()) ||
          (now.force.is_empty() && !at_rest.force.is_empty());
 }
 
-// The rectangle that alone is solved in a frame; an empty box: there are several patches, or it has
-// another outline.
+// The rectangle, if a frame solves nothing else; an empty box: there are several patches, or the
+// patch has another outline.
 Box lone_rectangle(const StepReport& report) {
   const Patch* lone = nullptr;
   for (const auto& some : report.patches) {
@@ -101,7 +101,7 @@ Result<StepReport> Body::look(const BodyInputs& inputs) const {
   return plan(inputs, work, {}, nullptr);
 }
 
-// In `report`, an earlier one of this body or an empty one.
+// Writes into `report`, an earlier one of this body or an empty one.
 Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, StepReport report,
                               Profile* profile) const {
   const StageTimer timer(profile, Stage::Selection);
@@ -110,7 +110,7 @@ Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, Ste
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
   report.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
-  // Regions with nodes that recovered are not those of the forces.
+  // With recovering nodes, the regions were not those of the forces.
   const bool had_others = report.recovering > 0;
   if (had_others) report.selection = {};
   const bool are_same =
@@ -141,7 +141,7 @@ Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, Ste
   return report;
 }
 
-// The forces that lost their nodes. Selects on the rest mesh only for those that hold none.
+// The forces that lost their nodes. Selects on the rest mesh only for forces with an empty box.
 std::vector<int> Body::lost_forces(const BodyInputs& inputs, const Selection& selection,
                                    BodyWorkspace& work, std::vector<int> lost) const {
   bool has_rest_tiles = false;
@@ -167,7 +167,7 @@ Result<StepReport> Body::step(const BodyInputs& inputs, const StopRequest& shoul
     settle(report->settling);
     return report;
   }
-  // The next state is made beside the current one, which stays until that is whole.
+  // Builds the next state beside the current one, which is kept until the next one is complete.
   StageTimer beginning(profile, Stage::StateOut);
   begin_next(*report);
   beginning.stop();
@@ -187,7 +187,7 @@ void Body::settle(const std::vector<int>& nodes) {
   }
 }
 
-// The nodes that no solve moves: where they are, or at rest, and without velocity.
+// Nodes that no solve moves: they stay in place or are put at rest, without velocity.
 void Body::begin_next(const StepReport& report) {
   const bool settles = !report.settling.empty();
   const Box hole = settles ? Box{} : lone_rectangle(report);
@@ -196,7 +196,7 @@ void Body::begin_next(const StepReport& report) {
   for (const int node : report.settling) work_.next_positions.row(node) = rest_.row(node);
 }
 
-// Lets go of the solvers that the frame has no use for.
+// Destroys the solvers that the frame does not need.
 void Body::keep_solvers(const StepReport& report) {
   auto& outlines = work_.outlines;
   std::size_t count = 0;
@@ -222,7 +222,7 @@ Result<void> Body::solve(const BodyInputs& inputs, const StepReport& report,
                          const StopRequest& should_stop, Profile* profile) {
   keep_solvers(report);
   const bool from_rest = settings_.reference == Reference::Rest;
-  // Nodes that settle are at rest ahead of the solve.
+  // Nodes that settle are put at rest before the solve.
   const Field& positions = report.settling.empty() ? state_.positions : work_.next_positions;
   const Matrix3d to_object = inverse_linear(inputs.transform);
   std::size_t place = 0;
@@ -265,8 +265,8 @@ Result<void> Body::solve(const BodyInputs& inputs, const StepReport& report,
   return {};
 }
 
-// Makes what was solved the state, all of it or nothing. The rim stays as it was: rest + (position
-// - rest) may round.
+// Makes the solution the state, all of it or nothing. The rim is not written: rest + (position -
+// rest) may round.
 Result<void> Body::take() {
   const Field* const reference = settings_.reference == Reference::Rest ? &rest_ : nullptr;
   for (const BodyWorkspace::PatchSolve& one : work_.solves) {
@@ -281,7 +281,7 @@ Result<void> Body::take() {
   return {};
 }
 
-// Requires: the next positions are there, and not yet in the state.
+// Requires: the next positions are complete, but not yet in the state.
 void Body::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
   for (const BodyWorkspace::PatchSolve& one : work_.solves) {

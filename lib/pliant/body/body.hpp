@@ -17,32 +17,32 @@
 
 namespace pliant {
 
-/// Everything that acts on a body during one frame, sampled at the frame.
+/// All inputs that act on a body during one frame, sampled at the frame.
 struct BodyInputs {
   Transform transform;               ///< object to world; invertible
   Stiffness stiffness;               ///< elliptic
   Dynamics dynamics;                 ///< density, damping >= 0
   EdgeTangents tangents;             ///< object space
   double frame_length = 0;           ///< [s], > 0
-  double dt = 0;                     ///< [s], as `check_time_step` allows
+  double dt = 0;                     ///< [s], accepted by `check_time_step`
   std::vector<SampledForce> forces;  ///< the enabled ones that target the body, world space
 
-  /// For each force the one whose deformation box is its own, which says in which island it acts;
-  /// empty: each has its own.
+  /// For each force the index of the force whose deformation box it uses, which determines the
+  /// island it acts in; empty: each uses its own.
   std::vector<int> selectors = {};
 };
 
-/// What happens in a frame.
+/// The selection, solve and warnings of a frame.
 struct StepReport {
-  Selection selection;  ///< what the forces selected, in the order of the inputs, and its regions
-  std::vector<std::vector<Patch>> patches;  ///< what is solved of each region; none: too small
-  bool is_solved = false;                   ///< whether anything is
+  Selection selection;  ///< the forces' selection, in the order of the inputs, and its regions
+  std::vector<std::vector<Patch>> patches;  ///< of each region; empty: it is too small to solve
+  bool is_solved = false;                   ///< whether there is any unknown
   TimeSteps steps;                          ///< of the solve
-  std::vector<int> lost;  ///< forces that hold nodes of the rest mesh, but none as it stands
+  std::vector<int> lost;  ///< forces that select nodes on the rest mesh, but none now
   std::vector<bool>
       pushing;         ///< of each force: whether it moves any node; in the order of the inputs
   int recovering = 0;  ///< nodes that are solved because they are not back at rest
-  std::vector<int> settling;  ///< nodes that are put at rest ahead of the solve, ascending
+  std::vector<int> settling;  ///< nodes that are put at rest before the solve, ascending
 
   int unknown_count() const;  ///< nodes that move, of all patches
 
@@ -57,22 +57,22 @@ class Body {
   Body(const Grid& grid, Field rest, const BodySettings& settings,
        SolverCache solvers = SolverCache());
 
-  /// The rest mesh, and no carried velocity.
+  /// Sets the rest mesh and removes all velocity.
   void reset();
 
-  /// What `step` would do with these inputs, without doing it. Errors: NotFinite when a node is
-  /// not, in world space.
+  /// The report that `step` would return for these inputs, without a solve. Errors: NotFinite if a
+  /// node is not finite in world space.
   Result<StepReport> look(const BodyInputs& inputs) const;
 
-  /// Solves one frame: selects the regions on the mesh as it stands, and moves their interiors from
-  /// here to the next frame. A node that the last solve did not touch starts with velocity 0, any
-  /// other with what the last solve left it; a frame without a solve changes neither. Errors:
-  /// NotFinite when a node or the new state is not; Interrupted when `should_stop` says so; those
-  /// of the solver. The state is then as it was.
+  /// Solves one frame: selects the regions on the current mesh, and moves their interiors to the
+  /// next frame. A node that the last solve did not move starts with velocity 0, any other with its
+  /// velocity from the last solve; a frame without a solve changes neither. Errors: NotFinite if a
+  /// node or the new state is not finite; Interrupted if `should_stop` returns true; those of the
+  /// solver. The state is then unchanged.
   ///
-  /// The report takes the memory of `reuse`, a report of an earlier step of this body or none. With
-  /// it nothing is allocated while the regions stay, in sine space and where nothing recovers.
-  /// `profile` is told where the time goes; none: nobody asks.
+  /// The report reuses the memory of `reuse`, a report of an earlier step of this body or an empty
+  /// one. With it, nothing is allocated while the regions stay the same, plates are solved in sine
+  /// space and no node recovers. `profile` receives the times; null: no profiling.
   Result<StepReport> step(const BodyInputs& inputs, const StopRequest& should_stop = {},
                           StepReport reuse = {}, Profile* profile = nullptr);
 
@@ -81,12 +81,12 @@ class Body {
   const BodyState& state() const { return state_; }
   SolverCounts solver_counts() const { return solvers_.counts(); }
 
-  /// Where the forces' distances are measured (#nodes x 3, world space).
+  /// The nodes from which the forces' distances are measured (#nodes x 3, world space).
   Field measured_nodes(const Transform& transform) const;
 
   BodyState rest_state() const;  ///< after a `reset`
 
-  /// Continues from `state`, which came from `state()` of a body like this one.
+  /// Continues from `state`, the result of `state()` of a body like this one.
   void restore(BodyState state);
 
  private:

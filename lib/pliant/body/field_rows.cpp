@@ -8,8 +8,8 @@ namespace {
 using RowView = Eigen::Map<Eigen::ArrayXd>;
 using ConstRowView = Eigen::Map<const Eigen::ArrayXd>;
 
-// Calls f(component, node, row, count) for the stretches of the interior of a box: where each
-// begins in a field on all nodes and in one on the box.
+// Calls f(component, node, row, count) for the contiguous stretches of the interior of a box:
+// `node` is the first row in a field on all nodes, `row` that in a field on the box.
 template <class F>
 void for_interior_rows(const Grid& grid, const Box& box, const F& f) {
   const Eigen::Index width = box.columns() - 2;
@@ -21,7 +21,8 @@ void for_interior_rows(const Grid& grid, const Box& box, const F& f) {
   }
 }
 
-// Calls f(first, count) for the stretches of nodes outside the interior of a box, ascending.
+// Calls f(first, count) for the contiguous stretches of nodes outside the interior of a box,
+// ascending.
 template <class F>
 void for_stretches_around(const Grid& grid, const Box& hole, const F& f) {
   Eigen::Index first = 0;
@@ -34,7 +35,7 @@ void for_stretches_around(const Grid& grid, const Box& hole, const F& f) {
   f(first, grid.node_count() - first);
 }
 
-// NaN where a number is not finite, else 0.
+// NaN if a number is not finite, else 0.
 double unsoundness(const RowView& numbers) { return (numbers - numbers).sum(); }
 
 }  // namespace

@@ -10,36 +10,37 @@
 
 namespace pliant {
 
-// What `Release::Recover` adds to a frame. SPEC 6; docs/model.md, "Release". Not for other rooms.
+// The work that `Release::Recover` adds to a frame. SPEC 6; docs/model.md, "Release". Internal to
+// body.
 //
-// A node is *unsettled* when the last solve moved it and left it with a displacement or a motion
-// over the frame that is not below 1e-6 of the diagonal of its region. An unsettled node that no
-// force's region holds in its interior *recovers*: it counts as selected, together with its eight
-// neighbours, so that it is interior itself. All nodes outside the interior of what is then solved
-// *settle*: they are put at rest. So the rim is at rest, and without forces a region never grows:
-// from some frame on it stays, and its motion dies out.
+// A node is *unsettled* if the last solve moved it and left it with a displacement, or a motion
+// over the frame, that is not below 1e-6 of the diagonal of its region. An unsettled node that is
+// not in the interior of any force's region *recovers*: it is selected together with its eight
+// neighbours, so that it is interior itself. All nodes outside the interior of the resulting
+// regions *settle*: they are put at rest. So the rim is at rest, and without forces a region never
+// grows: from some frame on it stays the same, and its motion dies out.
 
-/// 1 for each node that is unsettled (#nodes), or nothing where none ever is.
+/// 1 for each node that is unsettled (#nodes); empty if none ever is.
 using NodeMarks = std::vector<std::uint8_t>;
 
-/// Nodes that recover, as boxes of nodes.
+/// The nodes that recover, as boxes of nodes.
 struct Recovering {
   int node_count = 0;
-  std::vector<Box> boxes;  ///< with the neighbours; no two share a node
+  std::vector<Box> boxes;  ///< including the neighbours; no two share a node
 };
-/// `patches` are those that forces hold, of each region. `marks` is room to work in.
+/// `patches` are those of the forces, for each region. `marks` is workspace.
 Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
                             std::span<const std::vector<Patch>> patches, NodeMarks& marks);
 
-/// The nodes that are interior to no patch, and neither at rest nor without velocity, ascending.
-/// `marks` is room to work in, and the result takes the memory of `reuse`.
+/// The nodes that are interior to no patch and not at rest without velocity, ascending. `marks` is
+/// workspace, and the result reuses the memory of `reuse`.
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
                                 const Field& velocities,
                                 std::span<const std::vector<Patch>> patches, NodeMarks& marks,
                                 std::vector<int> reuse);
 
-/// The length below which displacement and motion settle: 1e-6 of the diagonal of the box around
-/// the region's rest positions (#nodes x 3, object space).
+/// The length below which displacement and motion count as settled: 1e-6 of the diagonal of the
+/// bounding box of the region's rest positions (#nodes x 3, object space).
 double settling_length(const Grid& grid, const Field& rest, const Region& region);
 
 }  // namespace pliant

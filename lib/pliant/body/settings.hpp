@@ -5,23 +5,23 @@
 
 namespace pliant {
 
-/// What the displacement w of the plate equation is measured from. SPEC 2.
+/// The position from which the displacement w of the plate equation is measured. SPEC 2.
 enum class Reference {
-  Rest,  ///< w = r - R: the body converges to its rest shape R when nothing acts
-  None,  ///< w = r: the equation as the thesis writes it, which smooths relief inside the region
-         ///< away
+  Rest,  ///< w = r - R: without forces the body converges to its rest shape R
+  None,  ///< w = r: the equation as in the thesis, which smooths away relief inside the region
 };
 
-/// Where the forces' distances, and with them falloff and direction, are measured. SPEC 5.
+/// The mesh on which the forces' distances, and so their falloff and direction, are measured. SPEC
+/// 5.
 enum class Measure {
-  Current,  ///< on the mesh as it stands
+  Current,  ///< on the current mesh
   Rest,     ///< on the rest mesh, for forces that push their own nodes out of reach
 };
 
-/// What happens to nodes that leave the region. SPEC 6.
+/// The behaviour of nodes that leave the region. SPEC 6.
 enum class Release {
-  Freeze,   ///< they stay where they are: the thesis
-  Recover,  ///< they go on being solved until they are back at rest
+  Freeze,   ///< they stay in place, as in the thesis
+  Recover,  ///< they are solved until they are back at rest
 };
 
 /// The choices of a body that do not change over time.

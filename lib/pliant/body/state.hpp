@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-/// The state that one frame hands to the next.
+/// The state that one frame passes on to the next.
 struct BodyState {
   Field positions;   ///< #nodes x 3, object space [length]
-  Field velocities;  ///< #nodes x 3: of the last solve, 0 where it did not touch [length/s]
+  Field velocities;  ///< #nodes x 3: from the last solve, 0 at nodes it did not move [length/s]
 
   /// With `Release::Recover`: 1 for each node that the last solve left away from rest (#nodes);
   /// otherwise empty.

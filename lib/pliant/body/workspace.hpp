@@ -9,10 +9,10 @@
 
 namespace pliant {
 
-/// What a body works in from frame to frame: nothing of it is state. Fields keep their memory while
-/// the regions keep their shape. Not for other rooms.
+/// Workspace of a body, kept from frame to frame; not part of the state. Fields keep their memory
+/// while the regions keep their shape. Internal to body.
 struct BodyWorkspace {
-  /// A patch on its way through its solver.
+  /// A patch and its problem during the solve.
   struct PatchSolve {
     const Patch* patch = nullptr;
     double settling_length = 0;  ///< with `Release::Recover` [length]
@@ -21,11 +21,11 @@ struct BodyWorkspace {
   };
 
   NodeTiles tiles;       ///< of the nodes that forces measure
-  NodeTiles rest_tiles;  ///< of the nodes at rest, where they are needed
+  NodeTiles rest_tiles;  ///< of the nodes at rest, if needed
   std::vector<std::uint8_t> marks;
-  std::vector<SolverCache::Outline> outlines;  ///< that there are solvers for, of each patch
-  std::vector<PatchSolve> solves;              ///< of each patch, in the order of the regions
-  Field next_positions;  ///< the state that the frame makes, until it is whole
+  std::vector<SolverCache::Outline> outlines;  ///< of the solvers that exist, one for each patch
+  std::vector<PatchSolve> solves;              ///< one for each patch, in the order of the regions
+  Field next_positions;                        ///< the next state, until it is complete
   Field next_velocities;
 };
 

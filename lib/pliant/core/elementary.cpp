@@ -15,8 +15,8 @@ double cos_of(double radians) { return Sleef_cinz_cosd1_u10purec(radians); }
 double asin_of(double x) { return Sleef_cinz_asind1_u10purec(x); }
 
 SineCosine sine_cosine_of_degrees(double degrees) {
-  // fmod and remainder are exact, so the quarter and the rest of the angle carry no rounding; the
-  // rest lies in [-45, 45], where only the conversion to radians rounds.
+  // fmod and remainder are exact, so the quarter and the rest of the angle have no rounding error;
+  // the rest is in [-45, 45], and only its conversion to radians rounds.
   const double angle = std::fmod(degrees, 360.0);
   const double rest = std::remainder(angle, 90.0);
   const int quarter = static_cast<int>(std::lround((angle - rest) / 90.0)) & 3;

@@ -2,9 +2,9 @@
 
 namespace pliant {
 
-// The elementary functions on the way to the state. libm's change their last bit with the CPU
-// (glibc picks an implementation at run time), so these go through SLEEF's bit-consistent scalar
-// functions, which never use fused multiply-add: the same bits on every machine of an architecture.
+// The elementary functions used to compute a state. The last bit of libm's results depends on the
+// CPU (glibc picks an implementation at run time), so these use SLEEF's bit-consistent scalar
+// functions, which never use fused multiply-add: bit-identical on every machine of an architecture.
 // Error at most 1 ulp. sqrt is exact everywhere and needs no wrapper.
 
 double exp_of(double x);            ///< eˣ

@@ -7,8 +7,8 @@
 /// which every preset does.
 #if defined(PLIANT_CHECKS) || !defined(NDEBUG)
 #define PLIANT_EXPECTS(condition) PLIANT_EXPECTS_OR(condition, #condition)
-/// The same, and says `message`, a std::string or a literal, rather than the condition. It is made
-/// only where the condition does not hold.
+/// The same, but reports `message`, a std::string or a literal, instead of the condition. `message`
+/// is evaluated only if the condition is false.
 #define PLIANT_EXPECTS_OR(condition, message) \
   ((condition) ? void(0) : ::pliant::contract_broken(message, __FILE__, __LINE__))
 #else
@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-/// Says on stderr which requirement was broken, and terminates.
+/// Prints the broken requirement to stderr and terminates.
 [[noreturn]] void contract_broken(std::string_view requirement, const char* file, int line);
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ struct Box {
   bool is_empty() const { return i1 < i0 || j1 < j0; }
   bool contains(int i, int j) const { return i0 <= i && i <= i1 && j0 <= j && j <= j1; }
 
-  /// Grows to hold node (i,j) too.
+  /// Grows to contain node (i,j) too.
   void include(int i, int j) {
     if (is_empty()) {
       *this = {i, i, j, j};
@@ -26,7 +26,7 @@ struct Box {
     j1 = j > j1 ? j : j1;
   }
 
-  /// Grows to hold `other` too.
+  /// Grows to contain `other` too.
   void include(const Box& other) {
     if (other.is_empty()) return;
     include(other.i0, other.j0);
@@ -36,19 +36,19 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
-/// The nodes both boxes hold; empty when there are none.
+/// The nodes in both boxes; empty if there are none.
 inline Box intersection(const Box& a, const Box& b) {
   return {a.i0 > b.i0 ? a.i0 : b.i0, a.i1 < b.i1 ? a.i1 : b.i1, a.j0 > b.j0 ? a.j0 : b.j0,
           a.j1 < b.j1 ? a.j1 : b.j1};
 }
 
-/// Whether every node of `inner` is one of `outer`.
+/// Whether every node of `inner` is also in `outer`.
 inline bool holds(const Box& outer, const Box& inner) {
   return intersection(outer, inner) == inner;
 }
 
-/// An even lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
-/// 4.3, fig. 1, whose one spacing h is two here.
+/// A uniform lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
+/// 4.3, fig. 1, which has one spacing h instead of hu and hv.
 struct Grid {
   int columns = 0;  ///< M, nodes along u
   int rows = 0;     ///< N, nodes along v

@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// XXH3 of some bytes, 128 bits. It finds changes, not forgeries.
+/// XXH3 of some bytes, 128 bits. Detects changes, not forgeries.
 struct Hash {
   std::uint64_t high = 0;
   std::uint64_t low = 0;
@@ -19,13 +19,13 @@ struct Hash {
 
 Hash hash_of(std::string_view bytes);
 
-/// Of the numbers as little-endian doubles: x of all rows, then y, then z. So -0 is not 0.
+/// Hash of the numbers as little-endian doubles: x of all rows, then y, then z. So -0 and 0 differ.
 Hash hash_of(const Field& field);
 
 /// 32 hexadecimal digits in lower case, as `xxhsum -H128` prints them.
 std::string to_text(const Hash& hash);
 
-/// The hash that `to_text` wrote; none for any other text.
+/// The hash that `to_text` wrote; nullopt for any other text.
 std::optional<Hash> to_hash(std::string_view text);
 
 }  // namespace pliant

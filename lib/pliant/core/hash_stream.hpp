@@ -9,7 +9,7 @@ struct XXH3_state_s;
 
 namespace pliant {
 
-/// The hash of bytes that come piece by piece: that of all of them in one.
+/// The hash of bytes that arrive in pieces; equal to the hash of all of them at once.
 class HashStream {
  public:
   HashStream();

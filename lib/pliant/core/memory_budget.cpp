@@ -15,7 +15,7 @@ MemoryShare::MemoryShare(MemoryShare&& other) noexcept
 
 bool MemoryShare::try_resize(std::size_t bytes) {
   if (!budget_) {
-    // Without a limit.
+    // No limit.
   } else if (bytes > bytes_) {
     const std::size_t more = bytes - bytes_;
     std::size_t free = budget_->free_.load();

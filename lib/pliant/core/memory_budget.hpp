@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// How much memory the large parts of a run may take together. Each says what it needs before it
-/// allocates. Several threads may use one.
+/// How much memory the large parts of a run may use together. Each part reserves the memory it
+/// needs before it allocates. Thread-safe.
 class MemoryBudget {
  public:
   explicit MemoryBudget(std::size_t bytes = std::numeric_limits<std::size_t>::max());
@@ -16,7 +16,7 @@ class MemoryBudget {
   MemoryBudget& operator=(const MemoryBudget&) = delete;
 
   std::size_t total() const { return total_; }     ///< [bytes]
-  std::size_t available() const { return free_; }  ///< that nobody has taken [bytes]
+  std::size_t available() const { return free_; }  ///< not reserved by any share [bytes]
 
  private:
   friend class MemoryShare;
@@ -25,22 +25,22 @@ class MemoryBudget {
   std::atomic<std::size_t> free_;
 };
 
-/// What one part of a run has taken out of a budget, until it is destroyed.
+/// The memory that one part of a run has reserved from a budget, until the share is destroyed.
 class MemoryShare {
  public:
-  /// The budget outlives the share; none means no limit.
+  /// The budget must outlive the share; null: no limit.
   explicit MemoryShare(MemoryBudget* budget) : budget_(budget) {}
   MemoryShare(MemoryShare&& other) noexcept;
   MemoryShare& operator=(MemoryShare&&) = delete;
   ~MemoryShare() { give_back(); }
 
-  /// Takes or gives back, so that the share is `bytes`. False, and nothing changed, where the
+  /// Reserves or returns memory, so that the share is `bytes`. False, with nothing changed, if the
   /// budget has less.
   [[nodiscard]] bool try_resize(std::size_t bytes);
 
   std::size_t bytes() const { return bytes_; }
 
-  /// What `try_resize` could take now. [bytes]
+  /// The largest size that `try_resize` would accept now. [bytes]
   std::size_t available() const;
 
   /// "takes 3.2 GB, more than the 1.1 GB left of the 2 GB allowed". Requires: there is a budget.
@@ -53,7 +53,7 @@ class MemoryShare {
   std::size_t bytes_ = 0;
 };
 
-/// A number of bytes to read: "640 B", "1.25 MB", "17.6 GB"; three digits, powers of 1000.
+/// A number of bytes for a reader: "640 B", "1.25 MB", "17.6 GB"; three digits, powers of 1000.
 std::string bytes_text(std::size_t bytes);
 
 }  // namespace pliant

@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-// from_chars knows no leading plus; what follows one must not be a second sign.
+// from_chars rejects a leading plus; the character after it must not be a second sign.
 std::optional<std::string_view> without_plus(std::string_view text) {
   if (!text.starts_with('+')) return text;
   text.remove_prefix(1);

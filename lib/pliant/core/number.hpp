@@ -5,12 +5,12 @@
 
 namespace pliant {
 
-/// The number that the whole text spells in the C locale, decimal and finite: `1,5`, `0x10`, `nan`,
-/// `1e999`, `1e-999`, `1.5abc` and the empty text are none. A leading `+` is accepted. Correctly
-/// rounded.
+/// The number that the whole text spells in the C locale, decimal and finite; nullopt for `1,5`,
+/// `0x10`, `nan`, `1e999`, `1e-999`, `1.5abc` and the empty text. A leading `+` is accepted.
+/// Correctly rounded.
 std::optional<double> to_number(std::string_view text);
 
-/// The whole number that the whole text spells; none outside the range of int.
+/// The integer that the whole text spells; nullopt for other texts and outside the range of int.
 std::optional<int> to_integer(std::string_view text);
 
 }  // namespace pliant

@@ -6,17 +6,17 @@
 
 namespace pliant {
 
-/// What a run spends its time on, in the order of a frame.
+/// The parts of a run whose time is measured, in the order of a frame.
 enum class Stage {
   Sampling,     ///< channels at the frame
-  Selection,    ///< boxes around the nodes, what the forces select, and whether all is finite
+  Selection,    ///< boxes around the nodes, the nodes that forces select, checks for finite numbers
   Load,         ///< of the forces on the nodes
-  StateIn,      ///< displacement and velocity on their way to the plate
+  StateIn,      ///< displacement and velocity passed to the plate
   SetUp,        ///< of the solver, for other coefficients or another region
   Solve,        ///< transforms and steps
   StateOut,     ///< new positions and velocities, and whether they are finite
   Checkpoints,  ///< states that are kept for later
-  Output,       ///< positions in the order of the mesh, in the space asked for, and their peak
+  Output,       ///< positions in the order of the mesh, in the requested space, and their peak
   Writing,      ///< into files
 };
 inline constexpr std::size_t stage_count = 10;
@@ -28,7 +28,7 @@ constexpr std::string_view name_of(Stage stage) {
   return names[static_cast<std::size_t>(stage)];
 }
 
-/// How long a run spent in each stage, added up over whoever worked at the same time. [s]
+/// How long a run spent in each stage, summed over the work that ran at the same time. [s]
 struct Profile {
   std::array<double, stage_count> seconds = {};
 

@@ -32,7 +32,7 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
   if (!stream) return unreadable(std::strerror(errno));
-  // Read until the end rather than asking for the size first: pipes have none.
+  // Reads to the end instead of querying the size first: pipes have no size.
   std::string bytes;
   std::string chunk(std::size_t{1} << 20, '\0');
   while (const std::size_t count = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {

@@ -16,7 +16,7 @@ std::string to_line(const Error& error) {
   return printable(line + "error: " + error.message);
 }
 
-// Bytes of the first character; 0 where that is no UTF-8 (RFC 3629).
+// Number of bytes of the first character; 0 if it is not UTF-8 (RFC 3629).
 std::size_t length_of_character(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned char first = byte(0);
@@ -28,13 +28,13 @@ std::size_t length_of_character(std::string_view text) {
   if (size == 0 || text.size() < size) return 0;
   for (std::size_t k = 1; k < size; ++k)
     if ((byte(k) & 0xc0) != 0x80) return 0;
-  // Longer than need be, a surrogate, beyond U+10FFFF.
+  // Overlong encodings, surrogates, code points beyond U+10FFFF.
   const bool is_wrong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
                         (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
   return is_wrong ? 0 : size;
 }
 
-// Requires: one character of UTF-8.
+// Requires: exactly one character of UTF-8.
 char32_t code_point(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1) return first;
@@ -46,7 +46,7 @@ char32_t code_point(std::string_view character) {
 
 bool acts_on_terminal(char32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) ||       // C0, DEL, C1
-         code == 0x61c || code == 0x200e || code == 0x200f ||  // marks of direction
+         code == 0x61c || code == 0x200e || code == 0x200f ||  // marks of writing direction
          (code >= 0x2028 && code <= 0x202e) ||  // line, paragraph, embeddings, overrides
          (code >= 0x2066 && code <= 0x2069) || code == 0xfeff;
 }

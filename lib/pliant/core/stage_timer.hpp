@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Adds the time from here to the end of its scope to one stage; without a profile it does nothing.
-/// Not for several threads on one profile.
+/// Adds the time from here to the end of its scope to one stage; null profile: does nothing. Not
+/// thread-safe: a profile is for one thread.
 class StageTimer {
  public:
   StageTimer(Profile* profile, Stage stage) : profile_(profile), stage_(stage) {
@@ -17,7 +17,7 @@ class StageTimer {
   StageTimer& operator=(const StageTimer&) = delete;
   ~StageTimer() { stop(); }
 
-  /// The end, ahead of the scope's.
+  /// Stops before the end of the scope.
   void stop() {
     if (!profile_) return;
     (*profile_)[stage_] += std::chrono::duration<double>(Clock::now() - begin_).count();

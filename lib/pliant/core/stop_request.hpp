@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// Asked now and then during long work: true means that the caller wants it to end. Empty: never.
+/// Called now and then during long work; true: the caller wants the work to end. Empty: never stop.
 using StopRequest = std::function<bool()>;
 
 }  // namespace pliant

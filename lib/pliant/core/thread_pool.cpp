@@ -15,7 +15,7 @@ ThreadPool::ThreadPool(int threads) {
       threads_.emplace_back([this](const std::stop_token& stop) { wait_for_work(stop); });
     }
   } catch (const std::system_error&) {
-    // The system gives no more threads: those that there are will do.
+    // The system refuses to start more threads: use those that exist.
   } catch (const std::bad_alloc&) {
   }
 }
@@ -51,7 +51,7 @@ void ThreadPool::wait_for_work(const std::stop_token& stop) {
   }
 }
 
-// Does what nobody has taken yet, one index after another.
+// Does the work that no thread has started yet, one index after another.
 void ThreadPool::take_part() {
   std::unique_lock lock(mutex_);
   while (next_ < count_) {

@@ -11,20 +11,20 @@
 
 namespace pliant {
 
-/// Threads that wait for work. What the work computes must not depend on which thread does it or in
-/// which order: then nothing depends on how many there are. SPEC 10.
+/// Threads that wait for work. Results must not depend on which thread does which work, or in which
+/// order; then they do not depend on the number of threads. SPEC 10.
 class ThreadPool {
  public:
-  /// `threads` in all, the calling one among them; 1 starts none. Where the system refuses to start
-  /// so many, there are fewer. Requires: threads >= 1.
+  /// `threads` in total, including the calling one; 1 starts none. Fewer if the system refuses to
+  /// start that many. Requires: threads >= 1.
   explicit ThreadPool(int threads);
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
   int thread_count() const { return static_cast<int>(threads_.size()) + 1; }
 
   /// Calls work(0) to work(count - 1), each once, some of them at the same time, and returns when
-  /// all are done. An exception of theirs goes on from here, the one of the smallest index. One
-  /// call at a time, and none from within the work, unless that is alone (count 1).
+  /// all are done. Rethrows the exception of the smallest index. Not thread-safe. Work must not
+  /// call it, unless count is 1.
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work);
 
  private:
@@ -41,7 +41,7 @@ class ThreadPool {
   std::condition_variable work_is_done_;
   const std::function<void(std::size_t)>* work_ = nullptr;
   std::size_t count_ = 0;
-  std::size_t next_ = 0;  // index that nobody has taken yet
+  std::size_t next_ = 0;  // the next index to start
   std::size_t done_ = 0;
   Failure failure_;
   std::vector<std::jthread> threads_;  // last: they use all of the above, and are stopped first

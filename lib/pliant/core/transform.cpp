@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-// Products of 3x3 matrices are written out: the order of each sum is then ours, not the library's.
+// Products of 3x3 matrices are written out: then we fix the order of each sum, not the library.
 Matrix3d product(const Matrix3d& a, const Matrix3d& b) {
   Matrix3d c;
   for (int row = 0; row < 3; ++row) {
@@ -61,8 +61,9 @@ Matrix3d adjugate_inverse(const Matrix3d& a) {
   return b;
 }
 
-// Not finite where there is none. Each column is first brought near 1 by a power of two: products
-// of three tiny or huge numbers would be lost otherwise, and no other bit changes.
+// Not finite if there is no inverse. Each column is first scaled to about 1 by a power of two:
+// products of three tiny or huge numbers would otherwise underflow or overflow. The scaling changes
+// no other bit.
 Matrix3d inverse(Matrix3d a) {
   int exponents[3];
   for (int column = 0; column < 3; ++column) {

@@ -9,7 +9,7 @@ namespace pliant {
 /// Order in which the three rotations apply: `Xyz` turns about x first, so R = Rz Ry Rx.
 enum class RotateOrder { Xyz, Xzy, Yxz, Yzx, Zxy, Zyx };
 
-/// Where an object stands, as its author says it: p_world = translate + R S p.
+/// Position, rotation and scale of an object, as authored: p_world = translate + R S p.
 struct Placement {
   Vector3d translate = {0, 0, 0};  ///< [length]
   Vector3d rotate = {0, 0, 0};     ///< about x, y and z [degrees]
@@ -27,7 +27,7 @@ struct Transform {
   Matrix3d linear = Matrix3d::Identity();  ///< R S
   Vector3d translation = {0, 0, 0};        ///< [length]
 
-  /// Whether every direction survives: the inverse exists.
+  /// Whether the inverse exists: no direction is collapsed.
   bool is_invertible() const;
 };
 
@@ -39,7 +39,7 @@ inline Transform make_transform(const Placement& placement) {
   return make_transform(placement.translate, placement.rotate, placement.scale, placement.order);
 }
 
-/// A point to world space. The sum has a stated order: (x + y + z) + translation.
+/// A point in world space. The order of the sum is fixed: (x + y + z) + translation.
 inline Vector3d to_world(const Transform& transform, const Vector3d& point) {
   const Matrix3d& a = transform.linear;
   Vector3d world;
@@ -50,18 +50,17 @@ inline Vector3d to_world(const Transform& transform, const Vector3d& point) {
   return world;
 }
 
-/// Points (#points x 3) to world space, each as above. The result takes the memory of `reuse`.
+/// Points (#points x 3) in world space, each as above. The result reuses the memory of `reuse`.
 Field to_world(const Transform& transform, const Field& points, Field reuse = {});
 
-/// Vectors (#vectors x 3) to world space: the linear part only.
+/// Vectors (#vectors x 3) in world space: the linear part only.
 Field vectors_to_world(const Transform& transform, const Field& vectors);
 
-/// What takes world-space vectors to object space. Requires: is_invertible().
+/// The matrix that maps world-space vectors to object space. Requires: is_invertible().
 Matrix3d inverse_linear(const Transform& transform);
 
-/// World-space vectors (#vectors x 3) to object space, through the inverse linear part: of each the
-/// components x, y and z times those of a row of `inverse_linear`, added in this order.
-/// Requires: is_invertible().
+/// World-space vectors (#vectors x 3) in object space: each component is the sum of x, y and z
+/// times the entries of a row of `inverse_linear`, added in this order. Requires: is_invertible().
 Field vectors_to_object(const Transform& transform, const Field& vectors);
 
 }  // namespace pliant

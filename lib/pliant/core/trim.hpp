@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// What parts the words of a text file.
+/// The characters that separate the words of a text file.
 inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
 
 /// The text without the characters of `blanks` at both its ends.

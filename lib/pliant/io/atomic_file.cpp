@@ -25,7 +25,7 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& file, int error_
               std::string("cannot write the file: ") + std::strerror(error_number), file.string());
 }
 
-// Opens a new file in the folder, under a name that nobody else uses; -1 with errno otherwise.
+// Opens a new file in the folder under an unused name; returns -1 and sets errno on failure.
 int open_part(const OpenFolder& folder, const std::filesystem::path& file, std::string& part) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     // In the same folder, because a rename is atomic only within one file system.
@@ -46,7 +46,7 @@ AtomicFile::AtomicFile(std::filesystem::path file, std::string part, Stream stre
 AtomicFile::~AtomicFile() {
   if (!stream_) return;
   stream_.reset();
-  // Nothing to do about a part that cannot be removed.
+  // If a part cannot be removed, there is nothing to do about it.
   if (const OpenFolder folder(file_); folder.error() == 0) folder.remove(part_);
 }
 
@@ -102,12 +102,12 @@ Result<void> AtomicFile::commit_as(const std::filesystem::path& file) {
   return {};
 }
 
-// Hands all bytes over, and closes.
+// Writes all remaining bytes, and closes.
 Result<void> AtomicFile::finish_bytes() {
   std::FILE* const stream = stream_.release();
   int error = std::fflush(stream) == 0 ? 0 : errno;
   if (error == 0 && flush_ != Flush::Nothing) error = flush_descriptor(fileno(stream));
-  // Closing is the last chance of a network file system to say that the disk is full.
+  // Only close may report that the disk of a network file system is full.
   const bool is_closed = std::fclose(stream) == 0;
   if (error == 0 && !is_closed) error = errno;
   if (error != 0) return unwritable(error);

@@ -10,16 +10,16 @@
 
 namespace pliant {
 
-/// What of a file is on the disk once it is committed, and survives a power cut.
+/// The parts of a file that are flushed to the disk by a commit, and so survive a power cut.
 enum class Flush {
-  Nothing,  ///< what the system has written by then: for what can be had again
-  Bytes,  ///< the bytes, ahead of the rename, so that under the name there is a whole file always;
-          ///< the name itself once `flush_folder` is called
-  All,    ///< the bytes ahead of the rename, and the name after it
+  Nothing,  ///< nothing: for files that can be made again
+  Bytes,  ///< the bytes, before the rename, so that the name always refers to a complete file; the
+          ///< name itself only after `flush_folder`
+  All,    ///< the bytes before the rename, and the name after it
 };
 
 /// A file that appears whole under its name or not at all: written beside it under another name,
-/// which `commit` renames. Without a commit nothing is left behind and what was there before stays.
+/// then renamed by `commit`. Without a commit nothing is left behind and an older file stays.
 class AtomicFile {
  public:
   /// Errors: those of `check_output_place`; Unwritable, naming the file and the reason.
@@ -29,15 +29,15 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
 
-  /// Appends. Errors: Unwritable, when the disk is full for one.
+  /// Appends. Errors: Unwritable, for example if the disk is full.
   Result<void> write(std::string_view bytes);
-  Result<void> write(std::span<const double> numbers);  ///< little endian
-  Result<void> write(std::span<const float> numbers);   ///< little endian
+  Result<void> write(std::span<const double> numbers);  ///< little-endian
+  Result<void> write(std::span<const float> numbers);   ///< little-endian
 
-  /// Gives the file its name. Errors: Unwritable. Requires: not committed yet.
+  /// Gives the file its name. Errors: Unwritable. Requires: not committed before.
   Result<void> commit();
 
-  /// Gives it another name of the same folder, where what it holds decides what it is called.
+  /// The same with another name in the same folder, for a file whose name depends on its content.
   Result<void> commit_as(const std::filesystem::path& file);
 
  private:
@@ -51,13 +51,13 @@ class AtomicFile {
   tl::unexpected<Error> unwritable(int error_number) const;
 
   std::filesystem::path file_;
-  std::string part_;  // what it is called in the file's folder until commit
+  std::string part_;  // its name in the folder until commit
   Stream stream_;
   Flush flush_;
 };
 
-/// Has the names in the folder of `file` written to the disk; nothing on file systems that cannot.
-/// Errors: Unwritable, naming the file.
+/// Flushes the names in the folder of `file` to the disk; does nothing on file systems without that
+/// operation. Errors: Unwritable, naming the file.
 Result<void> flush_folder(const std::filesystem::path& file);
 
 }  // namespace pliant

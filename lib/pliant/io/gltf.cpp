@@ -29,7 +29,7 @@ using Json = GltfBuffer::Json;
 
 constexpr std::uint64_t most_glb_bytes = std::numeric_limits<std::uint32_t>::max();
 
-// A file name as a reference in JSON: RFC 3986 wants everything else escaped.
+// A file name as a URI reference in JSON: RFC 3986 requires all other characters to be escaped.
 std::string to_uri(const std::string& name) {
   std::string uri;
   for (const char c : name) {
@@ -44,7 +44,7 @@ void append_number(std::string& bytes, std::uint32_t number) {
   for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
 }
 
-// The materials that faces name, and one without a name for those that name none. Sheets are seen
+// The materials named by faces, and one without a name for faces without one. Sheets are visible
 // from both sides.
 class Materials {
  public:
@@ -103,7 +103,7 @@ class GltfWriter final : public AnimationWriter {
   Result<void> finish() override {
     const auto json = document();
     if (!json) return fail(json.error());
-    // What is no UTF-8 in a name becomes a replacement character.
+    // Bytes in a name that are not UTF-8 become a replacement character.
     const std::string text = json->dump(-1, ' ', false, Json::error_handler_t::replace);
     return separate_ ? write_gltf(text) : write_glb(text);
   }
@@ -170,13 +170,14 @@ class GltfWriter final : public AnimationWriter {
   // Requires: all numbers are written.
   std::filesystem::path separate_name() const { return numbers_file(file_, separate_hash_.hash()); }
 
-  // The numbers first, under a name of their own: the .gltf that was there keeps its own until the
-  // new one takes its place, in one step.
+  // The numbers first, under a name of their own: an older .gltf keeps its numbers until the new
+  // one replaces it, in one step.
   Result<void> write_gltf(const std::string& text) {
     auto file = AtomicFile::create(file_);
     if (!file) return fail(file.error());
     if (auto written = file->write(text); !written) return written;
-    // Another bake to this name must not take our numbers for old ones before we refer to them.
+    // Another bake with this name must not remove our numbers as unused before our .gltf refers to
+    // them.
     const OpenFolder folder(file_);
     folder.lock();
     auto committed = separate_->commit_as(separate_name());
@@ -185,7 +186,7 @@ class GltfWriter final : public AnimationWriter {
     return committed;
   }
 
-  // glTF 2.0, 4.4: a header, a chunk of JSON padded with blanks, a chunk of numbers.
+  // glTF 2.0, 4.4: a header, a chunk of JSON padded with spaces, a chunk of numbers.
   Result<void> write_glb(std::string text) {
     text.append((4 - text.size() % 4) % 4, ' ');
     const std::uint64_t length = 12 + 8 + text.size() + 8 + spool_->size();
@@ -207,8 +208,8 @@ class GltfWriter final : public AnimationWriter {
   std::filesystem::path file_;
   bool is_placed_;
   std::optional<AtomicFile> separate_;  // the numbers of a .gltf
-  HashStream separate_hash_;            // of what went there
-  std::optional<SpoolFile> spool_;      // those of a .glb, on their way
+  HashStream separate_hash_;            // of the bytes in `separate_`
+  std::optional<SpoolFile> spool_;      // the numbers of a .glb until they can be written
   GltfBuffer buffer_;
   std::vector<GltfSurface> surfaces_;
   std::vector<float> times_;
@@ -230,12 +231,12 @@ Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& p
     if (auto place = check_output_place(numbers_file(plan.file, {})); !place)
       return fail(place.error());
   }
-  // A file that cannot be written should not show only after a long run.
+  // An unwritable file must be reported before a long run.
   if (auto probe = AtomicFile::create(plan.file); !probe) return fail(probe.error());
   std::optional<AtomicFile> separate;
   std::optional<SpoolFile> spool;
   if (is_separate) {
-    auto file = AtomicFile::create(plan.file);  // what it is called shows at the end
+    auto file = AtomicFile::create(plan.file);  // its name is known only at the end
     if (!file) return fail(file.error());
     separate.emplace(*std::move(file));
   } else {

@@ -14,7 +14,7 @@ namespace {
 
 using Json = GltfBuffer::Json;
 
-// Component types and targets by their numbers in the format.
+// Component types and targets: their numbers in the format.
 constexpr int unsigned_byte = 5121;
 constexpr int unsigned_short = 5123;
 constexpr int unsigned_int = 5125;
@@ -28,7 +28,7 @@ const char* type_of(int width) {
   return types[static_cast<std::size_t>(width - 1)];
 }
 
-// The least and the largest of each component, as the format wants them: of the numbers as written.
+// The minimum and maximum of each component, as the format requires: of the numbers as written.
 void set_bounds(Json& accessor, std::span<const float> numbers, int width) {
   std::vector<float> least(numbers.begin(), numbers.begin() + width), largest = least;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -36,12 +36,12 @@ void set_bounds(Json& accessor, std::span<const float> numbers, int width) {
     least[component] = std::min(least[component], numbers[k]);
     largest[component] = std::max(largest[component], numbers[k]);
   }
-  // As doubles: their shortest text reads back as the same number whoever reads it.
+  // As doubles: every program parses their shortest text to the same number.
   accessor["min"] = std::vector<double>(least.begin(), least.end());
   accessor["max"] = std::vector<double>(largest.begin(), largest.end());
 }
 
-// Indices in the narrowest type that holds the largest of them.
+// Indices in the narrowest type that can store the largest of them.
 struct PackedIndices {
   int component_type;
   std::string bytes;
@@ -67,7 +67,7 @@ Result<void> GltfBuffer::write(std::string_view bytes) {
   return {};
 }
 
-// Every view begins at a multiple of 4, which suits all types.
+// Every view begins at a multiple of 4, which is correct for all types.
 Result<std::size_t> GltfBuffer::add_view(std::string_view bytes, int target) {
   Json view = {{"buffer", 0}, {"byteOffset", size_}, {"byteLength", bytes.size()}};
   if (target != no_target) view["target"] = target;
@@ -101,7 +101,7 @@ Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int
 }
 
 Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Bounds bounds) {
-  std::vector<std::uint32_t> rows;  // that are not 0
+  std::vector<std::uint32_t> rows;  // rows that are not 0
   std::vector<float> values;
   const auto count = static_cast<std::uint32_t>(numbers.size() / 3);
   for (std::uint32_t row = 0; row < count; ++row) {
@@ -131,7 +131,7 @@ Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Boun
 
 Result<std::size_t> GltfBuffer::add_indices(std::span<const std::uint32_t> indices) {
   const std::uint32_t largest = *std::max_element(indices.begin(), indices.end());
-  // The largest number of a type means "begin anew" to graphics libraries.
+  // In graphics libraries the largest number of a type restarts a primitive.
   const bool is_short = largest < 0xffff;
   const std::vector<std::uint16_t> shorts(is_short ? indices.begin() : indices.end(),
                                           indices.end());

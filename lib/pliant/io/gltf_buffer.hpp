@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-// The binary buffer of a glTF file, which is written as it comes, and the JSON that says what is in
-// it. glTF 2.0, 3.6. Not for other rooms.
+// The binary buffer of a glTF file, which is written as its numbers arrive, and the JSON that
+// describes it. glTF 2.0, 3.6. Internal to io.
 class GltfBuffer {
  public:
   using Json = nlohmann::ordered_json;
@@ -24,23 +24,23 @@ class GltfBuffer {
 
   explicit GltfBuffer(Sink sink) : sink_(std::move(sink)) {}
 
-  // Each adds an accessor and gives its number. Errors: those of the sink.
+  // Each function adds an accessor and returns its index. Errors: those of the sink.
 
   /// Rows of `width` floats for each vertex; with the least and the largest of each component.
   Result<std::size_t> add_vertices(std::span<const float> numbers, int width, Bounds bounds);
 
-  /// Rows of three floats for each vertex, most of them 0 perhaps: then only the others, where that
-  /// takes less room. Requires: numbers is not empty.
+  /// Rows of three floats for each vertex, many of which may be 0: stored sparsely if that is
+  /// smaller. Requires: numbers is not empty.
   Result<std::size_t> add_offsets(std::span<const float> numbers, Bounds bounds);
 
-  /// Corners of triangles.
+  /// Corner indices of triangles.
   Result<std::size_t> add_indices(std::span<const std::uint32_t> indices);
 
-  /// Times of keys, and their values in rows of `width`; `numbers` of an animation.
+  /// Times of keys, and their values in rows of `width`: the numbers of an animation.
   Result<std::size_t> add_keys(std::span<const float> numbers, int width, Bounds bounds);
 
-  /// One number a key and target: 1 where the target is the one of that key, otherwise 0.
-  /// `target_of_key` has -1 for keys without. Written row by row.
+  /// One number per key and target: 1 for the target of that key, otherwise 0. `target_of_key` is
+  /// -1 for keys without a target. Written row by row.
   Result<std::size_t> add_weights(std::span<const int> target_of_key, int target_count);
 
   std::uint64_t size() const { return size_; }  ///< bytes written so far

@@ -24,7 +24,7 @@ std::string_view digits_in(std::string_view name) {
 }
 
 struct Neighbours {
-  std::vector<fs::path> numbers;  // of the .gltf in question
+  std::vector<fs::path> numbers;  // of the given .gltf
   std::vector<fs::path> gltfs;    // all of them
   bool is_complete = false;
 };
@@ -40,7 +40,7 @@ Neighbours neighbours_of(const fs::path& gltf) {
     if (is_numbers_file(gltf, place->path().filename().string()))
       found.numbers.push_back(place->path());
     if (ending_of(place->path()) != ".gltf") continue;
-    // The one that most likely names it goes first.
+    // The .gltf that most probably refers to them is first.
     const bool is_first = place->path().filename() == gltf.filename();
     found.gltfs.insert(is_first ? found.gltfs.begin() : found.gltfs.end(), place->path());
   }
@@ -68,7 +68,7 @@ bool is_numbers_file(const fs::path& gltf, std::string_view name) {
 
 namespace {
 
-// Whether a file is what its name says: nothing of anybody else's is removed.
+// Whether a file has the hash in its name: files of other programs are never removed.
 bool is_of_its_name(const fs::path& gltf, const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   HashStream hash;
@@ -84,12 +84,12 @@ bool is_of_its_name(const fs::path& gltf, const fs::path& file) {
 
 void remove_unnamed_numbers(const fs::path& gltf) {
   Neighbours found = neighbours_of(gltf);
-  // As a rule there is one, and it is in use.
+  // Usually there is one, and it is in use.
   if (!found.is_complete || found.numbers.empty()) return;
   for (const fs::path& other : found.gltfs) {
     const auto text = read_file(other, longest_text);
-    if (!text) return;  // it may name any of them
-    // The digits alone: however the rest of the name is escaped there, they are as they are.
+    if (!text) return;  // it may refer to any of them
+    // Only the digits: they are the same however the rest of the name is escaped.
     std::erase_if(found.numbers, [&](const fs::path& file) {
       return text->find(digits_in(file.filename().string())) != std::string::npos;
     });

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int none = -1;
 
-// Finds for each corner the vertex that has its (u,v) and normal, or makes it.
+// Finds the vertex with the (u,v) and normal of a corner, or creates it.
 class Splitter {
  public:
   Splitter(const Mesh& mesh, GltfShape& shape) : mesh_(mesh), shape_(shape) {

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-// A mesh as graphics hardware wants it: triangles, and one (u,v) and one normal a vertex. Not for
-// other rooms.
+// A mesh in the form that graphics hardware needs: triangles, and one (u,v) and one normal per
+// vertex. Internal to io.
 struct GltfShape {
   /// One material's triangles.
   struct Part {
@@ -16,12 +16,12 @@ struct GltfShape {
     std::vector<std::uint32_t> corners;
   };
 
-  // A vertex of the mesh keeps its number. Corners of it that differ in (u,v) or normal from its
-  // first one have vertices of their own behind all those of the mesh.
+  // A vertex of the mesh keeps its index. Its corners whose (u,v) or normal differ from its first
+  // corner's have vertices of their own, after all those of the mesh.
   std::vector<int> source;   ///< #vertices: vertex of the mesh
   std::vector<int> uvs;      ///< #vertices: index into the mesh's (u,v), -1: none
-  std::vector<int> normals;  ///< #vertices: number of the mesh's normal, -1: none
-  std::vector<Part> parts;   ///< in the order in which the faces first have their materials
+  std::vector<int> normals;  ///< #vertices: index of the mesh's normal, -1: none
+  std::vector<Part> parts;   ///< in the order of the materials' first use by a face
 };
 
 GltfShape make_gltf_shape(const Mesh& mesh);

@@ -41,8 +41,8 @@ void append(const Vector3d& vector, std::vector<float>& numbers) {
   for (int k = 0; k < 3; ++k) numbers.push_back(static_cast<float>(vector[k]));
 }
 
-// Of the two quaternions of a rotation the one nearer to the last key, so that what interpolates
-// between them goes the short way.
+// Of the two quaternions of a rotation, the one nearer to the last key, so that interpolation takes
+// the shorter way.
 void append(Quaternion rotation, std::vector<float>& numbers) {
   double dot = 0;
   for (std::size_t k = 0; k < 4 && numbers.size() >= 4; ++k)
@@ -130,9 +130,9 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
     append(rotation_of(pose.placement), keys_[1].numbers);
     append(pose.placement.scale, keys_[2].numbers);
   }
-  // From the base as written to the double position: the sum of base and offset is then as near to
-  // it as an offset in single precision allows. But none where the position rounds to the base, or
-  // what the base lost in rounding would be an offset of every vertex that does not move.
+  // Offset from the base as written to the double position: the sum of base and offset is then as
+  // accurate as an offset in single precision allows. It is 0 if the position rounds to the base;
+  // otherwise the rounding error of the base would be an offset of every vertex that does not move.
   Field offsets(static_cast<Eigen::Index>(shape_.source.size()), 3);
   for (Eigen::Index row = 0; row < offsets.rows(); ++row) {
     for (int k = 0; k < 3; ++k) {
@@ -143,7 +143,7 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
     }
   }
   auto rounded = to_single(offsets, frame);
-  if (!rounded) {  // told by the mesh's own vertices if one of them is to blame
+  if (!rounded) {  // report the mesh's own vertex if one is the cause
     const auto held = to_single(pose.positions, frame, mesh_.first_index);
     return fail(held ? rounded.error() : held.error());
   }

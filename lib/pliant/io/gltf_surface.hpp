@@ -9,38 +9,38 @@
 
 namespace pliant {
 
-// Keys of one property of a node, a row of `width` floats each. Not for other rooms.
+// Keys of one property of a node, a row of `width` floats each. Internal to io.
 struct GltfKeys {
-  const char* path;  // as an animation channel names it
+  const char* path;  // the property's name in an animation channel
   int width;
   std::vector<float> numbers = {};
 
   bool is_moving() const;
 };
 
-// One surface on its way into a glTF file: what does not move at once, a morph target with each
-// frame that brings a new shape. Not for other rooms.
+// One surface of a glTF file: writes its static parts first, then a morph target for each frame
+// with a new shape. Internal to io.
 class GltfSurface {
  public:
   using Json = GltfBuffer::Json;
 
   GltfSurface(const AnimatedSurface& surface, bool is_placed);
 
-  /// Writes what does not move. Errors: those of the buffer; NotFinite.
+  /// Writes the static parts. Errors: those of the buffer; NotFinite.
   Result<void> begin(const Field& rest, int frame, GltfBuffer& buffer);
 
   /// Writes one frame. Errors: likewise.
   Result<void> add(const SurfacePose& pose, int frame, GltfBuffer& buffer);
 
-  /// The mesh; `material_of` gives the index of a material by its name, empty: of no name.
+  /// The mesh; `material_of` returns the index of a material by its name; empty: the unnamed one.
   Json mesh(const std::function<std::size_t(const std::string&)>& material_of) const;
 
   Json node(std::size_t mesh_index) const;
 
-  /// Whether shape or placement change at all.
+  /// Whether the shape or the placement changes.
   bool is_animated() const;
 
-  /// Adds the animation of the node to what all surfaces share. Errors: those of the buffer.
+  /// Adds the animation of the node to the animation of all surfaces. Errors: those of the buffer.
   Result<void> animate(std::size_t node_index, std::size_t times, GltfBuffer& buffer,
                        Json& animation) const;
 

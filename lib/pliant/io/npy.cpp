@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// Magic, version, length of the header, then a Python literal padded with blanks so that the
+// Magic, version, length of the header, then a Python literal padded with spaces so that the
 // numbers start at a multiple of 64 bytes.
 std::string npy_header(int frames, int vertices) {
   std::string literal = fmt::format(
@@ -45,7 +45,7 @@ class NpyWriter final : public SurfaceWriter {
 
  private:
   AtomicFile file_;
-  std::vector<double> numbers_;  // of some rows, in the file's order
+  std::vector<double> numbers_;  // some rows, in the file's order
 };
 
 }  // namespace

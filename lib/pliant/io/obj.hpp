@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// One Wavefront OBJ file a frame, as `ObjText` has it. Errors: Unwritable.
+/// One Wavefront OBJ file per frame, written by `ObjText`. Errors: Unwritable.
 Result<std::unique_ptr<SurfaceWriter>> make_obj_writer(const SurfacePlan& plan);
 
 }  // namespace pliant

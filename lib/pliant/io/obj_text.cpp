@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-// A name that reads back: one line, no comment, and no line that goes on.
+// A name that can be read back: one line, no comment, no continued line.
 std::string in_line(std::string name) {
   std::replace_if(
       name.begin(), name.end(),
@@ -19,7 +19,7 @@ std::string in_line(std::string name) {
   return name;
 }
 
-// The statement ahead of a face where its name differs from that of the face before.
+// Writes a statement before a face if its name differs from that of the face before.
 class NameStatement {
  public:
   NameStatement(std::string_view keyword, const FaceNames& names, std::string_view nobody)
@@ -41,7 +41,7 @@ class NameStatement {
   int current_ = -1;
 };
 
-// Of each face, whether it shares no normal with another.
+// For each face, whether it shares no normal with another.
 std::vector<bool> flat_faces(const Mesh& mesh) {
   std::vector<bool> is_flat(mesh.face_sizes.size(), !mesh.corner_normals.empty());
   if (mesh.corner_normals.empty()) return is_flat;

@@ -10,15 +10,15 @@
 
 namespace pliant {
 
-/// Takes the bytes of a file, piece by piece.
+/// Receives the bytes of a file, piece by piece.
 using ByteSink = std::function<Result<void>(std::string_view)>;
 
-/// A mesh as Wavefront OBJ: positions as the shortest text that reads back the same double, texture
+/// A mesh as Wavefront OBJ: positions as the shortest text that parses to the same double, texture
 /// coordinates and faces as in the source, names of object, groups and materials. Smooth surfaces
-/// say `s 1`; others have `vn` too, and `s off` where they are flat.
+/// have `s 1`; others have `vn` too, and `s off` for flat faces.
 class ObjText {
  public:
-  explicit ObjText(const Mesh& mesh);  ///< which outlives it
+  explicit ObjText(const Mesh& mesh);  ///< must outlive it
 
   /// The mesh with its vertices at `positions`. Errors: those of the sink.
   Result<void> write(const Field& positions, const ByteSink& sink);

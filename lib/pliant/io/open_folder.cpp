@@ -16,7 +16,7 @@ OpenFolder::OpenFolder(const std::filesystem::path& file) {
   const char* const name = parent.empty() ? "." : parent.c_str();
   descriptor_ = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   is_readable_ = descriptor_ >= 0;
-  // A folder that may be written to, but not listed, is enough for anything but a flush.
+  // A folder that is writable but not readable suffices for everything except a flush.
   if (!is_readable_ && errno == EACCES) descriptor_ = open(name, O_PATH | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) error_ = errno;
 }
@@ -35,7 +35,7 @@ int OpenFolder::flush() const { return is_readable_ ? flush_descriptor(descripto
 
 void OpenFolder::lock() const {
   using namespace std::chrono_literals;
-  // Not without end: whoever holds it may hang.
+  // Limited, since the process with the lock may hang.
   for (auto waited = 0ms; waited < 10s; waited += 10ms) {
     if (!is_readable_ || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     std::this_thread::sleep_for(10ms);

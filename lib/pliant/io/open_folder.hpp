@@ -6,11 +6,11 @@
 
 namespace pliant {
 
-// The folder of a file, held open, so that names in it may be as long as the system allows and the
-// path to it too. Functions give 0 or an errno. Not for other rooms.
+// The folder of a file, kept open, so that names in it, and the path to it, may be as long as the
+// system allows. Functions return 0 or an errno. Internal to io.
 class OpenFolder {
  public:
-  /// The folder that `file` is in; `error` says why it cannot be opened, 0: it is open.
+  /// The folder of `file`; `error` is the errno if it cannot be opened, 0: it is open.
   explicit OpenFolder(const std::filesystem::path& file);
   OpenFolder(OpenFolder&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)),
@@ -25,12 +25,12 @@ class OpenFolder {
   int rename(const std::string& from, const std::string& to) const;
   void remove(const std::string& name) const;
 
-  /// Writes the folder's names to the disk; 0 also where the file system has no such thing, or
-  /// where the folder may be written to but not read, for which there is no way.
+  /// Flushes the folder's names to the disk; also returns 0 if the file system does not support
+  /// this, or if the folder is writable but not readable, in which case it is impossible.
   int flush() const;
 
-  /// Waits until no other process holds the folder, ten seconds at most, and holds it until this
-  /// object goes. Where the file system knows no locks nothing happens.
+  /// Waits until no other process has the lock of the folder, ten seconds at most, and locks it
+  /// until this object is destroyed. Does nothing if the file system has no locks.
   void lock() const;
 
  private:
@@ -39,8 +39,8 @@ class OpenFolder {
   bool is_readable_ = false;
 };
 
-/// Writes what an open file holds to the disk: 0, or the errno. 0 also where the file system has no
-/// such thing.
+/// Flushes the content of an open file to the disk: 0, or the errno. Also 0 if the file system does
+/// not support this.
 int flush_descriptor(int descriptor);
 
 }  // namespace pliant

@@ -11,10 +11,10 @@
 namespace pliant {
 namespace {
 
-// What has the name and may not be replaced; empty: it may.
+// The kind of an existing file that may not be replaced; empty: it may be written.
 std::string_view obstacle(const std::filesystem::path& file) {
   struct stat status = {};
-  if (lstat(file.c_str(), &status) != 0) return {};  // nothing there, or creating it will say why
+  if (lstat(file.c_str(), &status) != 0) return {};  // no such file, or creating it fails too
   switch (status.st_mode & S_IFMT) {
     case S_IFREG:
       return {};
@@ -45,14 +45,14 @@ Result<void> check_output_place(const std::filesystem::path& file) {
                 file.string());
   };
   const std::string name = file.filename().string();
-  constexpr std::size_t longest_path = PATH_MAX - 1;  // without the zero at its end
+  constexpr std::size_t longest_path = PATH_MAX - 1;  // excludes the terminating zero
   if (file.native().size() > longest_path) {
     return refuse(fmt::format("its path has {} bytes; the system allows {}", file.native().size(),
                               longest_path));
   }
   if (file.empty()) return refuse("the name is empty");
   if (name.empty() || name == "." || name == "..") return refuse("it is a folder");
-  // No file system has longer ones than most have: only of a long name the folder has to be asked.
+  // No file system has a shorter limit; the folder is queried only for longer names.
   constexpr std::size_t short_everywhere = 140;
   if (name.size() > short_everywhere) {
     if (const std::size_t most = longest_name_in(file.parent_path()); name.size() > most) {
@@ -68,7 +68,7 @@ std::string hidden_name(const std::filesystem::path& file) {
   std::string name = file.filename().string();
   if (name.size() > longest) {
     std::size_t end = longest / 2;
-    // Not within a character: some file systems take UTF-8 only.
+    // Do not cut within a character: some file systems accept only UTF-8.
     while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
     name = name.substr(0, end) + '-' + to_text(hash_of(name));
   }

@@ -17,7 +17,7 @@ namespace {
 
 using Uv = std::array<double, 2>;
 
-// The (u,v) of each vertex; nothing when a vertex has none, or several that differ.
+// The (u,v) of each vertex; empty if a vertex has none, or several that differ.
 std::vector<Uv> vertex_uvs(const Mesh& mesh) {
   std::vector<std::optional<Uv>> found(static_cast<std::size_t>(mesh.vertex_count()));
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
@@ -35,8 +35,8 @@ std::vector<Uv> vertex_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-// The normal of each vertex, by its number in the mesh; nothing when the mesh says nothing of them,
-// or a vertex has several or none.
+// The index of each vertex's normal in the mesh; empty if the mesh does not define normals, or a
+// vertex has several or none.
 std::vector<int> vertex_normals(const Mesh& mesh) {
   if (mesh.corner_normals.empty()) return {};
   std::vector<int> normals(static_cast<std::size_t>(mesh.vertex_count()), -1);
@@ -50,11 +50,11 @@ std::vector<int> vertex_normals(const Mesh& mesh) {
 }
 
 template <class Number>
-void append(std::string& bytes, Number number) {  // of a little-endian machine
+void append(std::string& bytes, Number number) {  // on a little-endian machine
   bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
 }
 
-// Whether a list of a face, with so many numbers for each of its corners, has more than 255.
+// Whether a list of a face, with `numbers` entries for each of its corners, is longer than 255.
 bool needs_long_counts(const Mesh& mesh, int numbers) {
   return std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(),
                      [&](int size) { return std::int64_t{size} * numbers > 255; });
@@ -110,7 +110,7 @@ class PlyWriter final : public SequenceWriter {
            (uvs_.empty() ? 0 : 2 * sizeof(double));
   }
 
-  // Room for positions and normals, with (u,v) behind them.
+  // Allocates positions and normals, and fills in the (u,v) after them.
   void make_vertices() {
     vertices_.resize(vertex_size() * static_cast<std::size_t>(mesh_.vertex_count()));
     char* end = vertices_.data();

@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-// Appends the four bytes of a whole number or of a float.
+// Appends the four bytes of an integer or of a float.
 template <std::endian order, class Number>
 void append(std::string& bytes, Number number) {
   static_assert(sizeof(Number) == 4);
@@ -26,7 +26,7 @@ void append(std::string& bytes, Number number) {
     bytes += static_cast<char>(bits >> 8 * (order == std::endian::little ? k : 3 - k) & 0xff);
 }
 
-// The bytes of each number the other way round. Not as floats: some of those bits are signalling.
+// Reverses the bytes of each number. Not as floats: some of the results are signalling NaNs.
 void swap_bytes(std::span<float> numbers) {
   for (float& number : numbers) {
     std::uint32_t bits;
@@ -61,8 +61,8 @@ class PointCacheWriter final : public SurfaceWriter {
  private:
   AtomicFile cache_;
   AtomicFile mesh_;
-  int first_index_;             // from which the mesh counts its vertices
-  std::vector<float> numbers_;  // of some rows
+  int first_index_;             // first vertex number in messages
+  std::vector<float> numbers_;  // some rows
 };
 
 Result<AtomicFile> write_mesh(const SurfacePlan& plan) {

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// The bytes that numbers are in memory, which is how the binary formats have them.
+/// The bytes of numbers in memory, which is their representation in the binary formats.
 template <class Number>
 std::string_view bytes_of(std::span<const Number> numbers) {
   const auto bytes = std::as_bytes(numbers);

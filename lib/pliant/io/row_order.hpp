@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-/// Rows of a field that go into a file at a time: few enough to stay in the nearer caches, enough
-/// that each is one write.
+/// Rows of a field that are written to a file at a time: few enough for the inner caches, enough
+/// for one write each.
 inline constexpr Eigen::Index rows_at_a_time = 8192;
 
-/// x y z of each row from `first` on, as many as fill `numbers`, each converted.
+/// Converts x y z of each row from `first` on, as many rows as fill `numbers`.
 template <class Number>
 void to_row_order(const Field& field, Eigen::Index first, std::span<Number> numbers) {
   const Eigen::Index count = static_cast<Eigen::Index>(numbers.size()) / 3;
@@ -26,7 +26,7 @@ void to_row_order(const Field& field, Eigen::Index first, std::span<Number> numb
   }
 }
 
-/// Calls f(first, count) for all rows of a field, `rows_at_a_time`, until one fails.
+/// Calls f(first, count) for blocks of `rows_at_a_time` rows until one call fails.
 template <class F>
 auto for_row_blocks(const Field& field, const F& f) -> decltype(f(0, 0)) {
   for (Eigen::Index first = 0; first < field.rows(); first += rows_at_a_time) {

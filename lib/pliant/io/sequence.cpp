@@ -20,7 +20,7 @@
 namespace pliant {
 namespace {
 
-// What a sequence calls its files: the frame stands between the two parts.
+// The names of a sequence's files: the frame is between the two parts.
 class SequenceName {
  public:
   explicit SequenceName(const std::filesystem::path& pattern) : head_(pattern.filename().string()) {
@@ -42,7 +42,7 @@ class SequenceName {
                        width_, tail_);
   }
 
-  // The frame whose file has that name, if it is one of the sequence's.
+  // The frame of a file with that name, if it belongs to the sequence.
   std::optional<int> frame_in(const std::string& name) const {
     if (name.size() <= head_.size() + tail_.size() || !name.starts_with(head_) ||
         !name.ends_with(tail_)) {
@@ -61,7 +61,7 @@ class SequenceName {
   std::size_t width_ = 4;
 };
 
-// What a regular file holds, to be compared from its beginning on.
+// The content of a regular file, compared from its beginning.
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& file)
@@ -90,7 +90,7 @@ class FileBytes {
   bool flush() const { return flush_descriptor(descriptor_) == 0; }
 
  private:
-  // Whether the file had, and let be read, as many bytes as `there_` takes.
+  // Fills `there_` from the file; false if the file is too short or cannot be read.
   bool fill() {
     std::size_t done = 0;
     while (done < there_.size()) {
@@ -113,8 +113,7 @@ std::filesystem::path sequence_file(const std::filesystem::path& pattern, int fr
   return pattern.parent_path() / SequenceName(pattern).of(frame);
 }
 
-// The folder is listed once: of a million frames that are not there each would have to be asked
-// for.
+// Lists the folder once, instead of querying each of possibly a million frames.
 Result<void> check_sequence(const SurfacePlan& plan) {
   for (const int frame : {plan.first_frame, plan.last_frame}) {  // one has the longest name
     if (auto place = check_output_place(sequence_file(plan.file, frame)); !place) return place;
@@ -142,8 +141,8 @@ Result<void> SequenceWriter::write(int frame, const Field& positions) {
     ++counts_.kept;
     return {};
   }
-  // The names go to the disk at the end: one of them lost costs that frame, which would be so too
-  // if the power went a moment earlier.
+  // The names are flushed at the end: losing one loses that frame, just as if the power had failed
+  // a moment earlier.
   auto file = AtomicFile::create(name, Flush::Bytes);
   if (!file) return fail(file.error());
   auto written = write_frame(positions, [&](std::string_view bytes) { return file->write(bytes); });
@@ -154,7 +153,7 @@ Result<void> SequenceWriter::write(int frame, const Field& positions) {
 
 Result<void> SequenceWriter::finish() { return flush_folder(pattern_); }
 
-// Whether the file holds what would be written; if it does, it is on the disk.
+// Whether the file has the content to be written; if so, flushes it to the disk.
 bool SequenceWriter::is_there(const std::filesystem::path& file, const Field& positions) {
   FileBytes bytes(file);
   if (!bytes.is_open()) return false;

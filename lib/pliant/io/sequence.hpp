@@ -11,18 +11,19 @@
 namespace pliant {
 
 /// The name of one file of a sequence: the last run of `#` in the file's name becomes the frame
-/// with at least as many digits; without one, four digits go ahead of the ending (`OUT.0001.obj`).
+/// with at least as many digits; without one, four digits are inserted before the ending
+/// (`OUT.0001.obj`).
 std::filesystem::path sequence_file(const std::filesystem::path& pattern, int frame);
 
-/// Whether the files of the plan's sequence can be written: a folder that cannot be written to
-/// should not show only after a long run, nor a link in the place of a file. Leaves nothing behind.
-/// Errors: those of `check_output_place`; Unwritable.
+/// Whether the files of the plan's sequence can be written, so that an unwritable folder, or a link
+/// with the name of a file, is reported before a long run. Leaves nothing behind. Errors: those of
+/// `check_output_place`; Unwritable.
 Result<void> check_sequence(const SurfacePlan& plan);
 
-/// Writes a file for each frame, which is on the disk once `finish` is done.
+/// Writes a file for each frame; all are on the disk after `finish`.
 ///
-/// A plan that resumes keeps a file that holds, byte for byte, what would be written. Any other is
-/// written: one that is not there, that another scene left, or that is cut short, longer or
+/// A plan that resumes keeps a file that has, byte for byte, the content to be written. Any other
+/// file is written: a missing one, one of another scene, or one that is truncated, longer or
 /// damaged.
 class SequenceWriter : public SurfaceWriter {
  public:
@@ -34,7 +35,7 @@ class SequenceWriter : public SurfaceWriter {
   explicit SequenceWriter(const SurfacePlan& plan);
 
  private:
-  /// What the file of one frame holds.
+  /// The content of the file of one frame.
   virtual Result<void> write_frame(const Field& positions, const ByteSink& sink) = 0;
 
   bool is_there(const std::filesystem::path& file, const Field& positions);

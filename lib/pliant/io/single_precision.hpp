@@ -14,21 +14,21 @@ namespace pliant {
 /// counted from `first_index`, if a coordinate is not finite or beyond the range of float.
 Result<std::vector<float>> to_single(const Field& positions, int frame, int first_index = 0);
 
-/// The same of the rows from `first` on that fill `numbers`.
+/// The same for the rows from `first` on that fill `numbers`.
 Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
                        std::span<float> numbers, int first_index = 0);
 
-/// How a format holds translation and scale of a placement.
+/// How a format stores translation and scale of a placement.
 enum class PlacementNumbers { Single, Double };
 
-/// Whether a format can hold a placement. Errors: NotFinite, naming surface, frame and value, if
-/// one of its numbers is not finite or beyond the range of the format's, or a scale below it: a
-/// surface of scale 0 has no way back.
+/// Whether a format can store a placement. Errors: NotFinite, naming surface, frame and value, if
+/// one of its numbers is not finite or beyond the range of the format's numbers, or a scale is too
+/// small for them: a scale of 0 cannot be inverted.
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
                              std::string_view surface, int frame);
 
-/// Seconds from the first to the last of `frame_count` frames, rounded to float.
-/// Errors: NotFinite where that is beyond its range.
+/// Seconds from the first to the last of `frame_count` frames, rounded to float. Errors: NotFinite
+/// if that is out of range.
 Result<float> to_single_seconds(int frame_count, double fps);
 
 }  // namespace pliant

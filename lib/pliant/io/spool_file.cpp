@@ -15,11 +15,12 @@
 namespace pliant {
 namespace {
 
-// A new file in the folder that has no name; -1 with errno otherwise.
+// Opens a new file without a name in the folder; returns -1 and sets errno on failure.
 int open_nameless(const OpenFolder& folder, const std::filesystem::path& file) {
   const int nameless = openat(folder.descriptor(), ".", O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
   if (nameless >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return nameless;
-  // A file system that knows no such files: it has a name for a moment, which a kill could leave.
+  // Fallback for other file systems: the file has a name for a moment, and remains if the program
+  // is killed then.
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const std::string name = hidden_name(file) + "." + std::to_string(getpid()) + "-" +
                              std::to_string(attempt) + ".part";

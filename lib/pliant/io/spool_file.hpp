@@ -11,9 +11,9 @@
 
 namespace pliant {
 
-/// Bytes on their way into a file that can take them only later, such as those behind a header that
-/// has to say how many there are. On the same disk as that file, without a name, so that nothing is
-/// left of them whatever ends the program.
+/// A temporary file for bytes that can be written to their file only later, such as those after a
+/// header that contains their number. It is on the same disk as that file and has no name, so that
+/// nothing remains of it if the program is killed.
 class SpoolFile {
  public:
   /// Bytes for `file`. Errors: Unwritable, naming that file and the reason.
@@ -24,7 +24,7 @@ class SpoolFile {
 
   std::uint64_t size() const { return size_; }  ///< [bytes]
 
-  /// Appends all that was written to another file. Errors: Unwritable, of either.
+  /// Appends everything written so far to another file. Errors: Unwritable, for either file.
   Result<void> copy_to(AtomicFile& file);
 
  private:

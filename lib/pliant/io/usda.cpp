@@ -23,7 +23,7 @@ std::string layer_head(const AnimationPlan& plan) {
       plan.last_frame, plan.fps, plan.first_frame, plan.fps);
 }
 
-// The materials that faces name, as prims that a program can shade.
+// The materials named by faces, as prims that a program can shade.
 class MaterialScope {
  public:
   explicit MaterialScope(std::string scope) : scope_(std::move(scope)) {}

@@ -7,19 +7,20 @@
 namespace pliant {
 
 /// Universal Scene Description as text, one file: an `Xform` "scene", the default prim, with a
-/// `Mesh` for each surface. Time codes are frames, and `timeCodesPerSecond` is the scene's fps;
-/// +y is up and a unit of length a metre, since scenes have none of their own.
+/// `Mesh` for each surface. Time codes are frames, and `timeCodesPerSecond` is the scene's fps; +y
+/// is up and a unit of length is a metre, since scenes define neither.
 ///
-/// Points, extent, normals and velocities have a sample at each frame. A velocity is the way to the
-/// next frame times fps, in lengths per second, so that motion blur meets the next sample; at the
-/// last frame it is that of the frame before, and it is left out where there is one frame only.
-/// Normals are `vertex`, or `faceVarying` where the mesh says which corners share one. (u,v) are
-/// `primvars:st`, faces stay polygons, materials and groups are GeomSubsets. Where poses are
-/// placed, transforms are xformOps, sampled if they change.
+/// Points, extent, normals and velocities have a sample at each frame. A velocity is the difference
+/// to the next frame times fps, in lengths per second, so that motion blur reaches the next sample;
+/// at the last frame it is that of the frame before, and it is omitted if there is only one frame.
+/// Normals are `vertex`, or `faceVarying` if the mesh defines which corners share one. (u,v) are
+/// `primvars:st`, faces stay polygons, materials and groups are GeomSubsets. If poses are placed,
+/// transforms are xformOps, sampled if they change.
 ///
-/// A `-` in the name of a surface becomes `_`, since USD has none in names, with a number where two
-/// would meet; `displayName` keeps the name as it was. Samples of an attribute stand together in
-/// the file, so they are gathered in files without a name first: twice the room on the disk.
+/// A `-` in the name of a surface becomes `_`, since USD does not allow it in names, with a number
+/// added if two names would be equal; `displayName` has the original name. The file stores all
+/// samples of an attribute together, so they are first collected in files without names: this needs
+/// twice the space on the disk.
 ///
 /// Errors: Unwritable; NotFinite beyond single precision.
 Result<std::unique_ptr<AnimationWriter>> make_usda_writer(const AnimationPlan& plan);

@@ -7,19 +7,19 @@
 
 namespace pliant {
 
-/// Names of the prims below one, each once. Not for other rooms.
+/// Unique names for the child prims of one prim. Internal to io.
 class UsdaNames {
  public:
-  /// The name itself where USD allows it: letters, digits and `_`, no digit first. Everything else
-  /// becomes `_`, and `_2`, `_3`, … is put behind a name that is taken.
+  /// The name itself if USD allows it: letters, digits and `_`, no digit first. All other
+  /// characters become `_`, and `_2`, `_3`, … is appended to a name that is in use.
   std::string take(std::string_view name);
 
  private:
   std::set<std::string> taken_;
-  std::map<std::string, int> next_suffix_;  // of the names that were asked for, to try next
+  std::map<std::string, int> next_suffix_;  // the suffix to try next, for each name requested
 };
 
-/// The text in quotes, as a string of USD.
+/// The text in quotes, as a USD string.
 std::string usda_string(std::string_view text);
 
 }  // namespace pliant

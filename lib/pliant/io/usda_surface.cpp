@@ -19,7 +19,7 @@ void append_vector(float x, float y, float z, std::string& text) {
   fmt::format_to(std::back_inserter(text), "({}, {}, {})", x, y, z);
 }
 
-// [(x, y, z), …] of rows of three.
+// Writes rows of three as [(x, y, z), …].
 void append_vectors(std::span<const float> numbers, std::string& text) {
   text += '[';
   for (std::size_t k = 0; k < numbers.size(); k += 3) {
@@ -37,7 +37,7 @@ void append_integers(std::span<const int> numbers, std::string& text) {
   text += ']';
 }
 
-// The corners of the box around the points.
+// The corners of the bounding box of the points.
 void append_extent(std::span<const float> numbers, std::string& text) {
   float least[3] = {0, 0, 0}, largest[3] = {0, 0, 0};
   for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -51,7 +51,7 @@ void append_extent(std::span<const float> numbers, std::string& text) {
   text += ']';
 }
 
-// The faces that each name stands for, ascending.
+// The faces with each name, ascending.
 std::vector<std::vector<int>> faces_of_names(const FaceNames& faces) {
   std::vector<std::vector<int>> members(faces.names.size());
   for (std::size_t face = 0; face < faces.of_faces.size(); ++face) {
@@ -70,7 +70,7 @@ Result<void> append_samples(std::string_view attribute, SpoolFile& samples, Atom
   return file.write(fmt::format("{}}}\n", indent));
 }
 
-// One axis after the other, as xformOp:rotateXYZ has it: x first.
+// One axis after the other, as in xformOp:rotateXYZ: x first.
 std::string rotate_operation(RotateOrder order) {
   std::string name = "xformOp:rotate";
   for (const int axis : axes(order)) name += static_cast<char>('X' + axis);
@@ -123,7 +123,7 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
 
   text = sample_head(frame);
   const Field normals = unit_normals(*mesh_, pose.positions);
-  Field rows;  // one a corner where they are not one a vertex
+  Field rows;  // one per corner if not one per vertex
   if (!mesh_->corner_normals.empty()) {
     rows.resize(static_cast<Eigen::Index>(mesh_->corner_normals.size()), 3);
     for (Eigen::Index k = 0; k < rows.rows(); ++k)
@@ -198,7 +198,7 @@ std::string UsdaSurface::uvs() const {
                   [](int uv) { return uv < 0; })) {
     return {};
   }
-  // A corner without (u,v) among others with them has (0,0).
+  // A corner without (u,v) gets (0,0) if others have them.
   std::vector<int> indices = mesh_->corner_uvs;
   const auto origin = static_cast<int>(mesh_->uvs.size());
   const bool has_gaps = std::find(indices.begin(), indices.end(), -1) != indices.end();

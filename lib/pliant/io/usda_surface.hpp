@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-// One surface on its way into a USD file: the samples of each attribute, gathered until their turn
-// comes. Not for other rooms.
+// One surface of a USD file: collects the samples of each attribute until they can be written.
+// Internal to io.
 class UsdaSurface {
  public:
   /// Errors: Unwritable.
@@ -20,8 +20,8 @@ class UsdaSurface {
   /// Errors: Unwritable; NotFinite.
   Result<void> add(const SurfacePose& pose, int frame);
 
-  /// The prim, under its name. `material_path` gives the path of a material's prim by its name.
-  /// Errors: Unwritable.
+  /// Writes the prim with the given name. `material_path` returns the path of a material's prim by
+  /// its name. Errors: Unwritable.
   Result<void> write(const std::string& name,
                      const std::function<std::string(const std::string&)>& material_path,
                      AtomicFile& file);
@@ -30,7 +30,7 @@ class UsdaSurface {
   const std::string& name() const { return name_; }
 
  private:
-  // The samples of a placement's part, as text.
+  // The samples of one part of a placement, as text.
   struct Operation {
     std::string type, name;
     std::vector<std::string> samples = {};

@@ -27,9 +27,9 @@ using MakeWriter = Result<std::unique_ptr<AnimationWriter>> (*)(const AnimationP
 struct Format {
   std::string ending;
   bool is_sequence = false;
-  MakeSurfaceWriter make_surface_writer = nullptr;  // of one that holds one surface
-  MakeWriter make_writer = nullptr;                 // of one that holds all
-  std::string beside = {};  // the ending of what is written next to it under its name, if anything
+  MakeSurfaceWriter make_surface_writer = nullptr;  // for a format of one surface
+  MakeWriter make_writer = nullptr;                 // for a format of all surfaces
+  std::string beside = {};  // ending of a second file with the same name, if any
 };
 
 const std::vector<Format>& formats() {
@@ -53,8 +53,8 @@ const Format* find_format(const std::filesystem::path& file) {
   return found == formats().end() ? nullptr : &*found;
 }
 
-// OUT, or OUT-NAME.ext when there are several surfaces; ahead of the frame's place if OUT says
-// where that is, so that a sequence stays one: x.###.obj goes to x-NAME.###.obj.
+// OUT, or OUT-NAME.ext if there are several surfaces; NAME is inserted before the frame's place if
+// OUT has one, so that it is still a sequence: x.###.obj becomes x-NAME.###.obj.
 std::filesystem::path file_for(const AnimationPlan& plan, const std::string& surface) {
   const std::filesystem::path file = plan.file;
   if (plan.surfaces.size() == 1) return file;
@@ -65,7 +65,7 @@ std::filesystem::path file_for(const AnimationPlan& plan, const std::string& sur
   return file.parent_path() / name.insert(place, '-' + surface);
 }
 
-// Hands each surface to a writer of its own.
+// Passes each surface to a writer of its own.
 class SurfaceBySurface final : public AnimationWriter {
  public:
   explicit SurfaceBySurface(std::vector<std::unique_ptr<SurfaceWriter>> writers)
@@ -161,7 +161,7 @@ bool is_named_at_the_end(const AnimationPlan& plan, std::string_view name) {
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) {
   PLIANT_EXPECTS(!plan.surfaces.empty() && plan.first_frame <= plan.last_frame);
   if (auto known = check_ending(plan.file); !known) return fail(known.error());
-  // A sequence looks for itself: its files may be a million.
+  // A sequence checks its own files, which may be a million.
   if (!find_format(plan.file)->is_sequence) {
     for (const std::string& file : files_of(plan)) {
       if (auto place = check_output_place(file); !place) return fail(place.error());

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_listed = 10;
 
-// How far the last row of a transform may be from 0 0 0 1: exporters work in float.
+// How much the last row of a transform may differ from 0 0 0 1: exporters work in float.
 constexpr double affine_tolerance = 1e-5;
 
 std::string listed(std::span<const std::string> names) {
@@ -65,7 +65,7 @@ Result<std::size_t> choose_node(std::span<const std::string> nodes,
 }
 
 Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions) {
-  if (to_file == Eigen::Matrix4d::Identity()) return {};  // -0 would become 0
+  if (to_file == Eigen::Matrix4d::Identity()) return {};  // otherwise -0 would become 0
   const Eigen::RowVector4d last_row = to_file.row(3);
   if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
     return invalid(

@@ -36,7 +36,7 @@ std::string percent_decoded(std::string_view uri) {
   return text;
 }
 
-// `http`, `file`, also `C` of C:\a.bin; empty: the URI is relative. RFC 3986, 3.1.
+// `http`, `file`, or `C` for C:\a.bin; empty: the URI is relative. RFC 3986, 3.1.
 std::string_view scheme_of(std::string_view uri) {
   const std::size_t end = uri.find_first_of(":/?#");
   const bool has_scheme = end != std::string_view::npos && end > 0 && uri[end] == ':';
@@ -55,7 +55,7 @@ bool is_there(const fs::path& file) {
   return fs::exists(file, ignored);
 }
 
-// What a relative path to a file cannot be.
+// Rejects URIs that are not relative paths to a file.
 Result<void> check_uri(const std::string& uri, std::string_view decoded) {
   if (const std::string_view scheme = scheme_of(uri); !scheme.empty()) {
     return refuse(
@@ -77,7 +77,7 @@ Result<fs::path> find_reference(const std::string& uri, const fs::path& mesh_fil
   std::error_code trouble;
   const fs::path allowed = fs::canonical(root.empty() ? folder : root, trouble);
   if (trouble) return refuse(uri, "but the folder for what it refers to cannot be found");
-  // Where links lead, ahead of asking whether anything is there.
+  // Resolves links before checking whether the file exists.
   const auto place = [&](const std::string& path) {
     return fs::weakly_canonical(fs::absolute(folder / path, trouble), trouble);
   };
@@ -99,7 +99,7 @@ Result<std::string> read_reference(const std::string& uri, const fs::path& mesh_
   const auto file = find_reference(uri, mesh_file, root);
   if (!file) return fail(file.error());
   std::error_code ignored;
-  // A pipe or a device would make us wait, or never end.
+  // A read from a pipe or a device could block, or never end.
   if (is_there(*file) && !fs::is_regular_file(*file, ignored)) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the file refers to {}: cannot read the file: it is not a regular file",

@@ -23,7 +23,7 @@ enum class Component : std::uint64_t {
   Float32 = 5126
 };
 
-// [bytes]; 0: there is no such kind.
+// [bytes]; 0: unknown type.
 std::size_t size_of(std::uint64_t component) {
   switch (static_cast<Component>(component)) {
     case Component::Int8:
@@ -44,7 +44,7 @@ bool is_index(std::uint64_t component) {
   return kind == Component::UInt8 || kind == Component::UInt16 || kind == Component::UInt32;
 }
 
-// Requires: as many bytes stand there. Little endian.
+// Requires: that many bytes at `at`. Little-endian.
 std::uint32_t bits_at(const char* at, std::size_t size) {
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < size; ++k)
@@ -52,7 +52,8 @@ std::uint32_t bits_at(const char* at, std::size_t size) {
   return bits;
 }
 
-// Share of the largest value, at least -1: glTF 2.0, 3.11 (animations) and KHR_mesh_quantization.
+// Fraction of the largest value, at least -1: glTF 2.0, 3.11 (animations) and
+// KHR_mesh_quantization.
 double number_at(const char* at, std::uint64_t component, bool is_normalized) {
   const std::uint32_t bits = bits_at(at, size_of(component));
   const auto share = [&](double number, double largest) {
@@ -80,7 +81,7 @@ double number_at(const char* at, std::uint64_t component, bool is_normalized) {
 struct AccessorReader::Read {
   std::size_t number;
   const Accessor& accessor;
-  std::size_t width;  // numbers an element
+  std::size_t width;  // numbers per element
 
   std::size_t element_size() const { return width * size_of(accessor.component_type); }
 
@@ -139,7 +140,7 @@ Result<std::vector<double>> AccessorReader::read(const Read& read) {
   return numbers;
 }
 
-// Each difference below is known not to be negative, so that nothing wraps around.
+// No difference below can be negative, so no unsigned number wraps around.
 Result<AccessorReader::Elements> AccessorReader::elements(const Read& read, std::size_t view_number,
                                                           std::uint64_t offset, std::uint64_t count,
                                                           std::size_t element_size) const {
@@ -210,7 +211,7 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
   return {};
 }
 
-// An element that is in a file by itself takes a byte at least.
+// An element with its own bytes in a file needs at least one byte.
 Result<void> AccessorReader::charge(std::size_t accessor) {
   const std::uint64_t count = document_.accessors[accessor].count;
   const std::uint64_t most = std::min<std::uint64_t>(

@@ -11,30 +11,31 @@
 
 namespace pliant::gltf {
 
-/// Elements that a file may make out of nothing, by accessors without bytes or by several over the
-/// same ones: so many more than it has bytes.
+/// How many elements a file may have beyond its number of bytes. Accessors without bytes, and
+/// several accessors of the same bytes, create elements without making the file larger.
 inline constexpr std::size_t most_elements_beyond_bytes = 1'000'000;
 
-/// Reads what accessors say. All that it gives was in its buffer: every offset, count, stride and
-/// index is checked against it. The two that it is made of outlive it.
+/// Reads accessors. All results come from the buffers: every offset, count, stride and index is
+/// checked against its buffer. Both constructor arguments must outlive the reader.
 class AccessorReader {
  public:
   AccessorReader(const Document& document, Buffers& buffers)
       : document_(document), buffers_(buffers) {}
 
-  /// Vectors of a vertex: VEC2 or VEC3 by `width`, `width` numbers an element. Floats keep their
-  /// value; integers are numbers, or where they are normalized shares of their largest.
+  /// Vectors of a vertex attribute: VEC2 or VEC3 by `width`, `width` numbers per element. Floats
+  /// keep their value; integers become numbers, or fractions of their largest value if normalized.
   Result<std::vector<double>> vectors(std::size_t accessor, int width);
 
   /// SCALAR, unsigned integers.
   Result<std::vector<std::uint32_t>> indices(std::size_t accessor);
 
-  /// Counts the elements of an accessor as read, so that no file makes more of its bytes than they
-  /// can hold. Whoever uses again what was read once calls it. Errors: they are too many.
+  /// Counts the elements of an accessor as read, so that a file cannot create more elements than
+  /// its bytes allow. Must be called when elements that were read before are used again. Errors:
+  /// too many.
   Result<void> charge(std::size_t accessor);
 
  private:
-  // Elements in a buffer, each `stride` bytes behind the one before.
+  // Elements in a buffer, each `stride` bytes after the one before.
   struct Elements {
     std::string_view bytes;  // from the first to the end of the last
     std::size_t stride;

@@ -21,7 +21,7 @@ std::uint32_t digit_of(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : no_digit;
 }
 
-// RFC 4648, padded; none: the text is something else.
+// RFC 4648, padded; nullopt: the text is not base64.
 std::optional<std::string> from_base64(std::string_view text) {
   if (text.size() % 4 != 0) return std::nullopt;
   const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;

@@ -12,18 +12,18 @@
 
 namespace pliant::gltf {
 
-/// The bytes that a document's buffers hold, each read when it is first asked for. `document`,
-/// `binary` and what `read_file` refers to outlive it.
+/// The bytes of a document's buffers, each read on first use. `document`, `binary` and the captures
+/// of `read_file` must outlive it.
 class Buffers {
  public:
   Buffers(const Document& document, std::optional<std::string_view> binary, std::size_t file_size,
           const ReadReference& read_file);
 
-  /// As many bytes as the document says that the buffer has. Errors: fewer are there; a URI that
+  /// As many bytes as the document declares for the buffer. Errors: there are fewer; a URI that
   /// cannot be read.
   Result<std::string_view> bytes(std::size_t buffer);
 
-  /// Of the file, and of all that was read besides.
+  /// Bytes of the file and of all other files read so far.
   std::size_t size_so_far() const { return size_so_far_; }
 
  private:
@@ -33,10 +33,10 @@ class Buffers {
   std::optional<std::string_view> binary_;
   std::size_t size_so_far_;
   const ReadReference& read_file_;
-  std::vector<std::optional<std::string>> owned_;  // one a buffer
+  std::vector<std::optional<std::string>> owned_;  // one per buffer
 };
 
-/// Whether a buffer's URI holds its bytes itself.
+/// Whether a buffer's URI contains the bytes itself.
 bool is_data(std::string_view uri);
 
 }  // namespace pliant::gltf

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t header_size = 12, chunk_header_size = 8;
 constexpr std::uint64_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
-// Requires: four bytes stand there.
+// Requires: four bytes at `at`.
 std::uint64_t number_at(std::string_view bytes, std::size_t at) {
   std::uint64_t number = 0;
   for (std::size_t k = 0; k < 4; ++k)
@@ -45,7 +45,7 @@ Result<Container> open_container(std::string_view bytes) {
       json = content;
     } else if (kind == binary_chunk && !binary) {
       binary = content;
-    }  // of other kinds nothing is known, and they may be there
+    }  // chunks of other types are unknown but allowed
     at += chunk_header_size + size;
   }
   if (!json) return invalid("the file holds no JSON");

@@ -7,15 +7,15 @@
 
 namespace pliant::gltf {
 
-/// The parts of a glTF file: a .gltf is text alone.
+/// The parts of a glTF file; a .gltf has only text.
 struct Container {
   std::string_view json;
-  std::optional<std::string_view> binary = {};  ///< the chunk of bytes of a .glb
+  std::optional<std::string_view> binary = {};  ///< the binary chunk of a .glb
 };
 
-/// Takes a .glb apart, or takes the bytes for a .gltf where they do not begin as a .glb does. What
-/// it gives is part of `bytes`. Errors, without a file: another version than 2; lengths that are
-/// not those of the file and its chunks; a first chunk that is no JSON.
+/// Splits a .glb, or treats the bytes as a .gltf if they do not begin like a .glb. The result
+/// refers to `bytes`. Errors, without a file: another version than 2; lengths that do not match the
+/// file and its chunks; a first chunk that is not JSON.
 Result<Container> open_container(std::string_view bytes);
 
 }  // namespace pliant::gltf

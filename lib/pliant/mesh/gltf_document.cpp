@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Ahead of parsing: each value takes a hundred bytes or so, be it written in two.
+// Checked before parsing: each value needs about a hundred bytes, even if it is written in two.
 Result<void> check_size(std::string_view json) {
   std::size_t depth = 0, values = 1;
   bool is_quoted = false;
@@ -39,7 +39,7 @@ Result<void> check_size(std::string_view json) {
   return invalid(fmt::format("the file's JSON holds more than {} values", most_json_values));
 }
 
-// What a parser says quotes the text, which may be that of any file.
+// The parser's own messages quote the text, which may be that of any file.
 Result<Json> parse(std::string_view text) {
   const auto line_at = [&](std::size_t byte) {
     const std::string_view before = text.substr(0, byte);
@@ -56,7 +56,7 @@ Result<Json> parse(std::string_view text) {
   }
 }
 
-// What says how a surface looks, or what else is in a scene: a mesh is the same without.
+// Extensions that affect appearance or other parts of a scene: the mesh is the same without them.
 bool is_known(std::string_view extension) {
   for (const std::string_view known :
        {"KHR_mesh_quantization", "KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
@@ -66,7 +66,7 @@ bool is_known(std::string_view extension) {
   return extension.starts_with("KHR_materials_");
 }
 
-/// Takes values out of the JSON. The first fault is kept, and what is read after it means nothing.
+/// Reads values from the JSON. The first error is kept, and values read after it are meaningless.
 class DocumentReader {
  public:
   explicit DocumentReader(Json& root) : root_(root) {}
@@ -90,7 +90,7 @@ class DocumentReader {
   }
 
  private:
-  // Where the reader is: `meshes[2].primitives[0]`.
+  // The path to the current value: `meshes[2].primitives[0]`.
   struct Step {
     const char* key;
     std::optional<std::size_t> index;  // in a list
@@ -147,7 +147,7 @@ class DocumentReader {
     return found == object.end() ? nullptr : &*found;
   }
 
-  // Objects in a list that may be missing.
+  // Calls `read` for the objects in a list that may be missing.
   template <class Read>
   void each(Json& parent, const char* key, const Read& read) {
     Json* const list = member(parent, key);
@@ -184,7 +184,7 @@ class DocumentReader {
     return {};
   }
 
-  // The number of the element in hand where it has no name.
+  // The path of the current element if it has no name.
   std::string name_or_place(Json& json) {
     std::string name = text(json, "name").value_or("");
     return name.empty() ? place() : name;
@@ -207,7 +207,7 @@ class DocumentReader {
     return whole(parent, key).value_or(0);
   }
 
-  // A place in one of the document's lists.
+  // An index into one of the document's lists.
   std::optional<std::size_t> index(Json& parent, const char* key, const char* list) {
     const auto number = whole(parent, key);
     if (!number) return {};
@@ -329,7 +329,7 @@ class DocumentReader {
     return nodes;
   }
 
-  // `count` numbers; none: the member is missing.
+  // `count` numbers; nullopt: the member is missing.
   template <int count>
   std::optional<Eigen::Vector<double, count>> numbers(Json& parent, const char* key) {
     const Json* const list = member(parent, key);
@@ -350,7 +350,7 @@ class DocumentReader {
             node_list(json, "children")};
   }
 
-  // A matrix column by column, or T R S.
+  // A matrix by columns, or T R S.
   Eigen::Matrix4d read_transform(Json& json) {
     const auto matrix = numbers<16>(json, "matrix");
     const auto translation = numbers<3>(json, "translation");
@@ -373,7 +373,7 @@ class DocumentReader {
     return transform.matrix();
   }
 
-  // Of the scene that the file names, or of its first one.
+  // The roots of the scene that the file names, or of its first one.
   void read_roots() {
     const auto shown = index(root_, "scene", "scenes");
     std::size_t number = 0;

@@ -15,9 +15,9 @@
 
 namespace pliant::gltf {
 
-// What the JSON of a glTF 2 file says of meshes, as plain values. Every index into one of the
-// document's lists is within it. Sizes and offsets are as written: whoever reads bytes by them
-// checks them. Not for other rooms.
+// The parts of a glTF 2 file's JSON that describe meshes, as plain values. Every index into one of
+// the document's lists is in range. Sizes and offsets are as written; code that uses them to read
+// bytes must check them. Internal to mesh.
 
 struct Buffer {
   std::uint64_t size = 0;  ///< [bytes]
@@ -28,10 +28,10 @@ struct BufferView {
   std::size_t buffer = 0;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
-  std::uint64_t stride = 0;  ///< from one element to the next; 0: they are packed. [bytes]
+  std::uint64_t stride = 0;  ///< from one element to the next; 0: tightly packed. [bytes]
 };
 
-/// Elements that stand in the place of some of an accessor's.
+/// Elements that replace some of an accessor's.
 struct Sparse {
   std::uint64_t count = 0;
   std::size_t index_view = 0;
@@ -42,7 +42,7 @@ struct Sparse {
 };
 
 struct Accessor {
-  std::optional<std::size_t> view = {};  ///< none: all elements are zeros
+  std::optional<std::size_t> view = {};  ///< nullopt: all elements are zeros
   std::uint64_t offset = 0;
   std::uint64_t component_type = 0;
   bool is_normalized = false;
@@ -61,12 +61,12 @@ struct Primitive {
 };
 
 struct MeshEntry {
-  std::string name;  ///< `meshes[3]` where the file gives none
+  std::string name;  ///< `meshes[3]` if the file has no name
   std::vector<Primitive> primitives = {};
 };
 
 struct Node {
-  std::string name;  ///< `nodes[3]` where the file gives none
+  std::string name;  ///< `nodes[3]` if the file has no name
   Eigen::Matrix4d to_parent = Eigen::Matrix4d::Identity();
   std::optional<std::size_t> mesh = {};
   std::vector<std::size_t> children = {};
@@ -77,20 +77,20 @@ struct Document {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<MeshEntry> meshes;
-  std::vector<std::string> materials;  ///< their names, which may be empty
+  std::vector<std::string> materials;  ///< their names, possibly empty
   std::vector<Node> nodes;
-  std::vector<std::size_t> roots;  ///< nodes of the scene that the file shows
+  std::vector<std::size_t> roots;  ///< root nodes of the scene that the file displays
 };
 
-/// How deep the brackets of the JSON may lie within each other, how many values it may hold, so
-/// that its size bounds the memory that it takes, and how many files it may refer to.
+/// Limits of the JSON: nesting depth of its brackets, number of values (so that its size bounds the
+/// memory needed), and number of files it refers to.
 inline constexpr std::size_t deepest_json = 200;
 inline constexpr std::size_t most_json_values = 4'000'000;
 inline constexpr std::size_t most_buffers = 1000;
 
-/// Errors: no sound JSON, with the line, quoting nothing of what may be any file; no glTF 2; an
-/// extension that is required and not known, by its name; a member of the wrong kind or out of
-/// range, by its place.
+/// Errors: invalid JSON, with the line, but without quoting the text, which may be of any file; not
+/// glTF 2; a required extension that is not supported, by name; a member of the wrong type or out
+/// of range, by its path.
 Result<Document> read_document(std::string_view json);
 
 }  // namespace pliant::gltf

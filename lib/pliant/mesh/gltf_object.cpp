@@ -22,12 +22,12 @@
 namespace pliant::gltf {
 namespace {
 
-constexpr std::uint64_t most = std::numeric_limits<int>::max();  // that can be counted in int
+constexpr std::uint64_t most = std::numeric_limits<int>::max();  // the most that an int can count
 
 enum Mode : std::uint64_t { Triangles = 4, Strip = 5, Fan = 6 };
 
-// Corners of a primitive's triangles, by place in its list of vertices. Those of a strip turn one
-// way. Requires: `count` >= 3.
+// The corners of a primitive's triangles, as indices into its list of vertices. Those of a strip
+// all have the same orientation. Requires: `count` >= 3.
 template <class Add>
 void for_each_triangle(std::uint64_t mode, std::size_t count, const Add& add) {
   if (mode == Triangles)
@@ -42,7 +42,7 @@ void for_each_triangle(std::uint64_t mode, std::size_t count, const Add& add) {
     for (std::size_t k = 1; k + 1 < count; ++k) add(0, k, k + 1);
 }
 
-// Where the vertices of a primitive begin in what the whole mesh has of each.
+// The first indices of a primitive's vertices, (u,v) and normals in the whole mesh.
 struct Place {
   int vertex = 0;
   std::size_t count = 0;
@@ -84,7 +84,7 @@ class Merger {
         std::count_if(primitive.uvs.begin(), primitive.uvs.end(),
                       [](const std::optional<std::size_t>& set) { return set.has_value(); });
     if (auto checked = check_uv_set(uv_set_, static_cast<int>(count)); !checked) return checked;
-    if (count > 0)  // a file may leave out its first set
+    if (count > 0)  // a file may omit its first set
       return invalid(fmt::format("the object has no UV set {}, but others", uv_set_));
     return {};
   }
@@ -95,7 +95,7 @@ class Merger {
     return add_faces(k, *place);
   }
 
-  // Where the vertices of a primitive are, read once for all that share them.
+  // The place of the vertices of a primitive, read once for all primitives that share them.
   Result<Place> place_of(std::size_t k) {
     const Primitive& from = primitive(k);
     const auto uvs = from.uvs[static_cast<std::size_t>(uv_set_)];
@@ -117,7 +117,7 @@ class Merger {
     return place;
   }
 
-  // One vector for each vertex.
+  // One vector per vertex.
   Result<std::vector<double>> vectors(std::size_t k, std::size_t accessor, int width,
                                       const char* thing, const Place& place) {
     auto numbers = accessors_.vectors(accessor, width);
@@ -150,7 +150,7 @@ class Merger {
     return {};
   }
 
-  // The vertices of a primitive in the order in which its mode strings them together.
+  // The vertices of a primitive in the order that its mode uses.
   Result<std::vector<std::uint32_t>> list_of(std::size_t k, const Place& place) {
     const Primitive& from = primitive(k);
     if (!from.indices) {

@@ -8,8 +8,8 @@
 
 namespace pliant::gltf {
 
-/// The mesh of an object, its primitives as one, moved to where its node is in the file. Errors: as
-/// `parse_gltf`, without the file.
+/// The mesh of an object, its primitives combined, transformed to the place of its node in the
+/// file. Errors: as `parse_gltf`, without the file.
 Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
                      int uv_set);
 

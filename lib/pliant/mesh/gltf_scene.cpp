@@ -23,7 +23,7 @@ std::vector<std::size_t> primitives_with_faces(const Document& document, const M
 }  // namespace
 
 bool has_faces(const Document& document, const Primitive& primitive) {
-  constexpr std::uint64_t triangles = 4;  // and all modes behind it
+  constexpr std::uint64_t triangles = 4;  // and all modes after it
   if (primitive.mode < triangles || !primitive.positions) return false;
   return document.accessors[primitive.indices.value_or(*primitive.positions)].count >= 3;
 }
@@ -35,7 +35,7 @@ Result<std::vector<Object>> objects_of(const Document& document) {
   };
   std::vector<Object> objects;
   std::vector<bool> is_seen(document.nodes.size());
-  std::vector<Visit> visits;  // a stack of our own: a file may be deep
+  std::vector<Visit> visits;  // explicit stack: a file may be deeply nested
   for (std::size_t k = document.roots.size(); k-- > 0;)
     visits.push_back({document.roots[k], Matrix4d::Identity()});
   while (!visits.empty()) {

@@ -11,7 +11,7 @@
 
 namespace pliant::gltf {
 
-/// A node of the scene that carries faces.
+/// A node of the scene that has faces.
 struct Object {
   std::string node_name;
   std::string mesh_name;
@@ -23,12 +23,12 @@ struct Object {
 /// Whether a primitive is made of triangles and has the vertices for one.
 bool has_faces(const Document& document, const Primitive& primitive);
 
-/// The objects of the scene that the file shows, each node ahead of its children and these in the
-/// order of the file. Errors: a node that stands twice in it, be it within itself.
+/// The objects of the displayed scene, each node before its children and these in the order of the
+/// file. Errors: a node that occurs twice in it, possibly within itself.
 Result<std::vector<Object>> objects_of(const Document& document);
 
-/// The one that `name` means: by the names of the nodes, and by those of the meshes where no node
-/// has it. Errors: no faces at all; those of `choose_node`.
+/// The object with the given name: by the names of the nodes; if no node has it, by those of the
+/// meshes. Errors: no faces at all; those of `choose_node`.
 Result<Object> choose(std::vector<Object> objects, const std::string& name);
 
 }  // namespace pliant::gltf

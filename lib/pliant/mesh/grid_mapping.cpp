@@ -20,14 +20,15 @@ constexpr std::string_view what_is_needed =
 constexpr std::string_view no_seams =
     "; a surface that is closed or meets itself is not taken (docs/your-mesh.md)";
 
-// Border nodes nearer to each other than this times the diagonal of the bounding box are one place.
+// Border nodes nearer to each other than this times the diagonal of the bounding box count as one
+// place.
 constexpr double one_place = 1e-6;
 
 tl::unexpected<Error> not_a_grid(const std::string& reason) {
   return fail(ErrorCode::InvalidInput, reason + std::string(what_is_needed));
 }
 
-// Of a mesh of which some corner has no (u,v); `vertex` is at the first of them.
+// The error for a mesh in which some corner has no (u,v); `vertex` is that of the first one.
 tl::unexpected<Error> without_uvs(const Mesh& mesh, int vertex) {
   const auto missing = std::count(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), -1);
   if (missing == static_cast<std::ptrdiff_t>(mesh.corner_uvs.size())) {
@@ -52,12 +53,12 @@ struct Axis {
   }
   int index(double value) const {
     return static_cast<int>(nearest(value));
-  }  // of a value that is even
+  }  // for a value on a uniform lattice
 };
 
-// In an even lattice values of one line lie within 2 tolerances, and neighbouring lines at least
-// 1 - 2 tolerances apart, so every gap wider than half the widest one is a step between lines.
-// Values of no lattice give some axis too; whether it is even is checked against each value.
+// In a uniform lattice, values of one line differ by at most 2 tolerances, and neighbouring lines
+// are at least 1 - 2 tolerances apart, so every gap wider than half the widest one is between two
+// lines. Values that form no lattice also give some axis; each value is then checked against it.
 Axis find_axis(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   double widest = 0;
@@ -75,9 +76,9 @@ tl::unexpected<Error> seam(const std::string& reason) {
 
 using NodePair = std::array<int, 2>;
 
-// What lies in one place, if anything, has the same key: the first such pair of nodes that
-// `is_one_place` confirms. O(n log n): of nodes with one key only the few are compared that can lie
-// side by side without a pair among them.
+// The first pair of nodes with equal keys that `is_one_place` confirms; nodes at one place must
+// have equal keys. O(n log n): nodes with one key are compared with only as many others as can be
+// in one cell without such a pair among them.
 template <class Key, class IsOnePlace>
 std::optional<NodePair> find_pair(const std::vector<int>& nodes, Key key_of,
                                   IsOnePlace is_one_place) {
@@ -115,8 +116,8 @@ std::vector<int> border_nodes(const Grid& grid) {
   return nodes;
 }
 
-// Border nodes nearer than `distance`: such a pair lies in one cell of two distances a side, in one
-// of the eight lattices that are shifted by half a cell.
+// Border nodes nearer than `distance`: such a pair is in one cell, two distances a side, of one of
+// eight lattices that are shifted by half a cell.
 std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
   const Field& rest = mapping.rest;
   const Eigen::RowVector3d least = rest.colwise().minCoeff();
@@ -139,8 +140,8 @@ std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
   return found;
 }
 
-// Two nodes that formats which split vertices keep apart, and others do not: the same place to the
-// bit; on the border, within rounding.
+// Two nodes that are distinct only in formats that split vertices: bit-identical positions; on the
+// border, equal within rounding.
 std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
   const Field& rest = mapping.rest;
   std::vector<int> all(static_cast<std::size_t>(mapping.grid.node_count()));
@@ -148,7 +149,7 @@ std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
   const auto key_of = [&](int node) {
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis)
-      key = mixed(key, std::bit_cast<std::uint64_t>(rest(node, axis) + 0.0));  // -0 is 0
+      key = mixed(key, std::bit_cast<std::uint64_t>(rest(node, axis) + 0.0));  // -0 becomes 0
     return key;
   };
   const auto same = find_pair(
@@ -174,7 +175,7 @@ Field GridMapping::to_vertices(const Field& nodes, Field reuse) const {
 }
 
 Result<GridMapping> find_grid(const Mesh& mesh) {
-  // One corner with a (u,v) per vertex says where it lies; the others must agree.
+  // The first corner with a (u,v) gives the place of its vertex; the others must agree.
   const int vertex_count = mesh.vertex_count();
   std::vector<int> vertex_uvs(vertex_count, -1);
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {

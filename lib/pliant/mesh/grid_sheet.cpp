@@ -5,8 +5,8 @@
 namespace pliant {
 namespace {
 
-// width (2i - (n-1)) / (2 (n-1)): the one rounding is the division's, so opposite vertices are
-// exact mirror images and the middle one is exactly 0.
+// width (2i - (n-1)) / (2 (n-1)): only the division rounds, so opposite vertices are exact mirror
+// images and the middle one is exactly 0.
 double coordinate(double extent, int index, int count) {
   return extent * (2 * index - (count - 1)) / (2 * (count - 1));
 }

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// A flat sheet in the xz-plane, centred on the origin, +y up; u runs with x and v with z over
+/// A flat sheet in the xz-plane, centred on the origin, +y up; u increases with x and v with z over
 /// [0,1].
 struct GridSheet {
   int columns = 3;         ///< vertices along u, >= 3
@@ -14,7 +14,7 @@ struct GridSheet {
   bool triangles = false;  ///< split each quad in two
 };
 
-/// The sheet's mesh: vertex j*columns + i is node (i,j), faces turn counter-clockwise seen from +y.
+/// The sheet's mesh: vertex j*columns + i is node (i,j), faces are counter-clockwise seen from +y.
 /// Requires: columns, rows >= 3; width, depth > 0.
 Mesh make_mesh(const GridSheet& sheet);
 

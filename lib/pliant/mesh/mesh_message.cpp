@@ -3,7 +3,7 @@
 namespace pliant {
 namespace {
 
-// Takes from the front. What is not there is taken as nothing, and remembered.
+// Reads from the front. Data that is missing is read as zero or empty, and recorded as an error.
 class MessageReader {
  public:
   explicit MessageReader(std::string_view bytes) : bytes_(bytes) {}
@@ -28,7 +28,7 @@ class MessageReader {
     return number;
   }
 
-  // At most 2^34 bytes: their size cannot wrap around.
+  // At most 2^34 bytes: the size cannot overflow.
   template <class T>
   PackedNumbers<T> numbers(std::uint32_t count, std::uint32_t width = 1) {
     return PackedNumbers<T>(take(std::uint64_t{count} * width * sizeof(T)));
@@ -36,7 +36,7 @@ class MessageReader {
 
   std::string_view text() { return take(number<std::uint32_t>()); }
 
-  // A number of things that take so many bytes at least.
+  // A count of items with at least that many bytes each.
   std::uint32_t count(std::size_t least_bytes) {
     const auto count = number<std::uint32_t>();
     is_sound_ = is_sound_ && count <= most_objects && count <= left() / least_bytes;
@@ -54,7 +54,8 @@ class MessageReader {
   bool is_sound_ = true;
 };
 
-// The sum of sizes is the number of corners: whoever takes them in turn stays within.
+// Whether the sum of the sizes equals the number of corners, so that a loop over them stays in
+// range.
 bool sizes_agree(const MeshPart& part) {
   std::uint64_t corners = 0;
   for (std::size_t face = 0; face < part.sizes.size(); ++face) {

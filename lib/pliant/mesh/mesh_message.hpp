@@ -12,8 +12,8 @@
 
 namespace pliant {
 
-// What the boxed reader of mesh files answers: numbers as this machine keeps them, since both ends
-// run on it. `mesh/reader/write_message.cpp` writes it. Not for other rooms.
+// The answer of the sandboxed reader of mesh files: numbers in the byte order of this machine,
+// since both ends run on it. `mesh/reader/write_message.cpp` writes it. Internal to mesh.
 //
 //   u64 message_begin, u32 kind
 //   Refused:  text (u32 length, bytes)
@@ -22,8 +22,8 @@ namespace pliant {
 //             16 f64, the transform by rows; u32 number of parts; of each:
 //               text material, u32 sets of (u,v) as bits, u32 is_lit, u32 has_uvs
 //               u32 vertices, u32 faces, u32 corners
-//               f32 3 a vertex; if is_lit f32 3 a vertex; if has_uvs f32 2 a vertex
-//               u32 a face: its corners; u32 a corner: its vertex
+//               f32 3 per vertex; if is_lit f32 3 per vertex; if has_uvs f32 2 per vertex
+//               u32 per face: its corners; u32 per corner: its vertex
 //   u64 message_end
 
 inline constexpr std::uint64_t message_begin = 0x31'48'53'45'4d'49'4c'50;  // "PLIMESH1"
@@ -33,12 +33,12 @@ inline constexpr std::uint32_t most_objects = 1'000'000;
 
 enum class MessageKind : std::uint32_t {
   Scene = 0,
-  Refused = 1,      ///< the file is broken, and why
-  OtherFormat = 2,  ///< it is none of its ending
+  Refused = 1,      ///< the file is broken; with the reason
+  OtherFormat = 2,  ///< it does not have the format of its ending
   TooManyObjects = 3
 };
 
-/// Numbers within a message, which outlives them, at any place.
+/// Numbers at any alignment within a message, which must outlive them.
 template <class T>
 class PackedNumbers {
  public:
@@ -57,34 +57,34 @@ class PackedNumbers {
   std::string_view bytes_;
 };
 
-/// Faces of one material. Sizes agree with each other; indices are those of the file.
+/// Faces of one material. Sizes are consistent with each other; indices are those of the file.
 struct MeshPart {
   std::string_view material;
   std::uint32_t uv_sets = 0;             ///< bit k: there is a set k
   PackedNumbers<float> positions;        ///< x, y and z of each vertex
   PackedNumbers<float> normals;          ///< likewise, or empty
-  PackedNumbers<float> uvs;              ///< of the set that was asked for: u and v, or empty
+  PackedNumbers<float> uvs;              ///< of the requested set: u and v, or empty
   PackedNumbers<std::uint32_t> sizes;    ///< #faces: corners of each
   PackedNumbers<std::uint32_t> corners;  ///< #corners: a vertex of this part
 };
 
 struct ObjectNames {
   std::string_view node;
-  std::string_view mesh;  ///< of the first with faces
+  std::string_view mesh;  ///< of the first mesh with faces
 };
 
 struct MeshMessage {
   MessageKind kind = MessageKind::Scene;
   std::string_view reason;            ///< of Refused
   std::vector<ObjectNames> objects;   ///< in the order of the file
-  std::optional<std::size_t> chosen;  ///< whose parts these are
+  std::optional<std::size_t> chosen;  ///< the object of these parts
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
   std::vector<MeshPart> parts;
 };
 
-/// The message in bytes that a broken or hostile process may have written, which outlive it.
-/// Nothing where they are anything but one whole message whose numbers agree with each other;
-/// takes no more memory than a few times theirs. Requires of nobody that the mesh be sound.
+/// Parses bytes that a broken or hostile process may have written; they must outlive the result.
+/// nullopt if they are not exactly one complete message with consistent numbers. Needs no more
+/// memory than a few times the size of the bytes. The mesh itself may still be wrong.
 std::optional<MeshMessage> parse_mesh_message(std::string_view bytes);
 
 }  // namespace pliant

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// The file of the program that `mesh/reader` is built into.
+/// The executable file of the program `mesh/reader`.
 extern const std::span<const unsigned char> mesh_reader_program;
 
 }  // namespace pliant

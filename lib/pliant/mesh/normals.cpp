@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-// Twice the area of a face times its normal: exact for a flat one, the mean for any other.
+// Twice the area of a face times its normal; exact if the face is flat, otherwise a mean.
 Vector3d area_vector(const Mesh& mesh, const Field& positions, std::size_t first, int size) {
   const auto at = [&](int k) -> Vector3d {
     return positions.row(mesh.corner_vertices[first + static_cast<std::size_t>(k)]);
@@ -32,7 +32,7 @@ Vector3d area_vector(const Mesh& mesh, const Field& positions, std::size_t first
 
 using Row = std::array<double, 3>;
 
-// Numbers such that equal rows, and only those, have the same one.
+// Numbers that are equal exactly for equal rows.
 std::vector<int> numbers_of_equal(const std::vector<Row>& rows) {
   std::vector<int> order(rows.size());
   std::iota(order.begin(), order.end(), 0);
@@ -47,7 +47,7 @@ std::vector<int> numbers_of_equal(const std::vector<Row>& rows) {
   return numbers;
 }
 
-// Numbers keys in the order in which they come.
+// Numbers keys in the order of their first use.
 class Numbering {
  public:
   using Key = std::array<int, 3>;
@@ -101,7 +101,7 @@ Field unit_normals(const Mesh& mesh, const Field& positions) {
     for (int k = 0; k < size; ++k, ++corner) sums.row(normal_of(mesh, corner)) += area;
   }
   for (Eigen::Index k = 0; k < sums.rows(); ++k) {
-    // By its largest component first, so that the squares neither vanish nor overflow.
+    // Divided by its largest component first, so that the squares neither underflow nor overflow.
     const double largest = sums.row(k).cwiseAbs().maxCoeff();
     if (largest > 0 && std::isfinite(largest)) {
       sums.row(k) /= largest;
@@ -138,7 +138,7 @@ std::vector<int> shared_normals(const Mesh& mesh, const Shading& shading) {
     for (int k = 0; k < mesh.face_sizes[face]; ++k, ++corner) {
       const auto vertex = static_cast<std::size_t>(mesh.corner_vertices[corner]);
       const int normal = has_normals ? shading.corner_normals[corner] : -1;
-      // Kinds of keys are told apart by their last number.
+      // The last number distinguishes the kinds of keys.
       if (smoothing == Shading::flat) {
         shared[corner] = numbering.number_of({static_cast<int>(face), 0, -2});
       } else if (normal >= 0) {

@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-/// How many normals a mesh has: one a vertex, or as many as `corner_normals` numbers.
+/// Number of normals of a mesh: one per vertex, or the number of different `corner_normals`.
 int normal_count(const Mesh& mesh);
 
-/// The number of a corner's normal.
+/// The index of a corner's normal.
 inline int normal_of(const Mesh& mesh, std::size_t corner) {
   return mesh.corner_normals.empty() ? mesh.corner_vertices[corner] : mesh.corner_normals[corner];
 }
@@ -19,27 +19,27 @@ inline int normal_of(const Mesh& mesh, std::size_t corner) {
 bool is_flat(const Mesh& mesh);
 
 /// The unit normals (#normals x 3) of a mesh whose vertices are at `positions`: each the sum of the
-/// area vectors of the faces around, so that large faces count for more; a face's corners run
-/// counter-clockwise seen from where its normal points. (0,1,0) where the sum is 0 or not finite:
-/// of a vertex without a face, of faces without an area.
+/// area vectors of the faces around it, so that large faces count more; a face's corners are
+/// counter-clockwise seen from the tip of its normal. (0,1,0) if the sum is 0 or not finite, as for
+/// a vertex without a face or faces without area.
 Field unit_normals(const Mesh& mesh, const Field& positions);
 
-/// What a file says of its shading.
+/// The shading given by a file.
 struct Shading {
   static constexpr int unsaid = -1;
   static constexpr int flat = 0;
 
-  std::vector<std::array<double, 3>> normals;  ///< that the corners refer to
+  std::vector<std::array<double, 3>> normals;  ///< referred to by the corners
   std::vector<int> corner_normals;             ///< #corners: index into `normals`, -1: none
-  std::vector<int> smoothing;  ///< #faces: `flat`, `unsaid`, or a number that faces which join
-                               ///< smoothly have in common; empty: unsaid of all
+  std::vector<int> smoothing;  ///< #faces: `flat`, `unsaid`, or a number shared by faces that join
+                               ///< smoothly; empty: all `unsaid`
 };
 
-/// `Mesh::corner_normals` as a file means it. Corners of a `flat` face share with nobody. Others do
-/// where their faces have the same number in `smoothing` and they are one vertex; or if the file
-/// gives them normals, where these and the positions are equal, so that a surface which the file
-/// cuts along a seam stays smooth over it. Empty where that is what an empty one means and no
-/// normals were given.
+/// `Mesh::corner_normals` for the shading of a file. Corners of a `flat` face share their normal
+/// with no other face. Without normals in the file, other corners share one if they belong to the
+/// same vertex and their faces have the same number in `smoothing`. With normals, they share one if
+/// normals and positions are equal, so that a surface which the file cuts along a seam stays smooth
+/// across it. Empty if an empty vector means the same and the file has no normals.
 std::vector<int> shared_normals(const Mesh& mesh, const Shading& shading);
 
 }  // namespace pliant

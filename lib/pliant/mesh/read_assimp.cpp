@@ -34,7 +34,7 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{4} << 30;
 
-// One line of what may hold anything: assimp quotes the file in some of its reasons.
+// Reduces a text with arbitrary content to one line: assimp quotes the file in some of its reasons.
 std::string in_one_line(std::string_view reason) {
   constexpr std::size_t longest = 200;
   std::string line;
@@ -63,13 +63,13 @@ Result<void> check_sets(const MeshMessage& message, int uv_set) {
     const int set_count = std::popcount(part.uv_sets);
     if (!part.uvs.empty()) continue;
     if (auto checked = check_uv_set(uv_set, set_count); !checked) return checked;
-    if (set_count > 0)  // a file may leave out its first set
+    if (set_count > 0)  // a file may omit its first set
       return invalid(fmt::format("the object has no UV set {}, but others", uv_set));
   }
   return {};
 }
 
-// Whether vertices and corners can be counted in int.
+// Whether an int can count vertices and corners.
 Result<void> check_size(const MeshMessage& message) {
   std::uint64_t vertices = 0, corners = 0;
   for (const MeshPart& part : message.parts) {
@@ -84,7 +84,7 @@ Result<void> check_size(const MeshMessage& message) {
                   vertices, corners, most));
 }
 
-// Appends the faces of one part, whose vertices and (u,v) are numbered from those given.
+// Appends the faces of one part, whose vertices and (u,v) are numbered from the given ones on.
 Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, Mesh& mesh) {
   const std::size_t vertex_count = part.positions.size() / 3;
   for (std::size_t face = 0; face < part.sizes.size(); ++face)
@@ -101,7 +101,7 @@ Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, 
   return {};
 }
 
-// Appends what a part says of the shading of its faces, whose corners are given.
+// Appends the shading of a part's faces, for the given corners.
 void append_shading(const MeshPart& part, std::span<const int> corner_vertices, int first_vertex,
                     Shading& shading) {
   const auto first_normal = static_cast<int>(shading.normals.size());
@@ -118,7 +118,7 @@ void append_shading(const MeshPart& part, std::span<const int> corner_vertices, 
   }
 }
 
-// Appends the material of faces that one part has.
+// Appends the material of one part's faces.
 void append_material(const std::string& name, std::size_t face_count, FaceNames& materials) {
   int index = -1;
   if (!name.empty()) {
@@ -160,7 +160,7 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set) {
   return mesh;
 }
 
-// What is told of a process that gave no answer to trust.
+// The error for a process whose answer cannot be trusted.
 Error reader_failed(const std::string& format, const std::string& what) {
   return {ErrorCode::InvalidInput,
           fmt::format("the {} reader {}: the file is broken or hostile", format, what)};
@@ -178,7 +178,7 @@ Error out_of_memory(const std::string& format, const BoxLimits& limits, std::siz
 
 Result<void> check_end(const BoxedEnd& end, const std::string& format, const BoxLimits& limits,
                        std::size_t file_bytes) {
-  constexpr int not_loaded = 127;  // by the dynamic linker
+  constexpr int not_loaded = 127;  // exit code of the dynamic linker
   switch (end.how) {
     case BoxedEnd::How::Killed:
       return fail(reader_failed(format, fmt::format("crashed on this file (signal {}, {})",
@@ -252,7 +252,7 @@ Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& 
     return fail(ErrorCode::Unreadable,
                 fmt::format("cannot read the file: {}", std::strerror(errno)));
   }
-  const auto file_bytes = static_cast<std::size_t>(status.st_size);  // 0: of a pipe
+  const auto file_bytes = static_cast<std::size_t>(status.st_size);  // 0 for a pipe
   if (file_bytes > max_bytes) {
     return fail(ErrorCode::Unreadable,
                 fmt::format("cannot read the file: it is larger than {} MiB", max_bytes >> 20));
@@ -283,10 +283,10 @@ Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& 
 }  // namespace
 
 BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory) {
-  // The libraries take 60 MB of address space; a number of a text of 8 bytes is a token of 100.
+  // The libraries need 60 MB of address space; a number of 8 bytes of text becomes a token of 100.
   constexpr std::size_t least = std::size_t{512} << 20, of_a_byte = 40;
   const std::size_t memory = std::max(least, std::min(max_memory, least + of_a_byte * file_bytes));
-  // Of the 200 bytes that assimp takes for a corner of a face, 40 are answered.
+  // Of the 200 bytes that assimp needs for a corner of a face, 40 are in the answer.
   return {memory, 60 + 1e-6 * static_cast<double>(file_bytes), memory / 4};
 }
 

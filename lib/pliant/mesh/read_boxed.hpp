@@ -7,14 +7,13 @@
 
 namespace pliant {
 
-/// `read_assimp` by another program than the one this library carries: for tests of what becomes of
-/// one that crashes, hangs or lies. It runs twice, at the same time and with other bytes in memory
-/// that it has not written: where the answers differ, they are not of the file alone. Not for other
-/// rooms.
+/// `read_assimp` with another program than the embedded one: for tests of programs that crash, hang
+/// or lie. Runs the program twice, at the same time and with different bytes in uninitialised
+/// memory: if the answers differ, they depend on more than the file. Internal to mesh.
 Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
                         const std::string& object, int uv_set, const ReadLimits& limits);
 
-/// What reading a file of so many bytes may take, of the clock, memory and answer.
+/// The limits for a file of this size: time, memory and size of the answer.
 BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory);
 
 }  // namespace pliant

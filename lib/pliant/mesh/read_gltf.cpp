@@ -84,7 +84,7 @@ std::vector<fs::path> gltf_references(const fs::path& file, const fs::path& root
       if (found && std::find(files.begin(), files.end(), *found) == files.end())
         files.push_back(*std::move(found));
     }
-  } catch (const std::bad_alloc&) {  // reading the mesh says so
+  } catch (const std::bad_alloc&) {  // read_gltf reports it
   }
   return files;
 }

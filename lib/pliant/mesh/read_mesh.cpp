@@ -16,7 +16,7 @@
 namespace pliant {
 namespace {
 
-// Of a format that has one set of (u,v) at most.
+// For a format with at most one set of (u,v).
 Result<Mesh> with_only_set(Result<Mesh> mesh, const std::filesystem::path& file, int uv_set) {
   if (!mesh) return mesh;
   const auto checked = check_uv_set(uv_set, mesh->uvs.empty() ? 0 : 1);

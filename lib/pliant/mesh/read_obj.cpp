@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t max_errors = 20;
 
-// Takes the next word off the front of `text`; empty at its end.
+// Removes the next word from the front of `text`; empty at its end.
 std::string_view next_word(std::string_view& text) {
   const std::size_t begin = std::min(text.find_first_not_of(ascii_blanks), text.size());
   const std::size_t end = std::min(text.find_first_of(ascii_blanks, begin), text.size());
@@ -30,7 +30,7 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-// Whether a statement of the format begins so, be it one that is passed over.
+// Whether a word begins a statement of the format, including statements that are skipped.
 bool is_keyword(std::string_view word) {
   constexpr std::string_view keywords[] = {
       "v",    "vt",    "vn",    "vp",     "p",          "l",        "f",        "o",
@@ -48,7 +48,7 @@ struct Object {
   std::size_t first_face = 0;
 };
 
-// What `usemtl` or `g` says of the faces that follow.
+// The name that `usemtl` or `g` gives to the faces that follow.
 class CurrentName {
  public:
   void set(std::string_view name) {
@@ -69,7 +69,7 @@ class CurrentName {
   int current_ = -1;
 };
 
-// Those of the faces first..last; names that none of them carries are left out.
+// The names of the faces first..last; unused names are omitted.
 FaceNames part_of(const FaceNames& all, std::size_t first, std::size_t last) {
   FaceNames part;
   std::vector<int> new_index(all.names.size(), -1);
@@ -91,7 +91,7 @@ class ObjReader {
 
   void read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
-    std::string joined;  // a statement whose lines end in a backslash
+    std::string joined;  // a statement continued by backslashes at line ends
     int line = 0;
     int first_line = 1;
     while (!text.empty() && errors_.size() < max_errors && !is_refused_) {
@@ -131,7 +131,7 @@ class ObjReader {
   void read_statement(std::string_view statement) {
     statement = statement.substr(0, statement.find('#'));
     const std::string_view keyword = next_word(statement);
-    // Ahead of quoting anything of what may be any file.
+    // Checked before any text is quoted, as it may be of any file.
     if (!is_obj_ && !keyword.empty()) {
       is_obj_ = is_keyword(keyword);
       if (!is_obj_) return refuse("the file is no OBJ: no statement of one begins like this line");
@@ -164,7 +164,7 @@ class ObjReader {
     is_refused_ = true;
   }
 
-  // Zeros where it cannot be read.
+  // Zeros if it cannot be parsed.
   static std::array<double, 3> read_normal(std::string_view words) {
     std::array<double, 3> normal{};
     for (double& component : normal) {
@@ -175,7 +175,7 @@ class ObjReader {
     return normal;
   }
 
-  // `v x y z [w]` or `v x y z r g b`, `vt u [v [w]]`. A line that cannot be read still counts, as
+  // `v x y z [w]` or `v x y z r g b`, `vt u [v [w]]`. A line that cannot be parsed still counts, as
   // zeros, so that the indices of the faces stay right.
   std::array<double, 7> read_numbers(std::string_view words, std::string_view thing,
                                      std::size_t least, std::size_t most) {
@@ -199,14 +199,14 @@ class ObjReader {
     return numbers;
   }
 
-  // What a corner says, as written: from 1, or backwards from the last one read so far.
+  // A corner's numbers as written: from 1, or negative, counted back from the last element so far.
   struct Corner {
     int vertex = 0;
-    std::optional<int> uv = {};      // none: the corner has no (u,v)
+    std::optional<int> uv = {};      // nullopt: the corner has no (u,v)
     std::optional<int> normal = {};  // likewise
   };
 
-  // `v`, `v/vt`, `v//vn` or `v/vt/vn`; none for anything else.
+  // `v`, `v/vt`, `v//vn` or `v/vt/vn`; nullopt for anything else.
   static std::optional<Corner> parse_corner(std::string_view word) {
     const std::size_t slash = word.find('/');
     const auto vertex = to_integer(word.substr(0, slash));
@@ -258,8 +258,9 @@ class ObjReader {
     shading_.corner_normals.resize(first);
   }
 
-  // From 1, or backwards from the last one read so far. What lies outside stays outside, so that
-  // check_indices, which knows all vertices, finds it: missing_index for 0 and too far back.
+  // From 1, or negative, counted back from the last element so far. Numbers out of range stay out
+  // of range, so that check_indices, which knows all vertices, finds them: missing_index for 0 and
+  // for numbers too far back.
   static int to_index(int written, std::size_t count) {
     if (written > 0) return written - 1;
     const std::int64_t index = static_cast<std::int64_t>(count) + written;
@@ -297,7 +298,7 @@ class ObjReader {
   }
 
   Result<Mesh> select(const std::string& object) {
-    // Objects that have faces, each up to the next one; faces ahead of the first `o` have no name.
+    // Objects with faces, each up to the next one; faces before the first `o` have no name.
     struct Range {
       std::string name;
       std::size_t first, last;
@@ -330,7 +331,7 @@ class ObjReader {
   }
 
   void set_normals() {
-    for (int& normal : shading_.corner_normals)  // those that are not there count as none
+    for (int& normal : shading_.corner_normals)  // references to missing normals count as none
       if (!is_within(normal, shading_.normals.size())) normal = -1;
     mesh_.corner_normals = shared_normals(mesh_, shading_);
   }
@@ -363,7 +364,7 @@ class ObjReader {
       result.corner_uvs.push_back(mesh_.corner_uvs[k]);
     }
     if (mesh_.corner_normals.empty()) return result;
-    std::unordered_map<int, int> new_normal;  // without those of other objects
+    std::unordered_map<int, int> new_normal;  // excludes those of other objects
     for (std::size_t k = corner; k < end; ++k) {
       const int next = static_cast<int>(new_normal.size());
       result.corner_normals.push_back(
@@ -387,7 +388,7 @@ class ObjReader {
   std::string name_;
   int line_ = 0;
   bool is_obj_ = false;      // the first statement is one of the format
-  bool is_refused_ = false;  // and nothing more is read
+  bool is_refused_ = false;  // nothing more is read
   Mesh mesh_;
   std::vector<double> coordinates_;  // x y z of each vertex
   std::vector<int> face_lines_;

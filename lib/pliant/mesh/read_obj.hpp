@@ -9,29 +9,28 @@
 
 namespace pliant {
 
-/// Reads a Wavefront OBJ file: `v`, `vt`, `vn`, `f`, `o`, `g`, `s` and `usemtl`; every other
-/// statement is passed over. Quads and larger faces stay what they are, and vertices keep the order
-/// of the file.
+/// Reads a Wavefront OBJ file: `v`, `vt`, `vn`, `f`, `o`, `g`, `s` and `usemtl`; all other
+/// statements are skipped. Quads and larger faces are kept, and vertices keep the order of the
+/// file.
 ///
-/// `s off` makes faces flat; others are as their `vn` say, or smooth within their `s`, or smooth. A
-/// `vn` that cannot be read, and a corner's number of one that is not there, count as none: normals
-/// are computed anew, and only who shares them is taken from the file.
+/// `s off` makes faces flat; other faces follow their `vn`, or are smooth within their `s`, or are
+/// smooth. A `vn` that cannot be parsed, and a reference to one that does not exist, count as none:
+/// normals are computed anew, and the file only decides which corners share them.
 ///
-/// A reader of our own, because none of the libraries at hand reads numbers exactly: tinyobjloader
-/// (2.0 rc10) changes the last bits of about half of all decimals, 0.375 among them, and takes
-/// `1,5` as 1 and `nan` as 0, both without a word; assimp reorders and drops vertices. A lattice
-/// whose coordinates are exact must stay exact, or the selection's "strictly less" (SPEC 5) goes
-/// wrong.
+/// An own reader, because no available library reads numbers exactly: tinyobjloader (2.0 rc10)
+/// changes the last bits of about half of all decimals, 0.375 among them, and reads `1,5` as 1 and
+/// `nan` as 0, both silently; assimp reorders and drops vertices. A lattice whose coordinates are
+/// exact must stay exact, or the selection's "strictly less" (SPEC 5) fails.
 ///
-/// `object` names the `o` to take when the file holds several with faces; its mesh then has just
-/// the vertices that its faces use, in the order of the file. Empty: the file's only object.
+/// `object` names the `o` to read if the file has several with faces; its mesh then has only the
+/// vertices that its faces use, in the order of the file. Empty: the file's only object.
 ///
-/// Errors, each with its line, at most 20: a number that is none or not finite; a face with fewer
-/// than three corners; an index outside the file; no faces; an object that is not there, or that
-/// is there twice, or none named where there are several. Unreadable: the file cannot be read.
+/// Errors, each with its line, at most 20: a number that is invalid or not finite; a face with
+/// fewer than three corners; an index out of range; no faces; an object that does not exist or
+/// exists twice, or no name given and several objects. Unreadable: the file cannot be read.
 Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object = {});
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` is the file's name in messages.
 Result<Mesh> parse_obj(std::string_view text, const std::string& name,
                        const std::string& object = {});
 

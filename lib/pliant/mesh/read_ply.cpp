@@ -50,7 +50,7 @@ std::optional<NumberType> to_type(std::string_view word) {
 struct Property {
   std::string name;
   NumberType type = NumberType::Float32;
-  std::optional<NumberType> count_type = {};  // of a list
+  std::optional<NumberType> count_type = {};  // set for a list
 };
 
 struct Element {
@@ -58,7 +58,7 @@ struct Element {
   std::int64_t count = 0;
   std::vector<Property> properties;
 
-  // The place of the first property of these names; -1: there is none.
+  // The index of the first property with one of these names; -1: there is none.
   int find(std::initializer_list<std::string_view> names) const {
     for (const std::string_view each : names)
       for (std::size_t k = 0; k < properties.size(); ++k)
@@ -70,7 +70,7 @@ struct Element {
 struct Header {
   Encoding encoding = Encoding::Ascii;
   std::vector<Element> elements;
-  std::size_t size = 0;  // where the elements begin
+  std::size_t size = 0;  // offset of the elements
   int line_count = 0;
 };
 
@@ -109,7 +109,7 @@ Result<Encoding> to_encoding(std::span<const std::string_view> words, int line) 
       line);
 }
 
-// Adds what one line of the header says.
+// Adds the content of one header line.
 Result<void> read_header_line(std::span<const std::string_view> words, int line, Header& header) {
   const std::string_view keyword = words[0];
   if (keyword == "comment" || keyword == "obj_info") return {};
@@ -182,19 +182,19 @@ class Numbers {
   Numbers(std::string_view bytes, Encoding encoding, int line)
       : bytes_(bytes), encoding_(encoding), line_(line) {}
 
-  // None: the file ends here, or what is here is no finite number.
+  // nullopt: the file ends here, or there is no finite number.
   std::optional<double> next(NumberType type) {
     return encoding_ == Encoding::Ascii ? next_word() : next_bytes(type);
   }
 
-  // How many numbers of this type there can be at most.
+  // Upper bound of the remaining numbers of this type.
   std::int64_t room(NumberType type) const {
     const std::size_t left = bytes_.size() - at_;
     return static_cast<std::int64_t>(encoding_ == Encoding::Ascii ? (left + 1) / 2
                                                                   : left / size_of(type));
   }
 
-  // Whether the last number was missed because the file ends there.
+  // Whether the last number was missing because the file ends there.
   bool has_run_out() const { return has_run_out_; }
 
   bool is_at_end() const {
@@ -276,7 +276,7 @@ class PlyReader {
   }
 
  private:
-  // A property's number, or the numbers of its list.
+  // One property: a number, or the numbers of its list.
   using Values = std::vector<std::vector<double>>;
 
   Result<void> read_element(const Element& element) {
@@ -393,7 +393,7 @@ class PlyReader {
       const bool is_index = corners[k] >= 0 && corners[k] < static_cast<double>(most) &&
                             corners[k] == std::floor(corners[k]);
       mesh_.corner_vertices.push_back(is_index ? static_cast<int>(corners[k]) : -1);
-      // Those of the vertices are known by check_indices only: faces may come first.
+      // Vertices' (u,v) are known only in check_indices: faces may come before vertices.
       mesh_.corner_uvs.push_back(uvs.empty() ? -1 : static_cast<int>(corner_pairs_.size()));
       if (!uvs.empty()) corner_pairs_.push_back({uvs[2 * k], uvs[2 * k + 1]});
     }
@@ -405,7 +405,7 @@ class PlyReader {
     return fmt::format("vertex {}, outside the file, which has {}", vertex, count);
   }
 
-  // Corners without (u,v) of their own take the vertex's.
+  // Corners without (u,v) of their own use the vertex's.
   Result<void> check_indices() {
     const std::size_t vertex_count = coordinates_.size() / 3;
     const auto first_pair = static_cast<int>(mesh_.uvs.size());
@@ -437,7 +437,7 @@ class PlyReader {
   std::vector<double> coordinates_;                  // x y z of each vertex
   std::vector<std::array<double, 3>> normals_;       // of each vertex, if it has one
   std::vector<std::array<double, 2>> corner_pairs_;  // (u,v) of corners
-  std::vector<std::int64_t> faces_;                  // of each face kept, its place in the file
+  std::vector<std::int64_t> faces_;                  // index in the file of each face kept
   int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;   // properties of a vertex
   std::array<int, 3> normal_ = {-1, -1, -1};         // likewise
   bool has_normals_ = false;

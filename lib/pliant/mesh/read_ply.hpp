@@ -12,25 +12,25 @@ namespace pliant {
 /// Reads a PLY file, version 1.0, ASCII or binary of either byte order. Numbers are read exactly,
 /// doubles as doubles; vertices and faces keep the order of the file.
 ///
-/// A reader of our own, because assimp 5.2 holds coordinates in single precision, never comes back
-/// from a header that breaks off, and takes a file that is cut short for a whole one, whose missing
-/// vertices lie anywhere.
+/// An own reader, because assimp 5.2 stores coordinates in single precision, never returns from a
+/// truncated header, and accepts a truncated file as complete, with arbitrary positions for the
+/// missing vertices.
 ///
-/// Of the element `vertex` x, y, z are read, and (u,v) under the names in use: `s t`, `u v`,
-/// `texture_u texture_v`, `tx ty`; of `face` the list `vertex_indices` or `vertex_index`, and the
-/// list `texcoord` of u v u v … for its corners, which goes before (u,v) of vertices. Normals `nx
-/// ny nz` of vertices say which of those at one place join smoothly. Everything else is passed
-/// over. Points without faces and faces of fewer than three corners, which are points and lines,
-/// are passed over too.
+/// Properties read from the element `vertex`: x, y, z, and (u,v) under the usual names: `s t`, `u
+/// v`, `texture_u texture_v`, `tx ty`; from `face`: the list `vertex_indices` or `vertex_index`,
+/// and the list `texcoord` of u v u v … for its corners, which has precedence over (u,v) of
+/// vertices. Normals `nx ny nz` decide which vertices at one place join smoothly. Everything else
+/// is skipped, also points without faces and faces of fewer than three corners, which are points
+/// and lines.
 ///
-/// The file's one object has no name; any `object` but the empty one is an error.
+/// The file's one object has no name; an `object` that is not empty is an error.
 ///
-/// Errors, with the line where there are lines: a header that is none or that does not end; an
-/// element or number that is not there or not finite; more after the last element; an index outside
-/// the file; no faces. Unreadable: the file cannot be read. OutOfMemory.
+/// Errors, with the line if the file has lines: no header, or one that does not end; an element or
+/// number that is missing or not finite; data after the last element; an index out of range; no
+/// faces. Unreadable: the file cannot be read. OutOfMemory.
 Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object = {});
 
-/// The same from bytes; `name` stands for the file in messages.
+/// The same from bytes; `name` is the file's name in messages.
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name,
                        const std::string& object = {});
 

@@ -31,7 +31,8 @@ tl::unexpected<Error> not_started(const char* what, int error) {
                           std::strerror(error)));
 }
 
-// An open file, closed at the end. Not one of those that a boxed program has by number.
+// An open file, closed by the destructor. Not one of the numbered descriptors of a sandboxed
+// program.
 class Descriptor {
  public:
   explicit Descriptor(int descriptor = -1) : descriptor_(descriptor) {
@@ -60,7 +61,7 @@ class Descriptor {
   int descriptor_;
 };
 
-// A process that is not there any more at the end, not even as a zombie.
+// A process that the destructor kills and reaps, so that no zombie remains.
 class Child {
  public:
   explicit Child(pid_t process) : process_(process) {}
@@ -68,8 +69,8 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child() { kill(); }
 
-  // Its status once it has ended. One whom somebody else has waited for counts as done: its answer
-  // tells.
+  // Its status, if it has ended. A process that something else has waited for counts as exited with
+  // 0; its answer shows whether it succeeded.
   std::optional<int> ended() {
     if (process_ < 0) return status_;
     int status = 0;
@@ -92,7 +93,7 @@ class Child {
   int status_ = 0;
 };
 
-// The program as a file in memory.
+// The program as an in-memory file.
 Descriptor program_file(std::string_view program) {
   Descriptor file(memfd_create("pliant", MFD_CLOEXEC));
   while (file.is_open() && !program.empty()) {
@@ -106,7 +107,7 @@ Descriptor program_file(std::string_view program) {
   return file;
 }
 
-// What posix_spawn is told; destroyed with what it holds.
+// Arguments of posix_spawn, freed by the destructor.
 class SpawnSettings {
  public:
   SpawnSettings() {
@@ -120,8 +121,8 @@ class SpawnSettings {
     posix_spawnattr_destroy(&attributes);
   }
 
-  // No signal of ours is ignored or held back in the program, and it is in a group of its own: a
-  // Ctrl-C is for this process, which ends the other one.
+  // In the program, no signal is ignored or blocked as it may be here, and the program is in its
+  // own process group: Ctrl-C goes to this process, which then kills the program.
   int set(int program, int input, int answer) {
     sigset_t all, none;
     sigfillset(&all);
@@ -146,7 +147,7 @@ class SpawnSettings {
   posix_spawnattr_t attributes;
 };
 
-// What `enter_box` reads comes first.
+// Arguments for `enter_box` are first.
 std::vector<std::string> all_arguments(const std::vector<std::string>& arguments,
                                        const BoxLimits& limits) {
   std::vector<std::string> all = {
@@ -175,7 +176,7 @@ Result<pid_t> spawn(const Descriptor& program, const std::vector<std::string>& a
   return process;
 }
 
-// Time that passes while this process runs: one that is stopped and continued has not waited.
+// Time during which this process runs: a time when it is stopped does not count.
 class Patience {
  public:
   explicit Patience(double seconds) : left_(seconds) {}
@@ -192,7 +193,7 @@ class Patience {
   Clock::time_point last_ = Clock::now();
 };
 
-// Appends what the pipe has, waiting for a tick at most. False at its end.
+// Appends the bytes in the pipe, waiting for a tick at most. False at its end.
 bool read_some(const Descriptor& pipe, std::string& answer) {
   pollfd waiting{pipe.get(), POLLIN, 0};
   if (poll(&waiting, 1, static_cast<int>(tick.count() * 1000)) <= 0) return true;
@@ -246,7 +247,7 @@ Result<BoxedEnd> run_boxed(std::string_view program, const std::vector<std::stri
   const auto process = spawn(file, all_arguments(arguments, limits), lifted_input.get(), to_parent);
   if (!process) return fail(process.error());
   Child child(*process);
-  to_parent.close();  // else it would never end
+  to_parent.close();  // otherwise the pipe would never end
   return wait_for(child, from_child, limits, should_stop);
 }
 

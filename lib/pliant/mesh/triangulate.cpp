@@ -14,7 +14,7 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-// The corners of a face in the plane across its mean normal, turning counter-clockwise.
+// The corners of a face projected along its mean normal, counter-clockwise.
 std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
   const auto at = [&](int k) -> Vector3d {
     return mesh.positions.row(
@@ -22,7 +22,7 @@ std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
   };
   Vector3d normal = Vector3d::Zero();
   for (int k = 1; k + 1 < size; ++k) normal += (at(k) - at(0)).cross(at(k + 1) - at(0));
-  int axis = 0;  // dropped: that which the normal is nearest to
+  int axis = 0;  // the axis to drop: the one nearest to the normal
   normal.cwiseAbs().maxCoeff(&axis);
   const int x = (axis + 1) % 3, y = (axis + 2) % 3;
   const double sign = normal[axis] < 0 ? -1 : 1;
@@ -34,7 +34,7 @@ std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
   return points;
 }
 
-// Whether a triangle can be cut off: it turns the right way and no other corner lies in it.
+// Whether a triangle can be cut off: it has the right orientation and contains no other corner.
 bool is_ear(const std::vector<Vector2d>& points, const std::vector<int>& left, std::size_t tip) {
   const std::size_t n = left.size();
   const std::size_t before = (tip + n - 1) % n, after = (tip + 1) % n;

@@ -14,8 +14,8 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
   PLIANT_EXPECTS(is_on_nodes(problem, state));
 
   const double dt = steps.length;
-  const double inertia = problem.dynamics.density / dt;            // on v
-  const double shift = (inertia + problem.dynamics.damping) / dt;  // on w
+  const double inertia = problem.dynamics.density / dt;            // factor of v
+  const double shift = (inertia + problem.dynamics.damping) / dt;  // factor of w
   StageTimer set_up(problem.profile, Stage::SetUp);
   if (auto factored = solver.factor({grid, problem.stiffness, shift, mask}); !factored) {
     return fail(factored.error());
@@ -23,8 +23,8 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
   set_up.stop();
   const StageTimer solve(problem.profile, Stage::Solve);
 
-  // What the rim and the tangents contribute is L of the field that is the rim and 0 inside; it is
-  // known, so it joins the load.
+  // The contribution of the rim and the tangents is L of the field that equals w on the rim and is
+  // 0 inside; it is known, so it becomes part of the load.
   Field w = interior_of(grid, mask, state.displacement);
   Field v = interior_of(grid, mask, state.velocity);
   const Field zero = Field::Zero(w.rows(), 3);

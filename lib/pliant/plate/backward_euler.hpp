@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// One plate over one interval: everything that is held while its steps run. SPEC 4.
+/// One plate over one interval: everything that stays the same while its steps run. SPEC 4.
 struct PlateProblem {
   Grid grid;  ///< the solved rectangle, rim included; at least 3 x 3
   Stiffness stiffness;
@@ -17,10 +17,10 @@ struct PlateProblem {
   EdgeTangents tangents;
   Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
 
-  /// Which nodes move where the plate is no rectangle; empty: all but the outermost.
+  /// Which nodes are interior if the plate is not a rectangle; empty: all but the outermost.
   InteriorMask interior = {};
 
-  /// Told how long set-up and solve take; none: nobody asks. It outlives the call.
+  /// Receives the time spent in set-up and solve; null: no profiling. Must outlive the call.
   Profile* profile = nullptr;
 };
 
@@ -35,10 +35,10 @@ inline bool is_on_nodes(const PlateProblem& problem, const PlateState& state) {
 ///
 ///   (rho/dt^2 + eta/dt) w' + L w' = F + (rho/dt^2 + eta/dt) w + (rho/dt) v,   v' = (w' - w)/dt (8)
 ///
-/// The rim stays where it is, with velocity 0 after the first step. With rho = eta = 0 each step
-/// gives the static solution. First order in dt, stable for every dt. Requires: state fields are
-/// #nodes x 3. Errors: those of the solver.
-/// Interrupted when `should_stop`, asked ahead of every step, says so.
+/// The rim keeps its displacement, with velocity 0 after the first step. With rho = eta = 0 each
+/// step gives the static solution. First order in dt, stable for every dt. `should_stop` is called
+/// before every step. Requires: state fields are #nodes x 3. Errors: those of the solver;
+/// Interrupted if `should_stop` returns true.
 Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProblem& problem,
                                           const TimeSteps& steps, PlateState state,
                                           const StopRequest& should_stop = {});

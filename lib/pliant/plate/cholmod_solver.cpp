@@ -15,7 +15,7 @@ class CholmodFactorization {
   CholmodFactorization() {
     cholmod_start(&common_);
     // Simplicial LDL^T in one order: no BLAS (whose kernels change with the CPU), no METIS (which
-    // uses the process-wide rand), no choice by trial. The same bits everywhere. SPEC 10.
+    // uses the process-wide rand), no choice by trial. Bit-identical everywhere. SPEC 10.
     common_.supernodal = CHOLMOD_SIMPLICIAL;
     common_.final_ll = 0;
     common_.nmethods = 1;
@@ -41,15 +41,15 @@ class CholmodFactorization {
     return check(matrix.rows());
   }
 
-  // Of the factor of what was analysed.
+  // Entries of the factor of the analysed matrix.
   std::size_t factor_entries() const { return static_cast<std::size_t>(common_.lnz); }
 
   Result<void> factorize(const SparseMatrix& matrix) {
     cholmod_sparse view = view_of(matrix);
     cholmod_factorize(&view, factor_, &common_);
     if (auto checked = check(matrix.rows()); !checked) return checked;
-    // LDL^T of an indefinite matrix goes through without a word; D, the first entry of each column
-    // of the factor, says whether the matrix was definite. !(d > 0) finds NaN too.
+    // CHOLMOD factors an indefinite matrix as LDL^T without an error; D, the first entry of each
+    // column of the factor, shows whether the matrix was definite. !(d > 0) is true for NaN too.
     const auto* starts = static_cast<const int*>(factor_->p);
     const auto* entries = static_cast<const double*>(factor_->x);
     for (int column = 0; column < matrix.rows(); ++column) {
@@ -66,7 +66,7 @@ class CholmodFactorization {
     view.x = const_cast<double*>(right_hand_sides.data());  // NOLINT: CHOLMOD does not write to it
     view.xtype = CHOLMOD_REAL;
     view.dtype = CHOLMOD_DOUBLE;
-    // solve2 keeps its solution and workspaces from call to call.
+    // solve2 reuses its solution and workspaces from call to call.
     cholmod_solve2(CHOLMOD_A, factor_, &view, nullptr, &solution_, nullptr, &workspace_y_,
                    &workspace_e_, &common_);
     if (auto checked = check(right_hand_sides.rows()); !checked) return fail(checked.error());

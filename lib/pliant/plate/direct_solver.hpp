@@ -12,10 +12,11 @@
 
 namespace pliant {
 
-/// A solver that factors the sparse matrix, and what such solvers share: what is kept, and when.
-/// `Factorization` has `Result<void> analyze(const SparseMatrix&)`, `std::size_t factor_entries()
-/// const` for what was analysed, `Result<void> factorize(const SparseMatrix&)` for a matrix of the
-/// same pattern, and `Result<Field> solve(const Field&)`; the matrices are upper triangles.
+/// A solver that factors the sparse matrix. The template contains the logic that such solvers
+/// share: which results are kept, and when. `Factorization` has `Result<void> analyze(const
+/// SparseMatrix&)`, `std::size_t factor_entries() const` for the analysed matrix, `Result<void>
+/// factorize(const SparseMatrix&)` for a matrix of the same pattern, and `Result<Field> solve(const
+/// Field&)`; the matrices are upper triangles.
 template <class Factorization>
 class DirectSolver final : public LinearSolver {
  public:
@@ -27,7 +28,7 @@ class DirectSolver final : public LinearSolver {
     factored_.reset();
     const long size = unknown_count(system);
     if (!same_pattern) {
-      // The old factor goes first, so that there is room for the new one.
+      // Free the old factor first, to make room for the new one.
       factorization_ = std::make_unique<Factorization>();
       if (auto taken = take(size, bytes_to_analyze * size); !taken) return taken;
     }
@@ -43,7 +44,7 @@ class DirectSolver final : public LinearSolver {
     factored_ = system;
     refinement_passes_ = passes_for(estimate_condition(system));
     return {};
-  } catch (const std::bad_alloc&) {  // the only way in which Eigen says so
+  } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
     return fail(no_memory_for_factor(unknown_count(system)));
   }
 
@@ -67,9 +68,10 @@ class DirectSolver final : public LinearSolver {
   std::size_t memory() const override { return memory_.bytes(); }
 
  private:
-  // For each unknown: the matrix's upper triangle, 7 entries of 12 bytes, and the full pattern that
-  // the ordering copies, with elbow room and a dozen integers; then, beside the factor, the matrix,
-  // once more as permuted, and right-hand sides, solution and workspace of three columns each.
+  // Per unknown, for the analysis: the matrix's upper triangle (7 entries of 12 bytes) and the full
+  // pattern that the ordering copies, with elbow room and a dozen integers. For the factorisation,
+  // beside the factor: the matrix, its permuted copy, and right-hand sides, solution and workspace
+  // of three columns each.
   static constexpr std::size_t bytes_to_analyze = 250;
   static constexpr std::size_t bytes_to_factorize = 350;
   static constexpr std::size_t bytes_of_entry = 12;  // of the factor: a double and an index
@@ -81,8 +83,9 @@ class DirectSolver final : public LinearSolver {
   }
 
   // Iterative refinement. A factorisation leaves a relative error of up to condition x eps, and
-  // each pass with an exact residual multiplies the error by that much again. Without it a static
-  // plate of 401 x 401 is off by 1e-8; one pass where the error may pass 2e-9, two beyond 1e-5.
+  // each pass with an exact residual multiplies the error by that factor again. Without it a static
+  // plate of 401 x 401 is off by 1e-8. One pass if the error may exceed 2e-9, two if it may exceed
+  // 1e-5.
   static int passes_for(double condition) {
     if (!(condition < 1e11)) return 2;
     return condition > 1e7 ? 1 : 0;
@@ -90,8 +93,8 @@ class DirectSolver final : public LinearSolver {
 
   MemoryShare memory_;
   std::unique_ptr<Factorization> factorization_;
-  std::optional<PlateSystem> factored_;  // what `factorization_` holds; none after a failure
-  int refinement_passes_ = 0;            // that `factored_` asks for
+  std::optional<PlateSystem> factored_;  // the system of `factorization_`; nullopt after a failure
+  int refinement_passes_ = 0;            // needed for `factored_`
   SolverCounts counts_;
 };
 

@@ -60,7 +60,7 @@ Field apply_stencil(const Grid& grid, const InteriorMask& interior, const Stiffn
     const auto is_rim = [&](int other) { return interior[other] == 0; };
     for (int component = 0; component < 3; ++component) {
       const double* const p = w.col(component).data() + node;
-      // Eq. (12): a ghost is this node mirrored at the rim; eq. (6) at the ends of the whole.
+      // Eq. (12): a ghost is this node mirrored at the rim; eq. (6) at the edges of the grid.
       const double ghost_u0 = i == 1 ? -2 * hu * tangents.su0[component] : 0;
       const double ghost_u1 = i == M - 2 ? 2 * hu * tangents.su1[component] : 0;
       const double ghost_v0 = j == 1 ? -2 * hv * tangents.sv0[component] : 0;

@@ -24,7 +24,8 @@ std::vector<int> unknown_numbers(const PlateSystem& system) {
 SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
   const Grid& grid = system.grid;
   const int M = grid.columns;
-  // Eq. (4) and (5) gathered by neighbour; the upper triangle has those ahead in the numbering.
+  // Eq. (4) and (5) gathered by neighbour; the upper triangle has the neighbours with smaller
+  // numbers.
   const StencilWeights weights(system);
 
   const std::vector<int> numbers = unknown_numbers(system);
@@ -38,14 +39,14 @@ SparseMatrix assemble_upper_of_domain(const PlateSystem& system) {
     const auto add = [&](int offset, double weight) {
       if (numbers[node + offset] >= 0) matrix.insertBack(numbers[node + offset], column) = weight;
     };
-    // Eq. (13): a node two steps away counts where the one between is no rim.
+    // Eq. (13): a node two steps away counts unless the one between is rim.
     if (numbers[node - M] >= 0) add(-2 * M, weights.two_v);
     add(-M - 1, weights.corner);
     add(-M, weights.beside_v);
     add(-M + 1, weights.corner);
     if (numbers[node - 1] >= 0) add(-2, weights.two_u);
     add(-1, weights.beside_u);
-    // Eq. (7): where it is, the ghost behind it adds its weight to the node it mirrors.
+    // Eq. (7): beside a rim node, the ghost behind it adds its weight to the node it mirrors.
     const int ghosts_u = (numbers[node - 1] < 0) + (numbers[node + 1] < 0);
     const int ghosts_v = (numbers[node - M] < 0) + (numbers[node + M] < 0);
     matrix.insertBack(column, column) =
@@ -65,7 +66,7 @@ Field residual_of_domain(const PlateSystem& system, const Field& w, const Field&
   const std::vector<int> numbers = unknown_numbers(system);
   PLIANT_EXPECTS(w.rows() == unknown_count(system) && f.rows() == w.rows());
   Field result(f.rows(), 3);
-  std::vector<Real> nodes(numbers.size());  // the rim stays 0
+  std::vector<Real> nodes(numbers.size());  // the rim remains 0
   for (int component = 0; component < 3; ++component) {
     for (std::size_t node = 0; node < numbers.size(); ++node) {
       if (numbers[node] >= 0) nodes[node] = w(numbers[node], component);

@@ -7,10 +7,10 @@
 
 namespace pliant {
 
-// `assemble_upper` and `residual` of a system that has an interior mask; not for other rooms.
+// `assemble_upper` and `residual` of a system that has an interior mask. Internal to plate.
 
-/// The weights of a node and of its neighbours, eq. (4) and (5) gathered, without what the rim
-/// adds.
+/// The weights of a node and of its neighbours, eq. (4) and (5) gathered, without the weights that
+/// the rim adds.
 struct StencilWeights {
   explicit StencilWeights(const PlateSystem& system) {
     const Stiffness scaled = scaled_stiffness(system.grid, system.stiffness);
@@ -23,12 +23,12 @@ struct StencilWeights {
   }
 
   double centre, beside_u, beside_v;
-  double corner;  ///< of the four neighbours across
-  double two_u;   ///< of those two steps away; a rim beside the node adds as much to its centre
+  double corner;  ///< of the four diagonal neighbours
+  double two_u;   ///< of those two steps away; a rim beside the node adds it to the centre
   double two_v;
 };
 
-/// (shift + L) w at a node in extended precision, eq. (4) and (5), whatever the outline.
+/// (shift + L) w at a node in extended precision, eq. (4) and (5), for any outline.
 class ExtendedStencil {
  public:
   using Real = long double;
@@ -42,11 +42,11 @@ class ExtendedStencil {
     d_ = system.stiffness.d / (hv * hv * hv * hv);
   }
 
-  Real two_u() const { return b_; }  ///< weight of a node two steps away, and of a rim beside
+  Real two_u() const { return b_; }  ///< weight of a node two steps away, and of a rim beside it
   Real two_v() const { return d_; }
 
-  /// `p` is the node among all nodes, in double or in `Real`; the others are the values two steps
-  /// away, which may be ghosts.
+  /// `p` points to the node in the field of all nodes, in double or in `Real`; the others are the
+  /// values two steps away, which may be ghosts.
   template <class Number>
   Real at(const Number* p, Real left, Real right, Real below, Real above) const {
     const std::ptrdiff_t M = row_;

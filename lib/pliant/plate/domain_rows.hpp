@@ -9,16 +9,16 @@
 
 namespace pliant {
 
-/// The interior nodes of a mask as runs along u, and those beside the rim, in blocks of rows that
-/// depend on nothing else: what is done block by block, sums too, has the same bits on any number
-/// of threads. Not for other rooms.
+/// The interior nodes of a mask as runs along u, and those beside the rim, in blocks of rows. The
+/// blocks depend on the mask only: results computed block by block, including sums, are
+/// bit-identical for any number of threads. Internal to plate.
 class DomainRows {
  public:
   struct Run {
     long first;  ///< node
     long count;
   };
-  /// A node beside the rim, and how many of its neighbours along u and along v belong to it.
+  /// A node beside the rim, and the number of its neighbours along u and along v that are rim.
   struct Edge {
     long node;
     int along_u, along_v;
@@ -47,8 +47,8 @@ class DomainRows {
   std::vector<Block> blocks_;
 };
 
-/// The sum of a[k] b[k], in eight sums side by side that are added up at the end: an order that
-/// vectors keep.
+/// The sum of a[k] b[k], as eight partial sums that are added at the end: an order that allows
+/// vector instructions.
 class LaneSum {
  public:
   void add(const double* a, const double* b, long count) {

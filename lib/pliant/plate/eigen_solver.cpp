@@ -13,12 +13,12 @@ class EigenFactorization {
     return {};
   }
 
-  // Of the factor of what was analysed.
+  // Entries of the factor of the analysed matrix.
   std::size_t factor_entries() const { return ldlt_.factor_entries(); }
 
   Result<void> factorize(const SparseMatrix& matrix) {
     ldlt_.factorize(matrix);
-    // Eigen reports a zero pivot only; LDL^T of an indefinite matrix goes through without a word.
+    // Eigen reports zero pivots only; it factors an indefinite matrix as LDL^T without an error.
     Eigen::Index pivot = 0;
     const bool is_definite =
         ldlt_.info() == Eigen::Success && ldlt_.vectorD().minCoeff<Eigen::PropagateNaN>(&pivot) > 0;
@@ -33,7 +33,7 @@ class EigenFactorization {
  private:
   using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Upper, Eigen::AMDOrdering<int>>;
 
-  // Eigen counts the entries of the factor ahead, but keeps the count to itself.
+  // Eigen counts the entries of the factor in the analysis, but does not expose the count.
   struct CountingLdlt : Ldlt {
     std::size_t factor_entries() const { return m_nonZerosPerCol.cast<std::size_t>().sum(); }
   };

@@ -13,9 +13,9 @@
 
 namespace pliant {
 
-/// Solves plate systems: the one seam between the integrators and whoever solves. Every
-/// implementation gives the same errors and keeps the same tolerance, and the same tests run over
-/// all of them. Not thread-safe; give each body its own.
+/// Solves plate systems: the interface between the integrators and the solvers. Every
+/// implementation gives the same errors, keeps the same tolerance and passes the same tests. Not
+/// thread-safe; give each body its own.
 class LinearSolver {
  public:
   LinearSolver() = default;
@@ -23,11 +23,11 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
   virtual ~LinearSolver() = default;
 
-  /// Makes ready for `system`. Reuse: nothing is done when it equals the last one; the symbolic
-  /// work is kept while the numbers of columns and rows and the mask stay. What was kept never
-  /// changes a result's bits. Errors: SolverFailed with size and pivot when the matrix is not
-  /// positive definite or not finite; OutOfMemory when the factor does not fit in the budget, which
-  /// is known before it is computed, or in memory.
+  /// Prepares for `system`. Reuse: does nothing if it equals the last one; the symbolic work is
+  /// kept while the numbers of columns and rows and the mask are the same. Reuse never changes a
+  /// result's bits. Errors: SolverFailed, with size and pivot, if the matrix is not positive
+  /// definite or not finite; OutOfMemory if the factor does not fit in the budget, which is checked
+  /// before it is computed, or in memory.
   virtual Result<void> factor(const PlateSystem& system) = 0;
 
   /// Solves for three right-hand sides (#unknowns x 3). Requires: `factor` succeeded.
@@ -36,7 +36,7 @@ class LinearSolver {
 
   virtual SolverCounts counts() const = 0;
 
-  /// What the solver holds now. [bytes]
+  /// The memory that the solver uses now. [bytes]
   virtual std::size_t memory() const = 0;
 };
 
@@ -47,13 +47,13 @@ enum class SolverKind {
   Spectral,  ///< sine transforms and small dense factors: `SpectralPlate`; rectangles only
 };
 
-/// Those in this build, the default one first.
+/// The implementations in this build, the default one first.
 std::vector<SolverKind> available_solvers();
 
 std::string_view name_of(SolverKind kind);
 
-/// A solver of the given kind that takes its memory out of `budget`, which outlives it; none: no
-/// limit. Requires: `kind` is available.
+/// A solver of the given kind that reserves its memory from `budget`, which must outlive it; null:
+/// no limit. Requires: `kind` is available.
 std::unique_ptr<LinearSolver> make_solver(SolverKind kind = available_solvers().front(),
                                           MemoryBudget* budget = nullptr);
 

@@ -8,14 +8,14 @@
 
 namespace pliant {
 
-/// A problem's load, to be changed beside the rim: what the solvers in sine space begin an interval
-/// with. Keeps its memory from one to the next. Not for other rooms.
+/// A copy of a problem's load, to be changed beside the rim, from which the solvers in sine space
+/// begin an interval. Its memory is reused for the next interval. Internal to plate.
 class LoadCopy {
  public:
-  /// Memory out of `budget`, which outlives it; none: no limit.
+  /// Reserves memory from `budget`, which must outlive it; null: no limit.
   explicit LoadCopy(MemoryBudget* budget) : memory_(budget) {}
 
-  /// Takes the load of a problem. Errors: OutOfMemory.
+  /// Copies the load of a problem. Errors: OutOfMemory.
   Result<void> take(const PlateProblem& problem);
 
   Field& nodes() { return nodes_; }  ///< #nodes x 3

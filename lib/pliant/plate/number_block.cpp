@@ -26,7 +26,7 @@ NumberBlock::NumberBlock(std::size_t count)
     : begin_(static_cast<double*>(::operator new(bytes_of(count), alignment_of(count)))),
       count_(count) {
 #ifdef MADV_HUGEPAGE
-  // A wish: refused is all right.
+  // Only a hint: a refusal does no harm.
   if (is_large(count)) madvise(begin_, bytes_of(count), MADV_HUGEPAGE);
 #endif
 }

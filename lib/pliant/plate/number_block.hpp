@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// One block of numbers on a cache line's boundary; from some megabytes on in large pages where the
-/// system has them, since the table of small ones does not hold a page for each row of a plate. Not
-/// for other rooms.
+/// One block of numbers, aligned to a cache line; from some megabytes on in large pages if the
+/// system has them, because a table of small pages has too few entries for one page per row of a
+/// plate. Internal to plate.
 class NumberBlock {
  public:
   NumberBlock() = default;

@@ -15,7 +15,8 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   const int m = grid.columns - 2;  // unknowns along u
   const int n = grid.rows - 2;     // unknowns along v
-  // Eq. (4) and (5) gathered by neighbour; the upper triangle has those ahead in the numbering.
+  // Eq. (4) and (5) gathered by neighbour; the upper triangle has the neighbours with smaller
+  // numbers.
   const StencilWeights weights(system);
 
   SparseMatrix matrix(m * n, m * n);
@@ -35,7 +36,8 @@ SparseMatrix assemble_upper(const PlateSystem& system) {
       add(1, -1, weights.corner);
       add(-2, 0, weights.two_u);
       add(-1, 0, weights.beside_u);
-      // Eq. (7): a ghost mirrors its node with +, so each edge nearby adds its weight once more.
+      // Eq. (7): a ghost mirrors its node with weight +1, so each edge nearby adds its weight once
+      // more.
       const int edges_u = (i == 0) + (i == m - 1);
       const int edges_v = (j == 0) + (j == n - 1);
       matrix.insertBack(column, column) =
@@ -55,7 +57,7 @@ Field residual(const PlateSystem& system, const Field& w, const Field& f) {
   const ExtendedStencil stencil(system);
 
   Field result(f.rows(), 3);
-  std::vector<Real> nodes(static_cast<std::size_t>(grid.node_count()));  // the rim stays 0
+  std::vector<Real> nodes(static_cast<std::size_t>(grid.node_count()));  // the rim remains 0
   for (int component = 0; component < 3; ++component) {
     int row = 0;
     for (int j = 1; j < grid.rows - 1; ++j) {
@@ -82,7 +84,7 @@ double estimate_condition(const PlateSystem& system) {
   const auto& [b, c, d] = system.stiffness;
   const double width = (system.grid.columns - 1) * system.grid.hu;
   const double depth = (system.grid.rows - 1) * system.grid.hv;
-  // (1 -2 1)/h^2 has eigenvalues up to 4/h^2, and from about (pi/extent)^2 on.
+  // (1 -2 1)/h^2 has eigenvalues from about (pi/extent)^2 to 4/h^2.
   const double most_u = 4 / (system.grid.hu * system.grid.hu);
   const double most_v = 4 / (system.grid.hv * system.grid.hv);
   const double least_u = std::numbers::pi * std::numbers::pi / (width * width);

@@ -16,7 +16,7 @@ struct PlateSystem {
   Stiffness stiffness;  ///< elliptic
   double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
 
-  /// Which nodes are unknowns where the plate is no rectangle; empty: all but the outermost.
+  /// Which nodes are unknowns if the plate is not a rectangle; empty: all but the outermost.
   InteriorMask interior = {};
 
   friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
@@ -34,17 +34,17 @@ inline bool have_same_pattern(const PlateSystem& a, const PlateSystem& b) {
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The upper triangle of the system's matrix (#unknowns x #unknowns), by columns, rows ascending.
-/// Its pattern depends on the numbers of columns and rows and on the mask only: entries that are 0
-/// by chance are kept.
+/// Its pattern depends only on the numbers of columns and rows and on the mask: entries that happen
+/// to be 0 are kept.
 SparseMatrix assemble_upper(const PlateSystem& system);
 
-/// f - (shift I + L) w (#unknowns x 3), its coefficients and sums in extended precision (64 bits of
-/// mantissa on x86-64), for iterative refinement: in plain double its rounding would be as large as
-/// itself.
+/// f - (shift I + L) w (#unknowns x 3), with coefficients and sums in extended precision (64 bits
+/// of mantissa on x86-64), for iterative refinement: in plain double its rounding error would be as
+/// large as the residual itself.
 Field residual(const PlateSystem& system, const Field& w, const Field& f);
 
-/// About the condition number of the system's matrix: an upper bound of its eigenvalues over the
-/// smallest one of the whole rectangle simply supported. At least 1.
+/// An estimate of the condition number of the system's matrix: an upper bound of its eigenvalues
+/// divided by the smallest eigenvalue of the whole rectangle, simply supported. At least 1.
 double estimate_condition(const PlateSystem& system);
 
 }  // namespace pliant

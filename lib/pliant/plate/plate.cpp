@@ -8,7 +8,7 @@ namespace pliant {
 
 double Stiffness::least_c() const {
   // The root of the product is right at equality (b = d = 2 gives 2, the two roots a little more);
-  // the two roots are where the product overflows or vanishes.
+  // the two roots are used if the product overflows or underflows.
   const double root = std::isnormal(b * d) ? std::sqrt(b * d) : std::sqrt(b) * std::sqrt(d);
   return -2 * root;
 }

@@ -27,7 +27,7 @@ struct Stiffness {
   friend bool operator==(const Stiffness&, const Stiffness&) = default;
 };
 
-/// What gives the plate inertia and drag.
+/// Inertia and drag of the plate.
 struct Dynamics {
   double density = 1;  ///< rho >= 0
   double damping = 1;  ///< eta >= 0
@@ -56,7 +56,7 @@ inline int unknown_count(const Grid& grid) { return (grid.columns - 2) * (grid.r
 /// The interior rows of a field on all nodes (#nodes x 3 -> #unknowns x 3).
 Field interior_of(const Grid& grid, const Field& nodes);
 
-/// Writes interior rows back: `nodes` with its interior replaced, its rim as it is.
+/// Writes interior rows back: `nodes` with its interior replaced and its rim unchanged.
 Field with_interior(const Grid& grid, Field nodes, const Field& interior);
 
 }  // namespace pliant

@@ -27,7 +27,8 @@ class DirectPlateSolver final : public PlateSolver {
   std::unique_ptr<LinearSolver> solver_;
 };
 
-// Takes the solver that suits each problem, and lets the other one go.
+// Creates the solver that suits each problem, and destroys the previous one if it was of another
+// kind.
 class AutomaticPlateSolver final : public PlateSolver {
  public:
   AutomaticPlateSolver(bool prefers_spectral, MemoryBudget* budget, ThreadPool* threads,
@@ -70,7 +71,7 @@ class AutomaticPlateSolver final : public PlateSolver {
     return is_worth_it ? Way::Schwarz : Way::Direct;
   }
 
-  // Kept for the outline that was asked for last.
+  // Caches the answer for the last outline.
   bool is_covered(const Grid& grid, const InteriorMask& interior) {
     if (interior != asked_for_ || grid.columns != columns_asked_for_) {
       asked_for_ = interior;
@@ -101,7 +102,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   InteriorMask asked_for_;
   int columns_asked_for_ = 0;
   bool is_covered_ = false;
-  SolverCounts past_counts_;  // of solvers that were let go
+  SolverCounts past_counts_;  // of the solvers that were destroyed
 };
 
 SolverKind kind_of(SolverChoice choice) {
@@ -125,20 +126,21 @@ bool is_available(SolverChoice choice) {
 }
 
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
-  // Measured, 20 steps: 9 x 9 nodes take 17 us in sine space and 22 by CHOLMOD, 5 x 100 as long by
-  // either, 3 x 300 298 and 102 us, since rows of vectors are hardly filled.
+  // Measured, 20 steps: 9 x 9 nodes need 17 us in sine space and 22 us by CHOLMOD, 5 x 100 the same
+  // time by both, 3 x 300 298 and 102 us, since rows of vectors are almost empty.
   constexpr int shortest_side = 9;
-  // By so much c may come closer to its bound than to 0, and the solution loses as many digits.
+  // How close c may be to its bound, relative to the bound; the solution loses as many digits.
   constexpr double closest = 1e-3;
   return std::min(grid.columns, grid.rows) >= shortest_side &&
          stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
 }
 
 bool worth_iterating(int unknowns, const Stiffness& stiffness) {
-  // Not by memory as well: another machine would take another way, to other bits.
+  // Does not depend on the memory too: another machine would choose another solver and get other
+  // bits.
   constexpr int most_to_factor = 150'000;
-  // A static L of 100 nodes a side takes 11 rounds with c = 2, 20 with c 5 % from its bound, 40
-  // with 0.05 %, and there the more the larger it is.
+  // A static L of 100 nodes a side needs 11 rounds with c = 2, 20 with c 5 % from its bound, 40
+  // with 0.05 %; there a larger plate needs more.
   constexpr double closest = 0.02;
   return unknowns >= most_to_factor &&
          stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();

@@ -26,7 +26,8 @@ long power_modulo(long base, long exponent, long modulus) {
 
 long primitive_root(long prime) {
   PLIANT_EXPECTS(is_prime(prime));
-  // A root's order divides prime - 1, and is no smaller divisor: none of the largest ones.
+  // The order of a primitive root is prime - 1 itself, so it divides none of the largest proper
+  // divisors of prime - 1.
   std::vector<long> largest;
   long rest = prime - 1;
   for (long factor = 2; rest > 1; ++factor) {

@@ -2,9 +2,9 @@
 
 namespace pliant {
 
-// Residues of a prime, as the sine transform needs them. Not for other rooms.
+// Residues of a prime, for the sine transform. Internal to plate.
 
-/// Whether a number has no divisor but 1 and itself. O(sqrt(number)). Requires: number >= 2.
+/// Whether a number is prime. O(sqrt(number)). Requires: number >= 2.
 bool is_prime(long number);
 
 /// base^exponent modulo a number below 2^31. Requires: 0 <= base < modulus, exponent >= 0.

@@ -10,15 +10,15 @@
 namespace pliant {
 namespace {
 
-// An outline of more steps is ragged: it follows no few boxes.
+// An outline with more steps is ragged: no small number of boxes follows it.
 constexpr std::size_t max_bands = 32;
 constexpr std::size_t max_candidates = 64;
-// How many nodes all rectangles together may have for one of the plate.
+// Limit of the nodes of all rectangles together, per node of the plate.
 constexpr long max_work = 4;
 
-// Rows, or columns, that are equal make a band; a mask is a small table of bands by bands.
+// Equal neighbouring rows, or columns, form a band; a mask becomes a small table of bands by bands.
 struct Bands {
-  std::vector<int> columns;  // where each band begins, and where the last one ends
+  std::vector<int> columns;  // the start of each band, then the end of the last one
   std::vector<int> rows;
   std::vector<std::uint8_t> is_inside;
 
@@ -29,7 +29,7 @@ struct Bands {
   }
 };
 
-// Empty where there are too many.
+// Empty if there are too many.
 Bands bands_of(const Grid& grid, const InteriorMask& interior) {
   const auto row = [&](int j) { return interior.begin() + std::ptrdiff_t{j} * grid.columns; };
   Bands bands;
@@ -53,8 +53,8 @@ Bands bands_of(const Grid& grid, const InteriorMask& interior) {
   return bands;
 }
 
-// All rectangles of bands that lie inside and in no larger one. Those beyond `max_candidates` are
-// left out, but one.
+// All rectangles of bands that are inside the mask and not part of a larger such rectangle. Stops
+// at `max_candidates` + 1.
 std::vector<Box> maximal_rectangles(const Bands& bands) {
   std::vector<Box> found;
   const auto is_filled = [&](int q, int first, int last) {
@@ -85,8 +85,8 @@ struct Interval {
   int first, last;
 };
 
-// Whether intervals reach from one end to the other, each sharing a quarter of the shorter one with
-// the next.
+// Whether intervals reach from `first` to `last`, each overlapping the next by at least a quarter
+// of the shorter one.
 bool reaches(const std::vector<Interval>& intervals, int first, int last) {
   const auto length = [](const Interval& interval) { return interval.last - interval.first; };
   Interval current{first, first};
@@ -105,7 +105,7 @@ bool reaches(const std::vector<Interval>& intervals, int first, int last) {
   return current.last == last;
 }
 
-// Whether in each band across and along, what is inside is reached from end to end.
+// Whether in each band, along u and along v, the rectangles reach across every run inside the mask.
 bool is_cover(const Bands& bands, const std::vector<Box>& rectangles) {
   const auto holds = [&](bool along_u, int band, int place) {
     return along_u ? bands.has(place, band) : bands.has(band, place);
@@ -154,7 +154,7 @@ std::vector<Box> cover_by_rectangles(const Grid& grid, const InteriorMask& inter
     };
     return place(a) < place(b);
   });
-  // Those that the others can do without go, the smallest first.
+  // Removes the rectangles that the others make unnecessary, the smallest first.
   for (std::size_t k = 0; k < cover.size();) {
     std::vector<Box> others = cover;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));

@@ -42,7 +42,7 @@ void subtract_rim(const Grid& grid, const Stiffness& stiffness, const EdgeTangen
     for (int j = 1; j <= N - 2; ++j) {
       const bool is_outer_row = j <= 2 || j >= N - 3;
       for (int i = 1; i <= M - 2; ++i) {
-        // Of a row between, the two nodes at each end.
+        // In other rows, only the two nodes at each end.
         if (!is_outer_row && i == 3 && M - 3 > i) i = M - 3;
         subtract(i, j);
       }
@@ -66,7 +66,7 @@ void subtract_rim(const Grid& grid, const InteriorMask& interior, const Stiffnes
       for (int i = 1; i < M - 1; ++i) {
         const int node = grid.node(i, j);
         if (!interior[node]) continue;
-        // As in `apply_stencil`, with 0 inside: beyond the rim a ghost mirrors this node.
+        // As in `apply_stencil`, with 0 inside: behind the rim a ghost mirrors this node.
         const auto far = [&](int step, bool is_last, double slope_term) {
           if (!interior[node + step]) return is_last ? slope_term : 0;
           return rim(node + 2 * step);

@@ -16,11 +16,11 @@
 namespace pliant {
 namespace {
 
-// What a round still changes, over the solution, when it is the last one. A round leaves a tenth of
-// an error or less, so that the solution is right to some 1e-15.
+// Size of the last round's change, relative to the solution. A round leaves a tenth of an error or
+// less, so the solution is then accurate to some 1e-15.
 constexpr double least_change = 1e-14;
 
-// Views of fields on all nodes without gaps: where the numbers of a node are.
+// Views of fields on all nodes without gaps: pointer to the number of a node.
 const double* at(const ConstNodesView& view, int component, long node) {
   return view.first + component * view.component_stride + node;
 }
@@ -28,8 +28,8 @@ double* at(const NodesView& view, int component, long node) {
   return view.first + component * view.component_stride + node;
 }
 
-// Puts rectangles that no stencil reaches from one another, the largest among them, behind the
-// others: a round visits them once, as their order does not matter. Gives how many they are.
+// Moves rectangles that no stencil connects with one another, the largest among them, behind the
+// others: a round visits them once, as their order does not matter. Returns their number.
 std::size_t move_independent_back(std::vector<Box>& cover) {
   std::vector<Box> back;
   for (std::size_t k = cover.size(); k-- > 0;) {
@@ -60,7 +60,7 @@ void apply_to_run(const StencilWeights& weights, const double* p, long M, long c
 
 }  // namespace
 
-// Tasks that write different numbers. None of it is worth a thread on a small plate.
+// Runs tasks that write different numbers. On a small plate they are not worth a thread.
 template <class Work>
 void SchwarzPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
@@ -71,7 +71,7 @@ void SchwarzPlate::for_each(std::size_t count, const Work& work) {
   }
 }
 
-// Calls work(component, block) for all blocks of rows and components that are not solved yet.
+// Calls work(component, block) for all blocks of rows and all components that are not solved yet.
 template <class Work>
 void SchwarzPlate::for_each_block(const Work& work) {
   int active[3];
@@ -87,7 +87,7 @@ void SchwarzPlate::let_go() {
   parts_.clear();
   plates_.clear();
   numbers_ = NumberBlock();
-  (void)memory_.try_resize(0);  // less is always there
+  (void)memory_.try_resize(0);  // less memory is always available
 }
 
 Result<void> SchwarzPlate::prepare(const Grid& grid, const InteriorMask& interior,
@@ -114,8 +114,8 @@ Result<void> SchwarzPlate::prepare(const Grid& grid, const InteriorMask& interio
       return ready;
     }
   }
-  // Rounding makes the residual that is updated differ from the true one by some eps |A| |e|, e the
-  // error that the updates began with; that is an error of up to condition x eps |e|.
+  // Rounding makes the updated residual differ from the true one by some eps |A| |e|, where e is
+  // the error at the start of the updates; that is an error of up to condition x eps |e|.
   trusted_gain_ =
       std::clamp(std::numeric_limits<double>::epsilon() * estimate_condition(system_), 1e-10, 1e-5);
   is_prepared_ = true;
@@ -139,7 +139,7 @@ Result<void> SchwarzPlate::lay_out() {
     largest = std::max(largest, std::size_t(box.columns()) * std::size_t(box.rows()));
     sides += std::size_t(box.columns()) + std::size_t(box.rows());
   }
-  // Fields a row of zeros apart, and never a multiple of a page.
+  // Fields are separated by a row of zeros, and their distance is never a multiple of a page.
   constexpr std::size_t unit = NumberBlock::line / sizeof(double);
   const std::size_t above = (std::size_t(grid.columns) + 2 + unit - 1) / unit * unit;
   const std::size_t field =
@@ -195,7 +195,7 @@ SchwarzPlate::Part SchwarzPlate::part_of(const Box& box) const {
   for (int j = box.j0; j <= box.j1; ++j) {
     const bool is_end = j == box.j0 || j == box.j1;
     for (int i = box.i0; i <= box.i1; ++i) {
-      // Of a row between, the two nodes at its ends.
+      // In other rows, only the two nodes at the ends.
       if (!is_end && i == box.i0 + 1 && box.i1 > i) i = box.i1;
       const int along_u =
           (i == box.i0 && is_interior(i - 1, j)) + (i == box.i1 && is_interior(i + 1, j));
@@ -265,7 +265,7 @@ void SchwarzPlate::apply_operator() {
   });
 }
 
-// z = B r, eq. (36): what is left of r lies in the product's place.
+// z = B r, eq. (36): the rest of r is stored in `product_`.
 void SchwarzPlate::apply_rounds() {
   for_each_block([&](int component, std::size_t block) {
     for (const auto& [first, count] : rows_.runs(block)) {
@@ -294,8 +294,8 @@ void SchwarzPlate::visit(const Part& part, bool is_last) {
   });
 }
 
-// Adds a rectangle's part y to z and takes A y out of what is left. On the rectangle that leaves
-// nothing but what the clamped sides have more than A, eq. (35); around it, what the stencil says.
+// Adds a rectangle's part y to z and subtracts A y from the rest. On the rectangle, the rest is
+// then only the excess of the clamped sides over A, eq. (35); around it, the stencil's values.
 void SchwarzPlate::take_correction(const Part& part, int component, bool is_last) {
   const long M = system_.grid.columns;
   const Box& box = part.box;
@@ -361,7 +361,7 @@ void SchwarzPlate::add(const NodeField& from, const Sums& factor, const NodeFiel
   });
 }
 
-// p = z + factor p; with 0 whatever p was.
+// p = z + factor p; for factor 0, p may contain anything before.
 void SchwarzPlate::turn_direction(const Sums& factor) {
   for_each_block([&](int component, std::size_t block) {
     for (const auto& [first, count] : rows_.runs(block)) {
@@ -389,8 +389,8 @@ Result<void> SchwarzPlate::correct(const StopRequest& should_stop) {
   return {};
 }
 
-// Conjugate gradients from a residual computed anew, as far as it can be trusted. Eq. (37).
-// Components that are not solved by then stay in `is_unsolved`.
+// Conjugate gradients from a recomputed residual, as long as its updates can be trusted. Eq. (37).
+// Components that are not solved afterwards remain set in `is_unsolved`.
 Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should_stop) {
   find_residual();
   if (auto corrected = correct(should_stop); !corrected) return corrected;
@@ -428,8 +428,8 @@ Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should
   }
 }
 
-// Components that the last round changed by no more than their target take that change, and are
-// done. False where a number is none, or negative as only that of an indefinite matrix is.
+// Adds the last change to components that it changed by no more than their target; they are done.
+// False if an energy is not finite, or negative, as is possible only for an indefinite matrix.
 bool SchwarzPlate::retire(const Sums& energy, const Sums& change, const Sums& target) {
   Sums take = {};
   bool is_done[3] = {};
@@ -457,7 +457,7 @@ Result<void> SchwarzPlate::iterate(const StopRequest& should_stop) {
   return {};
 }
 
-// Without a load the solution is 0, whatever the guess. Whether it is so.
+// Without a load the solution is 0 for any guess. Returns whether there is no load.
 bool SchwarzPlate::settle_if_free(int component) {
   for (std::size_t block = 0; block < rows_.block_count(); ++block) {
     for (const auto& [first, count] : rows_.runs(block)) {
@@ -508,7 +508,7 @@ Result<void> SchwarzPlate::advance(const ConstNodesView& load, double inertia, d
                                    const StopRequest& should_stop) {
   PLIANT_EXPECTS(is_prepared_);
   const double shift = system_.shift;
-  // What has inertia goes on as it went.
+  // With inertia the first guess continues the motion.
   const bool goes_on = inertia > 0;
   for_each_run([&](int component, long first, long count) {
     const double* const known = at(load, component, first);

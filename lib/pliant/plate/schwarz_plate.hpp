@@ -16,15 +16,15 @@
 
 namespace pliant {
 
-/// A clamped plate whose outline is no rectangle, by conjugate gradients: overlapping rectangles,
-/// each solved in sine space, one after another and back, say where the solution is; residuals in
-/// extended precision say how far it is off. docs/model.md, "Overlapping rectangles". Memory and
-/// work per node and step do not grow with the plate. Not for other rooms.
+/// A clamped plate whose outline is not a rectangle, solved by conjugate gradients. The
+/// preconditioner solves overlapping rectangles in sine space, one after another and back;
+/// residuals are computed in extended precision. docs/model.md, "Overlapping rectangles". Memory
+/// and work per node and step do not grow with the plate. Internal to plate.
 class SchwarzPlate {
  public:
-  /// Memory out of `budget` and work on `threads`, which both outlive it; none: no limit, one
-  /// thread. The bits depend on neither, nor on `kernels`.
-  /// A system takes `max_rounds` at most; with most covers it takes about ten.
+  /// Reserves memory from `budget` and works on `threads`, which must both outlive it; null: no
+  /// limit, one thread. The bits depend on neither, nor on `kernels`. A system may use at most
+  /// `max_rounds`; most covers need about ten.
   explicit SchwarzPlate(MemoryBudget* budget, ThreadPool* threads = nullptr, int max_rounds = 60,
                         const SpectralKernels& kernels = *runnable_kernels(0))
       : budget_(budget),
@@ -33,27 +33,27 @@ class SchwarzPlate {
         memory_(budget),
         max_rounds_(max_rounds) {}
 
-  /// Makes ready for a system. What is kept from the last one never changes a result's bits.
-  /// Requires: `cover_by_rectangles` finds a cover. Errors: SolverFailed where the matrix is not
-  /// positive definite or not finite; OutOfMemory.
+  /// Prepares for a system. Reuse of the last one never changes a result's bits. Requires:
+  /// `cover_by_rectangles` finds a cover. Errors: SolverFailed if the matrix is not positive
+  /// definite or not finite; OutOfMemory.
   Result<void> prepare(const Grid& grid, const InteriorMask& interior, const Stiffness& stiffness,
                        double shift);
 
   /// Solves for three right-hand sides from a guess. Fields are on all nodes, row by row without
-  /// gaps, `first` is node (0,0); interior ones are read and written. Requires: prepared. Errors:
-  /// SolverFailed where the rounds do not suffice, with `solution` of no meaning; Interrupted.
+  /// gaps, and `first` is node (0,0); only interior nodes are read and written. Requires: prepared.
+  /// Errors: SolverFailed if `max_rounds` do not suffice, with `solution` undefined; Interrupted.
   Result<void> solve(const ConstNodesView& load, const NodesView& solution,
                      const StopRequest& should_stop = {});
 
-  /// One step of backward Euler with the shift that was prepared for, the load without the rim's
-  /// part; views as above. Requires: prepared; inertia = rho/dt. Errors: those of `solve`;
-  /// displacement and velocity are then as they were.
+  /// One step of backward Euler with the prepared shift; the load excludes the rim's part; views as
+  /// above. Requires: prepared; inertia = rho/dt. Errors: those of `solve`; displacement and
+  /// velocity are then unchanged.
   Result<void> advance(const ConstNodesView& load, double inertia, double dt,
                        const NodesView& displacement, const NodesView& velocity,
                        const StopRequest& should_stop);
 
-  /// One round there and back over the rectangles: an approximation of the solution that is linear
-  /// in the right-hand side, symmetric and positive definite. Views as above. Requires: prepared.
+  /// One round over the rectangles and back: an approximation of the solution that is linear in the
+  /// right-hand side, symmetric and positive definite. Views as above. Requires: prepared.
   void precondition(const ConstNodesView& load, const NodesView& solution);
 
   /// Rounds of all systems so far.
@@ -67,10 +67,10 @@ class SchwarzPlate {
   struct Part {
     Box box;  // of interior nodes
     SpectralPlate* plate = nullptr;
-    std::vector<DomainRows::Edge> facing;  // nodes inside along sides that others see beyond
-    std::vector<long> around;              // interior nodes outside that the stencil reaches
+    std::vector<DomainRows::Edge> facing;  // nodes of `box` beside interior nodes outside it
+    std::vector<long> around;              // interior nodes outside `box` that the stencil reaches
   };
-  // A field on all nodes with rows of zeros around; what is not interior is 0.
+  // A field on all nodes, surrounded by rows of zeros; 0 at nodes that are not interior.
   struct NodeField {
     double* of[3] = {};
   };
@@ -107,20 +107,20 @@ class SchwarzPlate {
   MemoryShare memory_;
   int max_rounds_;
   long rounds_ = 0;
-  int rounds_left_ = 0;  // of the system in hand
+  int rounds_left_ = 0;  // of the current system
   SolverCounts counts_;
 
   PlateSystem system_;
   bool is_prepared_ = false;
-  double trusted_gain_ = 0;  // how far a residual may fall until it is computed anew
+  double trusted_gain_ = 0;  // how far a residual may fall before it is recomputed
   DomainRows rows_;
-  std::vector<std::unique_ptr<SpectralPlate>> plates_;  // one for each size of rectangles
+  std::vector<std::unique_ptr<SpectralPlate>> plates_;  // one for each size of rectangle
   std::vector<Part> parts_;
-  std::size_t once_ = 0;  // parts, the last ones, that a round visits once
+  std::size_t once_ = 0;  // number of parts, at the end, that a round visits once
   NumberBlock numbers_;
   NodeField load_, solution_, residual_, correction_, direction_;
-  NodeField product_;  // of operator and direction; what is left of a residual during a round
-  NodeField patch_;    // the correction of one rectangle, its rows one after the other
+  NodeField product_;  // operator times direction; during a round, the rest of a residual
+  NodeField patch_;    // the correction of one rectangle, row after row
   double* block_sums_ = nullptr;
   bool is_active_[3] = {};  // components that are not solved yet
 };

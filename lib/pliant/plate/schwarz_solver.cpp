@@ -61,8 +61,8 @@ class SchwarzPlateSolver final : public PlateSolver {
   std::size_t memory() const override { return load_.memory() + (plate_ ? plate_->memory() : 0); }
 
  private:
-  // The rectangles do not suffice: the matrix is factored for the steps that are left. Nothing of
-  // it is kept, so that what the next frame does depends on that frame alone.
+  // The rounds do not suffice: factors the matrix for the remaining steps. Nothing of it is kept,
+  // so that the next frame's result depends on that frame alone.
   Result<PlateState> finish_directly(const PlateProblem& problem, const TimeSteps& steps,
                                      PlateState state, const StopRequest& should_stop) {
     past_counts_ = counts();
@@ -84,7 +84,7 @@ class SchwarzPlateSolver final : public PlateSolver {
   int most_lanes_;
   int max_rounds_;
   std::unique_ptr<SchwarzPlate> plate_;
-  SolverCounts past_counts_;  // of what was let go
+  SolverCounts past_counts_;  // of the solvers that were destroyed
   LoadCopy load_;
 };
 

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-// The radices of the stages for a length, or none where it has a prime above 13.
+// The radices of the stages for a length; empty if it has a prime above 13.
 std::vector<int> radices_of(int length) {
   std::vector<int> radices;
   for (const int radix : {4, 2, 3, 5, 7, 11, 13}) {
@@ -20,8 +20,8 @@ std::vector<int> radices_of(int length) {
   return radices;
 }
 
-// Those of a convolution, which has the eights first, and no 2 in the last stage if it can: that
-// one goes there and back at once.
+// The radices for a convolution: eights first, and no 2 in the last stage if possible, since that
+// stage runs forward and inverse at once.
 std::vector<int> convolution_radices(int length) {
   std::vector<int> radices;
   for (; length % 8 == 0; length /= 8) radices.push_back(8);
@@ -35,7 +35,7 @@ std::vector<int> convolution_radices(int length) {
   return radices;
 }
 
-// About what the stages of a convolution take for each point, as measured, or 0 where it has a
+// Estimated cost per point of the stages of a convolution, from measurements; 0 if the length has a
 // prime above 5. A stage of 4 or 8 counts as two or three of 2.
 long cost_of_point(int length) {
   long cost = 0;
@@ -79,8 +79,8 @@ std::vector<double> stage_tables(int length, const std::vector<int>& radices) {
   return tables;
 }
 
-// The kernel of a convolution through the stages as the kernels do it: decimation in frequency in
-// place, exp(-i 2 pi jk/n).
+// The kernel of a convolution, transformed in the same stages as in the kernels of the solver:
+// decimation in frequency in place, exp(-i 2 pi jk/n).
 std::vector<double> transformed(std::vector<double> x, const std::vector<int>& radices) {
   const std::size_t length = x.size() / 2;
   std::size_t n = length;
@@ -118,12 +118,12 @@ std::vector<double> transformed(std::vector<double> x, const std::vector<int>& r
 }  // namespace
 
 TurnPoint turn_point(long numerator, long denominator) {
-  // 8 numerator = eighth * denominator + rest: the angle is that many eighths of a turn and rest/(8
-  // denominator) of one, which is taken from the nearer end of the eighth's quarter.
+  // 8 numerator = eighth * denominator + rest: the angle is `eighth` eighths of a turn and rest/(8
+  // denominator) of a turn, measured from the nearer end of the eighth's quarter.
   const long eighths = 8 * (numerator % denominator);
   const long eighth = eighths / denominator;
   const long rest = eighths % denominator;
-  const bool is_down = eighth % 2 == 1;  // taken from the eighth's end, backwards
+  const bool is_down = eighth % 2 == 1;  // measured backwards from the end of the eighth
   const double angle = static_cast<double>(is_down ? denominator - rest : rest) *
                        (std::numbers::pi / 4) / static_cast<double>(denominator);
   const double x = cos_of(angle);
@@ -171,7 +171,7 @@ void SinePlan::set_stages(int length, std::vector<int> radices) {
 void SinePlan::make_fold() {
   fold_.reserve(2 * static_cast<std::size_t>(length_));
   for (int j = 0; j < length_; ++j) {
-    // Mirrored to the last bit.
+    // Exactly symmetric, to the last bit.
     const bool is_beyond = 2 * j > length_;
     const TurnPoint point = turn_point(is_beyond ? length_ - j : j, 2L * length_);
     fold_.push_back(is_beyond ? -point.cosine : point.cosine);
@@ -179,7 +179,7 @@ void SinePlan::make_fold() {
   }
 }
 
-// Wave number k has the digits of k in reverse.
+// The index of wave number k has the digits of k in reverse order.
 void SinePlan::make_places() {
   places_.reserve(static_cast<std::size_t>(length_ + 1) / 2);
   for (int k = 0; 2 * k < length_; ++k) {
@@ -198,13 +198,14 @@ void SinePlan::make_places() {
 // Bluestein: jk = (j^2 + k^2 - (k-j)^2)/2, so that with c_j = exp(-i pi j^2/L)
 //   sum over j of x_j exp(-i 2 pi jk/L) = c_k (sum over j of (c_j x_j) conj(c_{k-j})).
 void SinePlan::make_chirp() {
-  // Inputs 0 ... L-1, outputs 0 ... L/2: a circular convolution from here on does not overlap.
+  // Inputs 0 ... L-1, outputs 0 ... L/2: from this length on a circular convolution does not
+  // overlap.
   const int whole = convolution_length(length_ + length_ / 2);
   set_stages(whole, convolution_radices(whole));
   const auto point_of = [&](long j) { return turn_point(j * j % (2L * length_), 2L * length_); };
   std::vector<double> kernel(2 * static_cast<std::size_t>(whole), 0.0);
   const auto set = [&](int place, const TurnPoint& point) {
-    // Over the length, for the way back.
+    // Divided by the length, for the inverse transform.
     kernel[2 * static_cast<std::size_t>(place)] = point.cosine / whole;
     kernel[2 * static_cast<std::size_t>(place) + 1] = point.sine / whole;
   };
@@ -219,11 +220,12 @@ void SinePlan::make_chirp() {
   kernel_ = transformed(std::move(kernel), radices_);
 }
 
-// Rader: docs/model.md, eq. (30) to (32), whose letters these are.
+// Rader: docs/model.md, eq. (30) to (32), with the same letters.
 void SinePlan::make_powers() {
   const int L = length_;
   const int h = (L - 1) / 2;
-  // With a single stage there would be none to take the points in and give them out.
+  // A single stage is too few: the first stage reads and writes the points, the last one
+  // multiplies.
   std::vector<int> radices = convolution_radices(h);
   const bool is_turned = radices.size() >= 2;
   const int whole = is_turned ? h : convolution_length(2 * h - 1);
@@ -233,7 +235,7 @@ void SinePlan::make_powers() {
   std::vector<double> kernel(2 * static_cast<std::size_t>(whole), 0.0);
   const auto set = [&](int place, long power, const TurnPoint& turn) {
     const long halved = power * ((L + 1) / 2) % L;
-    const double sine = turn_point(halved, L).sine / whole;  // over the length, for the way back
+    const double sine = turn_point(halved, L).sine / whole;  // over the length, for the inverse
     kernel[2 * static_cast<std::size_t>(place)] = sine * turn.cosine;
     kernel[2 * static_cast<std::size_t>(place) + 1] = -sine * turn.sine;
   };
@@ -250,7 +252,7 @@ void SinePlan::make_powers() {
     in_evens_.push_back(static_cast<int>(back % 2 == 0 ? back : L - back));
     in_turns_.push_back(in_sign * turn.cosine);
     in_turns_.push_back(in_sign * turn.sine);
-    // -(1 + i) exp(-i pi c/h): the convolution's result is i times what is conjugate to eq. (32)'s.
+    // -(1 + i) exp(-i pi c/h): the convolution's result is i times the conjugate of eq. (32)'s.
     const int out_sign = there % 2 == 0 ? 1 : -1;
     out_evens_.push_back(static_cast<int>(there % 2 == 0 ? there : L - there));
     out_turns_.push_back(-out_sign * (turn.cosine + turn.sine));
@@ -287,7 +289,7 @@ std::size_t SinePlan::size() const {
 }
 
 std::size_t SinePlan::most_size(int length) {
-  // Fold and chirp 2 L each, a convolution of up to 3 L points: stages and kernel twice that each.
+  // Fold and chirp 2 L each; a convolution of up to 3 L points: stages and kernel twice that each.
   return 16 * static_cast<std::size_t>(length) + 256;
 }
 

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// The tables of a sine transform of one length. Not for other rooms.
+/// The tables of a sine transform of one length. Internal to plate.
 class SinePlan {
  public:
   SinePlan() = default;
@@ -16,10 +16,10 @@ class SinePlan {
 
   int length() const { return length_; }
 
-  /// Valid as long as the plan is where it is.
+  /// Valid until the plan is moved or destroyed.
   SineView view() const;
 
-  /// Doubles that the tables take, and what those of a plan of some length take at most.
+  /// Number of doubles in the tables, and an upper bound for a plan of a given length.
   std::size_t size() const;
   static std::size_t most_size(int length);
 

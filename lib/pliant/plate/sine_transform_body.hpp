@@ -1,13 +1,13 @@
-// Vectors of PLIANT_LANES doubles and the sine transform of as many columns: the first part of the
-// kernels, included once by each file that compiles them. No #pragma once, no other header: see
-// spectral_kernels.hpp.
+// Vectors of PLIANT_LANES doubles, and the sine transform of PLIANT_LANES columns: the first part
+// of the kernels, included once by each file that compiles them. No #pragma once, no other header:
+// see spectral_kernels.hpp.
 
 namespace pliant {
 namespace {
 
 constexpr int lanes = PLIANT_LANES;
 
-// The compiler's own vectors: arithmetic by element. Those in memory need not be aligned.
+// The compiler's vector extension: element-wise arithmetic. In memory they need not be aligned.
 typedef double Lanes __attribute__((vector_size(8 * PLIANT_LANES)));
 typedef double LanesAt __attribute__((vector_size(8 * PLIANT_LANES), aligned(8), may_alias));
 
@@ -17,7 +17,7 @@ typedef double LanesAt __attribute__((vector_size(8 * PLIANT_LANES), aligned(8),
 PLIANT_INLINE Lanes load(const double* from) { return *reinterpret_cast<const LanesAt*>(from); }
 PLIANT_INLINE void store(double* to, Lanes x) { *reinterpret_cast<LanesAt*>(to) = x; }
 
-// One complex number a lane, in memory all real parts and then all imaginary ones.
+// One complex number per lane; in memory all real parts, then all imaginary parts.
 struct Complex {
   Lanes re, im;
 };
@@ -35,12 +35,13 @@ PLIANT_INLINE Complex operator-(const Complex& a, const Complex& b) {
   return {a.re - b.re, a.im - b.im};
 }
 PLIANT_INLINE Complex times_minus_i(const Complex& a) { return {a.im, -a.re}; }
-// a (cosine - i sine): forward transforms turn clockwise.
+// a (cosine - i sine): forward transforms rotate clockwise.
 PLIANT_INLINE Complex turned(const Complex& a, double cosine, double sine) {
   return {a.re * cosine + a.im * sine, a.im * cosine - a.re * sine};
 }
 
-// The transform of R points; `roots` has cos and sin of 2 pi j/R for j = 1 ... (R-1)/2 if R is odd.
+// The transform of R points; if R is odd, `roots` has cos and sin of 2 pi j/R for j = 1 ...
+// (R-1)/2.
 template <int R>
 PLIANT_INLINE void butterfly(Complex (&x)[R], const double* roots) {
   if constexpr (R == 2) {
@@ -128,7 +129,7 @@ PLIANT_INLINE void with_radix(int radix, const Work& work) {
   }
 }
 
-// The stages of a transform from one on: for blocks of n = radix m points.
+// The remaining stages of a transform, on blocks of n = radix m points.
 struct Stages {
   int count;
   const int* radices;
@@ -152,8 +153,8 @@ PLIANT_INLINE double* point(double* points, int k) {
   return points + static_cast<long>(k) * complex_size;
 }
 
-// One stage in place, decimation in frequency: after all of them what belongs to a wave number is
-// where its digits in reverse say. `take(k)` gives the input's points.
+// One stage in place, decimation in frequency: after all stages the value of a wave number is at
+// the index with its digits reversed. `take(k)` returns input point k.
 template <int R, class Take>
 void split(int m, const double* tables, double* points, Take take) {
   const double* const roots = tables;
@@ -166,7 +167,7 @@ void split(int m, const double* tables, double* points, Take take) {
     store_complex(point(points, p), x[0]);
 #pragma GCC unroll 16
     for (int j = 1; j < R; ++j) {
-      // For p = 0 nothing turns.
+      // For p = 0 there is no rotation.
       const Complex y = p == 0 ? x[j] : turned(x[j], tables[2 * (j - 1)], tables[2 * (j - 1) + 1]);
       store_complex(point(points, p + j * m), y);
     }
@@ -178,8 +179,8 @@ PLIANT_INLINE void split(const Stages& stages, double* points, const Take& take)
   with_radix(stages.radix(), [&]<int R>() { split<R>(stages.m(), stages.tables, points, take); });
 }
 
-// The same stage transposed, decimation in time: all of them, the last one first, take what is in
-// the order of reversed digits back to plain order. `give(k, x)` gets the output's points.
+// The same stage transposed, decimation in time: all stages, the last one first, restore plain
+// order from the order of reversed digits. `give(k, x)` receives output point k.
 template <int R, class Give>
 void merge(int m, const double* tables, double* points, Give give) {
   const double* const roots = tables;
@@ -203,7 +204,7 @@ PLIANT_INLINE void merge(const Stages& stages, double* points, const Give& give)
   with_radix(stages.radix(), [&]<int R>() { merge<R>(stages.m(), stages.tables, points, give); });
 }
 
-// The same for so many blocks one after another, and back.
+// The same for `blocks` blocks one after another, and the inverse.
 void split_in_place(const Stages& stages, int blocks, double* points) {
   with_radix(stages.radix(), [&]<int R>() {
     const int m = stages.m();
@@ -225,14 +226,14 @@ void merge_in_place(const Stages& stages, int blocks, double* points) {
   });
 }
 
-// Whether blocks are few enough to go through a stage together and still be near for the next one;
-// others go through all stages one by one.
+// Whether the blocks are small enough to pass one stage together and still be in cache for the
+// next; otherwise each passes all stages by itself.
 PLIANT_INLINE bool are_near(const Stages& stages, int blocks) {
   constexpr int near_points = 2048 / complex_size;  // 16 kB
   return blocks == 1 || blocks * stages.n <= near_points;
 }
 
-// What is left of a transform from these stages on, of so many blocks.
+// The remaining stages of a transform, for `blocks` blocks.
 void transform(const Stages& stages, int blocks, double* points) {
   if (stages.count == 0) return;
   if (are_near(stages, blocks)) {
@@ -244,7 +245,7 @@ void transform(const Stages& stages, int blocks, double* points) {
   }
 }
 
-// The last stage there, the product with the kernel's transform, and the first stage back.
+// The last forward stage, the product with the kernel's transform, and the first inverse stage.
 template <int R>
 void multiply(int blocks, const double* roots, const double* kernel, double* points) {
   for (int block = 0; block < blocks; ++block) {
@@ -255,7 +256,7 @@ void multiply(int blocks, const double* roots, const double* kernel, double* poi
 #pragma GCC unroll 16
     for (int j = 0; j < R; ++j) {
       const Complex y = turned(x[j], kernel[2 * j], -kernel[2 * j + 1]);
-      x[j] = {y.im, y.re};  // real and imaginary part exchanged: the way back
+      x[j] = {y.im, y.re};  // real and imaginary part exchanged: inverse transform
     }
     butterfly<R>(x, roots);
 #pragma GCC unroll 16
@@ -265,7 +266,8 @@ void multiply(int blocks, const double* roots, const double* kernel, double* poi
   }
 }
 
-// From these stages on there, the product, and back; the result has its parts exchanged.
+// These forward stages, the product, and the inverse stages; the result has its real and imaginary
+// parts exchanged.
 void convolve(const Stages& stages, int blocks, const double* kernel, double* points) {
   if (stages.count == 1) {
     return with_radix(stages.radix(),
@@ -281,8 +283,8 @@ void convolve(const Stages& stages, int blocks, const double* kernel, double* po
   }
 }
 
-// The circular convolution of what `take` gives with a kernel; `give` gets it with its parts
-// exchanged.
+// The circular convolution of the points from `take` with a kernel; `give` receives the result with
+// real and imaginary parts exchanged.
 template <class Take, class Give>
 PLIANT_INLINE void convolve(const SineView& view, double* work, const Take& take,
                             const Give& give) {
@@ -292,7 +294,7 @@ PLIANT_INLINE void convolve(const SineView& view, double* work, const Take& take
   merge(stages, work, give);
 }
 
-// The point k of a tile, from 1 on.
+// Point k of a tile, counted from 1.
 PLIANT_INLINE double* row(double* points, int k) {
   return points + static_cast<long>(k - 1) * lanes;
 }
@@ -301,7 +303,7 @@ PLIANT_INLINE Complex turned_by(const double* turns, int k, const Complex& x) {
   return turned(x, turns[2 * k], turns[2 * k + 1]);
 }
 
-// Eq. (29): what goes into the Fourier transform at point j, and what comes out at wave number k.
+// Eq. (29): the input of the Fourier transform at point j, and the output at wave number k.
 PLIANT_INLINE Complex folded(const double* fold, int length, double* points, int j) {
   if (j == 0) return Complex{};
   const Lanes x = load(row(points, j));

@@ -9,10 +9,10 @@
 namespace pliant {
 
 /// The solvers of plates that are solved one after another in each frame: one for each outline, so
-/// that a plate does not drive out what was kept for another. What is kept never changes a result.
+/// that a plate does not evict the data kept for another. The cache never changes a result.
 class SolverCache {
  public:
-  /// What decides which solver a plate has; two plates of the same outline share one.
+  /// The key of a solver; two plates of the same outline share one.
   struct Outline {
     int columns = 0;
     int rows = 0;
@@ -21,19 +21,19 @@ class SolverCache {
     friend bool operator==(const Outline&, const Outline&) = default;
   };
 
-  /// Of solvers as `make_plate_solver` makes them with these arguments.
+  /// For solvers made by `make_plate_solver` with these arguments.
   explicit SolverCache(SolverChoice choice = SolverChoice::Auto, MemoryBudget* budget = nullptr,
                        ThreadPool* threads = nullptr, int most_lanes = widest_lanes)
       : choice_(choice), budget_(budget), threads_(threads), most_lanes_(most_lanes) {}
 
-  /// Lets go of all solvers but those of `outlines`: ahead of a frame, so that there is room for
-  /// those that it needs anew.
+  /// Destroys all solvers except those of `outlines`. Called before a frame, to make room for the
+  /// new solvers it needs.
   void keep_only(std::span<const Outline> outlines);
 
-  /// The solver of an outline, a new one if need be.
+  /// The solver of an outline; creates it if necessary.
   PlateSolver& solver_of(const Outline& outline);
 
-  /// Of all solvers that ever were, added up.
+  /// The sum over all solvers, past and present.
   SolverCounts counts() const;
 
  private:
@@ -47,7 +47,7 @@ class SolverCache {
   ThreadPool* threads_;
   int most_lanes_;
   std::vector<Kept> kept_;
-  SolverCounts gone_;  // what those did that are no longer kept
+  SolverCounts gone_;  // counts of the solvers that were destroyed
 };
 
 }  // namespace pliant

@@ -6,24 +6,24 @@
 
 namespace pliant {
 
-/// Who steps the plates of a run. The choice may change the last digits of a result.
+/// The solver for the plates of a run. The choice may change the last digits of a result.
 enum class SolverChoice {
   Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
-  Spectral,  ///< sine transforms for all rectangles; other outlines as `Auto` does
+  Spectral,  ///< sine transforms for all rectangles; other outlines as with `Auto`
   Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
   Eigen,
 };
 
-/// The choice of that name: auto, spectral, cholmod, eigen. None for others.
+/// The choice of that name: auto, spectral, cholmod, eigen. nullopt for other names.
 std::optional<SolverChoice> solver_choice(std::string_view name);
 
-/// Whether this build has it.
+/// Whether this build supports it.
 bool is_available(SolverChoice choice);
 
-/// As wide as the machine's vectors are.
+/// As wide as the vectors of the machine.
 inline constexpr int widest_lanes = std::numeric_limits<int>::max();
 
-/// What a solver had to do so far; tells whether work was reused.
+/// The work that a solver has done so far; shows whether work was reused.
 struct SolverCounts {
   long analyses = 0;        ///< orderings and symbolic factorisations
   long factorizations = 0;  ///< numeric factorisations

@@ -9,18 +9,18 @@
 
 namespace pliant {
 
-// What each implementation gives to `make_solver`; not for other rooms.
+// The implementations behind `make_solver`. Internal to plate.
 
 std::unique_ptr<LinearSolver> make_cholmod_solver(MemoryBudget* budget);
 std::unique_ptr<LinearSolver> make_eigen_solver(MemoryBudget* budget);
 std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget);
 
-// And to `make_plate_solver`.
+// The implementations behind `make_plate_solver`.
 
 std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads,
                                                         int most_lanes);
-/// Of outlines that `cover_by_rectangles` covers. Where a system takes more rounds, its matrix is
-/// factored.
+/// For outlines that `cover_by_rectangles` covers. If a system needs more than `max_rounds`, its
+/// matrix is factored.
 std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, ThreadPool* threads,
                                                        int most_lanes = widest_lanes,
                                                        int max_rounds = 60);
@@ -28,14 +28,14 @@ std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, Thr
 /// The error that all implementations report for a matrix they cannot factor.
 Error not_positive_definite(long size, long pivot);
 
-/// The error that all implementations report when the factor is more than the budget has.
+/// The error that all implementations report if the factor does not fit in the budget.
 Error factor_too_large(long size, const std::string& complaint);
 
-/// The error of a solver that factors no matrix when its working memory is more than the budget
-/// has, or than there is.
+/// The error of a solver that factors no matrix if its working memory does not fit in the budget or
+/// in memory.
 Error no_memory_to_solve(long size, const std::string& complaint);
 
-/// The error that all implementations report when the factor does not fit in memory all the same.
+/// The error that all implementations report if the factor fits in the budget but not in memory.
 Error no_memory_for_factor(long size);
 
 }  // namespace pliant

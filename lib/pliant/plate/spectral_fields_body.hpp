@@ -1,11 +1,11 @@
-// How the columns of a field come to the sine transform and its coefficients away from it, the
+// Transfer of the columns of a field into the sine transform and of its coefficients out of it: the
 // second part of the kernels, after sine_transform_body.hpp.
 // No #pragma once, no other header: see spectral_kernels.hpp.
 
 namespace pliant {
 namespace {
 
-// Rows become columns: in each round, neighbours at a power of two exchange halves.
+// Transposes: in each round, neighbours at a distance of a power of two exchange halves.
 template <int Apart>
 PLIANT_INLINE void exchange(Lanes& a, Lanes& b) {
   const Lanes x = a, y = b;
@@ -60,15 +60,15 @@ PLIANT_INLINE void store_some(double* to, Lanes x, int count) {
 
 PLIANT_INLINE int least(int a, int b) { return a < b ? a : b; }
 
-// Columns that lie side by side in memory are brought in and out by groups of several tiles, since
-// a row of one tile alone is one line of the cache out of a page.
+// Columns that are side by side in memory are read and written in groups of several tiles, since a
+// row of one tile alone is only one cache line of a page.
 
 // The tiles of a group, each points x lanes, after the room for the transform itself.
 PLIANT_INLINE double* tiles_in(const SineView& view, double* work) {
   return work + sine_work(view) * lanes;
 }
 
-// Where the nodes along lie one after another, `count` columns from `from` on, into tiles.
+// If the nodes along are contiguous: `count` columns, starting at `from`, into tiles.
 void fetch_columns(const double* from, long stride, int points, int count, double* tiles) {
   const long tile = static_cast<long>(points) * lanes;
   for (int j = 0; j < points; ++j) {
@@ -89,7 +89,7 @@ void put_columns(const double* tiles, long stride, int points, int count, double
   }
 }
 
-// Where the points of a transform lie one after another, `count` <= lanes rows, into one tile.
+// If the points of a transform are contiguous: `count` <= lanes rows into one tile.
 void fetch_rows(const double* from, long stride, int points, int count, double* tile) {
   for (int j = 0; j < points; j += lanes) {
     const int wide = least(lanes, points - j);
@@ -114,7 +114,8 @@ void put_rows(const double* tile, long stride, int points, int count, double* to
   }
 }
 
-// Modes of one parity, from a tile of all modes (odd ones at even places) to rows between.
+// Copies the modes of one parity from a tile of all modes (odd ones at even indices) to the rows
+// between the two transforms.
 void put_modes(const TransformView& view, const double* tile, int parity, int count, double* to) {
   const int modes = parity == 0 ? odd_modes(view.across.length) : even_modes(view.across.length);
   double* const begin = to + parity * view.even_column;
@@ -194,7 +195,8 @@ void out_across(const TransformView& view, const double* between, int first, int
   }
 }
 
-// The coefficients of mode k along (from 0) at a column between.
+// The coefficients of mode k along (counted from 0) at a column of the rows between the two
+// transforms.
 PLIANT_INLINE double* coefficients_at(const TransformView& view,
                                       const CoefficientsView& coefficients, int k, int column) {
   const int parity = column >= view.even_column;

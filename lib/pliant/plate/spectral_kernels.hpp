@@ -2,11 +2,11 @@
 
 namespace pliant {
 
-// What the spectral solver does with every node, compiled several times: for the vectors that every
-// machine of the architecture has, and for wider ones. Each number goes through the same operations
-// in the same order whatever the width, without fused multiply-add, so all give the same bits. The
-// kernels include no other header: an inline function compiled here for a newer CPU could replace
-// the one that the rest of the program uses. Not for other rooms.
+// The per-node work of the spectral solver, compiled several times: for the vectors that every
+// machine of the architecture has, and for wider ones. Each number passes through the same
+// operations in the same order for every width, without fused multiply-add, so all are
+// bit-identical. The kernels include no other header: an inline function compiled here for a newer
+// CPU could replace the one that the rest of the program uses. Internal to plate.
 
 /// A Fourier transform of a length that is a product of small primes.
 struct FourierView {
@@ -21,50 +21,51 @@ struct FourierView {
 /// Pairs of the points k and L-k of a sine transform of odd prime length L.
 struct PairsView {
   const int* evens = nullptr;     ///< the even one of each pair
-  const double* turns = nullptr;  ///< for each pair cos and sin, scaled, of what it is turned by
+  const double* turns = nullptr;  ///< for each pair, scaled cos and sin of its rotation
 };
 
 /// The sine transform S_k = sum over j of x_j sin(pi j k/L), j and k from 1 to L-1. docs/model.md.
-/// There are three ways: where L is a product of small primes by the stages of one Fourier
-/// transform; where it is another prime by a convolution over the powers of a primitive root; else
-/// by a convolution with a chirp.
+/// There are three methods: if L is a product of small primes, the stages of one Fourier transform;
+/// if it is another prime, a convolution over the powers of a primitive root; otherwise a
+/// convolution with a chirp.
 struct SineView {
   int length = 2;                  ///< L >= 2
   FourierView fourier;             ///< of L points, or of the convolution
-  const double* fold = nullptr;    ///< but with powers: cos and sin of pi j/L for j < L
-  const int* places = nullptr;     ///< by stages: where they leave wave number k, for k < L/2
+  const double* fold = nullptr;    ///< except with powers: cos and sin of pi j/L for j < L
+  const int* places = nullptr;     ///< with stages: index of wave number k after them, for k < L/2
   const double* chirp = nullptr;   ///< with a chirp: cos and sin of pi j^2/L, j < L
   PairsView in, out;               ///< with powers: (L-1)/2 pairs each, in the order of the powers
-  const double* kernel = nullptr;  ///< of a convolution: transformed, as the stages leave it
+  const double* kernel = nullptr;  ///< of a convolution: transformed, in the order of the stages
 };
 
-/// Numbers that a sine transform needs room for, per lane: the points, and the work.
+/// Doubles that a sine transform needs per lane, for its points and its workspace.
 constexpr long sine_points(const SineView& view) { return view.length - 1; }
 constexpr long sine_work(const SineView& view) { return 2L * view.fourier.length; }
 
-/// Columns that the transforms of a field bring in together. Room for them comes after the work.
+/// Columns that the transforms of a field read together. Their space follows the workspace.
 constexpr int group_columns = 32;
 
-/// The modes of one direction are kept by parity: 1, 3, 5 ... and then 2, 4, 6 ...
+/// The modes of one direction are stored by parity: 1, 3, 5 ... and then 2, 4, 6 ...
 constexpr int odd_modes(int length) { return length / 2; }
 constexpr int even_modes(int length) { return (length - 1) / 2; }
 
-/// Rows are filled up with zeros to whole vectors.
+/// Rows are padded with zeros to whole vectors.
 constexpr int row_unit = 8;
 
-/// How a field on the nodes becomes four fields of sine coefficients, one for each pair of
-/// parities. The shorter direction goes first; afterwards its modes lie next to each other.
+/// How a field on the nodes is transformed into four fields of sine coefficients, one for each pair
+/// of parities. The shorter direction is transformed first; afterwards its modes are contiguous.
+/// "Between" means after the first transform and before the second.
 struct TransformView {
   SineView across;         ///< the shorter direction
   SineView along;          ///< the longer one
   long across_stride = 0;  ///< from node to node of the field
   long along_stride = 0;
-  int between_pitch = 0;  ///< of the rows of (length along - 1) x between_pitch numbers between
-  int even_column = 0;    ///< of the row between: where the even modes begin
-  int pitch[2] = {0, 0};  ///< of the rows of coefficients with odd, even modes across
-  const double* across_in = nullptr;  ///< factor of each mode on the way in, by mode - 1
+  int between_pitch = 0;              ///< of the (length along - 1) x between_pitch numbers between
+  int even_column = 0;                ///< of a row between: where the even modes begin
+  int pitch[2] = {0, 0};              ///< of the rows of coefficients with odd, even modes across
+  const double* across_in = nullptr;  ///< factor of each mode in the forward transform, by mode - 1
   const double* along_in = nullptr;
-  const double* across_out = nullptr;  ///< and on the way out
+  const double* across_out = nullptr;  ///< and in the inverse transform
   const double* along_out = nullptr;
 };
 
@@ -73,28 +74,28 @@ struct CoefficientsView {
   double* of[4] = {nullptr, nullptr, nullptr, nullptr};
 };
 
-/// One pair of parities: a diagonal matrix and what couples its rows and columns. docs/model.md.
+/// One pair of parities: a diagonal matrix and the coupling of its rows and columns. docs/model.md.
 struct ParityView {
   int rows = 0;     ///< modes along
-  int columns = 0;  ///< modes across, filled up
+  int columns = 0;  ///< modes across, padded
   int pitch = 0;
   const double* reciprocal = nullptr;      ///< rows x pitch: 1/D
   const double* row_weight = nullptr;      ///< p_k^2
-  const double* column_weight = nullptr;   ///< q_l^2, 0 where filled up
+  const double* column_weight = nullptr;   ///< q_l^2, 0 in the padding
   const double* row_pivot = nullptr;       ///< 1/(1/delta + sum over l of q_l^2/D_kl)
-  const double* column_scale = nullptr;    ///< q_l, 0 where filled up
-  const double* column_unscale = nullptr;  ///< 1/q_l, 0 where filled up
+  const double* column_scale = nullptr;    ///< q_l, 0 in the padding
+  const double* column_unscale = nullptr;  ///< 1/q_l, 0 in the padding
   const double* inverse = nullptr;         ///< columns x inverse_pitch: of C
   int inverse_pitch = 0;
 };
 
-/// What one component of the state has in one pair of parities, each scaled by 1/(p_k q_l).
+/// One component of the state in one pair of parities, each number scaled by 1/(p_k q_l).
 struct ComponentView {
   double* displacement = nullptr;  ///< rows x pitch
-  double* pending = nullptr;       ///< (load + shift w + inertia v)/D of the step to come
+  double* pending = nullptr;       ///< (load + shift w + inertia v)/D of the next step
   double* load = nullptr;          ///< load/D
   double* row_sums = nullptr;      ///< of `pending`, weighted by q_l^2
-  double* column_sums = nullptr;   ///< of `pending`, with what the rows leave
+  double* column_sums = nullptr;   ///< of `pending`, after the rows are eliminated
   double* edge = nullptr;          ///< 2 x columns: xi, and xi weighted by q_l^2
 };
 
@@ -118,7 +119,7 @@ struct SpectralKernels {
   /// Transforms `lanes` columns at once: `points` is (length - 1) x lanes, `work` as `sine_work`.
   void (*sine_transform)(const SineView& view, double* points, double* work);
 
-  /// One chunk of the transforms across: lanes [first, last) of the nodes along.
+  /// One chunk of the transforms across: those at nodes [first, last) along.
   void (*in_across)(const TransformView& view, const double* field, int first, int last,
                     double* between, double* work);
   /// One chunk of the transforms along: columns [first, last) between.
@@ -129,25 +130,26 @@ struct SpectralKernels {
   void (*out_across)(const TransformView& view, const double* between, int first, int last,
                      double* field, double* work);
 
-  /// `load`, w and v (in `pending`) as transformed become load/D and the first step's pending.
+  /// Turns the transformed `load`, w and v (v in `pending`) into load/D and the first step's
+  /// pending.
   void (*start)(const ParityView& parity, const ComponentView& component, double shift,
                 double inertia);
-  /// Solves for the edge and takes one step of one component.
+  /// Solves for the edge and computes one step of one component.
   void (*step)(const ParityView& parity, const ComponentView& component, StepFactors factors);
-  /// The last step, which leaves the velocity, (w' - w) times `rate`, in `pending`.
+  /// The last step; leaves the velocity, (w' - w) times `rate`, in `pending`.
   void (*last_step)(const ParityView& parity, const ComponentView& component, double rate);
 
-  /// Makes `row_pivot`, and C's inverse in `inverse`. `panels` has room for what
-  /// `panel_size` says. Gives the first column whose pivot is not positive, or -1.
+  /// Computes `row_pivot`, and C's inverse in `inverse`. `panels` has `panel_size` doubles. Returns
+  /// the first column whose pivot is not positive, or -1.
   int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
                      double* inverse, double* panels);
 };
 
-/// The kernels that this machine can run, the widest first, the last one everywhere; nullptr from
-/// where there are no more. Requires: k >= 0.
+/// The kernels that this machine can run, the widest first; the last one runs everywhere. nullptr
+/// for k beyond the last one. Requires: k >= 0.
 const SpectralKernels* runnable_kernels(int k);
 
-/// The widest of them with at most so many lanes; the last one where none is as narrow.
+/// The widest of them with at most `most_lanes` lanes; the narrowest if none has so few.
 const SpectralKernels& kernels_of_width(int most_lanes);
 
 extern const SpectralKernels baseline_kernels;

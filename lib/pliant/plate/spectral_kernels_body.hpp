@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-// Eight numbers, in as many vectors as that takes: sums over rows go by eights whatever the width.
+// Eight numbers, in one or more vectors: sums over rows use groups of eight for every width.
 constexpr int parts = 8 / lanes;
 struct Eight {
   Lanes part[parts];
@@ -47,10 +47,10 @@ PLIANT_INLINE double sum_of(const Eight& x) {
   return ((n[0] + n[4]) + (n[2] + n[6])) + ((n[1] + n[5]) + (n[3] + n[7]));
 }
 
-// Rows at once: they share what belongs to the columns. As many as there are registers for.
+// Rows processed together share the values of the columns. As many as there are registers for.
 constexpr int rows_at_once = lanes == 8 ? 4 : lanes == 4 ? 2 : 1;
 
-// The sums over `Rows` rows of `pending` from row k on, and what they leave to the columns.
+// The sums over `Rows` rows of `pending` from row k on, and the remaining sums of the columns.
 template <int Rows>
 PLIANT_INLINE void gather(const ParityView& parity, const ComponentView& component, int k,
                           const Eight (&sums)[Rows]) {
@@ -110,7 +110,7 @@ void start(const ParityView& parity, const ComponentView& component, double shif
   for (; k < parity.rows; ++k) start_rows<1>(parity, component, shift, inertia, k);
 }
 
-// Eq. (26): y = C^-1 q sums; xi = y/q. Leaves the sums 0.
+// Eq. (26): y = C^-1 q sums; xi = y/q. Resets the sums to 0.
 void solve_edge(const ParityView& parity, const ComponentView& component) {
   const int n = parity.columns;
   double* const x = component.column_sums;
@@ -136,7 +136,7 @@ void solve_edge(const ParityView& parity, const ComponentView& component) {
   clear(x, n);
 }
 
-// Upsilon of the rows, from the edge and the sums that the rows had.
+// Upsilon of the rows, from the edge and the row sums.
 template <int Rows>
 PLIANT_INLINE void solve_rows(const ParityView& parity, const ComponentView& component, int k,
                               double (&upsilon)[Rows]) {
@@ -207,7 +207,7 @@ void last_step(const ParityView& parity, const ComponentView& component, double 
   }
 }
 
-// C -= P_i^T P_j for `Rows` of the eight columns of panel i and the Wide panels from j on.
+// C -= P_i^T P_j for `Rows` of the eight columns of panel i and for `Wide` panels from j on.
 template <int Rows, int Wide>
 PLIANT_INLINE void subtract_tile(const double* panel_i, const double* panel_j, long panel_size,
                                  int depth, double* c, int pitch) {
@@ -234,8 +234,8 @@ PLIANT_INLINE void subtract_tile(const double* panel_i, const double* panel_j, l
   }
 }
 
-// C -= P^T P in the upper triangle of C, whose order is a multiple of 8. P (depth x order) lies in
-// panels of eight columns. Every element is summed from the first row of P to the last.
+// C -= P^T P in the upper triangle of C, whose order is a multiple of 8. P (depth x order) is
+// stored in panels of eight columns. Every element is summed from the first row of P to the last.
 void subtract_gram(const double* panels, int depth, int order, double* c, int pitch) {
   constexpr int rows = lanes == 8 ? 8 : lanes == 4 ? 4 : 2;
   const long panel_size = 8L * depth;
@@ -255,8 +255,8 @@ void subtract_gram(const double* panels, int depth, int order, double* c, int pi
   }
 }
 
-// U^T U = C for the upper triangle of C, in place, in blocks of rows; 1/U_ii on the diagonal. Gives
-// the first row whose pivot is not positive, or -1.
+// U^T U = C for the upper triangle of C, in place, in blocks of rows; 1/U_ii on the diagonal.
+// Returns the first row whose pivot is not positive, or -1.
 int factor_upper(double* c, int order, int pitch, double* panels) {
   constexpr int block = 64;
   for (int begin = 0; begin < order; begin += block) {
@@ -294,8 +294,8 @@ PLIANT_INLINE void subtract_square(const double* panel_i, const double* panel_j,
   }
 }
 
-// The inverse of U^T U in place of U, all of it. First P with U^T P = I, lower triangular, in
-// panels of eight columns, from each panel's own rows on; then P^T P.
+// Replaces U by the full inverse of U^T U. First computes P with U^T P = I, lower triangular, in
+// panels of eight columns, each from its own first row on; then P^T P.
 void invert_upper(double* c, int order, int pitch, double* panels) {
   const long panel_size = 8L * order;
   double* const left = panels + order * static_cast<long>(order);  // eight columns of U

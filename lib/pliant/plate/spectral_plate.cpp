@@ -15,7 +15,7 @@ namespace {
 
 int filled_up(int count) { return (count + row_unit - 1) / row_unit * row_unit; }
 
-// Rows that lie a multiple of 4096 bytes apart share their places in the cache.
+// Rows at a distance of a multiple of 4096 bytes compete for the same cache sets.
 int pitch_of(int columns) { return columns % 512 == 0 ? columns + row_unit : columns; }
 
 int modes_of(int parity, int length) {
@@ -24,15 +24,15 @@ int modes_of(int parity, int length) {
 
 }  // namespace
 
-// Hands out parts of one block, each on a cache line of its own; without a block it only counts.
+// Allocates parts of one block, each on its own cache line; with a null block it only counts.
 class SpectralPlate::Carver {
  public:
   explicit Carver(double* block) : block_(block) {}
 
   double* take(std::size_t count) {
     const std::size_t begin = used_;
-    // An odd number of lines on top of whole pages, so that arrays that are read together do not
-    // share their places in the cache.
+    // Adds an odd number of lines to whole pages, so that arrays that are read together do not
+    // compete for the same cache sets.
     constexpr std::size_t unit = NumberBlock::line / sizeof(double);
     used_ += (count + unit - 1) / unit * unit;
     if (count >= 512) used_ += (512 - used_ % 512) % 512 + unit * (1 + 2 * (arrays_++ % 29));
@@ -51,7 +51,7 @@ SpectralPlate::SpectralPlate(MemoryBudget* budget, ThreadPool* threads,
                              const SpectralKernels& kernels)
     : kernels_(kernels), threads_(threads), memory_(budget) {}
 
-// Tasks that write different numbers. None of it is worth a thread on a small plate.
+// Runs tasks that write different numbers. On a small plate they are not worth a thread.
 template <class Work>
 void SpectralPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
@@ -125,7 +125,7 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
   const int across = std::min(columns, rows) - 1;
   const int along = std::max(columns, rows) - 1;
   const std::size_t tables = SinePlan::most_size(across) + SinePlan::most_size(along);
-  // Tables first: what the rest takes depends on them, and they are small.
+  // Tables first: the size of the rest depends on them, and they are small.
   if (const std::size_t bytes = (tables + numbers_.count()) * sizeof(double);
       !memory_.try_resize(bytes)) {
     return fail(no_memory_to_solve(size, memory_.complaint(bytes)));
@@ -142,12 +142,12 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
     const std::size_t bytes = (tables + count.used()) * sizeof(double);
     if (!memory_.try_resize(bytes)) {
       const Error error = no_memory_to_solve(size, memory_.complaint(bytes));
-      (void)memory_.try_resize(tables * sizeof(double));  // less is always there
+      (void)memory_.try_resize(tables * sizeof(double));  // less memory is always available
       return fail(error);
     }
     numbers_ = NumberBlock(count.used());
   }
-  // What fills rows up stays 0 from here on.
+  // The padding of rows remains 0 from here on.
   std::fill_n(numbers_.begin(), count.used(), 0.0);
   Carver carver(numbers_.begin());
   carve(carver);
@@ -213,7 +213,8 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   return fail(no_memory_to_solve(unknown_count(system.grid), "does not fit in memory"));
 }
 
-// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Whether all are positive.
+// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Returns whether all are
+// positive.
 bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const Parity& parity = parities_[k];
   const Grid& grid = system.grid;
@@ -223,9 +224,9 @@ bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const double h_across = is_along_u_ ? grid.hv : grid.hu;
   const double b = is_along_u_ ? stiffness.b : stiffness.d;
   const double d = is_along_u_ ? stiffness.d : stiffness.b;
-  // Below 0 the mixed term takes away from the squares. With s and t the roots of the squares
+  // With c < 0 the mixed term is subtracted from the squares. With s and t the roots of the squares
   //   s^2 + t^2 + (c/sqrt(bd)) s t = (s - t)^2 + (c + 2 sqrt(bd))/sqrt(bd) s t,
-  // where nothing is lost.
+  // which has no cancellation.
   const bool takes_away = stiffness.c < 0;
   const double root = -stiffness.least_c() / 2;
   const double mixed = (takes_away ? stiffness.c - stiffness.least_c() : stiffness.c) / root;
@@ -320,7 +321,7 @@ void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& fiel
   });
 }
 
-// Forces along one axis leave two components of a displacement at 0, where nothing is to be done.
+// Forces along one axis leave two components of a displacement at 0; those need no work.
 void SpectralPlate::find_still(const ConstNodesView& load, const ConstNodesView& displacement,
                                const ConstNodesView& velocity) {
   for (int component = 0; component < 3; ++component) {
@@ -347,7 +348,7 @@ void SpectralPlate::clear(const NodesView& field, int component) const {
   }
 }
 
-// What can be stepped by itself: one component of one pair of parities, if there is anything in it.
+// Independent parts of a step: one component of one pair of parities, unless it is 0.
 SpectralPlate::Parts SpectralPlate::moving_parts() const {
   Parts parts;
   for (int k = 0; k < 4; ++k) {
@@ -359,8 +360,8 @@ SpectralPlate::Parts SpectralPlate::moving_parts() const {
   return parts;
 }
 
-// How many parts the transforms of a field are done in. Columns do not know each other, so that no
-// bit depends on it.
+// The number of parts in which a field is transformed. Columns are independent, so no bit depends
+// on it.
 std::size_t SpectralPlate::chunk_count() const {
   return threads_ ? static_cast<std::size_t>(threads_->thread_count()) : 1;
 }
@@ -424,7 +425,7 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
     kernels_.start(parity, component, shift, inertia);
     for (int step = 1; step <= steps.count; ++step) {
       if (is_stopped) return;
-      // The parts ask in turn, so that each step is asked for once.
+      // The parts call `should_stop` in turn, so that it is called once per step.
       const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
       if (asks && should_stop && should_stop()) {
         is_stopped = true;

@@ -17,8 +17,8 @@
 
 namespace pliant {
 
-/// A field on the nodes of a rectangle, or on its interior nodes: where the first interior node of
-/// the first component lies, and how far the next ones are.
+/// A field on the nodes of a rectangle, or on its interior nodes: a pointer to the first interior
+/// node of the first component, and the strides to the next ones.
 struct NodesView {
   double* first = nullptr;
   long row_stride = 0;
@@ -31,25 +31,25 @@ struct ConstNodesView {
 };
 
 /// A clamped plate in sine space, where its operator is a diagonal and four small dense matrices.
-/// Holds the tables and the factors for one system and the state of three components. Solves in
-/// O(nodes log side), steps in O(nodes). docs/model.md, "In sine space". Not for other rooms.
+/// Stores the tables and the factors for one system and the state of three components. Solves in
+/// O(nodes log side), steps in O(nodes). docs/model.md, "In sine space". Internal to plate.
 class SpectralPlate {
  public:
-  /// Memory out of `budget` and work on `threads`, which both outlive it; none: no limit, one
-  /// thread. The bits do not depend on either, nor on `kernels`.
+  /// Reserves memory from `budget` and works on `threads`, which must both outlive it; null: no
+  /// limit, one thread. The bits depend on neither, nor on `kernels`.
   explicit SpectralPlate(MemoryBudget* budget, ThreadPool* threads = nullptr,
                          const SpectralKernels& kernels = *runnable_kernels(0));
 
-  /// Makes ready for a system. What is kept from the last one never changes a result's bits.
-  /// Errors: SolverFailed where the matrix is not positive definite or not finite; OutOfMemory.
+  /// Prepares for a system. Reuse of the last one never changes a result's bits. Errors:
+  /// SolverFailed if the matrix is not positive definite or not finite; OutOfMemory.
   Result<void> prepare(const PlateSystem& system);
 
   /// Solves for three right-hand sides on the interior nodes. Requires: prepared.
   void solve(const ConstNodesView& load, const NodesView& solution);
 
-  /// Steps of backward Euler on the interior nodes with the shift that was prepared for, the load
-  /// without the rim's part. Requires: prepared; inertia = rho/dt. False where `should_stop` says
-  /// so; displacement and velocity are then as they were.
+  /// Steps of backward Euler on the interior nodes with the prepared shift; the load excludes the
+  /// rim's part. Requires: prepared; inertia = rho/dt. Returns false if `should_stop` returns true;
+  /// displacement and velocity are then unchanged.
   bool advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
                const NodesView& displacement, const NodesView& velocity,
                const StopRequest& should_stop);
@@ -58,30 +58,30 @@ class SpectralPlate {
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
-  // One pair of parities: what is kept of it. Rows are the modes along, columns those across.
+  // Storage of one pair of parities. Rows are the modes along, columns those across.
   struct Parity {
     int rows = 0;
-    int columns = 0;  // filled up
+    int columns = 0;  // padded
     int pitch = 0;
     int inverse_pitch = 0;
     double* reciprocal = nullptr;
     double* row_pivot = nullptr;
     double* inverse = nullptr;
-    double* panels = nullptr;  // room to factor in
+    double* panels = nullptr;  // workspace of the factorisation
     double* load[3] = {};
     double* displacement[3] = {};
     double* pending[3] = {};
     double* sums[3] = {};  // of rows, of columns, and the edge
   };
 
-  // Of the modes of one direction.
+  // The modes of one direction.
   struct Modes {
     double* eigenvalue[2] = {};  // of -(1 -2 1), by parity
     double* scale[2] = {};       // p_k, by parity
     double* unscale[2] = {};     // 1/p_k, by parity
     double* weight[2] = {};      // p_k^2, by parity
-    double* in = nullptr;        // factor on the way to the coefficients, by mode
-    double* out = nullptr;       // and back
+    double* in = nullptr;        // factor in the forward transform, by mode
+    double* out = nullptr;       // and in the inverse transform
   };
 
   class Carver;
@@ -122,7 +122,7 @@ class SpectralPlate {
   SolverCounts counts_;
   std::optional<PlateSystem> prepared_;
 
-  int columns_ = 0;  // of the grid that is laid out
+  int columns_ = 0;  // of the grid of the current layout
   int rows_ = 0;
   bool is_along_u_ = true;  // the longer direction is u
   SinePlan plans_[2];       // across, along
@@ -131,7 +131,7 @@ class SpectralPlate {
   Modes modes_[2];  // across, along
   Parity parities_[4];
   double* between_[3] = {};
-  bool is_still_[3] = {};  // components where all is 0, and stays so
+  bool is_still_[3] = {};  // components where all is 0, and remains 0
   double* work_ = nullptr;
   std::size_t work_size_ = 0;  // of one task
 };

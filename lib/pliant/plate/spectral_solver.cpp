@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-// Solves one right-hand side after the other: into sine space and back for each.
+// Solves one right-hand side after the other, each with its own transform to sine space and back.
 class SpectralLinearSolver final : public LinearSolver {
  public:
   explicit SpectralLinearSolver(MemoryBudget* budget) : plate_(budget) {}

@@ -24,7 +24,7 @@ Field apply_stencil(const Grid& grid, const Stiffness& stiffness, const EdgeTang
   for (int component = 0; component < 3; ++component) {
     const double* const x = w.col(component).data();
     double* const y = result.col(component).data();
-    // Eq. (6): a ghost is the node mirrored at the rim, moved by the slope over two spacings.
+    // Eq. (6): a ghost is the node mirrored at the rim, plus the slope times two spacings.
     const double ghost_u0 = -2 * hu * tangents.su0[component];
     const double ghost_u1 = 2 * hu * tangents.su1[component];
     const double ghost_v0 = -2 * hv * tangents.sv0[component];

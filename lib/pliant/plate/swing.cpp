@@ -17,8 +17,8 @@ namespace {
 using Complex = std::complex<double>;
 
 // The roots s of rho s^2 + eta s + lambda = 0, the slower one first; without inertia the second is
-// minus infinity. Eq. (38). The larger one of two real roots comes from their product: nothing
-// cancels.
+// minus infinity. Eq. (38). The larger one of two real roots is computed from their product to
+// avoid cancellation.
 struct Roots {
   Complex slow;
   Complex fast;
@@ -36,7 +36,7 @@ Roots roots_of(double lambda, const Dynamics& dynamics) {
   return {lambda / (rho * fast), fast};
 }
 
-// What a root is from frame to frame: eq. (39) [1/s].
+// The rate of a root as seen from frame to frame: eq. (39) [1/s].
 Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
   if (std::isinf(root.real())) return -infinite;
   return -static_cast<double>(steps.count) * std::log(1.0 - root * steps.length) / frame_length;
@@ -49,8 +49,8 @@ Swing swing_of(const Complex& slow, const Complex& fast) {
   return {std::abs(slow.imag()) / (2 * std::numbers::pi), -(slow + fast).real() / (2 * omega)};
 }
 
-// e of eq. (41): how far a mode is from where it will be, from frame to frame, the load's
-// displacement being 1: (q, q of a step ago).
+// e of eq. (41): the deviation of a mode from its final value, frame by frame, relative to the
+// displacement under the load: (q, q one step earlier).
 class Deviation {
  public:
   Deviation(double lambda, const Dynamics& dynamics, const TimeSteps& steps) {
@@ -80,7 +80,7 @@ class Deviation {
   }
 
   Matrix frame_ = {1, 0, 0, 1};
-  double now_ = 1, before_ = 1;  // at rest, away from where the load will hold it
+  double now_ = 1, before_ = 1;  // at rest, away from its final value
 };
 
 }  // namespace
@@ -109,8 +109,8 @@ Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamic
         -seen(roots_of(mode.lambda, dynamics).slow, steps, frame_length).real() * frame_length;
     if (std::abs(mode.share) > 1e-6) slowest = std::min(slowest, rate);
   }
-  // Envelopes: by twice the time that the slowest takes, all have come down, also near a double
-  // root, where one lasts a little longer than its rate says.
+  // Envelopes: after twice the time that the slowest one needs, all have decayed, even near a
+  // double root, where a mode lasts a little longer than its rate suggests.
   const double envelope = std::log(std::max(1.0, shares) / part) / slowest;
   constexpr double most_frames = 100'000;
   if (2 * envelope + 10 > most_frames) {

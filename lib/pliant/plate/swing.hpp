@@ -9,35 +9,35 @@ namespace pliant {
 
 struct ExcitedMode;
 
-// How a plate swings and comes to rest, in nature and under backward Euler, whose steps take energy
-// away. docs/model.md, eq. (38) to (42).
+// How a plate swings and comes to rest, in continuous time and under backward Euler, whose steps
+// remove energy. docs/model.md, eq. (38) to (42).
 
-/// A vibration as it is seen.
+/// A vibration as an observer sees it.
 struct Swing {
-  double frequency = 0;      ///< [Hz]; 0: it creeps back without swinging
+  double frequency = 0;      ///< [Hz]; 0: it returns to rest without swinging
   double damping_ratio = 0;  ///< [1], below 1 it swings; infinite without inertia
 };
 
-/// The vibration of eigenvalue `lambda` [1/uv^4] in nature, undamped in frequency: rho q'' + eta q'
-/// + lambda q = 0. Requires: lambda > 0.
+/// The vibration of eigenvalue `lambda` [1/uv^4] in continuous time, with its undamped frequency:
+/// rho q'' + eta q' + lambda q = 0. Requires: lambda > 0.
 Swing natural_swing(double lambda, const Dynamics& dynamics);
 
-/// The same as an animation of frames of `frame_length` [s] has it, frequency included, each of
-/// them made by `steps`. Requires: lambda > 0, frame_length > 0.
+/// The same vibration in an animation with frames of `frame_length` [s], each computed by `steps`;
+/// its frequency too is that of the animation. Requires: lambda > 0, frame_length > 0.
 Swing stepped_swing(double lambda, const Dynamics& dynamics, const TimeSteps& steps,
                     double frame_length);
 
-/// When something that a load is put on, at rest, stays near where the load holds it.
+/// When a body at rest that is put under a load stays near its displacement under that load.
 struct Settling {
-  double time = 0;         ///< between two frames, where it comes near for good [s]
-  int frames = 0;          ///< the first frame from which on it is near, counted from the load's
-  bool is_counted = true;  ///< false: it takes so long that `time` is that of the slowest part's
-                           ///< envelope, and `frames` are as long
+  double time = 0;         ///< between two frames, when it stays near from then on [s]
+  int frames = 0;          ///< the first frame from which on it stays near; 0 is the load's
+  bool is_counted = true;  ///< false: it takes too long to count; `time` is that of the slowest
+                           ///< part's envelope, and `frames` corresponds to it
 };
 
-/// From which frame on a node stays within `part` of its displacement under a load that is put on
-/// at frame 0 and held. `modes` are the node's, as `excited_modes` has them. Requires: there are
-/// some; 0 < part < 1; frame_length > 0. At most some 10^7 multiplications.
+/// The time from which on a node stays within `part` of its displacement under a load that is
+/// applied at frame 0 and kept. `modes` are those of the node, from `excited_modes`. Requires:
+/// `modes` is not empty; 0 < part < 1; frame_length > 0. At most some 10^7 multiplications.
 Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamics,
                      const TimeSteps& steps, double frame_length, double part = 0.05);
 

@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace {
 
-// 1e-9: a quotient that is whole but for rounding asks for no step more.
+// 1e-9: a quotient that is an integer except for rounding must not add a step.
 double step_count(double interval, double dt) { return std::ceil(interval / dt - 1e-9); }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace pliant {
 
 /// How many steps fill an interval. SPEC 4.
 enum class Stepping {
-  Exact,      ///< equal steps, at most dt long, that fill the interval: thesis 4.3 asks for this
+  Exact,      ///< equal steps, at most dt long, that fill the interval, as thesis 4.3 requires
   Overshoot,  ///< steps of dt until the end is reached or passed: the loop of thesis 5.3 (L10)
 };
 
@@ -16,7 +16,7 @@ struct TimeSteps {
   double length = 1;  ///< [s], > 0
 };
 
-/// The most steps that an interval may take.
+/// The most steps in an interval.
 inline constexpr int max_steps = 100'000;
 
 /// Whether steps of dt [s] can fill an interval [s]. Requires: interval > 0.
@@ -24,8 +24,8 @@ inline constexpr int max_steps = 100'000;
 Result<void> check_time_step(double interval, double dt);
 
 /// Divides an interval [s] into steps of dt [s]. Exact: max(1, ceil(interval/dt - 1e-9)) equal
-/// ones. Overshoot: t += dt in double precision until t >= interval. Requires: `check_time_step`
-/// holds.
+/// steps. Overshoot: t += dt in double precision until t >= interval. Requires: `check_time_step`
+/// succeeds.
 TimeSteps divide_interval(double interval, double dt, Stepping stepping);
 
 }  // namespace pliant

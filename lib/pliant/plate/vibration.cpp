@@ -12,8 +12,8 @@
 namespace pliant {
 namespace {
 
-// Shapes that meet the clamped rim: a bump, and the bump odd along u and along v. Whatever the
-// symmetry of the slowest vibration, one of them has a part in it.
+// Shapes that satisfy the clamped rim: a bump, and the bump made odd along u and along v. For any
+// symmetry of the slowest vibration, one of them has a component along it.
 Field starting_shapes(const PlateSystem& system) {
   const Grid& grid = system.grid;
   Field shapes(grid.node_count(), 3);
@@ -22,7 +22,7 @@ Field starting_shapes(const PlateSystem& system) {
     for (int i = 0; i < grid.columns; ++i) {
       const double x = static_cast<double>(i) / (grid.columns - 1);
       const double bump = x * (1 - x) * y * (1 - y);
-      // A little off the middle, so that no shape is orthogonal to one that it should find.
+      // A little off the middle, so that no shape is orthogonal to a vibration that it should find.
       shapes.row(grid.node(i, j)) << bump, bump * (x - 0.49), bump * (y - 0.51);
     }
   }
@@ -53,8 +53,8 @@ Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& syst
     if (shapes.rows() == 1) return shapes(0, 0) / (*solutions)(0, 0);
     const Eigen::Matrix3d energy = solutions->transpose() * shapes;  // x^T L x
     const Eigen::Matrix3d mass = solutions->transpose() * *solutions;
-    // Fewer than three unknowns leave the shapes dependent; the diagonal is then shifted by less
-    // than what counts.
+    // With fewer than three unknowns the shapes are dependent; the diagonal is then shifted by a
+    // negligible amount.
     const double shift = 1e-14 * energy.trace();
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> modes(
         mass, 0.5 * (energy + energy.transpose()) + shift * Eigen::Matrix3d::Identity());
@@ -74,8 +74,9 @@ Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const Plate
   PLIANT_EXPECTS(shape.size() == unknown_count(system) && shape(node) != 0);
   if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
-  // Q^T inverse(L) Q = T is tridiagonal, the first column of Q being the shape's direction. Each
-  // new direction is taken apart from all before it, twice, so that none comes again by rounding.
+  // Q^T inverse(L) Q = T is tridiagonal; the first column of Q is the shape's direction. Each new
+  // direction is orthogonalised twice against all before it, so that rounding does not bring one
+  // back.
   constexpr Eigen::Index most = 24;
   const Eigen::Index size = std::min<Eigen::Index>(most, shape.size());
   Eigen::MatrixXd basis(shape.size(), size);
@@ -93,7 +94,7 @@ Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const Plate
     const auto known = basis.leftCols(count);
     for (int pass = 0; pass < 2; ++pass) next -= known * (known.transpose() * next).eval();
     const double rest = next.norm();
-    // The shape is a sum of few modes, and all are found.
+    // The shape is a sum of a few modes, and all are found.
     if (count == size || rest <= 1e-12 * projected(0, 0)) break;
     projected(count, count - 1) = projected(count - 1, count) = rest;
     basis.col(count) = next / rest;
@@ -102,7 +103,7 @@ Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const Plate
   std::vector<ExcitedMode> excited;
   for (Eigen::Index k = count - 1; k >= 0; --k) {
     const double inverse = modes.eigenvalues()(k);
-    if (!(inverse > 0)) continue;  // by rounding; as fast as nothing else
+    if (!(inverse > 0)) continue;  // rounding error of a very fast mode
     const double at_node = basis.row(node).head(count).dot(modes.eigenvectors().col(k));
     excited.push_back(
         {1 / inverse, shape.norm() * at_node * modes.eigenvectors()(0, k) / shape(node)});

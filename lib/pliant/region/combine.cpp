@@ -11,7 +11,7 @@ namespace {
 
 bool has_cells(const Box& box) { return box.columns() >= 2 && box.rows() >= 2; }
 
-// A 0 or 1 for each node, or each cell, of a box; a cell has the number of its first node.
+// A 0 or 1 for each node, or each cell, of a box; a cell has the index of its first node.
 class Marks {
  public:
   explicit Marks(const Box& box)
@@ -50,7 +50,8 @@ bool is_box(const Region& region) {
   return true;
 }
 
-// Of the boxes those that have cells, but none that lies in another; in an order of their own.
+// The boxes that have cells and are not inside another one; in an order that does not depend on the
+// input's.
 std::vector<Box> union_parts(std::span<const Box> boxes) {
   std::vector<Box> sorted;
   for (const Box& box : boxes) {
@@ -77,8 +78,8 @@ std::vector<Region> one_region(std::vector<Box> parts) {
   return {std::move(region)};
 }
 
-// Takes one patch out of `left`, the interior nodes that are in none yet: what can be reached from
-// node (i,j) by steps to the eight neighbours.
+// Removes one patch from `left`, the interior nodes that belong to no patch yet: the nodes
+// connected to node (i,j) by steps to the eight neighbours.
 Patch take_patch(Marks& left, int i, int j) {
   std::vector<std::pair<int, int>> nodes = {{i, j}};
   left.at(i, j) = 0;
@@ -111,7 +112,7 @@ std::vector<Box> merged(std::span<const Box> boxes) {
   std::vector<Box> islands;
   for (Box box : boxes) {
     if (box.is_empty()) continue;
-    // Each one that is met is taken in; the larger box may meet others.
+    // Merges each island that the box meets; the larger box may meet others.
     for (auto met = islands.begin(); met != islands.end();) {
       if (intersection(*met, box).is_empty()) {
         ++met;

@@ -8,32 +8,32 @@
 
 namespace pliant {
 
-/// How what several forces select becomes one solve or several. SPEC 5.
+/// How the boxes of several forces become one region or several. SPEC 5.
 enum class Combine {
   Box,      ///< one box around everything: the thesis
-  Islands,  ///< boxes that share a node merge into their common box; each is solved by itself
-  Union,    ///< the cells of all boxes together are one domain, whatever its outline
+  Islands,  ///< boxes that share a node merge into their common box; each is solved separately
+  Union,    ///< the cells of all boxes together are one domain, of any outline
 };
 
-/// What is solved together: the cells of its parts. A node is interior when all its four cells are
+/// The cells of its parts, which are solved together. A node is interior if all its four cells are
 /// inside; the others are the rim.
 struct Region {
-  Box box;                 ///< holds all of it; in nodes
-  std::vector<Box> parts;  ///< boxes whose cells it is made of; the box itself when it is one
+  Box box;                 ///< smallest box around all parts; in nodes
+  std::vector<Box> parts;  ///< boxes whose cells form the region; `box` itself if it is one
 
   friend bool operator==(const Region&, const Region&) = default;
 };
 
-/// Boxes that share a node become their common box, until none do. Empty boxes go. The result does
-/// not depend on the order of `boxes`; it is in the order of first rows, then of first columns.
+/// Replaces boxes that share a node by their common box, until none do. Removes empty boxes. The
+/// result does not depend on the order of `boxes`; it is sorted by first row, then by first column.
 std::vector<Box> merged(std::span<const Box> boxes);
 
-/// The regions that `boxes` make, none of them empty; those of islands in the order of `merged`.
-/// A box less than two nodes wide has no cell, and so no part in a union.
+/// The regions that `boxes` form, none of them empty; islands in the order of `merged`. A box less
+/// than two nodes wide has no cell, so it is not a part of a union.
 std::vector<Region> combine(std::span<const Box> boxes, Combine how);
 
-/// Interior nodes of a region that one system of equations is for: those of a rectangle, or as many
-/// as neighbour each other, diagonally too.
+/// Interior nodes of a region that form one system of equations: those of a rectangle, or a set
+/// that is connected, diagonally too.
 struct Patch {
   Box box;  ///< interior nodes and the rim around them; at least 3 x 3
   /// 1 for the interior nodes of `box`, row by row; empty: all but its outermost ring.
@@ -52,8 +52,8 @@ struct Patch {
   friend bool operator==(const Patch&, const Patch&) = default;
 };
 
-/// The patches of a region, in the order of their first interior nodes, row by row; none when it
-/// has no interior node.
+/// The patches of a region, in the order of their first interior nodes, row by row; empty if it has
+/// no interior node.
 std::vector<Patch> patches_of(const Region& region);
 
 }  // namespace pliant

@@ -11,16 +11,16 @@ namespace {
 constexpr int tile_size = batch_size;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-using Lanes = Eigen::Array<double, 8, 1>;  // as many as registers hold of all three
+using Lanes = Eigen::Array<double, 8, 1>;  // enough registers for all three components
 static_assert(batch_size % 8 == 0);
 
-// The least and the largest of what came by, in lanes beside each other.
+// The least and the largest of the numbers so far, in parallel lanes.
 struct Extremes {
   Lanes low = Lanes::Constant(infinity);
   Lanes high = Lanes::Constant(-infinity);
-  Lanes unsound = Lanes::Zero();  // NaN once something was not finite
+  Lanes unsound = Lanes::Zero();  // NaN once a number was not finite
 
-  // Fills up the last lanes with the first of the numbers.
+  // Pads the last lanes with the first number.
   void include(double* numbers, int count) {
     const int filled = (count + 7) / 8 * 8;
     std::fill(numbers + count, numbers + filled, numbers[0]);
@@ -66,7 +66,7 @@ void NodeTiles::fill(Tile& tile) {
   }
   for (int k = 0; k < 3; ++k) {
     const bool are_sound = of[k].are_finite();
-    // Of what is no number there is no bound.
+    // Numbers that are not finite have no bound.
     tile.low[k] = are_sound ? of[k].low.minCoeff() : -infinity;
     tile.high[k] = are_sound ? of[k].high.maxCoeff() : infinity;
     are_finite_ = are_finite_ && are_sound;

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// The nodes of a grid in tiles, each with the box around it in the world, so that a force that is
-/// far away need not look at every node. Costs one pass over the nodes.
+/// The nodes of a grid in tiles, each with its bounding box in world space, so that a force that is
+/// far away need not visit every node. Costs one pass over the nodes.
 class NodeTiles {
  public:
   struct Tile {
@@ -17,15 +17,15 @@ class NodeTiles {
     Vector3d high = {0, 0, 0};  ///< the largest
   };
 
-  /// Of these nodes. Refers to their positions. Allocates nothing while the grid stays.
-  /// Requires: nodes.count() = grid.node_count().
+  /// Computes the tiles of these nodes. Keeps a reference to their positions. Allocates nothing
+  /// while the grid is the same. Requires: nodes.count() = grid.node_count().
   void update(const Grid& grid, const PlacedNodes& nodes);
 
   const Grid& grid() const { return grid_; }
   const PlacedNodes& nodes() const { return *nodes_; }
   const std::vector<Tile>& tiles() const { return tiles_; }  ///< row by row
 
-  /// Whether all nodes are.
+  /// Whether all nodes are finite.
   bool are_finite() const { return are_finite_; }
 
  private:

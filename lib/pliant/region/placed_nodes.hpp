@@ -8,11 +8,11 @@
 
 namespace pliant {
 
-/// Nodes as forces meet them: in world space, taken there where they are asked for, so that there
-/// is no copy of them. Refers to the positions, which outlive it.
+/// Nodes in world space, as forces use them; transformed on demand, so that there is no copy. Keeps
+/// a reference to the positions, which must outlive it.
 class PlacedNodes {
  public:
-  /// #nodes x 3, in world space. Not explicit: they are where they stand.
+  /// #nodes x 3, in world space. Not explicit: the positions are used unchanged.
   PlacedNodes(const Field& positions) : positions_(&positions) {}
 
   /// #nodes x 3, in object space.
@@ -27,8 +27,8 @@ class PlacedNodes {
     return transform_ ? to_world(*transform_, position) : position;
   }
 
-  /// Those from node `first` on, world [length]; the numbers are those of `at`.
-  /// Requires: 0 <= count <= batch_size.
+  /// `count` nodes from node `first` on, world [length]; the numbers are those of `at`. Requires: 0
+  /// <= count <= batch_size.
   Batch batch(int first, int count) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-// The region that force k acts in; -1: in none.
+// The region that force k acts in; -1: none.
 int region_of(const Selection& selection, std::size_t k, Combine how) {
   if (selection.regions.empty()) return -1;
   if (how != Combine::Islands) return 0;
@@ -22,7 +22,7 @@ int region_of(const Selection& selection, std::size_t k, Combine how) {
   return static_cast<int>(found - selection.regions.begin());
 }
 
-// Calls f(load) with what the force gives to each interior node in its box, until f says false.
+// Calls f(load) with this force's load on each interior node in its box, until f returns false.
 template <class F>
 void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force,
                  const Box& box, std::span<const Patch> patches, const F& f) {
@@ -37,7 +37,7 @@ void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce&
   }
 }
 
-// Adds to a box those nodes of a row, from (i,j) on, whose distance is less than the radius.
+// Extends a box by those nodes of a row, from (i,j) on, whose distance is less than the radius.
 void include_near(const BatchNumbers& distance, int count, double radius, int i, int j, Box& box) {
   int first = 0;
   while (first < count && !(distance.of[first] < radius)) ++first;
@@ -47,8 +47,8 @@ void include_near(const BatchNumbers& distance, int count, double radius, int i,
   box.include({i + first, i + last, j, j});
 }
 
-// The two boxes of a force, grown tile by tile. A tile out of reach adds nothing to a box, nor does
-// one that lies in it already, so that of a large box little more than the rim is looked at.
+// The two boxes of a force, grown tile by tile. A tile that is out of reach, or inside a box
+// already, adds nothing to that box, so for a large box few nodes besides its rim are visited.
 class Selecting {
  public:
   Selecting(const NodeTiles& tiles, const SampledForce& force) : tiles_(tiles), force_(force) {}
@@ -71,7 +71,7 @@ class Selecting {
   ForceSelection boxes;
 
  private:
-  // In the order of the nodes: the first unsound answer is the one that is told of.
+  // In the order of the nodes: the first unsound answer is the one that is reported.
   void ask_all() {
     const Grid& grid = tiles_.grid();
     for (int j = 0; j < grid.rows; ++j) {
@@ -81,7 +81,7 @@ class Selecting {
     }
   }
 
-  // Whether nodes at `least` or farther can make one of the boxes hold more of `box`.
+  // Whether nodes of `box`, at a distance of `least` or more, can extend one of the boxes.
   bool may_add(const Box& box, double least) const {
     return (least < force_.deformation_radius && !holds(boxes.deformation, box)) ||
            (least < force_.force_radius && !holds(boxes.force, box));
@@ -100,7 +100,7 @@ class Selecting {
   const SampledForce& force_;
 };
 
-// The sum of the forces of a region on the nodes of a row, from (i,j) on; world space.
+// The load on the nodes of a row, from (i,j) on, by the forces of one region; world space.
 Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const SampledForce> forces,
                const Selection& selection, std::size_t region, int i, int j, int count) {
   Batch load;
@@ -117,8 +117,8 @@ Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const Sampl
   return load;
 }
 
-// Calls f(row, load) with the load on the nodes of a box, `row` counted within it: of up to
-// batch_size nodes at a time, as `loads_on` has it.
+// Calls f(row, load) with the load on the nodes of a box, from `loads_on`, for up to batch_size
+// nodes at a time; `row` is counted within the box.
 template <class F>
 void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
                      std::span<const SampledForce> forces, const Selection& selection,

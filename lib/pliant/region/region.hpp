@@ -13,42 +13,42 @@
 namespace pliant {
 
 /// Selects by distance, strictly less than each radius, on nodes (#nodes x 3, world space). A box
-/// over (u,v) is a box of nodes, and it holds also the nodes that lie outside every sphere: that is
-/// what makes the region an M x N grid. `how` makes regions of the boxes. `selectors` names for
-/// each force the one whose deformation box is its own; empty: each has its own. Requires: #nodes =
+/// over (u,v) is a box of nodes and also contains nodes that are outside every sphere: this makes
+/// the region an M x N grid. `how` forms regions from the boxes. `selectors` has for each force the
+/// index of the force whose deformation box it uses; empty: each uses its own. Requires: #nodes =
 /// grid.node_count().
 Selection select_region(const Grid& grid, const PlacedNodes& nodes,
                         std::span<const SampledForce> forces, Combine how = Combine::Box,
                         std::span<const int> selectors = {});
 
-/// The boxes of one force by itself.
+/// The boxes of one force alone.
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force);
 
-/// Selects anew into `selection`, which came from here or is empty, on the nodes of `tiles`. Where
-/// all deformation boxes are as before so are the regions: nothing is allocated then. Returns
-/// whether they are. A program's own function is asked about every node, others only where the
-/// answer counts.
+/// Selects again into `selection`, an earlier result or empty, on the nodes of `tiles`. If all
+/// deformation boxes are unchanged, so are the regions, and nothing is allocated. Returns whether
+/// they are unchanged. A program's own function is called for every node, other forces only for
+/// nodes that can change a box.
 bool reselect(Selection& selection, const NodeTiles& tiles, std::span<const SampledForce> forces,
               Combine how, std::span<const int> selectors = {});
 
-/// The same selection with `others`, boxes that no force selects, taking part in its regions.
-/// In a box or union every force acts in the one region; of islands in the one that holds the
-/// deformation box of its `selector`, which is empty for a force that acts in none.
+/// The same selection with regions formed from its boxes and from `others`, boxes that no force
+/// selects. In a box or union every force acts in the one region; with islands, in the one that
+/// contains the deformation box of its `selector`; if that box is empty, in none.
 Selection recombined(Selection selection, Combine how, std::span<const Box> others = {});
 
-/// Whether a force box has a node of the region, rim included.
+/// Whether a force box contains a node of the region, rim included.
 bool overlaps(const Region& region, const Box& force);
 
-/// The sum of all forces that act in one region, on each node of its box (#nodes x 3, row = j *
+/// The load of all forces that act in one region, on each node of its box (#nodes x 3, row = j *
 /// columns + i counted within the box, world space): force k acts on the nodes inside its force
-/// box. Forces add up in the order given. Requires: `selection` is what `select_region` gave for
-/// the same arguments, and has that region.
+/// box. Forces are added in the given order. Requires: `selection` is the result of `select_region`
+/// for the same arguments, and contains that region.
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
                     std::span<const SampledForce> forces, const Selection& selection,
                     std::size_t region = 0);
 
-/// The same on the nodes of a box, a part of the region's, in object space: each row times
-/// `to_object`, as `vectors_to_object` has it. The result takes the memory of `reuse`.
+/// The same on the nodes of a box that is part of the region's box, in object space: each row times
+/// `to_object`, as in `vectors_to_object`. The result reuses the memory of `reuse`.
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
                     std::span<const SampledForce> forces, const Selection& selection,
                     std::size_t region, const Box& box, const Matrix3d& to_object, Field reuse);
@@ -57,7 +57,7 @@ Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
 Push push_of(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,
              std::span<const Patch> patches);
 
-/// Whether a force moves any interior node of the patches: stops at the first.
+/// Whether a force moves any interior node of the patches; stops at the first.
 bool pushes(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,
             std::span<const Patch> patches);
 

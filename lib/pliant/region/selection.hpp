@@ -8,26 +8,26 @@
 
 namespace pliant {
 
-/// What one force selects, and where it acts.
+/// The boxes of one force, and the region it acts in.
 struct ForceSelection {
-  Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: none are
-  Box force;         ///< box of the nodes nearer than the force radius; may reach past the region
-  int selector = 0;  ///< the force whose deformation box is this one's, for most the force itself
-  int region = -1;   ///< which of the regions it acts in; -1: in none
+  Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: there are none
+  Box force;         ///< box of the nodes nearer than the force radius; may exceed the region
+  int selector = 0;  ///< index of the force whose deformation box it uses; usually the force itself
+  int region = -1;   ///< index of the region it acts in; -1: none
 
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
 };
 
 /// The region selection of thesis 5.3, fig. 5; SPEC 5.
 struct Selection {
-  Box region;                          ///< around all regions; empty: nothing is selected
+  Box region;                          ///< smallest box around all regions; empty: there are none
   std::vector<ForceSelection> forces;  ///< in the order of the forces
-  std::vector<Region> regions;         ///< as `combine` orders them, also those too small to solve
+  std::vector<Region> regions;         ///< in the order of `combine`, also those too small to solve
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };
 
-/// What a force gives to the interior nodes of its region, all together. World [length b/uv^4]
+/// The loads of one force on the interior nodes of its region, summed. World [length b/uv^4]
 struct Push {
   Vector3d sum = {0, 0, 0};  ///< of the loads on nodes
   int node_count = 0;        ///< nodes whose load is not 0

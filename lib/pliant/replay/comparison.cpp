@@ -35,7 +35,7 @@ const ReplayFile* find(const std::vector<ReplayFile>& files, const std::string& 
   return found == files.end() ? nullptr : &*found;
 }
 
-// By bits: 0 and -0 are told apart.
+// By bits: 0 and -0 differ.
 bool is_same(const Field& a, const Field& b, Eigen::Index row) {
   for (int component = 0; component < 3; ++component) {
     if (std::bit_cast<std::uint64_t>(a(row, component)) !=
@@ -46,7 +46,7 @@ bool is_same(const Field& a, const Field& b, Eigen::Index row) {
   return true;
 }
 
-// Where two fields on the nodes of a surface differ most.
+// Finds the node at which two fields of a surface differ most.
 void measure(const Field& a, const Field& b, int columns, ReplayDifference& difference) {
   for (Eigen::Index row = 0; row < a.rows(); ++row) {
     if (is_same(a, b, row)) continue;
@@ -59,7 +59,7 @@ void measure(const Field& a, const Field& b, int columns, ReplayDifference& diff
   }
 }
 
-// What one surface has at a frame.
+// One surface at a frame.
 struct SurfaceAtFrame {
   const SurfaceDigest& digest;
   const BodyState* state;  // null: not recorded

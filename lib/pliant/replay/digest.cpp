@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-// What the solve at a frame takes, as docs/replay.md has it: a line `region solved i0 i1 j0 j1` for
-// each part of each region, then a byte for each node of a body that recovers.
+// The input of the solve at a frame, as in docs/replay.md: a line `region solved i0 i1 j0 j1` for
+// each part of each region, then, for a body that recovers, a byte for each node.
 std::string region_text(const SurfaceReport& report, const BodyState& state) {
   std::string text;
   for (std::size_t k = 0; k < report.regions.size(); ++k) {

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// The frame that a log has for what `simulation` computes, the surfaces being hashed on `threads`.
-/// Errors: those of `Simulation::report`. Not for other rooms.
+/// The log's frame for the state that `simulation` computes; `threads` hash the surfaces. Errors:
+/// those of `Simulation::report`. Internal to replay.
 Result<ReplayFrame> digest(Simulation& simulation, int frame, ThreadPool& threads,
                            bool with_states);
 

@@ -6,7 +6,8 @@
 namespace pliant::testing {
 
 /// For a program's own tests: simulates a scene file and compares it with its log, bit for bit.
-/// Gives all that is wrong, one line each, or nothing, so that any test framework can say it:
+/// Returns all differences, one line each, or an empty text, so that any test framework can report
+/// it:
 ///
 ///     CHECK(pliant::testing::expect_replay("sheet.xml", "sheet.replay") == "");
 ///

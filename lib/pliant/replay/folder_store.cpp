@@ -28,7 +28,7 @@ constexpr std::string_view ending = ".state";
 constexpr std::size_t key_digits = 32;
 constexpr std::int64_t second = 1'000'000'000;  // [ns]
 
-// A part of a file that nobody has written to for so long is what a killed process left.
+// A part of a file that has not been written to for so long was left by a killed process.
 constexpr std::int64_t abandoned_after = 600 * second;
 
 class Descriptor {
@@ -51,20 +51,20 @@ std::int64_t now() {
   return std::int64_t{time.tv_sec} * second + time.tv_nsec;
 }
 
-// The key that a file of ours is named by.
+// The key in the name of a file of this store.
 std::optional<Hash> key_in(std::string_view name) {
   if (name.size() != key_digits + ending.size() || !name.ends_with(ending)) return {};
   return to_hash(name.substr(0, key_digits));
 }
 
-// Whether it is the name of a file of ours that is being written, as `AtomicFile` gives it.
+// Whether it is the name of an unfinished file of this store, as made by `AtomicFile`.
 bool is_part(std::string_view name) {
   const std::size_t size = key_digits + ending.size();
   return name.starts_with('.') && name.ends_with(".part") && name.size() > 1 + size &&
          key_in(name.substr(1, size));
 }
 
-// What a file of that many bytes takes of a disk that gives out pages.
+// The space of a file of that many bytes on a disk that allocates pages.
 std::size_t on_disk(std::size_t bytes) {
   constexpr std::size_t page = 4096;
   return (bytes + page - 1) / page * page;
@@ -101,7 +101,7 @@ class FolderFrameStore::Folder {
     fs::path file;
     std::size_t bytes = 0;  // on the disk
     std::int64_t used = 0;  // [ns] since 1970
-    int rank = 0;           // those of lower rank go first
+    int rank = 0;           // lower ranks are removed first
   };
 
   fs::path file_of(const Hash& key) const;
@@ -113,10 +113,10 @@ class FolderFrameStore::Folder {
   std::size_t byte_budget_;
   std::int64_t opened_;  // [ns] since 1970
 
-  mutable std::mutex mutex_;       // of what follows
+  mutable std::mutex mutex_;       // guards the members below
   bool is_counted_ = false;        // whether `bytes_` is known
-  std::size_t bytes_ = 0;          // on the disk, when last counted, and what was written since
-  std::size_t bytes_written_ = 0;  // since then
+  std::size_t bytes_ = 0;          // on the disk at the last count, plus those written since
+  std::size_t bytes_written_ = 0;  // since the last count
   std::string trouble_;
   int damaged_count_ = 0;
 };
@@ -165,7 +165,7 @@ bool FolderFrameStore::Folder::holds(const Hash& key) const {
 }
 
 std::optional<std::string> FolderFrameStore::Folder::read(const Hash& key, std::size_t most) const {
-  // A link or a pipe of that name is not ours, and must not keep us waiting.
+  // A link or a pipe of that name is not a file of this store, and must not block.
   const Descriptor file(
       ::open(file_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
@@ -173,10 +173,10 @@ std::optional<std::string> FolderFrameStore::Folder::read(const Hash& key, std::
     return {};
   }
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  // What cannot be whole is handed over as far as it goes, to be found out.
+  // A file that cannot be complete is returned as far as it can be read; the caller detects it.
   std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)), '\0');
   if (!read_all(file.number(), bytes)) return {};
-  futimens(file.number(), nullptr);  // used now; where that is not allowed, it goes sooner
+  futimens(file.number(), nullptr);  // marks it as used; without permission, it is removed sooner
   return bytes;
 }
 
@@ -209,7 +209,7 @@ int FolderFrameStore::Folder::damaged_count() const {
   return damaged_count_;
 }
 
-// Whether so many more bytes may go to the disk.
+// Whether that many more bytes may be written to the disk.
 bool FolderFrameStore::Folder::take_room(std::size_t bytes) {
   const std::lock_guard lock(mutex_);
   if (!trouble_.empty() || bytes > byte_budget_) return false;
@@ -235,8 +235,8 @@ auto FolderFrameStore::Folder::entries() const -> std::vector<Entry> {
     if (!S_ISREG(status.st_mode)) continue;
     const std::int64_t used = std::int64_t{status.st_mtim.tv_sec} * second + status.st_mtim.tv_nsec;
     if (!key && now() - used < abandoned_after) continue;
-    // Of this run's own each rank holds half as many as the one before: the bits of a key are as
-    // good as random, and the same for whoever asks.
+    // Of this run's own files each rank has half as many as the one before: the bits of a key are
+    // as good as random, and the same for every process.
     const bool is_ours = key && used >= opened_;
     entries.push_back({place->path(), on_disk(static_cast<std::size_t>(status.st_size)), used,
                        is_ours ? 1 + std::countr_zero(key->low)
@@ -246,7 +246,7 @@ auto FolderFrameStore::Folder::entries() const -> std::vector<Entry> {
   return entries;
 }
 
-// Counts what is there, and where it is too much removes some of it.
+// Counts the files, and removes some if they use too much space.
 void FolderFrameStore::Folder::make_room(std::size_t bytes) {
   std::vector<Entry> there = entries();
   std::sort(there.begin(), there.end(), [](const Entry& a, const Entry& b) {
@@ -256,7 +256,7 @@ void FolderFrameStore::Folder::make_room(std::size_t bytes) {
   for (const Entry& entry : there) bytes_ += entry.bytes;
   is_counted_ = true;
   const bool is_full = bytes_ + bytes > byte_budget_;
-  // With some to spare, so that this is not to be done for each file.
+  // Leaves some spare space, so that this need not be done for each file.
   const std::size_t spare = byte_budget_ / 16;
   for (const Entry& entry : there) {
     if (entry.rank >= 0 && (!is_full || bytes_ + bytes + spare <= byte_budget_)) break;

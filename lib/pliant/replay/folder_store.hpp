@@ -15,14 +15,14 @@ namespace pliant {
 /// any of them may be killed at any moment: a file appears whole under its name or not at all, and
 /// none is ever changed.
 ///
-/// The folder's files are kept within a budget of disk space. What no bake has used since this one
-/// began goes first, the longest unused ahead; then this run's own, every other frame or so, so
-/// that what stays is spread over the run. Other files of the folder are left alone. Several bakes
-/// at once may pass the budget by a sixteenth each.
+/// The folder's files are kept within a budget of disk space. Files that no bake has used since
+/// this one began are removed first, the longest unused first; then files of this run, about every
+/// other frame, so that the remaining ones are spread over the run. Other files of the folder are
+/// left alone. Several bakes at once may each exceed the budget by a sixteenth.
 class FolderFrameStore final : public FrameStore {
  public:
-  /// Makes the folder where it is not there. Errors: InvalidInput where something else has the
-  /// name; Unwritable where it cannot be made. [bytes]
+  /// Creates the folder if it does not exist. Errors: InvalidInput if the name is that of something
+  /// else; Unwritable if the folder cannot be created. [bytes]
   static Result<std::unique_ptr<FolderFrameStore>> open(const std::string& folder,
                                                         std::size_t byte_budget);
   ~FolderFrameStore() override;
@@ -30,14 +30,14 @@ class FolderFrameStore final : public FrameStore {
   bool holds(const Hash& key) override;
   std::optional<std::string> read(const Hash& key, std::size_t most) override;
 
-  /// The first one that fails is the last: see `trouble`.
+  /// After the first failure nothing more is written: see `trouble`.
   void write(const Hash& key, std::string_view bytes) override;
   void discard(const Hash& key) override;
 
-  /// Why nothing is written any more; empty: it is. One line.
+  /// Why nothing is written any more, in one line; empty: no failure.
   std::string trouble() const;
 
-  /// Files that were not what had been written, and are gone now.
+  /// Number of files that were damaged and have been removed.
   int damaged_count() const;
 
  private:

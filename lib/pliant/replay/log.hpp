@@ -8,13 +8,13 @@
 
 namespace pliant {
 
-// What a .replay file says (docs/replay.md), as values.
+// The content of a .replay file (docs/replay.md), as values.
 
 /// One surface at the output of a frame. SPEC 6, 10.
 struct SurfaceDigest {
   Hash positions;   ///< of the nodes, object space
-  Hash velocities;  ///< carried by the nodes
-  Hash region;      ///< of what the frame's solve takes; docs/replay.md
+  Hash velocities;  ///< of the nodes, as the next frame uses them
+  Hash region;      ///< of the input of the frame's solve; docs/replay.md
   double peak = 0;  ///< largest distance of a node from rest, object space [length]
 
   friend bool operator==(const SurfaceDigest&, const SurfaceDigest&) = default;
@@ -24,12 +24,12 @@ struct SurfaceDigest {
 struct ReplayFrame {
   int number = 0;
   std::vector<SurfaceDigest> surfaces;
-  std::vector<BodyState> states = {};  ///< empty, or one a surface; without `unsettled`
+  std::vector<BodyState> states = {};  ///< empty, or one per surface; without `unsettled`
 };
 
 /// A file that the scene names, such as a mesh.
 struct ReplayFile {
-  std::string name;  ///< relative to the scene's folder, where there is such a path
+  std::string name;  ///< relative to the scene's folder, if there is such a path
   Hash hash;         ///< of its bytes
 
   friend bool operator==(const ReplayFile&, const ReplayFile&) = default;
@@ -44,14 +44,14 @@ struct ReplaySurface {
   friend bool operator==(const ReplaySurface&, const ReplaySurface&) = default;
 };
 
-/// What was recorded, and with what.
+/// A description of the run that was recorded.
 struct ReplayHeader {
   std::string version;     ///< of pliant
-  std::string scene_file;  ///< relative to the log's folder, where there is such a path
+  std::string scene_file;  ///< relative to the log's folder, if there is such a path
   std::string scene_text;
   std::vector<ReplayFile> files;
-  std::string solver;   ///< as `solver_choice` knows it
-  std::string factors;  ///< who makes sparse factors for that solver, as `name_of` names it
+  std::string solver;   ///< a name that `solver_choice` accepts
+  std::string factors;  ///< the solver for sparse factors, as returned by `name_of`
   int start = 0;        ///< first frame
   int end = 0;          ///< last frame, >= start
   std::vector<ReplaySurface> surfaces;
@@ -61,7 +61,7 @@ struct ReplayHeader {
   friend bool operator==(const ReplayHeader&, const ReplayHeader&) = default;
 };
 
-/// The version of the log's format that is written, and the only one that is read.
+/// The version of the log's format for writing, and the only one that can be read.
 inline constexpr int replay_format = 1;
 
 }  // namespace pliant

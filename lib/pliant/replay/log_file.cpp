@@ -52,7 +52,7 @@ Result<ReplayLogReader> ReplayLogReader::open(const std::filesystem::path& file)
 }
 
 Result<void> ReplayLogReader::read_header() {
-  // Ahead of reading a whole line, which may be all of some other large file.
+  // Checked before a whole line is read, which may be all of some other large file.
   std::string start(replay::first_member.size(), '\0');
   stream_.read(start.data(), static_cast<std::streamsize>(start.size()));
   if (start != replay::first_member) {
@@ -61,7 +61,7 @@ Result<void> ReplayLogReader::read_header() {
   auto line = next_line();
   if (!line) return fail(line.error());
   const std::string whole = start + *line;
-  // The seal comes second: it is this format's.
+  // The format version is checked before the seal, which belongs to this version.
   if (const auto format = replay::format_of(whole); format && *format != replay_format) {
     return at_fault(
         fmt::format("a log of format {}; this version reads format {}", *format, replay_format));
@@ -108,7 +108,7 @@ Result<std::string> ReplayLogReader::next_line() {
   std::string line;
   ++line_;
   const bool is_there = static_cast<bool>(std::getline(stream_, line));
-  // A last line without its newline was cut short, be it by that byte alone.
+  // A last line without its newline is truncated, even if only that byte is missing.
   if (is_there && !stream_.eof()) return line;
   if (line_ == 1) return at_fault("the log is cut short in its first line");
   return at_fault(fmt::format("the log is cut short: it holds {} of {} frames", frame_count_,

@@ -10,14 +10,14 @@
 
 namespace pliant {
 
-/// Writes a .replay file, which appears whole or not at all. docs/replay.md.
+/// Writes a .replay file; it appears whole or not at all. docs/replay.md.
 class ReplayLogWriter {
  public:
   /// Errors: Unwritable.
   static Result<ReplayLogWriter> create(const std::filesystem::path& file,
                                         const ReplayHeader& header);
 
-  /// The next frame. Requires: its surfaces, and its states if it has some, are those of the
+  /// Writes the next frame. Requires: its surfaces, and its states if it has any, are those of the
   /// header. Errors: Unwritable.
   Result<void> write(const ReplayFrame& frame);
 
@@ -33,17 +33,17 @@ class ReplayLogWriter {
   long frame_count_ = 0;
 };
 
-/// Reads a .replay file frame by frame and holds one at a time.
+/// Reads a .replay file frame by frame; only one is in memory at a time.
 class ReplayLogReader {
  public:
-  /// Reads the header. Errors: Unreadable; InvalidInput for a file that is no log, one of another
-  /// format, and a header that was changed.
+  /// Reads the header. Errors: Unreadable; InvalidInput for a file that is not a log, a log of
+  /// another format version, and a header that was changed.
   static Result<ReplayLogReader> open(const std::filesystem::path& file);
 
   const ReplayHeader& header() const { return header_; }
 
-  /// The next frame; none after the last one. Errors, with the line: InvalidInput when the line
-  /// was changed after recording, or when the log ends too soon.
+  /// The next frame; nullopt after the last one. Errors, with the line: InvalidInput if the line
+  /// was changed after recording, or if the log is truncated.
   Result<std::optional<ReplayFrame>> next();
 
  private:
@@ -58,7 +58,7 @@ class ReplayLogReader {
   int line_ = 0;
   std::string seal_;
   ReplayHeader header_;
-  long frame_count_ = 0;  // that were read
+  long frame_count_ = 0;  // frames read so far
   bool is_at_end_ = false;
 };
 

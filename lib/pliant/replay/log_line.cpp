@@ -15,9 +15,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view seal_member = ",\"seal\":\"";
-constexpr std::string_view end_member = "{\"frames\":";  // told from a frame without parsing it
+constexpr std::string_view end_member = "{\"frames\":";  // recognised without parsing the line
 
-// Text that is not UTF-8 never came from a scene, but may from a path.
+// A path may be text that is not UTF-8; a scene never is.
 std::string to_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -32,7 +32,7 @@ Json to_json(const Field& field) {
   return numbers;
 }
 
-// The readers below answer whether `json` was what they expect, and never throw.
+// The readers below return whether `json` has the expected form, and never throw.
 
 const Json* member(const Json& json, const char* name) {
   if (!json.is_object()) return nullptr;
@@ -83,7 +83,7 @@ bool read(const Json* json, const ReplaySurface& surface, Field& field) {
   return true;
 }
 
-// Each element of an array by `read_one(element, value)`.
+// Reads each element of an array by `read_one(element, value)`.
 template <class Value, class ReadOne>
 bool read_all(const Json* json, std::vector<Value>& values, const ReadOne& read_one) {
   if (!json || !json->is_array()) return false;

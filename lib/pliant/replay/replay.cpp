@@ -28,7 +28,7 @@ Result<void> write_frames(Simulation& simulation, const ReplayHeader& header, Re
   return log.finish();
 }
 
-// The scene that a log is about, and a remark where it is not what the caller may think.
+// The scene of a log, and a remark if it is not the one that the caller may expect.
 struct FoundScene {
   WrittenScene written;
   std::optional<std::string> remark = {};
@@ -59,7 +59,7 @@ Result<SolverChoice> solver_of(const ReplayHeader& header, const std::filesystem
               log_file.string(), 1);
 }
 
-// A scene that fails now and did not when it was recorded: what changed says why.
+// The error for a scene that fails now but did not when it was recorded, with the causes.
 tl::unexpected<Error> fail_because(Error error, const std::vector<std::string>& causes,
                                    const std::filesystem::path& log_file) {
   const bool is_input =
@@ -70,8 +70,8 @@ tl::unexpected<Error> fail_because(Error error, const std::vector<std::string>& 
   return fail(std::move(error));
 }
 
-// Compares frame after frame of a log with what `next` gives for them, as far as `last`. The rest
-// is read for its seals.
+// Compares the frames of a log with those of `next`, up to `last`. The remaining frames are read
+// only to check their seals.
 template <class Next>
 Result<void> compare_frames(ReplayLogReader& log, long last, const ReplayOptions& options,
                             ReplayVerdict& verdict, const Next& next) {
@@ -175,7 +175,7 @@ Result<ReplayVerdict> compare_replays(const std::string& log_file,
   const auto read = [&](const ReplayFrame&) -> Result<ReplayFrame> {
     auto frame = other->next();
     if (!frame) return fail(frame.error());
-    return **std::move(frame);  // it is there: `last` is a frame of both
+    return **std::move(frame);  // never null: `last` is a frame of both
   };
   if (auto compared = compare_frames(*log, last, options, verdict, read); !compared) {
     return fail(compared.error());

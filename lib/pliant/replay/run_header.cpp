@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From a folder to a file, so that both can be moved together. An empty folder is the current one.
+// The path from a folder to a file, so that both can be moved together. An empty folder is the
+// current one.
 std::string name_from(const fs::path& folder, const fs::path& file) {
   std::error_code ignored;
   const fs::path base = folder.empty() ? fs::current_path(ignored) : fs::absolute(folder, ignored);
@@ -36,7 +37,7 @@ std::string name_of(SolverChoice solver) {
   return {};
 }
 
-// Relative to the scene's folder: to where links lead, if that is how the file is known.
+// Relative to the scene's folder; relative to its canonical path if the file is given by one.
 std::string name_of(const SceneInput& input, const WrittenScene& written) {
   const fs::path folder = written.file.parent_path();
   std::error_code unknown;
@@ -57,7 +58,7 @@ Result<Scene> scene_of(const WrittenScene& written) {
 }  // namespace
 
 Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root) {
-  auto text = read_file(file, std::size_t{256} << 20);  // as `load_scene`
+  auto text = read_file(file, std::size_t{256} << 20);  // the same limit as `load_scene`
   if (!text) return fail(text.error());
   return WrittenScene{file, *std::move(text), root};
 }
@@ -71,7 +72,7 @@ Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path&
   header.scene_file = name_from(log_file.parent_path(), written.file);
   header.scene_text = written.text;
   for (const SceneInput& input : inputs_of(*scene)) {
-    // The scene is there as text. A pipe or a device would make us wait, or never end.
+    // The scene is stored as text. Reading a pipe or a device could block, or never end.
     std::error_code ignored;
     if (input.file == written.file || !fs::is_regular_file(input.file, ignored)) continue;
     const auto bytes = read_file(input.file);

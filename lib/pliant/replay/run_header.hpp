@@ -8,21 +8,21 @@
 
 namespace pliant {
 
-// What is known of a run besides its frames; not for other rooms.
+// The description of a run without its frames. Internal to replay.
 
-/// A scene as it is written, and where its meshes are looked for.
+/// The text of a scene, and the folders for its meshes.
 struct WrittenScene {
   std::filesystem::path file;
   std::string text;
-  std::filesystem::path root = {};  ///< as `load_scene` takes it
+  std::filesystem::path root = {};  ///< as in `load_scene`
 };
 
 /// Errors: as `read_file`.
 Result<WrittenScene> read_scene_text(const std::filesystem::path& file,
                                      const std::filesystem::path& root);
 
-/// What a log of this scene says ahead of simulating it: all but its frames and surfaces. A file
-/// that cannot be read is left out. Errors: as `parse_scene`.
+/// The part of a log's header that is known before the simulation: all but frames and surfaces.
+/// Files that cannot be read are omitted. Errors: as `parse_scene`.
 Result<ReplayHeader> header_of_text(const WrittenScene& written,
                                     const std::filesystem::path& log_file, SolverChoice solver);
 

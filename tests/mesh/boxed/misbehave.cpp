@@ -1,5 +1,6 @@
-// A boxed program for tests: does what a reader does that a hostile file has taken over. Behind the
-// arguments of the box stand, as for the true one, an ending, what to do, and a number.
+// A sandboxed program for tests: behaves like a reader that a hostile file has taken over. The
+// arguments for the sandbox are followed, as for the real reader, by an ending, the behaviour, and
+// a number.
 
 #include <cerrno>
 #include <csignal>
@@ -39,13 +40,13 @@ std::string packed(T number) {
   return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-// What it has to say, as the reason of a refusal.
+// Answers with a text, as the reason of a refusal.
 void confess(const std::string& text) {
   answer(packed(message_begin) + packed(static_cast<std::uint32_t>(MessageKind::Refused)) +
          packed(static_cast<std::uint32_t>(text.size())) + text + packed(message_end));
 }
 
-// Deeper and deeper: `depth` keeps the compiler from making a loop of it.
+// Recurses deeper and deeper: `depth` keeps the compiler from making it a loop.
 int recurse(volatile char* above, int depth) {
   volatile char here[4096];
   here[0] = static_cast<char>(depth);
@@ -63,7 +64,7 @@ std::string echoed() {
   return bytes;
 }
 
-// One letter for each thing that it could do: what a hostile file would like.
+// One letter for each forbidden action that succeeded.
 std::string escapes() {
   std::string done;
   const auto note = [&](const char* what, bool was_done) {

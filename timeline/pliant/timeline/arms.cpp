@@ -14,7 +14,7 @@ Arm<D> arm_of(const Tangent<D>& tangent, const Value<D>& slope, double span, boo
   arm.slope = slope;
   if (tangent.kind == Tangent<D>::Kind::Handle) {
     arm.is_vector = true;
-    // Both arms point into the segment; an `in` handle points back from its key.
+    // Both arms point into the segment; an `in` handle points backwards from its key.
     const double direction = is_out ? 1 : -1;
     arm.length = direction * tangent.handle_frames;
     if (arm.length < 0) {

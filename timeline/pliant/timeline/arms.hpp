@@ -9,12 +9,12 @@
 
 namespace pliant::timeline {
 
-/// A tangent as it shapes one segment: how far it reaches into it, and how much it rises there.
+/// A tangent as it shapes one segment: how far it extends into it, and how much it rises there.
 template <int D>
 struct Arm {
   double length = 0;       ///< [frames], >= 0
-  bool is_third = false;   ///< exactly a third of the segment, whatever `length` rounds to
-  bool is_vector = false;  ///< given as a vector: `rise` counts, not `slope`
+  bool is_third = false;   ///< exactly a third of the segment, even if `length` is rounded
+  bool is_vector = false;  ///< given as a vector: `rise` is used, not `slope`
   Value<D> slope = {};     ///< [unit/frame]
   Value<D> rise = {};      ///< over `length` [unit]
 
@@ -32,8 +32,8 @@ struct Arm {
     return rate;
   }
 
-  /// The same arm with another length: a numeric slope stays, a vector is scaled as a whole (one
-  /// without length keeps its rise).
+  /// The same arm with another length: a numeric slope stays the same, a vector is scaled as a
+  /// whole (one of length 0 keeps its rise).
   Arm with_length(double new_length) const {
     Arm arm = *this;
     arm.length = new_length;
@@ -45,8 +45,8 @@ struct Arm {
   }
 };
 
-/// The arm of a tangent in a segment of `span` frames. What the rules changed about it is added to
-/// `changes`, one line each.
+/// The arm of a tangent in a segment of `span` frames. Appends one line to `changes` for each
+/// change that the rules make.
 template <int D>
 Arm<D> arm_of(const Tangent<D>& tangent, const Value<D>& slope, double span, bool is_out,
               std::vector<std::string>& changes);

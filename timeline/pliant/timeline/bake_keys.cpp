@@ -43,7 +43,7 @@ std::optional<CurveError> fault_of(double first, double last, double step,
 }
 
 std::vector<double> frames_of(double first, double last, double step) {
-  // A last step that rounding makes a little short or long still ends on `last`.
+  // The last step ends at `last` even if rounding makes it a little short or long.
   constexpr double tolerance = 1e-9;
   std::vector<double> frames;
   for (double i = 0; first + i * step < last - tolerance * step; ++i) {
@@ -53,7 +53,7 @@ std::vector<double> frames_of(double first, double last, double step) {
   return frames;
 }
 
-/// A curve's slope as a tangent, and that of the straight line where it is infinite.
+/// A curve's slope as a tangent, replaced by that of the straight line if it is infinite.
 template <int D>
 Tangent<D> tangent_of(const Value<D>& slope, const Value<D>& start, const Value<D>& end,
                       double span) {

@@ -7,12 +7,13 @@
 namespace pliant {
 
 /// A key every `step` frames from `first` on, and one at `last`, with the values of the curve and,
-/// for Bezier, its slopes as numbers: a smooth curve is met to fourth order in the step. Where the
-/// curve jumps on such a frame, the key has what it arrives with as `left`; a jump between two of
-/// them takes the whole span, and an infinite slope counts as that of the straight line. The keys
-/// hold on both sides, and what the inner loop and the outsides show is written out.
-/// `next`: Linear or Bezier. Errors: another kind; a number that is not finite; a step that is not
-/// positive; last < first; more than a million keys; keys on one frame after rounding.
+/// for Bezier, its slopes as numbers: for a smooth curve the error is of fourth order in the step.
+/// If the curve jumps at such a frame, `left` of the key is the limit from the left; a jump between
+/// two keys is spread over the whole span, and an infinite slope is replaced by that of the
+/// straight line. The result is constant outside the keys; the inner loop and the copies on both
+/// sides are written out. `next`: Linear or Bezier. Errors: another kind; a number that is not
+/// finite; a step that is not positive; last < first; more than a million keys; keys on one frame
+/// after rounding.
 template <int D>
 [[nodiscard]] tl::expected<CurveKeys<D>, CurveError> bake_keys(
     const Curve<D>& curve, double first, double last, double step,

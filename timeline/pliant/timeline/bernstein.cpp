@@ -17,7 +17,7 @@ double binomial(std::size_t n, std::size_t k) {
   return result;  // exact for the small degrees here
 }
 
-/// de Casteljau at the middle: the left half stays in `polynomial`, the right one is returned.
+/// de Casteljau at the middle: `polynomial` becomes the left half, the right one is returned.
 Bernstein halve(Bernstein& polynomial) {
   Bernstein right = polynomial;
   for (std::size_t round = 0; round + 1 < right.size(); ++round) {
@@ -62,7 +62,7 @@ Bernstein composed(const Bernstein& cubic, const Bernstein& inner) {
 
 Bernstein difference(const Bernstein& outer, const Bernstein& other) {
   Bernstein result = outer;
-  // Times one, which raises the degree.
+  // Multiplied by one, which raises the degree.
   const Bernstein raised = product(other, Bernstein(outer.size() - other.size() + 1, 1.0));
   for (std::size_t i = 0; i < result.size(); ++i) result[i] -= raised[i];
   return result;
@@ -71,7 +71,7 @@ Bernstein difference(const Bernstein& outer, const Bernstein& other) {
 double size_bound(const Bernstein& polynomial, double limit) {
   constexpr double tolerance = 1e-3;
   constexpr int most_halvings = 24;
-  double reached = 0;  // a value that the polynomial has
+  double reached = 0;  // the largest absolute value found
   double bound = 0;
   std::vector<std::pair<Bernstein, int>> parts = {{polynomial, 0}};
   while (!parts.empty()) {

@@ -4,20 +4,20 @@
 
 namespace pliant::timeline {
 
-/// A polynomial over [0, 1] by its Bernstein coefficients, degree + 1 of them. It never leaves the
-/// interval that they span. Source: Farin, Curves and Surfaces for CAGD, chapters 5 and 6.
+/// A polynomial over [0, 1] by its degree + 1 Bernstein coefficients. It never leaves their range.
+/// Source: Farin, Curves and Surfaces for CAGD, chapters 5 and 6.
 using Bernstein = std::vector<double>;
 
 Bernstein product(const Bernstein& a, const Bernstein& b);
 
-/// The cubic with coefficients b0..b3 at the places that `inner` runs through: degree 3·degree.
+/// The cubic with coefficients b0..b3 composed with the polynomial `inner`: degree 3·degree.
 Bernstein composed(const Bernstein& cubic, const Bernstein& inner);
 
-/// outer - other, of which the second may have the lower degree.
+/// outer - other; `other` may have the lower degree.
 Bernstein difference(const Bernstein& outer, const Bernstein& other);
 
-/// An upper bound of the size of a polynomial over [0, 1], at most a thousandth of itself or of
-/// `limit` too large; when the size exceeds `limit` any number between the two.
+/// An upper bound of the maximum norm of a polynomial over [0, 1], too large by at most a
+/// thousandth of the norm or of `limit`; if the norm exceeds `limit`, any number between the two.
 double size_bound(const Bernstein& polynomial, double limit);
 
 }  // namespace pliant::timeline

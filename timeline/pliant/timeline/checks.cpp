@@ -11,7 +11,7 @@ namespace pliant::timeline {
 
 namespace {
 
-/// Looks at one number after the other and remembers the first that breaks a rule.
+/// Checks one number after the other and remembers the first that breaks a rule.
 class Checker {
  public:
   void at_key(std::size_t key) { key_ = key; }

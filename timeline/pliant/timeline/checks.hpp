@@ -7,11 +7,11 @@
 
 namespace pliant::timeline {
 
-/// The greatest size of any number a curve is given. Products of two such numbers stay finite, so
-/// nothing between the keys can overflow.
+/// The largest allowed absolute value of any number of a curve. Products of two such numbers stay
+/// finite, so nothing between the keys can overflow.
 inline constexpr double largest_number = 1e150;
 
-/// The first rule that an author's keys break, if any: see `Curve::make`.
+/// The first rule that the keys of an author break, if any: see `Curve::make`.
 template <int D>
 std::optional<CurveError> broken_rule(const CurveKeys<D>& keys);
 

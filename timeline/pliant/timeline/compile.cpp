@@ -22,11 +22,11 @@ namespace {
 // Rates of change beyond this could overflow when a segment is evaluated.
 constexpr double largest_rate = 1e305;
 
-// Segments shorter than this, in frames, keep their time linear: so near to the least of all
-// numbers their handles are rounded to a few of them.
+// Segments shorter than this, in frames, keep their time linear: their handles would be subnormal,
+// and so rounded to a few of the least numbers.
 constexpr double shortest_bent = 0x1p-900;
 
-/// What a note is about. Copies of a key by the loop repeat its notes; one of each is enough.
+/// The subject of a note. Copies of a key by the loop repeat its notes; only one of each is kept.
 enum class Subject { Left, InTangent, OutTangent, InOvershoot, OutOvershoot, Count };
 
 template <int D>
@@ -107,7 +107,7 @@ class Compiler {
     segment.length = segment.end - segment.start;
     const Value<D>& start = track().values[k];
     const Value<D>& end = track().arrivals[k + 1];
-    // Arms are looked at even where no Bézier segment reads them, for the sake of their notes.
+    // Arms are computed even if no Bézier segment reads them, for their notes.
     const Arm<D> out = arm(k, true, segment.length);
     const Arm<D> in = arm(k + 1, false, segment.length);
     switch (next.kind) {
@@ -185,7 +185,8 @@ class Compiler {
         value_cubics<D>(track().values[k], track().arrivals[k + 1], start_rate, end_rate);
     add_handle(segment.start, track().values[k], out.length, start_rate);
     add_handle(segment.end, track().arrivals[k + 1], -in.length, end_rate);
-    // Thirds within rounding: then time is linear in the parameter, and the cubic one in time.
+    // Thirds except for rounding: then time is linear in the parameter, and the curve a cubic in
+    // time.
     const bool is_linear_in_time =
         (out.is_third || std::fabs(out.length - span / 3) <= 1e-15 * span) &&
         (in.is_third || std::fabs(in.length - span / 3) <= 1e-15 * span);

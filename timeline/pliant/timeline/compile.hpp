@@ -11,7 +11,7 @@
 
 namespace pliant::timeline {
 
-/// A curve ready to evaluate, and what an author would want to know of it.
+/// A curve ready to evaluate, and notes for its author.
 template <int D>
 struct Compiled {
   Extrapolated<D> curve;

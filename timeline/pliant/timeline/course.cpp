@@ -16,7 +16,7 @@ double Course::Meeting::cap() const {
 double Course::Meeting::spline() const {
   if (!has_before) return has_after ? secant_after : 0;
   if (!has_after) return secant_before;
-  // (v_n - v_p)/(t_n - t_p) as a mean of the secants, so that it holds across a seam too.
+  // (v_n - v_p)/(t_n - t_p) as a mean of the secants, so that it works across a seam too.
   const double share_after = length_after / (length_before + length_after);
   return secant_before + (secant_after - secant_before) * share_after;
 }
@@ -31,7 +31,8 @@ Course::Meeting Course::at(std::size_t key, bool is_out) const {
   const std::size_t after = is_last ? 0 : key;
   meeting.has_before = !is_first || is_periodic;
   meeting.has_after = !is_last || is_periodic;
-  // A jump parts its two sides; the outer side of an end key has only the other side to go by.
+  // A jump separates its two sides; the outer side of an end key uses the segment of its other
+  // side.
   if (jumps[key] && meeting.has_before && meeting.has_after) {
     (is_out ? meeting.has_before : meeting.has_after) = false;
   }
@@ -73,7 +74,7 @@ Course course_of(const std::vector<Key<D>>& keys, const Extrapolation<D>& before
   using Kind = typename Extrapolation<D>::Kind;
   const auto is_kind = [&](Kind kind) { return before.kind == kind || after.kind == kind; };
   const bool closes = course.values.front() == course.values.back();
-  // A jump at the seam makes open ends of both sides there, whatever repeats.
+  // A jump at the seam makes both its sides open ends, for every kind of repetition.
   course.is_periodic = keys.size() > 1 && !course.jumps.front() && !course.jumps.back() &&
                        (is_kind(Kind::RepeatOffset) || (is_kind(Kind::Repeat) && closes));
   return course;

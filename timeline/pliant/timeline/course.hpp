@@ -6,19 +6,19 @@
 
 namespace pliant::timeline {
 
-/// What automatic tangents look at: one component of the keys, and the straight lines between them.
+/// The input of automatic tangents: one component of the keys, and the straight lines between them.
 struct Course {
   std::vector<double> values;    ///< of the keys [unit]
-  std::vector<double> arrivals;  ///< what the segment before each key ends with [unit]
-  std::vector<bool> jumps;  ///< whether a key has a `left` that counts: both sides are open ends
+  std::vector<double> arrivals;  ///< end values of the segments before the keys [unit]
+  std::vector<bool> jumps;  ///< whether a key has a `left` that is used: open ends on both sides
   std::vector<double> lengths;  ///< of the segments [frames]
-  std::vector<double> secants;  ///< of the segments, into `arrivals` [unit/frame]
+  std::vector<double> secants;  ///< slopes of the straight lines, to `arrivals` [unit/frame]
   std::vector<bool> is_bezier;  ///< of the segments
-  bool is_periodic = false;     ///< the last segment leads on into the first
+  bool is_periodic = false;     ///< the last segment continues in the first
 
   std::size_t size() const { return values.size(); }
 
-  /// The straight lines that meet at a key as one of its sides sees them.
+  /// The straight lines that meet at a key, as used for one of its sides.
   struct Meeting {
     bool has_before = false;
     bool has_after = false;
@@ -32,9 +32,9 @@ struct Course {
       return !is_open() &&
              !((secant_before > 0 && secant_after > 0) || (secant_before < 0 && secant_after < 0));
     }
-    /// 3 min|s|, eq. 9: cubics with slopes up to here stay monotone.
+    /// 3 min|s|, eq. 9: cubics with slopes up to this are monotone.
     double cap() const;
-    /// The slope across both segments, eq. 7; at an open end the secant, without neighbours 0.
+    /// The slope across both segments, eq. 7; at an open end the secant; without neighbours 0.
     double spline() const;
   };
   Meeting at(std::size_t key, bool is_out) const;
@@ -43,14 +43,14 @@ struct Course {
   double range() const;
 };
 
-/// Which keys have a `left` that counts: not after a step.
+/// Whether a key has a `left` that is used: not after a step.
 template <int D>
 bool has_jump(const std::vector<Key<D>>& keys, std::size_t key) {
   if (!keys[key].left) return false;
   return key == 0 || keys[key - 1].next.kind != Interpolation::Kind::Step;
 }
 
-/// Component c of keys. Periodic when a side repeats so that the curve goes on smoothly.
+/// Component c of keys. Periodic if one side repeats with a smooth transition.
 template <int D>
 Course course_of(const std::vector<Key<D>>& keys, const Extrapolation<D>& before,
                  const Extrapolation<D>& after, int c);

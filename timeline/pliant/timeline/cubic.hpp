@@ -5,8 +5,8 @@
 
 namespace pliant::timeline {
 
-/// The polynomial c0 + c1 q + c2 q² + c3 q³, where q in [0, 1/2] counts from the nearer end of a
-/// segment: so both ends are met exactly and rounding grows from neither (docs/timeline.md, eq. 4).
+/// The polynomial c0 + c1 q + c2 q² + c3 q³, where q in [0, 1/2] is counted from the nearer end of
+/// a segment: both end values are exact and rounding grows from neither (docs/timeline.md, eq. 4).
 struct Cubic {
   double c0 = 0;
   double c1 = 0;
@@ -18,16 +18,16 @@ struct Cubic {
   double half_curvature(double q) const { return c2 + q * (3 * c3); }
 };
 
-/// A slope that is beyond all numbers only because its keys are so close: the largest number of its
-/// sign in its place.
+/// Replaces a slope that overflows, as happens only if its keys are very close, by the largest
+/// number of its sign.
 inline double within_numbers(double slope) {
   constexpr double most = std::numeric_limits<double>::max();
   return std::fabs(slope) > most ? std::copysign(most, slope) : slope;
 }
 
-/// Slope dy/dx of the curve (x(q), y(q)) for growing q: where the first derivatives vanish together
-/// the next ones decide (L'Hôpital). Infinite at a vertical, 0 where nothing moves.
-/// Requires: x does not fall.
+/// Slope dy/dx of the curve (x(q), y(q)) for growing q: if both first derivatives are 0, the next
+/// ones are used (L'Hôpital). Infinite at a vertical tangent, 0 if both x and y are constant.
+/// Requires: x does not decrease.
 inline double slope_of_curve(const Cubic& x, const Cubic& y, double q) {
   const double x_orders[] = {x.slope(q), x.half_curvature(q), x.c3};
   const double y_orders[] = {y.slope(q), y.half_curvature(q), y.c3};

@@ -46,7 +46,7 @@ Curve<D>::~Curve() = default;
 
 template <int D>
 Value<D> Curve<D>::value(double frame) const {
-  // Between two keys nothing else has a say.
+  // Between the keys no side is involved.
   const timeline::Track<D>& track = compiled_.track;
   if (frame > track.first() && frame < track.last()) {
     const timeline::Segment<D>& here = track.segments[track.segment_at(frame)];

@@ -26,23 +26,22 @@ using ValueRange = timeline::Bounds<D>;
 
 /// A keyframe curve with D components as a function of the frame: keys compiled into segments that
 /// are cheap and exact to evaluate. An immutable value, safe to share between threads; evaluation
-/// neither allocates nor locks. The rules are told in docs/timeline.md.
+/// neither allocates nor locks. The rules are in docs/timeline.md.
 ///
-/// Between the keys a value is finite, whatever the keys. Outside them a slope or an offset may
-/// carry it to infinity, and the velocity is infinite at a vertical tangent; the caller checks. A
-/// frame that is NaN gives NaN, and nothing else does.
+/// Between the keys a value is finite for all keys. Outside them a slope or an offset may make it
+/// infinite, and the velocity is infinite at a vertical tangent; the caller checks. The value is
+/// NaN only for a frame that is NaN.
 template <int D>
 class Curve {
  public:
   /// Errors, naming the key: no keys; a number that is not finite or beyond 1e150; a frame not
   /// greater than the one before; x1 or x2 of cubicBezier outside [0, 1]; more than 1e15 periods of
   /// an elastic in its segment; overshoot = Error and a tangent that makes time run backwards; a
-  /// count of copies that is not a whole number >= 1; a loop that does not start at a key, does not
-  /// end after it, has a negative number of copies or writes out more than a million keys, or two
+  /// number of copies that is not an integer >= 1; a loop that does not start at a key, does not
+  /// end after it, has a negative number of copies, or writes out more than a million keys or two
   /// on one frame; keys so close that the slope between them overflows. Notes (legal): a negative
-  /// length, which counts as 0; a handle that points backwards, which counts as none; a tangent
-  /// that `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without
-  /// copies.
+  /// length, which counts as 0; a handle that points backwards, which is ignored; a tangent that
+  /// `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without copies.
   [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
 
   Curve(const Curve&);
@@ -57,15 +56,16 @@ class Curve {
   Value<D> left_velocity(
       double frame) const;  ///< the limit of the slope from the left [unit/frame]
 
-  /// The least and greatest value over [from, to], from closed-form extrema, and the one-sided
-  /// limits inside. Cost: that of the keys in between; loops count once, however many copies.
+  /// The least and greatest value over [from, to], from closed-form extrema, including the
+  /// one-sided limits inside. The cost grows with the number of keys in between; a loop counts once
+  /// for any number of copies.
   ValueRange<D> range(double from, double to) const;
 
   const CurveKeys<D>& keys() const { return keys_; }
   const std::vector<CurveNote>& notes() const { return notes_; }
 
-  /// The handles of the Bézier segments, those of a loop's copies too, in the order of frames: to
-  /// draw the curve as its author thinks of it.
+  /// The handles of the Bézier segments, including those of a loop's copies, in the order of
+  /// frames: for drawing the curve as its author sees it.
   const std::vector<KeyHandle<D>>& handles() const { return handles_; }
 
  private:

@@ -5,13 +5,14 @@
 
 namespace pliant {
 
-/// Why keys make no curve.
+/// The reason why keys do not form a curve.
 struct CurveError {
-  std::size_t key = 0;  ///< index of the key at fault
+  std::size_t key = 0;  ///< index of the wrong key
   std::string message;  ///< one line: the thing, the value, the rule
 };
 
-/// Something the rules changed or left without effect; legal, but an author would want to know.
+/// Something that the rules changed or that has no effect; legal, but worth reporting to the
+/// author.
 struct CurveNote {
   std::size_t key = 0;  ///< index of the key
   std::string message;  ///< one line; for a shortened tangent with its old and new length [frames]

@@ -32,8 +32,8 @@ int degree(Ease ease) {
   }
 }
 
-// The four arcs of a ball that comes to rest (docs/timeline.md, eq. 20), in units of 1/2.75:
-// each parabola stands over [start, next start) with its foot at `foot`.
+// The four arcs of a ball that comes to rest (docs/timeline.md, eq. 20), in units of 1/2.75: each
+// parabola covers [start, next start) with its foot at `foot`.
 struct Arc {
   double start;
   double foot;
@@ -64,16 +64,16 @@ Easing::Easing(const Interpolation& interpolation, double length, double change)
   overshoot_ = interpolation.back.value_or(1.70158) * (is_both ? 1.525 : 1.0);
   if (ease_ != Ease::Elastic) return;
   double period = interpolation.period.value_or(0);
-  // Of the length and the period only the ratio counts; what is tiny is scaled up, which is exact,
-  // lest a third of the least of all numbers becomes 0.
+  // Only the ratio of the length and the period matters; tiny numbers are scaled up, which is
+  // exact, so that a third of a tiny number does not underflow to 0.
   if (length < 0x1p-900) {
     length *= 0x1p+600;
     period *= 0x1p+600;
   }
   length_ = length;
   period_ = period != 0 ? period : (is_both ? 0.45 : 0.3) * length;
-  // Without a change of value nothing swings, whatever the amplitude.
-  // Beyond 1e300 the swing of a tiny change is cut short rather than lost to infinity.
+  // Without a change of value nothing swings, for any amplitude. Beyond 1e300 the swing of a tiny
+  // change is clamped so that it does not overflow.
   const double relative =
       interpolation.amplitude && change != 0
           ? std::clamp(*interpolation.amplitude / std::fabs(change), -1e300, 1e300)
@@ -97,8 +97,8 @@ bool Easing::is_sound(const Interpolation& interpolation, double length) {
 }
 
 Easing::Share Easing::share(Progress at) const {
-  // Out(u) = 1 - In(1-u) and both halves of InOut, eq. 14. What is still to do is returned as such:
-  // then the end of the segment is met as exactly as its start.
+  // Out(u) = 1 - In(1-u) and both halves of InOut, eq. 14. The part still to do is returned as
+  // such: the end of the segment is then as exact as its start.
   switch (side_) {
     case EaseSide::In:
       return {ease_in(at), true};
@@ -178,8 +178,8 @@ double Easing::ease_in_slope(Progress at, double scale) const {
   return scale;
 }
 
-// Elastic, eq. 22: In = -f A' 2^(10(u-1)) sin(2π (w/p - s/p)) with w = (u-1) L; here w/p is minus
-// the periods still to come, and shift_ = s/p.
+// Elastic, eq. 22: In = -f A' 2^(10(u-1)) sin(2π (w/p - s/p)) with w = (u-1) L; here -w/p is the
+// number of remaining periods, and shift_ = s/p.
 
 double Easing::elastic(Progress at) const {
   const double frames_left = at.left * length_;
@@ -246,21 +246,21 @@ void Easing::add_extrema_of_ease_in(double from, double to, Places& places) cons
     for (const Arc& arc : arcs) {
       if (arc.start > 0) places.add(1 - arc.start / 2.75);
     }
-    // Of the feet the earliest in time bounds the others; but a part of the segment may hold one
-    // foot only, so all three stand here.
+    // The earliest foot bounds the others; but a part of the segment may contain only one foot, so
+    // all three are added.
     for (const Arc& arc : arcs) {
       if (arc.foot > 0) places.add(1 - arc.foot / 2.75);
     }
   } else if (ease_ == Ease::Elastic) {
-    places.add(0x1p-50);  // In(0) = 0 by rule, but In starts beside it: a step of up to A'/1024
+    places.add(0x1p-50);  // In(0) = 0 by definition, but In jumps there by up to A'/1024
     add_extrema_of_elastic(from, to, places);
   }
 }
 
 void Easing::add_extrema_of_elastic(double from, double to, Places& places) const {
-  // Where f is constant, In' = 0 means tan(θ) = -(2π/p) L / log_1024 (eq. 23). Extrema follow each
-  // other by half a period and grow towards the end by the same ratio, so the last two before `to`,
-  // and before the ramp of f, bound all before them.
+  // If f is constant, In' = 0 means tan(θ) = -(2π/p) L / log_1024 (eq. 23). Extrema are half a
+  // period apart and grow towards the end by a constant ratio, so the last two before `to`, and
+  // before the ramp of f, bound all before them.
   const double turns_per_unit = length_ / period_;
   const double steepness = 2 * pi * turns_per_unit / log_1024;
   const double lead = -asin_of(steepness / std::sqrt(1 + steepness * steepness)) / (2 * pi);
@@ -282,7 +282,7 @@ void Easing::add_extrema_of_elastic(double from, double to, Places& places) cons
   add_last_before(std::min(to, ramp));
   if (ramp > from && ramp < to) places.add(ramp);
   // On the ramp f falls from 1 to A within a quarter of a period, where the wave keeps its sign:
-  // the slope has at most two zeros there. They are found between the signs of a fine scan.
+  // the slope has at most two zeros there. They are found between sign changes of a fine scan.
   constexpr int parts = 64;
   double left = std::max(from, ramp);
   const double step = (std::min(to, 1.0) - left) / parts;

@@ -6,44 +6,44 @@
 
 namespace pliant::timeline {
 
-/// A position in a segment as seen from both ends: passed + left = 1, each with its own digits.
+/// A position in a segment, measured from both ends: passed + left = 1, each with full precision.
 struct Progress {
   double passed = 0;
   double left = 1;
 };
 
-/// One easing of a segment, ready to evaluate: the share of the change of value that is done at a
+/// One easing of a segment, ready to evaluate: the part of the change of value that is done at a
 /// time, and its slope (docs/timeline.md, eq. 14 to 23).
 class Easing {
  public:
-  /// Requires: length > 0; `change` is the segment's change of value (elastic counts its amplitude
-  /// against it); is_sound(interpolation, length).
+  /// Requires: length > 0; `change` is the segment's change of value (an elastic's amplitude is
+  /// relative to it); is_sound(interpolation, length).
   Easing(const Interpolation& interpolation, double length, double change);
 
-  /// Whether the numbers of an elastic stay finite: its segment holds at most 1e15 periods.
+  /// Whether the numbers of an elastic stay finite: its segment contains at most 1e15 periods.
   static bool is_sound(const Interpolation& interpolation, double length);
 
-  /// Share done [1], counted from the nearer end: from the start while `from_start`, else what is
-  /// still to do.
+  /// Part of the change [1], counted from the nearer end: the part done if `is_from_start`, else
+  /// the part still to do.
   struct Share {
     double amount = 0;
     bool is_from_start = true;
   };
   Share share(Progress at) const;
 
-  /// Whether components with another change ease differently.
+  /// Whether the easing depends on the change of a component.
   bool is_elastic() const { return ease_ == Ease::Elastic; }
 
-  /// scale * d(share)/d(passed) [1]; infinite at the steep end of circ. An elastic whose amplitude
-  /// is large against its change needs the change as the scale to stay within numbers.
+  /// scale * d(share)/d(passed) [1]; infinite at the steep end of circ. For an elastic whose
+  /// amplitude is large relative to its change, the scale must be the change, or the result
+  /// overflows.
   double slope(Progress at, double scale = 1) const;
 
-  /// Whether the slope is infinite by itself.
+  /// Whether the slope is infinite itself, not by overflow.
   bool is_upright(Progress at) const;
 
-  /// The places in (0, 1) where the share may have an extremum, and how many of them count: those
-  /// that bound the share in [from, to]. The waves of an elastic shrink, so that its largest
-  /// suffice.
+  /// The places in (0, 1) where the share may have an extremum that bounds the share in [from, to],
+  /// and their number. The waves of an elastic shrink, so its largest ones suffice.
   struct Places {
     std::array<double, 12> passed = {};
     int count = 0;

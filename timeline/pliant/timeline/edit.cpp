@@ -28,7 +28,7 @@ bool has_copies(const CurveKeys<D>& keys) {
   return keys.loop && (keys.loop->before > 0 || keys.loop->after > 0);
 }
 
-/// Whether an author wrote a tangent's place in full, so that it does not follow its segment.
+/// Whether a tangent is given completely, so that it does not depend on its segment.
 template <int D>
 bool is_written(const Tangent<D>& tangent) {
   using Kind = typename Tangent<D>::Kind;
@@ -36,7 +36,7 @@ bool is_written(const Tangent<D>& tangent) {
   return tangent.length && (tangent.kind == Kind::Slope || tangent.kind == Kind::Flat);
 }
 
-/// Lengthens the handles beside a key so that the curve needs it no longer, where that can be.
+/// Lengthens the handles beside a key so that the curve does not need the key, if possible.
 template <int D>
 void join_around(std::size_t key, CurveKeys<D>& keys) {
   constexpr auto bezier = Interpolation::Kind::Bezier;
@@ -89,7 +89,7 @@ tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t k
     moved.value[c] += rise[c];
     if (moved.left) (*moved.left)[c] += rise[c];
   }
-  return Curve<D>::make(std::move(keys));  // which looks for numbers that are not finite
+  return Curve<D>::make(std::move(keys));  // checks that the numbers are finite
 }
 
 template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);

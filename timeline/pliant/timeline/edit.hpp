@@ -9,36 +9,36 @@
 
 namespace pliant {
 
-// Edits of curves: values in, values out. What each one guarantees is told in docs/timeline.md,
-// section "Editing". Besides the errors named here each may end with one of `Curve::make`, as when
+// Edits of curves: values in, values out. docs/timeline.md, section "Editing", lists the guarantees
+// of each. Besides the errors named here, each may fail with one of `Curve::make`, for example if
 // rounding puts two keys on one frame or a number exceeds 1e150.
 //
-// An edit must often write an automatic tangent as a number, because it would follow its new
-// neighbours; those that stay the same keep their kind.
+// An edit must often write an automatic tangent as a number, because its slope would change with
+// its new neighbours; tangents that stay the same keep their kind.
 
-/// The same curve with a key more, at `frame`; the same keys when there is one already. Bézier and
-/// cubicBezier segments are split, quad, cubic, back and bounce become Bézier segments with a key
-/// at each of their joints. An inner loop with copies is written out.
-/// Errors: a frame that is not finite; a segment of another easing, naming its left key; a frame
-/// before or after the keys when one side shows copies of them.
+/// The same curve with one more key, at `frame`; the same keys if there is one already. Bézier and
+/// cubicBezier segments are split; quad, cubic, back and bounce become Bézier segments with a key
+/// at each of their joints. An inner loop with copies is written out. Errors: a frame that is not
+/// finite; a segment of another easing, naming its left key; a frame before or after the keys if
+/// one side repeats them.
 template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame);
 
-/// The curve without one of its keys: the segment before it goes on to the next key, and automatic
-/// tangents follow their new neighbours. Where two Bézier segments with written tangents of general
-/// length are the halves of one, as `insert_key` leaves them, the tangents beside them are
-/// lengthened again and the curve stays the same.
-/// Errors: no such key; the only key; the key that an inner loop starts from.
+/// The curve without one of its keys: the segment before it is extended to the next key, and
+/// automatic tangents follow their new neighbours. If two Bézier segments with written tangents of
+/// general length are the halves of one, as after `insert_key`, the tangents beside them are
+/// lengthened again and the curve stays the same. Errors: no such key; the only key; the key at
+/// which an inner loop starts.
 template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key);
 
-/// How much higher, for each component [unit]. Left out of the deduction of D.
+/// Change of value, for each component [unit]. Not used to deduce D.
 template <int D>
 using Rise = std::type_identity_t<Value<D>>;
 
-/// The curve with one key moved by `frames`, its value and `left` raised by `rise`; the rest is
-/// what the rules make of it. An inner loop that starts from the key follows; its end stays.
-/// Errors: no such key; a number that is not finite; a frame not between those of its neighbours.
+/// The curve with one key moved by `frames`, its value and `left` raised by `rise`; the rest
+/// follows from the rules. An inner loop that starts at the key is adjusted; its end stays. Errors:
+/// no such key; a number that is not finite; a frame not between those of its neighbours.
 template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key,
                                                           double frames, const Rise<D>& rise);
@@ -71,11 +71,11 @@ template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve,
                                                        const Scaling<D>& scaling);
 
-/// The curve run backwards: g(t) = f(2·pivot - t), and the values on both sides of a jump change
-/// places. On the frame of a jump itself a curve has the value that it goes on with, so there alone
-/// g has what f arrives with.
-/// Errors: a pivot that is not finite; a side that repeats for a number of copies and then holds
-/// the value of an end key that jumps, which no key of the reversed curve can hold.
+/// The curve run backwards: g(t) = f(2·pivot - t), with the values on both sides of a jump
+/// exchanged. On the frame of a jump a curve has its new value, so at that frame alone g has the
+/// limit of f from the left. Errors: a pivot that is not finite; a side that repeats for a number
+/// of copies and then holds the value of an end key that jumps, which no key of the reversed curve
+/// can express.
 template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot);
 

@@ -11,7 +11,7 @@ struct Pair {
 };
 
 // Error-free transformations: the pair equals the exact result. They need neither a fused
-// multiply-add nor a wider type, so they give the same bits everywhere. Source: Dekker, A
+// multiply-add nor a wider type, so they are bit-identical everywhere. Source: Dekker, A
 // floating-point technique for extending the available precision; Knuth, TAOCP 2, 4.2.2.
 
 inline Pair exact_sum(double a, double b) {
@@ -39,7 +39,8 @@ inline Pair exact_product(double a, Pair a_halves, double b, Pair b_halves) {
 
 inline Pair exact_product(double a, double b) { return exact_product(a, halves(a), b, halves(b)); }
 
-// Sums and multiples of pairs, right to about 2^-104: enough for what is computed once per segment.
+// Sums and multiples of pairs, accurate to about 2^-104: enough for values computed once per
+// segment.
 
 inline Pair operator+(Pair a, Pair b) {
   const Pair sum = exact_sum(a.high, b.high);

@@ -53,7 +53,7 @@ void Extrapolated<D>::add_bounds_outside(const Outside<D>& side, double from, do
     farthest -= 1;
   }
   if (farthest > side.count) {
-    bounds.add(value(far, Limit::At, locate));  // what is held after the last copy
+    bounds.add(value(far, Limit::At, locate));  // the constant value after the last copy
     farthest = side.count;
     far_phase = span;
   }
@@ -63,7 +63,7 @@ void Extrapolated<D>::add_bounds_outside(const Outside<D>& side, double from, do
     const bool is_reversed = side.mode == Outside<D>::Mode::Mirror && std::fmod(copy, 2) == 1;
     const bool counts_from_first = side.is_before == is_reversed;
     typename Track<D>::Interval part;
-    // The joint nearer to the keys belongs to the copy before.
+    // The joint nearer to the keys belongs to the copy nearer to them.
     if (counts_from_first) {
       part = {first + phase_from, phase_to == span ? last : first + phase_to, phase_from > 0, true};
     } else {
@@ -90,7 +90,7 @@ void Extrapolated<D>::add_bounds_outside(const Outside<D>& side, double from, do
   }
   add_copy(nearest, near_phase, span);
   add_copy(farthest, 0, far_phase);
-  // Whole copies differ by their offset alone, so the outermost of them bound the others.
+  // Whole copies differ only by their offset, so the outermost ones bound the others.
   if (farthest - nearest >= 2) {
     add_copy(nearest + 1, 0, span);
     add_copy(farthest - 1, 0, span);

@@ -7,7 +7,7 @@
 
 namespace pliant::timeline {
 
-/// What a curve does beyond one of its end keys, compiled.
+/// The behaviour of a curve beyond one of its end keys, compiled.
 template <int D>
 struct Outside {
   enum class Mode { Line, Repeat, Mirror };
@@ -15,13 +15,13 @@ struct Outside {
   bool is_before = false;
   Value<D> anchor = {};  ///< Line: the value it starts from [unit]
   Value<D> slope = {};   ///< Line: [unit/frame]
-  Value<D> offset = {};  ///< Repeat: how much each later copy stands higher [unit]
-  double count = 0;      ///< loops: copies, infinite without end
+  Value<D> offset = {};  ///< Repeat: how much each copy is raised over the one before [unit]
+  double count = 0;      ///< loops: number of copies, infinite if endless
 };
 
 /// A track with both its sides: a value at every finite frame (docs/timeline.md, section "Outside
-/// the keys"). `locate` gives the segment of a frame between the keys; a search, or a guess that is
-/// checked first.
+/// the keys"). `locate` returns the segment of a frame between the keys, by a search, or by a guess
+/// that is checked first.
 template <int D>
 struct Extrapolated {
   Track<D> track;
@@ -35,7 +35,7 @@ struct Extrapolated {
   template <class Locate>
   Value<D> velocity(double frame, Limit limit, const Locate& locate) const;
 
-  /// Every value in [from, to], and the one-sided limits inside.
+  /// The range of all values in [from, to], including the one-sided limits inside.
   Bounds<D> bounds(double from, double to) const;
 
  private:

@@ -6,18 +6,18 @@
 
 namespace pliant::timeline {
 
-/// Where a frame in a loop falls among the keys.
+/// The frame between the keys that corresponds to a frame in a loop.
 template <int D>
 struct Extrapolated<D>::Place {
   double frame = 0;          ///< between the keys
-  Limit limit = Limit::At;   ///< turned round in a mirrored copy
-  double copy = 0;           ///< offsets to add: negative before the keys
+  Limit limit = Limit::At;   ///< exchanged in a mirrored copy
+  double copy = 0;           ///< number of offsets to add: negative before the keys
   bool is_reversed = false;  ///< time runs backwards in this copy
-  bool is_held = false;      ///< after the last copy: the value stands still
+  bool is_held = false;      ///< after the last copy: the value is constant
 };
 
-/// The side that answers for a frame, or none when the keys do. On an end key that is the limit
-/// from outside.
+/// The side that gives the value at a frame, or null if the keys give it. At an end key, a side
+/// gives the limit from outside.
 template <int D>
 const Outside<D>* Extrapolated<D>::outside_of(double frame, Limit limit) const {
   if (frame < track.first() || (frame == track.first() && limit == Limit::Left)) return &before;
@@ -28,9 +28,9 @@ const Outside<D>* Extrapolated<D>::outside_of(double frame, Limit limit) const {
 template <int D>
 typename Extrapolated<D>::Place Extrapolated<D>::place_in_loop(const Outside<D>& side, double frame,
                                                                Limit limit) const {
-  // The distance d from the end key, outwards: copy k holds ((k-1) span, k span]; only the limit
-  // from farther out belongs to the next copy on a joint. fmod is exact, so that joints are met and
-  // phases do not drift however far away.
+  // The distance d from the end key, outwards: copy k is ((k-1) span, k span]; on a joint, only the
+  // limit from farther out belongs to the next copy. fmod is exact, so joints are exact and phases
+  // do not drift at any distance.
   const double first = track.first();
   const double last = track.last();
   const double span = last - first;
@@ -49,7 +49,7 @@ typename Extrapolated<D>::Place Extrapolated<D>::place_in_loop(const Outside<D>&
   Place place;
   place.limit = limit;
   if (copy > side.count) {
-    // The value with which the last copy ended.
+    // The value at the end of the last copy.
     copy = side.count;
     phase = span;
     is_odd = std::fmod(copy, 2) == 1;
@@ -85,7 +85,7 @@ Value<D> Extrapolated<D>::value(double frame, Limit limit, const Locate& locate)
   if (side->mode == Outside<D>::Mode::Line) {
     const double distance = frame - (side->is_before ? track.first() : track.last());
     for (int c = 0; c < D; ++c) {
-      // A level line stays level at infinity too.
+      // A level line is level at infinity too.
       value[c] =
           side->slope[c] != 0 ? side->anchor[c] + side->slope[c] * distance : side->anchor[c];
     }

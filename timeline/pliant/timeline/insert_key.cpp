@@ -23,12 +23,12 @@ std::string name_of(const Interpolation& easing) {
   return std::string(names[static_cast<int>(easing.ease)]) + sides[static_cast<int>(easing.side)];
 }
 
-/// Whether an easing is a row of cubics (docs/timeline.md, eq. 16, 19, 20).
+/// Whether an easing is made of cubics (docs/timeline.md, eq. 16, 19, 20).
 bool is_row_of_cubics(Ease ease) {
   return ease == Ease::Quad || ease == Ease::Cubic || ease == Ease::Back || ease == Ease::Bounce;
 }
 
-/// Where the cubics of an easing meet, as shares of the segment.
+/// The places where the cubics of an easing meet, as shares of the segment.
 std::vector<double> joints_of(const Interpolation& easing) {
   std::vector<double> in;
   if (easing.ease == Ease::Bounce) in = {1 - 2.5 / 2.75, 1 - 2 / 2.75, 1 - 1 / 2.75};
@@ -45,7 +45,7 @@ std::vector<double> joints_of(const Interpolation& easing) {
   return joints;
 }
 
-/// Puts one key, or what it takes, into keys without a loop, and keeps track of their shape.
+/// Inserts one key, or all that are needed, into keys without a loop, and updates their shape.
 template <int D>
 class Insertion {
  public:
@@ -95,18 +95,18 @@ class Insertion {
                               (side == &result_.before ? "before" : "after") +
                               " shows copies; a key there would become part of every copy"};
       }
-      *side = {};  // of a single key
+      *side = {};  // for a single key
     }
     Extrapolation<D>& side = is_before ? result_.before : result_.after;
     const Value<D> slope = is_before ? shape_.before : shape_.after;
     const std::size_t old_end = is_before ? 0 : keys().size() - 1;
-    // The old end key's outer tangent is no longer read.
+    // The old end key's outer tangent is not read any more.
     (is_before ? shape_.keys[old_end].in : shape_.keys[old_end].out).reset();
     if (!is_before) keys()[old_end].next = {.kind = Interpolation::Kind::Linear};
     Key<D>& key = add(is_before ? 0 : keys().size(), frame_, Interpolation::Kind::Linear);
     (is_before ? key.in : key.out) = slope_tangent<D>(slope);
     if (side.kind == Outer::Linear) {
-      side.kind = Outer::Slope;  // the slope to the bit, not what the new segment rounds it to
+      side.kind = Outer::Slope;  // the exact slope, not the rounded one of the new segment
       side.slope = slope;
     }
     return std::nullopt;
@@ -135,7 +135,7 @@ class Insertion {
     return std::nullopt;
   }
 
-  /// A cubic in time: its parts are cubics in time again, with the slopes of the curve.
+  /// A cubic in time: its parts are again cubics in time, with the slopes of the curve.
   void split_even(std::size_t k) {
     const Segment<D>& segment = track_.segments[k];
     Value<D> start;
@@ -151,7 +151,7 @@ class Insertion {
     key.in = key.out = slope_tangent<D>(curve_.velocity(frame_));
   }
 
-  /// A tangent with the default length may stay as it is: `preserved` looks after its slope.
+  /// A tangent with the default length may stay the same: `preserved` keeps its slope.
   static void set_even(Tangent<D>& tangent, const Interpolation& next, const Value<D>& slope) {
     const bool is_read = next.kind == Interpolation::Kind::Bezier;
     if (is_read && tangent.kind != Tangent<D>::Kind::Handle && !tangent.length) return;
@@ -164,7 +164,7 @@ class Insertion {
     const double right = keys()[k + 1].frame - frame_;
     if (result_.overshoot == Overshoot::Contain &&
         (is_long(parts.left, left) || is_long(parts.right, right))) {
-      // A part may bend more boldly than `contain` allows, though time runs forwards in it.
+      // A part may be outside the limits of `contain`, although time runs forwards in it.
       write_corrections(result_, Overshoot::Contain);
       result_.overshoot = Overshoot::Limit;
     }
@@ -215,8 +215,8 @@ class Insertion {
     return std::nullopt;
   }
 
-  /// Gives the cubic that runs between two keys its slopes at both ends. The slope of a cubic is a
-  /// parabola, here the one through three places inside: at a joint itself an easing may have two.
+  /// Gives the cubic between two keys its slopes at both ends. The slope of a cubic is a parabola,
+  /// here computed from three places inside: at a joint itself an easing may have two slopes.
   void shape_cubic(Key<D>& left, Key<D>& right) const {
     const double span = right.frame - left.frame;
     const Value<D> first = curve_.velocity(left.frame + span / 4);

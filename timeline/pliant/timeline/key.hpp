@@ -17,11 +17,11 @@ enum class Ease { Sine, Quad, Cubic, Quart, Quint, Expo, Circ, Back, Bounce, Ela
 /// At which end of its segment an easing is slow.
 enum class EaseSide { In, Out, InOut };
 
-/// How a curve goes from one key to the next.
+/// The interpolation between a key and the next one.
 struct Interpolation {
   enum class Kind {
     Step,      ///< holds this key's value
-    StepNext,  ///< takes the next key's value just after this key
+    StepNext,  ///< has the next key's value just after this key
     Linear,
     Bezier,       ///< shaped by this key's `out` and the next key's `in`
     Easing,       ///< `ease` and `side`
@@ -44,11 +44,11 @@ struct Tangent {
   enum class Kind { Auto, Spline, Linear, Flat, Clamped, Plateau, Smooth, Free, Slope, Handle };
   Kind kind = Kind::Auto;
   Value<D> slope = {};                ///< read by Slope [unit/frame]
-  std::optional<double> length = {};  ///< how far the tangent reaches [frames]; negative
-                                      ///< counts as 0; absent: a third of the segment, which makes
-                                      ///< a cubic in time. Not read by Handle.
+  std::optional<double> length = {};  ///< how far the tangent extends [frames]; negative counts as
+                                      ///< 0; absent: a third of the segment, which makes a cubic in
+                                      ///< time. Not read by Handle.
   double handle_frames = 0;           ///< read by Handle, relative to the key: <= 0 for `in`, >= 0
-                                      ///< for `out`; pointing the other way it counts as none
+                                      ///< for `out`; ignored if it points the other way
   Value<D> handle_value = {};         ///< read by Handle, relative to the key [unit]
 
   friend bool operator==(const Tangent&, const Tangent&) = default;
@@ -62,28 +62,28 @@ struct Key {
   Interpolation next = {};  ///< the segment that starts here
   Tangent<D> in = {};
   Tangent<D> out = {};
-  std::optional<Value<D>> left = {};  ///< what the curve arrives with when it jumps at this key
+  std::optional<Value<D>> left = {};  ///< the limit from the left if the curve jumps at this key
 
   friend bool operator==(const Key&, const Key&) = default;
 };
 
-/// What happens to Bézier tangents that would make time run backwards; the rules are in
+/// How to correct Bézier tangents that would make time run backwards; the rules are in
 /// docs/timeline.md.
 enum class Overshoot { Limit, KeepStart, Contain, Error };
 
-/// What a curve does on one side of its keys.
+/// The behaviour of a curve on one side of its keys.
 template <int D>
 struct Extrapolation {
   enum class Kind { Hold, Linear, LinearOuter, Slope, Repeat, RepeatOffset, Mirror };
   Kind kind = Kind::Hold;
   Value<D> slope = {};               ///< read by Slope [unit/frame]
-  std::optional<double> count = {};  ///< copies of a loop, a whole number >= 1; absent: without end
+  std::optional<double> count = {};  ///< copies of a loop, an integer >= 1; absent: endless
 
   friend bool operator==(const Extrapolation&, const Extrapolation&) = default;
 };
 
-/// An inner loop: the keys in [from, to) stand again `before` times ahead of `from` and `after`
-/// times behind `to`, copy n moved by n times `offset`.
+/// An inner loop: the keys in [from, to) are repeated `before` times before `from` and `after`
+/// times after `to`, copy n moved by n times `offset`.
 template <int D>
 struct Loop {
   double from = 0;  ///< the frame of a key
@@ -95,7 +95,7 @@ struct Loop {
   friend bool operator==(const Loop&, const Loop&) = default;
 };
 
-/// All that an author says of a curve.
+/// The complete description of a curve by its author.
 template <int D>
 struct CurveKeys {
   std::vector<Key<D>> keys;  ///< at least one, frames strictly increasing

@@ -5,7 +5,7 @@ namespace pliant::timeline {
 KeySearch::KeySearch(const std::vector<double>& frames) : first_(frames.front()) {
   const std::size_t buckets = frames.size();
   const double span = frames.back() - frames.front();
-  // Keys may lie so close that this overflows: then all but the first share the last bucket.
+  // If keys are so close that this overflows, all but the first share the last bucket.
   buckets_per_frame_ = span > 0 ? static_cast<double>(buckets) / span : 0;
   last_bucket_ = static_cast<double>(buckets - 1);
   last_segment_ = frames.size() > 1 ? frames.size() - 2 : 0;

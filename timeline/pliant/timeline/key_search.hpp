@@ -7,8 +7,8 @@
 
 namespace pliant::timeline {
 
-/// Finds the segment of a frame. As many buckets as keys, evenly spread over time, narrow the
-/// search down: one step for even keys, O(log keys) for any.
+/// Finds the segment of a frame. As many buckets as keys, evenly spread over time, limit the
+/// search: one step for evenly spaced keys, O(log keys) for any keys.
 class KeySearch {
  public:
   KeySearch() = default;
@@ -16,12 +16,12 @@ class KeySearch {
   /// Requires: frames strictly increasing, at least one, at most 2^31.
   explicit KeySearch(const std::vector<double>& frames);
 
-  /// The last key at or before a frame, but for the very last key. Requires: `frames` as given to
-  /// the constructor, frames.front() <= frame. Anything else gives some valid index.
+  /// The last key at or before a frame, except the very last key. Requires: `frames` is that of the
+  /// constructor, frames.front() <= frame. Otherwise returns some valid index.
   std::size_t segment_at(const std::vector<double>& frames, double frame) const {
     const std::size_t bucket = bucket_of(frame);
-    // Keys of earlier buckets lie before the frame, those of later ones behind it, for bucket_of
-    // never falls from frame to frame.
+    // Keys of earlier buckets are before the frame, those of later ones after it, because bucket_of
+    // is non-decreasing.
     const double* base = frames.data() + reach_[bucket];
     for (std::size_t count = 1 + reach_[bucket + 1] - reach_[bucket]; count > 1;) {
       const std::size_t half = count / 2;
@@ -35,7 +35,7 @@ class KeySearch {
  private:
   std::size_t bucket_of(double frame) const {
     const double position = (frame - first_) * buckets_per_frame_;
-    // Written so that NaN, which a frame at infinity may bring, counts as 0.
+    // Written so that NaN, as a frame at infinity may give, counts as 0.
     const double clamped = position > 0 ? std::min(position, last_bucket_) : 0;
     return static_cast<std::size_t>(static_cast<std::int64_t>(clamped));
   }

@@ -73,7 +73,7 @@ tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
   const Loop<D>& loop = *keys.loop;
   const double span = loop.to - loop.from;
   const double start = loop.from - loop.before * span;
-  // Both ways of reaching the end of the last copy, so that no key slips between their roundings.
+  // Both formulas for the end of the last copy, so that no key is lost between their roundings.
   const double end = std::max(loop.to + loop.after * span, loop.from + (loop.after + 1.0) * span);
   const auto is_looped = [&](const Key<D>& key) {
     return key.frame >= loop.from && key.frame < loop.to;

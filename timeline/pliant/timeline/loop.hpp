@@ -14,16 +14,16 @@ namespace pliant::timeline {
 template <int D>
 struct WrittenKeys {
   std::vector<Key<D>> keys;         ///< frames strictly increasing
-  std::vector<std::size_t> origin;  ///< the author's index of each
-  std::vector<CurveNote> notes;     ///< keys that the loop hides, a loop without copies
+  std::vector<std::size_t> origin;  ///< the author's index of each key
+  std::vector<CurveNote> notes;     ///< about keys that the loop hides, or a loop without copies
 };
 
-/// How many keys a loop may write out.
+/// The most keys that a loop may write out.
 inline constexpr double most_written_keys = 1e6;
 
 /// Writes out the copies of the inner loop, if there is one (docs/timeline.md, section "Inner
 /// loop"). Errors: more than `most_written_keys`; copies that rounding puts on one frame, or whose
-/// numbers exceed the size of checks.hpp. Requires: broken_rule(keys) finds nothing.
+/// numbers exceed the limit of checks.hpp. Requires: broken_rule(keys) finds nothing.
 template <int D>
 [[nodiscard]] tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys);
 

@@ -4,7 +4,7 @@
 
 namespace pliant::timeline {
 
-/// The shortest text that reads back as the same number: "0.1", "1e+300", "nan".
+/// The shortest text that parses to the same number: "0.1", "1e+300", "nan".
 std::string number_text(double number);
 
 }  // namespace pliant::timeline

@@ -8,14 +8,14 @@ namespace pliant::timeline {
 
 namespace {
 
-// Lengths come from products and differences of frames: a few roundings.
+// Lengths are computed from products and differences of frames: a few roundings.
 constexpr double tolerance = 4 * std::numeric_limits<double>::epsilon();
 
 /// Eq. 6a: the point of the ellipse with the same ratio, for smaller <= larger. Source: OpenUSD's
 /// keep-ratio.
 Lengths on_ellipse(double start, double end, double span) {
   if (end == 0) return {span, 0};
-  // The formula in whichever ratio is at most 1, for it is symmetric and cannot overflow then.
+  // The formula with the ratio that is at most 1: it is symmetric and cannot overflow then.
   const double ratio = std::min(start, end) / std::max(start, end);
   const double larger = (std::sqrt(ratio) + ratio + 1) / (ratio * ratio + ratio + 1) * span;
   const double smaller = ratio * larger;
@@ -23,7 +23,7 @@ Lengths on_ellipse(double start, double end, double span) {
   return {larger, smaller};
 }
 
-/// Eq. 6b: the start length stays, the end one moves to the ellipse. Source: Maya.
+/// Eq. 6b: keeps the start length and moves the end length to the ellipse. Source: Maya.
 Lengths keep_start(double start, double end, double span) {
   const double a = start / span;
   if (3 * start >= 4 * span) return {4 * span / 3, span / 3};
@@ -40,7 +40,7 @@ bool is_function_of_time(Lengths lengths, double span) {
   const double limit = span * (1 + tolerance);
   if (lengths.start <= limit && lengths.end <= limit) return true;
   if (lengths.start > 1.5 * span || lengths.end > 1.5 * span)
-    return false;  // and no overflow below
+    return false;  // prevents overflow below
   const double a = lengths.start;
   const double b = lengths.end;
   const double conic = a * a + b * b + a * b - 2 * span * (a + b) + span * span;

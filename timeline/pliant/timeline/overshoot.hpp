@@ -10,13 +10,13 @@ struct Lengths {
   double end = 0;
 };
 
-/// Whether time runs forwards all through a segment (docs/timeline.md, eq. 6). What breaks the rule
-/// by rounding alone counts as legal. Requires: span > 0, lengths >= 0.
+/// Whether time runs forwards in the whole segment (docs/timeline.md, eq. 6). Violations by
+/// rounding alone count as legal. Requires: span > 0, lengths >= 0.
 bool is_function_of_time(Lengths lengths, double span);
 
-/// The lengths that a policy makes of given ones: the same when it leaves them alone
-/// (docs/timeline.md, section "Overshoot"). `Error` leaves all alone; the caller refuses.
-/// Requires: span > 0, lengths >= 0.
+/// The lengths after correction by a policy; unchanged if they need none (docs/timeline.md, section
+/// "Overshoot"). `Error` changes none; the caller reports the error. Requires: span > 0, lengths >=
+/// 0.
 Lengths corrected(Lengths lengths, double span, Overshoot policy);
 
 }  // namespace pliant::timeline

@@ -21,11 +21,12 @@ constexpr std::array<std::array<double, 2>, 6> nodes = {{
     {0.9815606342467192507, 0.0471753363865118272},
 }};
 
-// Against the length of what is cut in two: well below what a share of the way must be right to.
+// Relative to the length of the part that is cut in two: well below the required accuracy of a
+// share of the length.
 constexpr double quadrature_tolerance = 1e-13;
 
-// A stretch is halved at most so often: around a place where the speed vanishes, its length shrinks
-// by four each time.
+// The most times that a stretch is halved: around a place where the speed is 0, each halving
+// divides its length by four.
 constexpr int deepest = 24;
 
 double distance(const Value<3>& a, const Value<3>& b) {
@@ -50,7 +51,7 @@ Value<3> rate_at(const Value<3>& before, const Value<3>& here, const Value<3>& a
   return rate;
 }
 
-// At the end of an open path: along the chord.
+// At the end of an open path the derivative is along the chord.
 Value<3> chord_rate(const Value<3>& from, const Value<3>& to) {
   const double h = std::sqrt(distance(from, to));
   return {(to[0] - from[0]) / h, (to[1] - from[1]) / h, (to[2] - from[2]) / h};
@@ -126,7 +127,7 @@ void Path::add_piece(std::size_t from, std::size_t to, const Value<3>& rate_from
   measure(first + 1, 0.5, 0, 0);
 }
 
-// Adds a part of a half as stretches that one quadrature each gets right.
+// Divides a part of a half into stretches for each of which one quadrature is accurate.
 void Path::measure(std::size_t half, double from, double to, int depth) {
   const double middle = 0.5 * (from + to);
   const double whole = length_between(half, from, to);
@@ -150,8 +151,8 @@ double Path::length_between(std::size_t half, double from, double to) const {
   return std::abs(reach) * sum;
 }
 
-// Newton's method for the q where `walked` of a stretch's `whole` length lies behind, kept in a
-// bracket that it halves where a step would leave it.
+// Newton's method for the q at which a length of `walked`, of a stretch's `whole` length, is
+// passed. The root is kept in a bracket, which is halved if a step would leave it.
 double Path::q_at(const Stretch& stretch, double walked, double whole) const {
   double behind = stretch.from, ahead = stretch.to;
   double q = stretch.from + (stretch.to - stretch.from) * (walked / whole);
@@ -174,7 +175,7 @@ Value<3> Path::at(double progress) const {
   const auto after =
       std::upper_bound(stretches_.begin(), stretches_.end(), walked,
                        [](double way, const Stretch& stretch) { return way < stretch.start; });
-  const Stretch& stretch = *(after - 1);  // the first starts at 0
+  const Stretch& stretch = *(after - 1);  // exists, as the first one starts at 0
   const double end = after == stretches_.end() ? length_ : after->start;
   const double whole = end - stretch.start;
   const double rest = walked - stretch.start;

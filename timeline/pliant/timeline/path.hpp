@@ -12,18 +12,19 @@
 
 namespace pliant {
 
-/// Why waypoints make no path.
+/// The reason why waypoints do not form a path.
 struct PathError {
-  std::size_t waypoint = 0;  ///< index of the one at fault; their number: too few or too many
+  std::size_t waypoint = 0;  ///< index of the wrong waypoint, or the number of waypoints if there
+                             ///< are too few or too many
   std::string message;       ///< one line: the value, the rule
 };
 
-/// A smooth way through points in space, walked by arc length: whatever the timing, what follows it
-/// stays on it. An immutable value, safe to share between threads.
+/// A smooth path through points in space, parametrised by arc length: an object that follows it
+/// stays on it for any timing. An immutable value, safe to share between threads.
 ///
 /// Between two waypoints it is a piece of the centripetal Catmull-Rom spline (docs/timeline.md, eq.
-/// 24): through every waypoint, continuous in direction, never with a loop or cusp between two of
-/// them, and moving one waypoint leaves all but the four pieces around it alone. An open path
+/// 24): it passes through every waypoint, is continuous in direction, and never has a loop or cusp
+/// between two waypoints. Moving one waypoint changes only the four pieces around it. An open path
 /// starts and ends along its first and last chord.
 class Path {
  public:
@@ -31,14 +32,13 @@ class Path {
   static constexpr std::size_t most_waypoints = 100'000;
 
   /// Errors, naming the waypoint: fewer than three or more than 10^5; a number that is not finite
-  /// or beyond 1e150; one in the same place as the one before, which for the first of a closed path
-  /// is the last.
+  /// or beyond 1e150; one in the same place as the one before, which for the first waypoint of a
+  /// closed path is the last.
   [[nodiscard]] static tl::expected<Path, PathError> make(std::vector<Value<3>> waypoints,
                                                           bool is_closed = false);
 
-  /// Where the share `progress` of the way has been walked: 0 is the first waypoint, 1 the last, or
-  /// the first again when closed; what lies outside counts as the nearer of the two. The share is
-  /// right to 1e-12 [length].
+  /// The point after the share `progress` of the length: 0 is the first waypoint, 1 the last, or
+  /// the first again on a closed path; clamped to [0, 1]. The share is accurate to 1e-12 [length].
   Value<3> at(double progress) const;
 
   double length() const { return length_; }  ///< > 0 [length]
@@ -46,15 +46,15 @@ class Path {
   bool is_closed() const { return is_closed_; }
 
  private:
-  /// Half of the way between two waypoints, counted from one of them: q in [0, 1/2].
+  /// Half of a piece between two waypoints, counted from one of them: q in [0, 1/2].
   using Half = std::array<timeline::Cubic, 3>;
 
-  /// A part of the way so short that one quadrature gives the length of any part of it.
+  /// A part of a half so short that one quadrature gives the length of any part of it.
   struct Stretch {
     std::size_t half = 0;
-    double from = 0;   ///< q where it is entered
-    double to = 0.5;   ///< q where it is left, which is less in the second half of a piece
-    double start = 0;  ///< of the way up to here [length]
+    double from = 0;   ///< q at its start
+    double to = 0.5;   ///< q at its end, which is less in the second half of a piece
+    double start = 0;  ///< length of the path up to here [length]
   };
 
   Path() = default;

@@ -7,13 +7,13 @@
 
 namespace pliant {
 
-/// A way through space, and how much of it has been walked at each frame.
+/// A path, and the share of its length at each frame.
 struct PathMotion {
   Path path;
   Channel<1> progress = 0;  ///< share of the length, 0 to 1
 };
 
-/// A position over time: a constant, a curve, or a path that is walked.
+/// A position over time: a constant, a curve, or a motion along a path.
 class PositionChannel {
  public:
   PositionChannel(Value<3> constant = {});  // NOLINT: a constant is a position
@@ -31,10 +31,10 @@ class PositionChannel {
 
   bool is_animated() const;
 
-  /// The path, or null.
+  /// The path; null: a constant or curve.
   const PathMotion* path() const { return std::get_if<PathMotion>(&way_); }
 
-  /// The constant or curve, or null where there is a path.
+  /// The constant or curve; null: a path.
   const Channel<3>* channel() const { return std::get_if<Channel<3>>(&way_); }
 
  private:

@@ -55,7 +55,7 @@ bool is_automatic(const Tangent<D>& tangent) {
   return tangent.kind != Kind::Slope && tangent.kind != Kind::Handle && tangent.kind != Kind::Flat;
 }
 
-/// Whether a slope is what it should be, as far as a segment of `span` frames can tell.
+/// Whether a slope equals the wanted one, as far as it affects a segment of `span` frames.
 template <int D>
 bool agrees(const Value<D>& slope, const Value<D>& wanted, double span, const Slack& slack) {
   for (int c = 0; c < D; ++c) {
@@ -83,7 +83,7 @@ bool keep_slopes(CurveKeys<D>& author, const Shape<D>& shape, const Slack& slack
   const std::vector<KeySlopes<D>> slopes = slopes_in_use(author);
   bool has_changed = false;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    // The outer side of an end key counts by the span inside.
+    // The outer side of an end key uses the span of the inner side.
     const double before = k > 0 ? keys[k].frame - keys[k - 1].frame : 1;
     const double after = k + 1 < keys.size() ? keys[k + 1].frame - keys[k].frame : 1;
     const bool in =
@@ -99,7 +99,7 @@ template <int D>
 bool keep_line(Extrapolation<D>& outside, const Value<D>& slope, const Value<D>& wanted,
                double span, const Slack& slack) {
   if (outside.kind != Extrapolation<D>::Kind::Linear) return false;
-  // A slope within its own rounding says the same.
+  // Slopes that differ by rounding alone are equal.
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   if (agrees<D>(slope, wanted, 1, {0, 4 * epsilon})) return false;
   if (agrees<D>(slope, wanted, span, slack)) return false;
@@ -158,8 +158,9 @@ tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys) {
 template <int D>
 tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
                                              const Slack& slack) {
-  // A tangent that becomes a number may move its smooth neighbours, by rounding at least, and an
-  // end that no longer extends its line the automatic ones there; each round settles one or more.
+  // A tangent that becomes a number may change its smooth neighbours, at least by rounding, and an
+  // end that no longer extends its line may change the automatic ones there; each round fixes one
+  // or more.
   for (;;) {
     if (const auto valid = compile(keys); !valid) return tl::unexpected(valid.error());
     while (keep_slopes(keys, shape, slack)) {

@@ -18,15 +18,15 @@ Tangent<D> slope_tangent(const Value<D>& slope) {
   return tangent;
 }
 
-/// The slopes with which the tangents of a key shape the curve, where something reads them
-/// [unit/frame].
+/// The slopes with which the tangents of a key shape the curve [unit/frame]; nullopt if unused.
 template <int D>
 struct KeySlopes {
   std::optional<Value<D>> in = {};
   std::optional<Value<D>> out = {};
 };
 
-/// What automatic tangents and linear extrapolation make of keys: what an edit must not change.
+/// The slopes that follow from automatic tangents and linear extrapolation: an edit must not change
+/// them.
 template <int D>
 struct Shape {
   std::vector<KeySlopes<D>> keys;
@@ -34,7 +34,7 @@ struct Shape {
   Value<D> after = {};
 };
 
-/// How much rounding may change: values [unit] and frames. By default nothing.
+/// Allowed change by rounding: values [unit] and frames. Default: none.
 struct Slack {
   double value = 0;
   double frame = 0;
@@ -49,26 +49,26 @@ template <int D>
 template <int D>
 [[nodiscard]] tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys);
 
-/// The curve of keys that were edited, with the shape they had: a tangent that would follow its new
-/// neighbours is written as a number, with the length it has, and so is a linear extrapolation
-/// whose slope would change. Whatever stays the same keeps its kind.
-/// Errors: those of `Curve::make`. Requires: no loop with copies; a shape of as many keys.
+/// The curve of edited keys, with the given shape: a tangent whose slope would follow its new
+/// neighbours is written as a number, with its length, and so is a linear extrapolation whose slope
+/// would change. Everything that stays the same keeps its kind. Errors: those of `Curve::make`.
+/// Requires: no loop with copies; `shape` has as many keys.
 template <int D>
 [[nodiscard]] tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
                                                            const Slack& slack = {});
 
-/// How far rounding may carry the numbers of keys that are moved as a whole: 64 units in the last
-/// place of the largest value and of the largest frame.
+/// Allowed rounding for keys that are moved as a whole: 64 units in the last place of the largest
+/// value and of the largest frame.
 template <int D>
 Slack rounding_of(const CurveKeys<D>& keys);
 
-/// Whether an author's keys, once their loop is written out, are `written` ones with their shape.
+/// Whether the keys of an author, with their loop written out, equal `written` and have its shape.
 template <int D>
 bool stands_for(const CurveKeys<D>& author, const CurveKeys<D>& written, const Shape<D>& shape,
                 const Slack& slack);
 
-/// Writes the lengths that `policy` makes of Bézier tangents into the keys, as far as it changes
-/// any. Requires: no loop with copies.
+/// Writes the lengths of Bézier tangents that `policy` changes into the keys. Requires: no loop
+/// with copies.
 template <int D>
 void write_corrections(CurveKeys<D>& keys, Overshoot policy);
 

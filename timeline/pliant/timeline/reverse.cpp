@@ -52,19 +52,20 @@ Extrapolation<D> reversed(Extrapolation<D> outside) {
   return outside;
 }
 
-/// What both sides of a curve show of an end key that jumps.
+/// How the two sides of a curve use an end key that jumps.
 template <int D>
 class EndKeys {
  public:
   explicit EndKeys(const CurveKeys<D>& keys) : keys_(keys) {}
 
-  /// A `left` of the first key that shows nowhere: a loop stands before it, and no offset counts.
+  /// Whether `left` of the first key is never visible: there is a loop before it, and no side adds
+  /// offsets.
   bool hides_first_left() const {
     return has_copies(keys_.before) && keys_.before.kind != Kind::RepeatOffset &&
            keys_.after.kind != Kind::RepeatOffset;
   }
 
-  /// The end key whose value is held after the last copy, though the reversed key has another one.
+  /// The end key whose value is constant after the last copy; the reversed key has another value.
   std::optional<std::size_t> held_jump() const {
     const bool first = ends_with_first(keys_.before, true) || ends_with_first(keys_.after, false);
     const bool last = ends_with_last(keys_.before, true) || ends_with_last(keys_.after, false);
@@ -138,14 +139,14 @@ Shape<D> reversed(const Shape<D>& shape) {
   return result;
 }
 
-/// The reversed keys of an author's loop, given all that it writes out, reversed: the copy that
-/// ended in the keys of the loop, and what lies outside of all copies.
+/// The reversed keys of an author's loop, from the reversal of all keys that it writes out: the
+/// copy that ended in the keys of the loop, and the keys outside of all copies.
 template <int D>
 CurveKeys<D> with_loop(const CurveKeys<D>& author, const CurveKeys<D>& reversed_keys) {
   const Loop<D>& loop = *author.loop;
-  std::size_t first = 0;  // key of the loop
+  std::size_t first = 0;  // first key of the loop
   while (author.keys[first].frame != loop.from) ++first;
-  std::size_t count = 0;  // of keys in one copy
+  std::size_t count = 0;  // number of keys in one copy
   while (first + count < author.keys.size() && author.keys[first + count].frame < loop.to) ++count;
   const double start = loop.from - loop.before * (loop.to - loop.from);
   std::size_t ahead = 0;  // written keys before the first copy
@@ -196,7 +197,7 @@ tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) 
   }
   const auto shape_before = shape_of(before);
   if (!shape_before) return tl::unexpected(shape_before.error());
-  // Maya's rule knows a start and an end; the others are the same from both.
+  // Maya's rule distinguishes start and end; the others are symmetric.
   if (before.overshoot == Overshoot::KeepStart) write_corrections(before, Overshoot::KeepStart);
   CurveKeys<D> keys = reversed(before, pivot);
   const Shape<D> shape = reversed(*shape_before);

@@ -17,7 +17,7 @@ template <int D>
 std::size_t Sampler<D>::locate(double frame) {
   const auto& track = curve_->compiled_.track;
   if (here_ == nullptr) return 0;
-  // A segment holds its start but not its end: what the search would find.
+  // A segment includes its start but not its end, as in the search.
   if (frame >= here_->end && here_ != last_) ++here_;
   const bool is_here = frame >= here_->start && frame < here_->end;
   if (!is_here) here_ = track.segments.data() + track.segment_at(frame);

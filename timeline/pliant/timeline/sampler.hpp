@@ -6,12 +6,13 @@
 
 namespace pliant {
 
-/// Asks one curve for one frame after the other. It remembers the last segment, so that playback
-/// needs no search; the answers are those of the curve, bit for bit. One sampler per thread.
+/// Evaluates one curve at one frame after the other. It remembers the last segment, so that
+/// playback needs no search; the values are bit-identical to those of the curve. Not thread-safe;
+/// use one sampler per thread.
 template <int D>
 class Sampler {
  public:
-  /// Requires: the curve outlives the sampler and stays in its place.
+  /// Requires: the curve outlives the sampler and is not moved.
   explicit Sampler(const Curve<D>& curve);
   explicit Sampler(Curve<D>&&) = delete;
 
@@ -25,8 +26,8 @@ class Sampler {
   [[gnu::noinline]] Value<D> value_anywhere(double frame);  // keeps value() short
 
   const Curve<D>* curve_;
-  const timeline::Segment<D>* here_ = nullptr;  // of the last frame; none with a single key
-  const timeline::Segment<D>* last_ = nullptr;  // of the curve
+  const timeline::Segment<D>* here_ = nullptr;  // of the last frame; null for a single key
+  const timeline::Segment<D>* last_ = nullptr;  // the last one of the curve
 };
 
 extern template class Sampler<1>;

@@ -15,7 +15,7 @@ namespace timeline {
 
 namespace {
 
-/// Where frames and values go, and what becomes of differences between them.
+/// The maps of frames and values, and of their differences.
 template <int D>
 struct Mapping {
   std::function<double(double)> frame;
@@ -56,7 +56,7 @@ Key<D> mapped(Key<D> key, const Mapping<D>& map) {
   if (key.left) key.left = map.value_of(*key.left);
   key.in = mapped(key.in, map);
   key.out = mapped(key.out, map);
-  // One amplitude serves all components, whose factors are of one size then.
+  // One amplitude serves all components, whose factors have the same size in this case.
   if (key.next.amplitude) *key.next.amplitude *= std::fabs(map.value_factor[0]);
   if (key.next.period) *key.next.period *= map.time_factor;
   return key;
@@ -86,8 +86,9 @@ Shape<D> mapped(Shape<D> shape, const Mapping<D>& map) {
   return shape;
 }
 
-/// A curve whose keys all go the same way. The rules for tangents go along, but for rounding that
-/// carries a number across a threshold: then the loop is written out, or a tangent as a number.
+/// A curve whose keys are all mapped the same way. The rules for tangents map with them, unless
+/// rounding carries a number across a threshold: then the loop is written out, or a tangent is
+/// written as a number.
 template <int D>
 tl::expected<Curve<D>, CurveError> mapped(const Curve<D>& curve, const Mapping<D>& map) {
   const auto before = without_loop(curve.keys());
@@ -108,7 +109,7 @@ tl::expected<Curve<D>, CurveError> mapped(const Curve<D>& curve, const Mapping<D
     CurveKeys<D> author = mapped(curve.keys(), map);
     if (stands_for(author, keys, shape, slack)) return Curve<D>::make(std::move(author));
   }
-  // Tangents as long as their segments may be too long by rounding alone.
+  // Tangents as long as their segments may become too long by rounding.
   if (keys.overshoot == Overshoot::Error) write_corrections(keys, Overshoot::Limit);
   return preserved(std::move(keys), shape, slack);
 }

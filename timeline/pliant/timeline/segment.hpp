@@ -16,7 +16,7 @@ struct Bounds {
   Value<D> low = {};
   Value<D> high = {};
 
-  /// Grows to hold a value, which must not be NaN.
+  /// Extends the bounds to a value, which must not be NaN.
   void add(const Value<D>& value) {
     for (int c = 0; c < D; ++c) {
       if (value[c] < low[c]) low[c] = value[c];
@@ -26,19 +26,19 @@ struct Bounds {
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
-/// What a segment needs beyond cubics: the inverse of a Bézier's time, or easings. Kept apart, so
-/// that a row of plain segments stays small and close in memory.
+/// The easings of a segment. Stored apart, as are the inverse time functions of Béziers, so that a
+/// row of plain segments is small and contiguous in memory.
 template <int D>
 using Easings = std::array<Easing, D>;
 
-/// One compiled segment of a curve: values from `start` to `end` (docs/timeline.md, eq. 4).
+/// One compiled segment of a curve, with values from `start` to `end` (docs/timeline.md, eq. 4).
 template <int D>
 struct Segment {
   enum class Kind : std::uint8_t {
     Cubic,   ///< time is linear in q: step, linear, and Bézier with handles of a third
     Jump,    ///< stepNext: constant, but the left key keeps its own value
     Bezier,  ///< `extra` is an index into the time cubics
-    Easing,  ///< `extra` is an index into the easings; cubics hold v0, v1 and the change
+    Easing,  ///< `extra` is an index into the easings; the cubics store v0, v1 and the change
   };
 
   double start = 0;   ///< [frame]
@@ -57,7 +57,7 @@ std::array<std::array<Cubic, D>, 2> value_cubics(const Value<D>& start, const Va
   std::array<std::array<Cubic, D>, 2> ends;
   for (int c = 0; c < D; ++c) {
     const double change = end[c] - start[c];
-    // In differences from the straight line, so that a straight line has exact zeros.
+    // As differences from the straight line, so that a straight line has exact zeros.
     const double start_excess = start_rate[c] - change;
     const double end_excess = end_rate[c] - change;
     const double c3 = start_excess + end_excess;

@@ -20,10 +20,10 @@ namespace timeline {
 
 namespace {
 
-/// A cubic in time that stands for the segments between two keys.
+/// A cubic in time that replaces the segments between two keys.
 template <int D>
 struct Fit {
-  std::size_t end = 0;  ///< the key that it goes to
+  std::size_t end = 0;  ///< the key where it ends
   Value<D> start_slope = {};
   Value<D> end_slope = {};
   double error = 0;
@@ -34,8 +34,8 @@ class Fitter {
  public:
   Fitter(const Track<D>& track, double max_error) : track_(track), max_error_(max_error) {}
 
-  /// The longest row of two or more segments from a key to at most `last` that a cubic can stand
-  /// for: found by doubling, then by halving.
+  /// The longest row of two or more segments from a key to at most `last` that one cubic can
+  /// replace; found by doubling, then by bisection.
   std::optional<Fit<D>> longest(std::size_t start, std::size_t last) const {
     const std::size_t reach = reach_of(start, last);
     std::optional<Fit<D>> best;
@@ -101,14 +101,14 @@ class Fitter {
     return fit;
   }
 
-  /// The fit over its own time from 0 to 1, less its first value.
+  /// The fit over its own time from 0 to 1, minus its first value.
   Bernstein cubic(const Fit<D>& fit, std::size_t start, int c) const {
     const double third = (track_.frames[fit.end] - track_.frames[start]) / 3;
     const double change = track_.arrivals[fit.end][c] - track_.values[start][c];
     return {0, fit.start_slope[c] * third, change - fit.end_slope[c] * third, change};
   }
 
-  /// Segment k over its parameter, less the first value of the fit.
+  /// Segment k over its parameter, minus the first value of the fit.
   Bernstein values(const Handles<D>& handles, std::size_t k, std::size_t start, int c) const {
     const double origin = track_.values[start][c];
     const double from = track_.segments[k].ends[0][c].c0 - origin;
@@ -116,7 +116,7 @@ class Fitter {
     return {from, from + handles.start.value[c], to + handles.end.value[c], to};
   }
 
-  /// The time of segment k over its parameter, as a share of the time of the fit.
+  /// The time of segment k over its parameter, as a fraction of the time of the fit.
   Bernstein share_of_time(const Handles<D>& handles, std::size_t k, std::size_t start,
                           std::size_t end) const {
     const double origin = track_.frames[start];
@@ -149,7 +149,7 @@ std::optional<CurveError> fault_of(double first, double last, double max_error) 
   return std::nullopt;
 }
 
-/// Keys without a loop, with fits in place of the rows of segments that allow one in [from, to].
+/// Keys without a loop, with fits in place of the rows of segments in [from, to] that allow one.
 template <int D>
 tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, const Shape<D>& shape,
                                                    const Track<D>& track, std::size_t from,
@@ -176,7 +176,7 @@ tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, con
     take(fit->end);
     Key<D>& end = fewer.keys.back();
     end.in = slope_tangent<D>(fit->end_slope);
-    // A step may have stood there, after which no `left` counts.
+    // There may have been a step, after which no `left` is used.
     end.left.reset();
     if (track.arrivals[fit->end] != end.value) end.left = track.arrivals[fit->end];
     result.error = std::max(result.error, fit->error);

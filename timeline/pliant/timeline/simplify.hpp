@@ -10,18 +10,17 @@ namespace pliant {
 template <int D>
 struct Simplified {
   CurveKeys<D> keys;
-  double error = 0;  ///< no component deviates more, at any frame [unit]
+  double error = 0;  ///< bound of the deviation of any component at any frame [unit]
 };
 
 /// Replaces rows of segments between keys in [first, last] by cubics in time with the curve's own
-/// slopes at their ends, each as long as it can be with a deviation of at most `max_error` [unit].
-/// The outermost keys there, jumps, infinite slopes and easings (one segment each already) stay,
-/// and so does the curve outside, copies apart. The deviation is not sampled: it is a polynomial
-/// of the segment's parameter, bounded by its Bernstein coefficients to a thousandth, but for
-/// roundings of the values. When max_error is 0 the keys stay as they are. An inner loop with
-/// copies is written out.
-/// Errors: a frame that is not finite; last < first; max_error not finite or negative.
-/// Cost: O(keys · log keys) polynomials.
+/// slopes at their ends, each as long as possible with a deviation of at most `max_error` [unit].
+/// The outermost keys in this range, jumps, infinite slopes and easings (already one segment each)
+/// are kept, and so is the curve outside, except for copies. The deviation is not sampled: it is a
+/// polynomial of the segment's parameter, bounded by its Bernstein coefficients to a thousandth,
+/// apart from rounding of the values. If max_error is 0, the keys stay the same. An inner loop with
+/// copies is written out. Errors: a frame that is not finite; last < first; max_error not finite or
+/// negative. Cost: O(keys · log keys) polynomials.
 template <int D>
 [[nodiscard]] tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first,
                                                                double last, double max_error);

@@ -41,8 +41,9 @@ void solve_chain(const std::vector<Unknown>& rows, std::vector<double> diagonal,
   }
 }
 
-/// A chain whose ends may be coupled too: before of the first row means the last unknown, after of
-/// the last row the first one. The corners go in by the Sherman-Morrison formula.
+/// A chain whose ends may also be coupled: `before` of the first row refers to the last unknown,
+/// `after` of the last row to the first one. The corners are handled by the Sherman-Morrison
+/// formula.
 void solve_ring(std::vector<Unknown>& rows) {
   const std::size_t count = rows.size();
   if (count == 1) {
@@ -50,7 +51,7 @@ void solve_ring(std::vector<Unknown>& rows) {
     only.slope = only.right / (only.diagonal + only.before + only.after);
     return;
   }
-  if (count == 2) {  // either neighbour is the other one
+  if (count == 2) {  // both neighbours are the other unknown
     const double a = rows[0].diagonal;
     const double b = rows[0].before + rows[0].after;
     const double c = rows[1].before + rows[1].after;
@@ -94,8 +95,8 @@ class System {
     const std::size_t keys = course.size();
     in_.resize(keys);
     out_.resize(keys);
-    // Along the keys, so that neighbours in time are neighbours among the unknowns; what arrives at
-    // the seam of a periodic curve without leaving it comes last.
+    // In the order of the keys, so that neighbours in time are neighbours among the unknowns; an
+    // `in` side at the seam of a periodic curve that has its own unknown is last.
     for (std::size_t k = 0; k < keys; ++k) add_unknowns(k);
     for (std::size_t k = 0; k < keys; ++k) write_equations(k);
   }
@@ -112,7 +113,8 @@ class System {
       if (in_[k]) slopes_.in[k] = unknowns_[*in_[k]].slope;
       if (out_[k]) slopes_.out[k] = unknowns_[*out_[k]].slope;
     }
-    // A side that no solved segment reads (outside the curve, or beside a step) follows the other.
+    // A side that no solved segment reads (outside the curve, or beside a step) has the slope of
+    // the other.
     for (std::size_t k = 0; k < course_.size(); ++k) {
       const std::size_t other = seam(k);
       if (sides_.in[k] != SmoothKind::None && !in_[k]) {
@@ -127,12 +129,12 @@ class System {
  private:
   std::size_t last() const { return course_.size() - 1; }
 
-  /// The key that stands for the same place in time: the other end of a periodic curve, or the key.
+  /// The key at the same place in time: the other end of a periodic curve, or the key itself.
   std::size_t seam(std::size_t key) const {
     if (!course_.is_periodic || (key != 0 && key != last())) return key;
     return last() - key;
   }
-  /// The key whose `in` side arrives where `key` leaves.
+  /// The key whose `in` side ends where the `out` side of `key` starts.
   std::size_t arriving(std::size_t key) const { return key == 0 ? seam(key) : key; }
 
   bool solves_in(std::size_t key) const {
@@ -200,7 +202,7 @@ class System {
     if (row.is_capped && meeting.is_extremum()) row.fix(0);
   }
 
-  /// Eq. 12 at an end of a run, or flat where the key's other side is.
+  /// Eq. 12 at an end of a run; slope 0 if the key's other side is flat.
   void write_natural(std::size_t key, bool is_out) {
     Unknown& row = unknowns_[is_out ? *out_[key] : *in_[key]];
     row.meeting = course_.at(key, is_out);
@@ -227,7 +229,7 @@ class System {
            slopes_.out[other] == 0;
   }
 
-  /// The slope with which the segment before starts: an unknown, or given by another kind.
+  /// The slope at the start of the segment before: an unknown, or given by another kind.
   void couple_before(Unknown& row, std::size_t key, double weight) {
     if (out_[key]) {
       row.before = weight;
@@ -243,7 +245,8 @@ class System {
     }
   }
 
-  /// Eq. 13 on all unknowns at once; whether any was fixed, so that the rest is to be solved again.
+  /// Eq. 13 on all unknowns at once. Returns whether any was fixed, so that the others must be
+  /// solved again.
   bool fix_what_overshoots() {
     bool has_fixed = false;
     for (Unknown& unknown : unknowns_) {
@@ -271,7 +274,7 @@ class System {
   const SmoothSides& sides_;
   Slopes& slopes_;
   std::vector<Unknown> unknowns_;
-  std::vector<std::optional<std::size_t>> in_;  // which unknown the `in` side of a key is
+  std::vector<std::optional<std::size_t>> in_;  // the unknown of each key's `in` side
   std::vector<std::optional<std::size_t>> out_;
 };
 

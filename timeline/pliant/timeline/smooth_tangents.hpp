@@ -7,7 +7,7 @@
 
 namespace pliant::timeline {
 
-/// How a side of a key takes part in the system for continuous acceleration.
+/// The role of a side of a key in the system for continuous acceleration.
 enum class SmoothKind { None, Free, Capped };
 
 struct SmoothSides {

@@ -34,7 +34,7 @@ Handle<D> scaled(const Handle<D>& handle, double factor) {
   return result;
 }
 
-/// A segment about to be written: its span and the values at its ends.
+/// A segment to be written: its span and the values at its ends.
 template <int D>
 struct Extent {
   double span;
@@ -42,8 +42,8 @@ struct Extent {
   Value<D> end;
 };
 
-/// Where one end has no handle and the other one's reaches all the way to it, the slope there hangs
-/// on exact zeros of the second order (0/0, or infinite): puts them back.
+/// If one end has no handle and the handle of the other reaches exactly to it, the slope there
+/// depends on exact zeros of second order (0/0, or infinite): restores these zeros.
 template <int D>
 void reach_exactly(const Handle<D>& none, Handle<D>& other, const Extent<D>& extent,
                    double direction, double tolerance) {
@@ -58,7 +58,7 @@ void reach_exactly(const Handle<D>& none, Handle<D>& other, const Extent<D>& ext
   }
 }
 
-/// Takes back what rounding may have put beyond the ellipse of eq. 6, or beside a limit.
+/// Corrects handles that rounding may have moved outside the ellipse of eq. 6, or next to a limit.
 template <int D>
 Handles<D> settled(Handles<D> handles, const Extent<D>& extent, double tolerance) {
   const Lengths lengths{handles.start.frames, handles.end.frames};
@@ -93,8 +93,8 @@ Handles<D> handles_of(const Track<D>& track, std::size_t k) {
 template <int D>
 Split<D> split(const Track<D>& track, std::size_t k, double frame) {
   const Segment<D>& segment = track.segments[k];
-  // With q from the nearer end: the handle there shrinks to its q-fold, the far one to its
-  // (1-q)-fold, and between lies the derivative of the curve over a third of either part.
+  // With q from the nearer end: the handle there shrinks by the factor q, the far one by 1-q, and
+  // between them is the derivative of the curve over a third of either part.
   int near = 0;
   double q = (frame - segment.start) / segment.length;
   if (segment.kind == Segment<D>::Kind::Bezier) {
@@ -129,7 +129,7 @@ std::optional<Handles<D>> joined(const Track<D>& track, std::size_t k) {
   const Handles<D> right = handles_of(track, k + 1);
   double before = left.end.frames;
   double after = right.start.frames;
-  if (before + after == 0) {  // upright: the values tell
+  if (before + after == 0) {  // vertical: the values decide
     for (int c = 0; c < D; ++c) {
       before += std::fabs(left.end.value[c]);
       after += std::fabs(right.start.value[c]);
@@ -141,8 +141,8 @@ std::optional<Handles<D>> joined(const Track<D>& track, std::size_t k) {
   const double start = track.frames[k];
   const double length = track.frames[k + 2] - start;
   const Handles<D> whole{scaled(left.start, 1 / q), scaled(right.end, 1 / (1 - q))};
-  // The whole segment at q, and its derivative by q, must be the key and its handles. One part in
-  // 1e11 is far above the rounding of a split and far below what can be seen.
+  // The whole segment at q, and its derivative by q, must give the key and its handles. One part in
+  // 1e11 is far above the rounding of a split and far below any visible change.
   constexpr double tolerance = 1e-11;
   const double p = 1 - q;
   const auto fits = [&](double first, double second, double last, double at, double handle_before,

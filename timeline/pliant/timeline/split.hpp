@@ -7,13 +7,13 @@
 
 namespace pliant::timeline {
 
-/// A handle of a compiled segment, pointing into it.
+/// A handle of a compiled segment; it points into the segment.
 template <int D>
 struct Handle {
   double frames = 0;    ///< >= 0
-  Value<D> value = {};  ///< relative to the key or, for the right one, to the arrival [unit]
+  Value<D> value = {};  ///< relative to the key or, on the right, to the segment's end value [unit]
 
-  /// As the `out` tangent of the left key, or the `in` tangent of the right one.
+  /// As the `out` tangent of the left key, or as the `in` tangent of the right one.
   Tangent<D> as_tangent(bool is_out) const;
 };
 
@@ -24,13 +24,12 @@ struct Handles {
   Handle<D> end;
 };
 
-/// The handles of segment k as the curve is evaluated with, after any correction.
-/// Requires: no easing.
+/// The handles of segment k as evaluated, after any correction. Requires: no easing.
 template <int D>
 Handles<D> handles_of(const Track<D>& track, std::size_t k);
 
-/// What de Casteljau's construction makes of segment k at a frame inside: the handles left and
-/// right of it. Requires: no easing; start < frame < end.
+/// The handles left and right of a frame inside segment k, by de Casteljau's construction.
+/// Requires: no easing; start < frame < end.
 template <int D>
 struct Split {
   Handles<D> left;
@@ -39,9 +38,8 @@ struct Split {
 template <int D>
 Split<D> split(const Track<D>& track, std::size_t k, double frame);
 
-/// The handles of the segment whose halves have the given ones, when there is such a segment: the
-/// inverse of `split`. Looks at the compiled segments k and k + 1.
-/// Requires: no easings.
+/// The handles of the segment whose halves have the given ones, if there is such a segment: the
+/// inverse of `split`. Reads the compiled segments k and k + 1. Requires: no easings.
 template <int D>
 std::optional<Handles<D>> joined(const Track<D>& track, std::size_t k);
 

@@ -64,7 +64,7 @@ class Side {
   }
 
   /// Whether the span on this side of a key hardly changes its value (eq. 10). The outer side of an
-  /// end key goes by the span inside.
+  /// end key uses the span of the inner side.
   bool is_level(std::size_t key, bool is_out) const {
     const std::size_t segments = course_.secants.size();
     if (segments == 0) return true;

@@ -12,10 +12,10 @@ struct Slopes {
   std::vector<double> out;
 };
 
-/// The slopes that the tangents of component c ask for (docs/timeline.md, eq. 7 to 13). A handle's
-/// is its value over its time, 0 when its time is 0 or points backwards. Slopes overflow when keys
-/// are too close for their change of value; the caller checks.
-/// Requires: at least one key, frames strictly increasing.
+/// The slopes of the tangents of component c (docs/timeline.md, eq. 7 to 13). The slope of a handle
+/// is its value over its time, 0 if its time is 0 or points backwards. Slopes overflow if keys are
+/// too close for their change of value; the caller checks. Requires: at least one key, frames
+/// strictly increasing.
 template <int D>
 Slopes tangent_slopes(const std::vector<Key<D>>& keys, const Extrapolation<D>& before,
                       const Extrapolation<D>& after, int c);

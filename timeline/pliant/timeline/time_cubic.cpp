@@ -6,7 +6,7 @@
 namespace pliant::timeline {
 
 TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
-  // docs/timeline.md, eq. 4, in twice the digits: the error of x is then that of the frame alone.
+  // docs/timeline.md, eq. 4, with twice the digits: the error of x is then only that of the frame.
   const Pair length = exact_difference(end, start);
   const Pair rates = start_rate + end_rate;
   const Pair c3 = rates + -2.0 * length;
@@ -21,15 +21,15 @@ TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
     c2_[side] = c2.high;
     c2_low_[side] = c2.low;
   }
-  // Without a guess, which floats could not hold, there are other ways.
+  // If floats cannot represent a guess, other methods are used.
   const bool is_usual = length.high > 1e-30 && length.high < 1e30;
   per_length_ =
       is_usual ? static_cast<float>(1 / length.high) : std::numeric_limits<float>::quiet_NaN();
-  // An ulp of a frame is at least 2^-53 of it. One of the promised 4 stays in hand.
+  // An ulp of a frame is at least 2^-53 of it. One of the promised 4 is a reserve.
   const double least_frame = start < 0 && end > 0 ? 0 : std::fmin(std::fabs(start), std::fabs(end));
   has_small_frames_ = !(std::fmax(roundings(0), roundings(1)) <= 3 * least_frame);
   for (int piece = 0; piece < piece_count; ++piece) {
-    // The second half is known from the end.
+    // The second half is computed from the end.
     const double q = static_cast<double>(piece) / piece_count;
     const double elapsed = q <= 0.5 ? from_end(0).value(q) : length.high - from_end(1).value(1 - q);
     if (piece > 0) joints_[piece - 1] = elapsed;
@@ -39,8 +39,8 @@ TimeCubic::TimeCubic(double start, double end, Pair start_rate, Pair end_rate) {
 }
 
 double TimeCubic::roundings(int end) const {
-  // All that place_of rounds without pairs, in multiples of 2^-53 at q = 1/2, where it is most:
-  // distance, coefficients, products, sums, and q itself.
+  // All rounding errors in place_of without pairs, in multiples of 2^-53 at q = 1/2, where they are
+  // largest: distance, coefficients, products, sums, and q itself.
   const Cubic x = from_end(end);
   const double q = 0.5;
   const double inner = q * q * std::fabs(x.c2 + q * x.c3);
@@ -49,14 +49,14 @@ double TimeCubic::roundings(int end) const {
 }
 
 TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
-  // The inverse through where the piece begins and `degree` points more, by divided differences.
-  // The points are Chebyshev's for seven, drawn out so that the first is that beginning.
+  // The inverse through the start of the piece and `degree` more points, by divided differences.
+  // The points are seven Chebyshev points, stretched so that the first is the start.
   constexpr int points = degree + 1;
   constexpr double width = 1.0 / piece_count;
   constexpr std::array<double, points> places = {0, 0.099, 0.277, 0.5, 0.723, 0.901, 1};
   const int end = piece / (piece_count / 2);
   const Cubic x = from_end(end);
-  // In the second half q falls from piece to piece.
+  // In the second half q decreases from piece to piece.
   const double direction = end == 0 ? 1 : -1;
   const double first_q = end == 0 ? piece * width : 1 - piece * width;
   const double first_share = x.value(first_q) / length;
@@ -78,7 +78,7 @@ TimeCubic::Piece TimeCubic::piece_of(int piece, double length) const {
   }
   Piece result;
   for (int power = 1; power < points; ++power) {
-    // Beside a vertical tangent there is no such polynomial; place_of sees that NaN is no guess.
+    // Near a vertical tangent there is no such polynomial; place_of treats NaN as no guess.
     const bool is_sound = std::fabs(c[power]) < 1e30;
     result[power - 1] =
         is_sound ? static_cast<float>(c[power]) : std::numeric_limits<float>::quiet_NaN();
@@ -111,8 +111,8 @@ TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
   double q = guess.q;
   bool is_close = has_small_frames_;
   if (!is_close || !(q > 0 && q <= largest_place)) {
-    // Where the guess failed: the parabola that meets x at 0 (with its slope) and at 1/2. It
-    // follows the square root at a handle of length 0, where Newton from afar would crawl.
+    // If the guess failed: the parabola that equals x at 0 (with its slope) and at 1/2. It follows
+    // the square root at a handle of length 0, where Newton from afar would be slow.
     const double chord = x.c2 + x.c3 / 2;
     const double discriminant = x.c1 * x.c1 + 4 * chord * distance.high;
     q = 2 * distance.high / (x.c1 + std::sqrt(discriminant));
@@ -130,11 +130,11 @@ TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
       if (std::fabs(bend) < 0.25 && std::fabs(twist) < 0.25) {
         q += newton * (1 - bend + (2 * bend * bend - twist));
       } else {
-        q += newton / (1 + bend);  // Halley: of lower order, but sound far from the root
+        q += newton / (1 + bend);  // Halley: of lower order, but reliable far from the root
         continue;
       }
-      // What is left of the error is about 5 bend³ of the step; the last step's own order does the
-      // rest.
+      // The remaining error is about 5 bend³ of the step; the order of the last step makes it
+      // negligible.
       is_close = bend * bend <= 1e-3 && std::fabs(twist) <= 1e-3;
       if (!is_close || !(q > 0 && q <= largest_place)) continue;
     }
@@ -150,16 +150,16 @@ TimeCubic::Place TimeCubic::careful_place_of(double frame) const {
 }
 
 TimeCubic::Place TimeCubic::search(int side, Pair distance) const {
-  // Beside a vertical tangent. The bracket only ever shrinks: a Newton step inside it while that at
+  // Near a vertical tangent. The bracket only shrinks: a Newton step inside it, as long as that at
   // least halves the bracket every second time, otherwise bisection.
   const Cubic x = from_end(side);
-  // A quarter of an ulp of the distance is below what the frame itself can tell.
+  // A quarter of an ulp of the distance is below the precision of the frame itself.
   const double enough = std::numeric_limits<double>::epsilon() / 8 * distance.high;
   double low = 0;
   double high = largest_place;
   double q = 0.25;
   double width_before = high;
-  for (int round = 0; round < 1200; ++round) {  // bisection alone ends within 1100 (subnormal q)
+  for (int round = 0; round < 1200; ++round) {  // bisection alone needs at most 1100 (subnormal q)
     const double miss = residual(side, q, distance);
     if (std::fabs(miss) <= enough) break;
     (miss > 0 ? high : low) = q;
@@ -172,7 +172,7 @@ TimeCubic::Place TimeCubic::search(int side, Pair distance) const {
     if (next == q) break;
     q = next;
   }
-  // What q cannot hold of the root, unless the tangent is too steep to tell.
+  // The part of the root that q cannot represent, unless the tangent is too steep to compute it.
   const double correction = -residual(side, q, distance) / x.slope(q);
   const bool is_rounding = std::fabs(correction) <= std::numeric_limits<double>::epsilon() * q;
   return {side, q, is_rounding ? correction : 0};

@@ -12,11 +12,11 @@ namespace pliant::timeline {
 /// for u (docs/timeline.md, eq. 3 and section "The time solve").
 ///
 /// The unknown is q, the parameter counted from the nearer end, and the equation is in frames from
-/// that end, so that a frame next to a key loses no digits.
+/// that end, so that a frame next to a key loses no precision.
 class alignas(64) TimeCubic {
  public:
-  /// A parameter q + correction, in [0, 1/2] but for rounding, from `end` (0: start, 1: end). The
-  /// correction is what rounding took from q.
+  /// A parameter q + correction, in [0, 1/2] except for rounding, from `end` (0: start, 1: end).
+  /// The correction is the rounding error of q.
   struct Place {
     int end = 0;
     double q = 0;
@@ -24,32 +24,33 @@ class alignas(64) TimeCubic {
   };
 
   /// The cubic with x(0) = start, x(1) = end, x'(0) = start_rate, x'(1) = end_rate [frames].
-  /// Requires: start < end; rates >= 0 for which x does not fall (eq. 6).
+  /// Requires: start < end; rates >= 0 for which x does not decrease (eq. 6).
   TimeCubic(double start, double end, Pair start_rate, Pair end_rate);
 
-  /// The place of a frame. x of it is within 3 ulp of the frame; beside frame 0, where ulps are
-  /// small against the segment, within one. Requires: start <= frame <= end.
+  /// The place of a frame. Its x is within 3 ulp of the frame; near frame 0, where ulps are small
+  /// relative to the segment, within one. Requires: start <= frame <= end.
   Place place_of(double frame) const;
 
-  /// The same for nearly all frames, as fast as can be; q <= 0 where that does not suffice.
+  /// The same for nearly all frames, as fast as possible; q <= 0 if the fast method does not
+  /// suffice.
   Place quick_place_of(double frame) const;
 
   /// Frames from one end, over q.
   Cubic from_end(int end) const { return {0, c1_[end], c2_[end], c3_}; }
 
  private:
-  // Guesses of the inverse: polynomials on eighths of the parameter, four to an end.
+  // Initial guesses of the inverse: polynomials on eighths of the parameter, four for each end.
   static constexpr int piece_count = 8;
   static constexpr int degree = 6;
-  // The middle of a segment belongs to either end; rounding may put the root a little beyond 1/2.
+  // The middle of a segment belongs to both ends; rounding may put the root a little beyond 1/2.
   static constexpr double largest_place = 0.5 + 0x1p-10;
 
-  // In the second half q falls from piece to piece.
+  // In the second half q decreases from piece to piece.
   static constexpr std::array<float, piece_count> first_qs = {0,    0.125F, 0.25F, 0.375F,
                                                               0.5F, 0.375F, 0.25F, 0.125F};
 
-  /// q = first_q + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from where the
-  /// piece begins. A guess needs few digits: what it misses goes into the fourth power.
+  /// q = first_q + c[0] s + c[1] s² + … with s, in lengths of the segment, counted from the start
+  /// of the piece. A guess needs few digits: its error enters with the fourth power.
   using Piece = std::array<float, degree>;
 
   struct Guess {
@@ -61,7 +62,7 @@ class alignas(64) TimeCubic {
   /// A step from q towards the root, of fourth order (eq. 5).
   struct Step {
     double length = 0;
-    bool is_last = false;  ///< no digit is left to find; false for a q that is NaN
+    bool is_last = false;  ///< no digit is left to improve; false if q is NaN
   };
 
   Guess guess_of(double frame) const;
@@ -72,30 +73,30 @@ class alignas(64) TimeCubic {
   double roundings(int end) const;
   Piece piece_of(int piece, double length) const;
 
-  // In the order of use: two cache lines and half of one of the next two serve a frame.
+  // In the order of use: a frame needs two cache lines and half of one of the next two.
   std::array<double, piece_count - 1> joints_ = {};   ///< between pieces, from the start [frames]
-  std::array<float, piece_count> first_shares_ = {};  ///< of the length, where pieces begin
+  std::array<float, piece_count> first_shares_ = {};  ///< of the length, at the starts of pieces
   float per_length_ = 0;                              ///< 1 / length
-  bool has_small_frames_ = false;      ///< plain doubles would miss frames by several ulp
+  bool has_small_frames_ = false;      ///< plain doubles would be wrong by several ulp
   std::array<double, 2> frames_ = {};  ///< of the ends
   std::array<double, 2> c1_ = {};      ///< of x as seen from the ends (eq. 4) [frames]
   std::array<double, 2> c2_ = {};
   double c3_ = 0;
   std::array<Piece, piece_count> pieces_;
-  // What the doubles above could not hold.
+  // The low parts of the numbers above.
   std::array<double, 2> c1_low_ = {};
   std::array<double, 2> c2_low_ = {};
   double c3_low_ = 0;
 };
 
-// Inline, since a curve spends its time here.
+// Inline, since a curve spends most of its time here.
 
-// A frame waits for one operation after the other, not for their number; so sums are taken in pairs
-// and not by Horner's rule where their last digits do not count.
+// The latency of dependent operations counts, not their number; so sums are grouped in pairs
+// instead of by Horner's rule if their last digits do not matter.
 
 inline TimeCubic::Guess TimeCubic::guess_of(double frame) const {
   const double elapsed = frame - frames_[0];
-  // No branch on what changes from frame to frame.
+  // No branch on values that change from frame to frame.
   const auto is_behind = [&](int joint) { return elapsed >= joints_[joint - 1] ? 1 : 0; };
   const int piece = ((is_behind(1) + is_behind(2)) + (is_behind(3) + is_behind(4))) +
                     ((is_behind(5) + is_behind(6)) + is_behind(7));
@@ -116,7 +117,7 @@ inline TimeCubic::Step TimeCubic::step_from(double q, const Cubic& x, double mis
   const double b = x.c3 * inverse;
   const double n_2 = n * n;
   const double a_2 = a * a;
-  // What is left is less than 10 g^(3/2) n for g = (A² + |B|) n²; asked for are 2^-56 of q.
+  // The remaining error is less than 10 g^(3/2) n for g = (A² + |B|) n²; the goal is 2^-56 of q.
   const double g = (a_2 + std::fabs(b)) * n_2;
   return {(n - n_2 * a) + (n_2 * n) * (2 * a_2 - b), (g * g) * (g * n_2) < 0x1p-119 * (q * q)};
 }
@@ -126,7 +127,7 @@ inline TimeCubic::Place TimeCubic::quick_place_of(double frame) const {
   const Guess guess = guess_of(frame);
   const Cubic x = from_end(guess.end);
   double q = guess.q;
-  for (int round = 0; round < 2; ++round) {  // the first does nearly always
+  for (int round = 0; round < 2; ++round) {  // the first usually suffices
     const Step step = step_from(q, x, guess.distance - q * (x.c1 + q * (x.c2 + q * x.c3)));
     const bool is_last = q <= largest_place && step.is_last;
     q += step.length;

@@ -77,7 +77,7 @@ Value<D> Track<D>::velocity_in(const Segment<D>& segment, double frame) const {
       const double change = segment.ends[0][c].c1;
       velocity[c] = change != 0 ? change * slope / segment.length : 0;
       if (std::isfinite(velocity[c]) || eased[c].is_upright(at)) continue;
-      // The share's slope may be beyond all numbers where the change is tiny.
+      // The share's slope may overflow if the change is tiny.
       velocity[c] = within_numbers(eased[c].slope(at, change) / segment.length);
     }
     return velocity;

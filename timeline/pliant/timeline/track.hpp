@@ -9,16 +9,16 @@
 
 namespace pliant::timeline {
 
-/// From which side a frame is approached: at a key the answers may differ.
+/// The side from which a frame is approached: at a key the results may differ.
 enum class Limit { At, Left, Right };
 
-/// The compiled keys of a curve: its values from the first key to the last. What lies outside is
-/// Extrapolated's affair.
+/// The compiled keys of a curve: its values from the first key to the last. Extrapolated gives the
+/// values outside.
 template <int D>
 struct Track {
   std::vector<double> frames;        ///< of the keys, strictly increasing, at least one
   std::vector<Value<D>> values;      ///< of the keys
-  std::vector<Value<D>> arrivals;    ///< what the segment before a key ends with; first: its `left`
+  std::vector<Value<D>> arrivals;    ///< end value of the segment before a key; first: its `left`
   KeySearch search;                  ///< over `frames`
   std::vector<Segment<D>> segments;  ///< one fewer than keys
   std::vector<TimeCubic> times;      ///< of the Bézier segments
@@ -27,11 +27,11 @@ struct Track {
   double first() const { return frames.front(); }
   double last() const { return frames.back(); }
 
-  /// The segment that holds a frame, the later one at a key. Requires: first() <= frame.
+  /// The segment that contains a frame; at a key, the later one. Requires: first() <= frame.
   std::size_t segment_at(double frame) const { return search.segment_at(frames, frame); }
 
   // Below, `segment` is segment_at(frame), and first() <= frame <= last(). With one key there is no
-  // segment: frame is its frame, and only value() may be asked.
+  // segment: frame is its frame, and only value() may be called.
 
   /// The value, or its limit from one side (Left: not at the first key; Right: not at the last).
   Value<D> value(double frame, Limit limit, std::size_t segment) const;
@@ -50,7 +50,7 @@ struct Track {
     bool holds_to = true;
   };
 
-  /// Grows `bounds` to hold every value in an interval and the limits inside.
+  /// Extends `bounds` to every value in an interval, including the one-sided limits inside.
   void add_bounds(const Interval& interval, Bounds<D>& bounds) const;
 
  private:

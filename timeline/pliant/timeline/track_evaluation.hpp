@@ -6,7 +6,7 @@
 
 namespace pliant::timeline {
 
-/// Where a frame lies in a segment whose time is linear, counted from the nearer end.
+/// The place of a frame in a segment whose time is linear, counted from the nearer end.
 struct LinearPlace {
   int end;
   double q;
@@ -19,8 +19,8 @@ struct LinearPlace {
   }
 };
 
-// Inline, since playback spends its time here. Not part of track.hpp, lest it be compiled with
-// other people's flags, which might allow other bits.
+// Inline, since playback spends most of its time here. Not part of track.hpp: otherwise it could be
+// compiled with flags of a program that uses the library, which might change its bits.
 template <int D>
 inline Value<D> Track<D>::value_in(const Segment<D>& segment, double frame) const {
   Value<D> value;

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-// assimp's own MemoryIOStream divides by the size of an item, which a broken file makes 0.
+// assimp's own MemoryIOStream divides by the size of an item, which is 0 in a broken file.
 class MemoryStream final : public Assimp::IOStream {
  public:
   explicit MemoryStream(std::string_view bytes) : bytes_(bytes) {}
@@ -29,7 +29,7 @@ class MemoryStream final : public Assimp::IOStream {
     const std::size_t base = origin == aiOrigin_SET   ? 0
                              : origin == aiOrigin_CUR ? at_
                                                       : bytes_.size();
-    const std::size_t target = base + offset;  // wraps around where the offset stands for a minus
+    const std::size_t target = base + offset;  // wraps around if `offset` is negative
     if (target > bytes_.size()) return aiReturn_FAILURE;
     at_ = target;
     return aiReturn_SUCCESS;

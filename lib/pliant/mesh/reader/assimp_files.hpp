@@ -6,13 +6,13 @@
 
 namespace pliant {
 
-/// What assimp may open: one file whose bytes we hold, and nothing that it refers to.
+/// The files that assimp may open: one file, whose bytes are in memory, and none that it refers to.
 class AssimpFiles final : public Assimp::IOSystem {
  public:
-  /// `name` is what assimp calls the file.
+  /// `name` is assimp's name of the file.
   AssimpFiles(std::string name, std::string bytes);
 
-  // What assimp calls.
+  // Functions that assimp calls.
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* file, const char* mode) override;

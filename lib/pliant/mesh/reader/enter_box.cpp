@@ -57,7 +57,7 @@ class Filter {
   }
   bool is_sound() const { return is_sound_; }
 
-  // Whether the filter holds, or the kernel has none.
+  // True if the filter is loaded, or the kernel does not support it.
   bool load() const {
     const int error = -seccomp_load(context_);
     return error == 0 || error == ENOSYS || error == EINVAL || error == EOPNOTSUPP;
@@ -75,7 +75,7 @@ bool filter_calls() {
   };
   filter.allow(SCMP_SYS(mmap), not_executable(2));
   filter.allow(SCMP_SYS(mprotect), not_executable(2));
-  // abort() sends itself a signal, so that a crash is seen as one.
+  // abort() sends itself a signal; it must work, so that a crash is reported as one.
   filter.allow(SCMP_SYS(tgkill),
                scmp_arg_cmp{0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid()), 0});
   for (const int call : {SCMP_SYS(read),
@@ -114,7 +114,7 @@ bool filter_calls() { return true; }
 bool enter_box(int count, char** arguments) {
   if (count < box_arguments) return false;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (std::to_string(getppid()) != arguments[1]) return false;  // it has died before that
+  if (std::to_string(getppid()) != arguments[1]) return false;  // it died before that
   prctl(PR_SET_DUMPABLE, 0);
   close(boxed_program);
   mallopt(M_PERTURB, std::atoi(arguments[4]));

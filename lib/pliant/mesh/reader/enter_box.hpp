@@ -2,19 +2,19 @@
 
 namespace pliant {
 
-/// How many arguments, the program's name among them, are for `enter_box`.
+/// Number of arguments for `enter_box`, including the program's name.
 inline constexpr int box_arguments = 5;
 
-/// The first call of a program that `run_boxed` runs: gives up, for good, what reading a file that
-/// is open already does not need. Memory, time, open files, processes and what may be written are
-/// bounded; with seccomp, system calls are those that compute, allocate, read what is open and
-/// write the answer. The program dies with its parent.
+/// The first call of a program that `run_boxed` runs: gives up permanently all rights that reading
+/// an open file does not need. Limits memory, time, open files, processes and output; with seccomp,
+/// the only system calls are those that compute, allocate, read open files and write the answer.
+/// The program dies with its parent.
 ///
-/// What is not allowed is refused (EPERM) rather than punished: a library that looks for something,
-/// such as a locale, gets no for an answer and goes on, and an attacker gets as little either way.
-/// A kernel without seccomp is lived with: the other bounds hold there.
+/// Other calls are refused (EPERM) instead of killing the program: a library that looks for
+/// something, such as a locale, gets an error and continues, and an attacker gains as little either
+/// way. A kernel without seccomp is accepted: the other limits still apply.
 ///
-/// False, and the program must end: a bound could not be set, or the parent is gone.
+/// Returns false if a limit could not be set, or the parent is gone; the program must then end.
 bool enter_box(int count, char** arguments);
 
 }  // namespace pliant

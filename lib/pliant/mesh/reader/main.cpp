@@ -1,5 +1,6 @@
-// What read_assimp runs in a box: reads the mesh file that is open as its input through assimp, and
-// answers with a MeshMessage. Arguments behind those of the box: ENDING OBJECT UV_SET.
+// The sandboxed program of read_assimp: reads the mesh file that is open as its input through
+// assimp, and answers with a MeshMessage. Arguments after those of `enter_box`: ENDING OBJECT
+// UV_SET.
 
 #include <cerrno>
 #include <cstdlib>
@@ -22,7 +23,7 @@ using namespace pliant;
 
 constexpr int broken = 1;
 
-// From the beginning, wherever another process that has the file open may be in it.
+// Reads from the beginning, even if another process with the same open file has moved its offset.
 bool read_all(std::string& bytes) {
   constexpr std::size_t chunk = std::size_t{1} << 20;
   struct stat status {};
@@ -48,7 +49,7 @@ int main(int count, char** arguments) {
     const int uv_set = std::atoi(arguments[box_arguments + 2]);
     const AssimpScene read = read_scene(std::move(bytes), arguments[box_arguments]);
     const bool is_written = write_message(boxed_answer, read, arguments[box_arguments + 1], uv_set);
-    // Straight to the end: what a broken file has made of assimp's objects need not be taken apart.
+    // Exits at once: destroying assimp's objects for a broken file could fail.
     _exit(is_written ? boxed_done : broken);
   } catch (const std::bad_alloc&) {
     _exit(boxed_out_of_memory);

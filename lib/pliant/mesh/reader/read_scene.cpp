@@ -16,8 +16,8 @@
 namespace pliant {
 namespace {
 
-// Leaves assimp the readers of one ending: it would try all of its forty on a file that those
-// refuse.
+// Removes assimp's readers for other endings: it would try all of its forty on a file that the
+// right ones refuse.
 void keep_readers(Assimp::Importer& importer, const std::string& ending) {
   for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
     const std::string known = std::string(" ") + importer.GetImporterInfo(k)->mFileExtensions + " ";
@@ -27,7 +27,7 @@ void keep_readers(Assimp::Importer& importer, const std::string& ending) {
   }
 }
 
-// What a mesh does not need is not read.
+// Skips data that a mesh does not need.
 void set_properties(Assimp::Importer& importer) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -43,7 +43,8 @@ bool contains(std::string_view text, std::string_view word) {
          }) != text.end();
 }
 
-// Of a file that is something else nothing may be told, and assimp quotes what it does not know.
+// Nothing of a file in another format may be revealed, and assimp quotes text that it does not
+// know.
 bool is_of_format(std::string_view bytes, const std::string& ending) {
   if (ending == "fbx") return contains(bytes.substr(0, 1024), "fbx");
   if (ending == "dae") return contains(bytes.substr(0, 65536), "<collada");
@@ -60,7 +61,7 @@ AssimpScene read_scene(std::string bytes, const std::string& ending) {
   result.importer = std::make_unique<Assimp::Importer>();
   keep_readers(*result.importer, ending);
   set_properties(*result.importer);
-  result.importer->SetIOHandler(new AssimpFiles(name, std::move(bytes)));  // takes it
+  result.importer->SetIOHandler(new AssimpFiles(name, std::move(bytes)));  // takes ownership
   result.scene = result.importer->ReadFile(name, 0);
   if (result.scene && result.scene->mRootNode) return result;
   result.scene = nullptr;

@@ -8,15 +8,15 @@
 
 namespace pliant {
 
-/// What assimp made of a file: a scene that `importer` owns; or none, and why.
+/// The result of assimp for a file: a scene owned by `importer`; or null, with the reason.
 struct AssimpScene {
   std::unique_ptr<Assimp::Importer> importer;
   const aiScene* scene = nullptr;
-  bool is_other_format = false;  ///< the bytes are no file of that ending
+  bool is_other_format = false;  ///< the bytes do not have the format of that ending
   std::string reason;            ///< assimp's own words; they may quote the file
 };
 
-/// Reads the bytes of a file by the readers that assimp has for an ending, such as "fbx". No
+/// Reads the bytes of a file with assimp's readers for an ending, such as "fbx". No
 /// post-processing: nothing is reordered, joined, split into triangles or dropped. Throws
 /// std::bad_alloc.
 AssimpScene read_scene(std::string bytes, const std::string& ending);

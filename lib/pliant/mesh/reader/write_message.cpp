@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Matrix4d;
 
-// A node that carries faces.
+// A node that has faces.
 struct Object {
   std::string node_name;
   std::string mesh_name;
@@ -28,7 +28,7 @@ struct Object {
   std::vector<const aiMesh*> meshes;
 };
 
-// Gathers bytes and writes them as they come.
+// Buffers bytes and writes them to a descriptor.
 class MessageWriter {
  public:
   explicit MessageWriter(int descriptor) : descriptor_(descriptor) {
@@ -108,7 +108,7 @@ std::vector<const aiMesh*> meshes_with_faces(const aiScene& scene, const aiNode&
   return meshes;
 }
 
-// Depth first, in the order of the file. A stack of our own: a file may be deep.
+// Depth first, in the order of the file. Explicit stack: a file may be deeply nested.
 std::vector<Object> objects_of(const aiScene& scene) {
   struct Visit {
     const aiNode* node;
@@ -129,7 +129,7 @@ std::vector<Object> objects_of(const aiScene& scene) {
   return objects;
 }
 
-// The only object of that name; where there are several or none, whoever reads the names says so.
+// The only object of that name; if there are none or several, the receiver of the names reports it.
 std::optional<std::size_t> chosen(const std::vector<Object>& objects, const std::string& name) {
   if (name.empty()) return objects.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
   const auto only = [&](auto name_of) -> std::optional<std::size_t> {
