@@ -44,7 +44,7 @@ std::string answer_to(const HttpServer& server, const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("what a service throws is answered, and the server goes on", "[cli][http]") {
+TEST_CASE("what a service throws is answered, and the server goes on", "[cli][http][threads]") {
   auto server = HttpServer::listen(0);
   REQUIRE(server);
   server->serve({.judge =

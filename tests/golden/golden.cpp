@@ -1,10 +1,12 @@
 // Verifies every golden replay with this build: with the kernels of every width that the machine
-// has, and with several numbers of threads; with --once in one way only. --bless records all of
-// them again, and prints new ones and differences. docs/replay.md, "Golden replays".
+// has, and with several numbers of threads; with --lanes or --threads only these, with --once in one
+// way only. --bless records all of them again, and prints new ones and differences. docs/replay.md,
+// "Golden replays".
 //
-// usage: golden SOURCE_FOLDER [--once | --bless]
+// usage: golden SOURCE_FOLDER [--once | --lanes | --threads | --bless]
 
 #include <algorithm>
+#include <array>
 #include <clocale>
 #include <cmath>
 #include <cstdio>
@@ -51,13 +53,16 @@ struct Run {
   }
 };
 
-std::vector<Run> runs_to_do(bool once) {
+// By the program's option; without one all of them.
+std::vector<Run> runs_to_do(std::string_view option) {
+  if (option == "--once") return {Run{}};
   std::vector<Run> runs;
-  if (once) return {Run{}};
   for (int k = 0; const SpectralKernels* kernels = runnable_kernels(k); ++k) {
-    runs.push_back({.lanes = kernels->lanes});
+    if (option != "--threads") runs.push_back({.lanes = kernels->lanes});
   }
-  for (const int threads : {2, 3, 8}) runs.push_back({.threads = threads});
+  for (const int threads : {2, 3, 8}) {
+    if (option != "--lanes") runs.push_back({.threads = threads});
+  }
   return runs;
 }
 
@@ -179,14 +184,14 @@ int main(int count, char* arguments[]) {
   take_locale();
   const std::string_view option = count == 3 ? arguments[2] : "";
   const bool blesses = option == "--bless";
-  const bool once = option == "--once";
-  if (count != 2 && !blesses && !once) {
-    std::fputs("usage: golden SOURCE_FOLDER [--once | --bless]\n", stderr);
+  constexpr std::array options = {"--once", "--lanes", "--threads", "--bless"};
+  if (count != 2 && std::find(options.begin(), options.end(), option) == options.end()) {
+    std::fputs("usage: golden SOURCE_FOLDER [--once | --lanes | --threads | --bless]\n", stderr);
     return 2;
   }
   const fs::path source = arguments[1];
   const std::vector<Golden> goldens = find_goldens(source);
-  const std::vector<Run> runs = runs_to_do(once);
+  const std::vector<Run> runs = runs_to_do(option);
   std::vector<Outcome> outcomes(goldens.size());
   ThreadPool threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   threads.for_each(goldens.size(), [&](std::size_t k) {

@@ -214,7 +214,7 @@ TEST_CASE("vertices of the mesh come first, then those split off", "[io][gltf]")
   CHECK(positions.size() == 3 * (12 + 3 + 1));
 }
 
-TEST_CASE("assimp finds materials, shading and (u,v) of a glTF", "[io][gltf]") {
+TEST_CASE("assimp finds materials, shading and (u,v) of a glTF", "[io][gltf][threads]") {
   const ScratchFolder folder;
   const Mesh mesh = dressed_sheet();
   const Mesh back =

@@ -162,7 +162,7 @@ TEST_CASE("a boxed program dies with its parent", "[mesh][run_boxed]") {
   CHECK(becomes(false, [&] { return is_running(mark); }));
 }
 
-TEST_CASE("eight threads run boxed programs at once", "[mesh][run_boxed]") {
+TEST_CASE("eight threads run boxed programs at once", "[mesh][run_boxed][threads]") {
   misbehaving();
   std::atomic<int> right = 0;
   std::vector<std::thread> threads;

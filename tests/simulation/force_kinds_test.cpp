@@ -186,7 +186,7 @@ TEST_CASE("an unsound answer of a custom force ends the run and is located",
 }
 
 TEST_CASE("what a custom force throws reaches the caller, and the simulation lives on",
-          "[simulation][custom]") {
+          "[simulation][custom][threads]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0}, 300)});
   bool throws = false;
   s.forces[0].shape = CustomForce{.unit_force = [&](const Vector3d&, const ForceTime& time) {

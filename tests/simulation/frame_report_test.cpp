@@ -84,7 +84,8 @@ TEST_CASE("a report tells what the solve at its frame moves", "[simulation][repo
   CHECK((shapes > 0) == (how == Combine::Union));
 }
 
-TEST_CASE("a report is the same in any order and whatever is kept", "[simulation][report]") {
+TEST_CASE("a report is the same in any order and whatever is kept",
+          "[simulation][report][threads]") {
   const Scene s = meeting(GENERATE(Combine::Islands, Combine::Union));
   std::vector<FrameReport> expected;
   auto in_order = Simulation::make(s).value();
@@ -97,7 +98,7 @@ TEST_CASE("a report is the same in any order and whatever is kept", "[simulation
   CHECK_FALSE(simulation.report(17));
 }
 
-TEST_CASE("recovering frames have the same bits in any order", "[simulation][recover]") {
+TEST_CASE("recovering frames have the same bits in any order", "[simulation][recover][threads]") {
   const Scene s = meeting(GENERATE(Combine::Box, Combine::Islands, Combine::Union));
   const auto expected = baked(s, "s");
   const std::size_t kept = GENERATE(std::size_t{0}, std::size_t{300'000}, std::size_t{1} << 28);

@@ -417,7 +417,7 @@ TEST_CASE("a scene is checked without being run", "[simulation][check]") {
   CHECK(refused.error().others.size() == 1);  // both
 }
 
-TEST_CASE("a simulation takes the place of another", "[simulation]") {
+TEST_CASE("a simulation takes the place of another", "[simulation][threads]") {
   const Scene first = scene({sheet("s")}, {poke("f", {0, 0, 0})});
   const Scene second = scene({sheet("t", 9), sheet("u", 11)}, {poke("f", {0, 0, 0})});
   auto simulation = Simulation::make(first, {.threads = 2}).value();

@@ -351,7 +351,7 @@ TEST_CASE("huge but legal numbers stay finite between the keys", "[timeline][cur
   }
 }
 
-TEST_CASE("a curve may be asked from many threads at once", "[timeline][curve]") {
+TEST_CASE("a curve may be asked from many threads at once", "[timeline][curve][threads]") {
   Whim whim(10);
   CurveKeys<1> keys = whim.keys(40);
   const Curve<1> curve = make(keys);
