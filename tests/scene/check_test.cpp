@@ -38,7 +38,7 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("end before start") {
     s.end = 0;
-    expected = "end is 0, before start, which is 1";
+    expected = "end is 0, but must not be before start, which is 1";
   }
   SECTION("too many frames") {
     s.end = 1'000'001;
@@ -58,7 +58,7 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("a target") {
     s.forces[0].targets = {"a", "c"};
-    expected = "targets \"c\", which is no surface";
+    expected = "targets \"c\", which is not a surface";
   }
   SECTION("columns") {
     grid.columns = 2;
