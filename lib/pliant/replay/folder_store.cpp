@@ -88,10 +88,10 @@ Result<std::unique_ptr<FolderFrameStore>> FolderFrameStore::open(const fs::path&
   fs::create_directories(folder, error);
   std::error_code unknown;
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::InvalidInput, "is there, and no folder", folder.string());
+    return fail(ErrorCode::InvalidInput, "is not a folder", folder.string());
   }
   if (!fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
+    return fail(ErrorCode::Unwritable, "cannot create the folder: " + error.message(),
                 folder.string());
   }
   return std::unique_ptr<FolderFrameStore>(new FolderFrameStore(folder, byte_budget));
