@@ -181,7 +181,7 @@ class Placements(Command):
                 "</surface>", f"<transform {place}/></surface>").replace("<point", '<point enabled="false"'))
             for ending in (".gltf", ".glb"):
                 errors = self.run_pliant("bake", scene, "-o", "a" + ending, "--space", "object", code=1).stderr
-                self.assertIn(f'surface "sheet" at frame 1 has a {single}, which is beyond the single precision',
+                self.assertIn(f'surface "sheet" at frame 1 has a {single}, which is too large for the single precision',
                               errors)
                 self.assertEqual(self.files(), ["p.xml"])
             self.run_pliant("bake", scene, "-o", "a.usda", "--space", "object")
