@@ -210,7 +210,7 @@ int main(int count, char* arguments[]) {
     }
   }
   if (failed > 0 && !blesses) {
-    say("script/test --bless records again what differs, and tells how much");
+    say("script/test --bless records the logs that differ again, and prints by how much");
   }
   say(fmt::format("{} passed, {} failed", passed, failed));
   return failed == 0 && passed > 0 ? 0 : 1;
