@@ -120,8 +120,8 @@ void add_record(CLI::App& replay, ReplayCommandOptions& options) {
   record->add_option("-o,--out", options.log, "The log, RUN.replay")->required();
   record
       ->add_option("--states", options.states_every,
-                   "Also record the whole state every so many frames, so that the node and the "
-                   "size of a difference there can be named")
+                   "Also record the whole state every so many frames, so that verify and diff can "
+                   "name the node and size of a difference there")
       ->check(integer_from(1));
   record
       ->add_option("--last", options.last_frame, "The last frame to record; the scene's by default")
@@ -163,7 +163,7 @@ void add_replay(CLI::App& app, ReplayCommandOptions& options) {
   }
   for (const char* any : {"record", "verify", "diff"}) {
     replay->get_subcommand(any)->add_flag("--quiet", options.is_quiet,
-                                          "No progress, and no summary of a success");
+                                          "No progress and no success summary");
   }
 }
 

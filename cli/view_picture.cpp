@@ -272,7 +272,7 @@ Result<std::string> PictureTaker::take() {
     }
     std::this_thread::sleep_for(2ms);
   }
-  return fail(ErrorCode::Unwritable, "Chromium gave no picture within 120 s");
+  return fail(ErrorCode::Unwritable, "Chromium sent no picture within 120 s");
 }
 
 int picture_view(const ViewOptions& options, std::string_view page) {

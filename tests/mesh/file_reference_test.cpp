@@ -92,9 +92,9 @@ TEST_CASE("a reference that leads out of the root is refused", "[mesh][file_refe
   CHECK_THAT(at.bytes((at.shot / "own.bin").string()), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("own.bin%00.png"), contains_text("which is not the name of a file"));
   for (const std::string scheme : {"file", "http", "https", "C", "x-y+z.1"}) {
-    CHECK_THAT(
-        at.bytes(scheme + ":///etc/passwd"),
-        EndsWith(fmt::format("but only files are read, nothing of the scheme \"{}\"", scheme)));
+    CHECK_THAT(at.bytes(scheme + ":///etc/passwd"),
+               EndsWith(fmt::format("but the scheme \"{}\" is not supported; only files are read",
+                                    scheme)));
   }
   CHECK_THAT(at.bytes("own.bin", at.outside / "none"),
              contains_text("but the folder that must contain it cannot be found"));

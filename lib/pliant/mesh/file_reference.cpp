@@ -58,8 +58,8 @@ bool is_there(const fs::path& file) {
 // What a relative path to a file cannot be.
 Result<void> check_uri(const std::string& uri, std::string_view decoded) {
   if (const std::string_view scheme = scheme_of(uri); !scheme.empty()) {
-    return refuse(
-        uri, fmt::format("but only files are read, nothing of the scheme {}", in_quotes(scheme)));
+    return refuse(uri, fmt::format("but the scheme {} is not supported; only files are read",
+                                   in_quotes(scheme)));
   }
   if (decoded.starts_with('/'))
     return refuse(uri, "which is an absolute path; a relative one is required");

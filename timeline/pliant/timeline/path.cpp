@@ -66,8 +66,8 @@ std::optional<PathError> broken_rule(const std::vector<Value<3>>& waypoints, boo
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     for (const double x : waypoints[k]) {
       if (!(std::abs(x) <= timeline::largest_number)) {
-        return PathError{
-            k, "the coordinate " + timeline::number_text(x) + " is not finite or beyond 1e150"};
+        return PathError{k, "has the coordinate " + timeline::number_text(x) +
+                                ", which is not finite or beyond 1e150"};
       }
     }
     if (k == 0 && !is_closed) continue;
