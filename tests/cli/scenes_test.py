@@ -17,7 +17,7 @@ class Validate(Command):
         missing = self.write("m.xml", SCENE.format(end=9).replace(
             '<grid columns="13" rows="11" width="12" depth="10"/>', '<mesh file="none.obj"/>'))
         result = self.run_pliant("validate", good, bad, missing, code=2)
-        self.assertRegex(result.stdout, r"^\S*scene\.xml: all right: 1 surface, 1 force, "
+        self.assertRegex(result.stdout, r"^\S*scene\.xml: valid: 1 surface, 1 force, "
                                         r"frames 1 to 12\n$")
         self.assertRegex(result.stderr, r"bad\.xml:2: error: .*\n\S*m\.xml:3: error: .*none\.obj")
         self.assertEqual(self.run_pliant("validate", good, "--quiet").stdout, "")
