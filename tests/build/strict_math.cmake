@@ -44,7 +44,7 @@ foreach(flag -DCMAKE_CXX_FLAGS=-fassociative-math -DCMAKE_CXX_FLAGS_RELEASE=-Ofa
                           -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_COMPILER=${COMPILER}" ${flag}
                   RESULT_VARIABLE result ERROR_VARIABLE message OUTPUT_QUIET)
   string(REGEX REPLACE "[ \n]+" " " message "${message}")
-  string(REGEX REPLACE "^-D([A-Z_]+)=(.*)$" "cannot be built with \\2, which stands in \\1" words "${flag}")
+  string(REGEX REPLACE "^-D([A-Z_]+)=(.*)$" "cannot be built with \\2, which is in \\1" words "${flag}")
   string(FIND "${message}" "${words}" place)
   if(result EQUAL 0 OR place EQUAL -1)
     message(SEND_ERROR "${flag}: the project is configured all the same: ${message}")

@@ -102,7 +102,7 @@ class Curves(Command):
                                  (["--channel", "none.b"], "no such channel"),
                                  (["--frames", "3:1"], "A:B with A <= B"),
                                  (["--frames", "nan:1"], "A:B with A <= B"),
-                                 (["--frames", "0:1e300"], "more than"),
+                                 (["--frames", "0:1e300"], "too many; at most"),
                                  (["--step", "0"], "must be a number from"),
                                  (["--step", "nan"], "must be a number from"),
                                  (["--at", "at.txt", "--step", "2"], "excludes"),

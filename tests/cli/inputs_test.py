@@ -61,7 +61,7 @@ class Inputs(Command):
                              says=f"-o n.{ending}: {refers}")
             else:
                 self.refused("bake", "mesh.xml", "-o", "n." + ending,
-                             says=rf"would overwrite \S*n\.{ending}, which")
+                             says=rf"would overwrite \S*n\.{ending}, an input of the scene")
             os.rename(self.path("n." + ending), self.path(BUFFERS))
         os.rename(self.path(BUFFERS), self.path("s.0002.obj"))
         self.refer_to("s.0002.obj")
@@ -142,7 +142,7 @@ class Inputs(Command):
         with open(self.path(BUFFERS), "wb") as file:
             file.write(b"cut")
         told = self.run_pliant("replay", "verify", "run.replay", code=2)
-        self.assertRegex(told.stderr, r"buffers\[0\] has 3 of its \d+ bytes")
+        self.assertRegex(told.stderr, r"buffers\[0\] is truncated: it has 3 of \d+ bytes")
         self.assertIn(f"the file {BUFFERS} was changed", told.stderr)
 
     def test_a_save_of_what_a_mesh_refers_to_is_seen(self):

@@ -127,8 +127,8 @@ TEST_CASE("what is sealed as a picture and is none", "[cli][png]") {
     return header({depth, colour, '\0', '\0', last});
   };
   const std::vector<Wrong> all = {
-      {"", "does not begin"},
-      {"<html>", "does not begin"},
+      {"", "is not a PNG"},
+      {"<html>", "is not a PNG"},
       {begin, "is truncated"},
       {begin + end, "no header"},
       {begin + image + header() + end, "no header"},
@@ -148,9 +148,9 @@ TEST_CASE("what is sealed as a picture and is none", "[cli][png]") {
       {begin + header() + chunk("IDAT", packed(rows(5)).substr(0, 20)) + chunk("tEXt", "a") +
            chunk("IDAT", packed(rows(5)).substr(20)) + end,
        "not consecutive"},
-      {begin + form(16, 6, 0) + image + end, "8 bits"},
-      {begin + form(8, 3, 0) + image + end, "8 bits"},
-      {begin + form(8, 6, 1) + image + end, "8 bits"},
+      {begin + form(16, 6, 0) + image + end, "not 8-bit"},
+      {begin + form(8, 3, 0) + image + end, "not 8-bit"},
+      {begin + form(8, 6, 1) + image + end, "not 8-bit"},
       {begin + chunk("IHDR", number(7) + number(6) + rgba) + image + end,
        "7 x 6 pixels, not 7 x 5"},
       {begin + chunk("IHDR", number(0xFFFFFFFF) + number(5) + rgba) + image + end,

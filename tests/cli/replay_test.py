@@ -95,8 +95,8 @@ class Replay(Command):
         flipped = bytearray(sound)
         flipped[len(lines[0]) + len(lines[1]) + 20] ^= 4
         cases = {
-            "cut.replay": (b"".join(lines[:5]), r"cut.replay:6: error: .*cut short.* 4 of 8"),
-            "half.replay": (sound[:-40], r"half.replay:10: error: .*cut short"),
+            "cut.replay": (b"".join(lines[:5]), r"cut.replay:6: error: .*is truncated.* 4 of 8"),
+            "half.replay": (sound[:-40], r"half.replay:10: error: .*is truncated"),
             "flipped.replay": (bytes(flipped), r"flipped.replay:3: error: .*changed after"),
             "later.replay": (b'{"pliant_replay":7,"x":0}\n', r"later.replay:1: error: .*format 7"),
             "empty.replay": (b"", r"empty.replay: error: this is not a replay log"),

@@ -76,13 +76,14 @@ TEST_CASE("what lies outside what it points into is refused", "[mesh][read_gltf]
       {R"("byteLength":48})", R"("byteLength":48,"byteStride":4})",
        "accessors[0] has elements of 12 bytes, but bufferViews[0].byteStride is 4"},
       {R"("byteLength":48})", R"("byteLength":48,"byteStride":0})",
-       "bufferViews[0].byteStride is 0, not from 4 to 252"},
+       "bufferViews[0].byteStride is 0, but must be from 4 to 252"},
       // views in their buffers
       {R"("byteLength":48})", R"("byteLength":4800})",
        "bufferViews[0] reaches past the end of its buffer: 4800 bytes at 0 of 118"},
       {R"("byteOffset":48)", R"("byteOffset":18446744073709551600)",
        "bufferViews[1] reaches past the end of its buffer: 32 bytes at 18446744073709551600 of"},
-      {R"("byteLength":118)", R"("byteLength":119)", "buffers[0] has 118 of its 119 bytes"},
+      {R"("byteLength":118)", R"("byteLength":119)",
+       "buffers[0] is truncated: it has 118 of 119 bytes"},
       {R"("byteLength":118)", R"("byteLength":110)",
        "bufferViews[4] reaches past the end of its buffer: 24 bytes at 94 of 110"},
       // sparse
@@ -161,7 +162,7 @@ TEST_CASE("what lies outside what it points into is refused", "[mesh][read_gltf]
       {R"("mesh":0)", R"("mesh":0,"scale":[1e300,1e300,1e300],"translation":[1e999,0,0])",
        "the file is not glTF: its JSON has a number that is too large"},
       // members of the wrong kind
-      {R"("name":"silk")", R"("name":7)", "materials[0].name is no text"},
+      {R"("name":"silk")", R"("name":7)", "materials[0].name is not text"},
       {R"("attributes":{)", R"("attributes":[],"x":{)",
        "meshes[0].primitives[0].attributes is not an object"},
       {R"("count":4,"type":"VEC3",)", R"("type":"VEC3",)", "accessors[0].count is missing"},

@@ -251,12 +251,12 @@ TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp]") {
     std::string name, text, expected;
   };
   const std::vector<Case> cases = {
-      {"a.fbx", "", "a.fbx: error: the file is no FBX"},
+      {"a.fbx", "", "a.fbx: error: the file is not FBX"},
       {"a.fbx", "Kaydara FBX Binary  ", "a.fbx: error: the "},
       {"a.fbx", "; FBX 7.4.0\nObjects: {", "a.fbx: error: the file cannot be read: "},
-      {"a.dae", "", "a.dae: error: the file is no Collada"},
+      {"a.dae", "", "a.dae: error: the file is not Collada"},
       {"a.dae", "<COLLADA/>", "a.dae: error: the file "},
-      {"a.dae", "<scene>", "a.dae: error: the file is no Collada"},
+      {"a.dae", "<scene>", "a.dae: error: the file is not Collada"},
       {"a.dae", changed_collada("<p>0 ", "<p>99 "), "a.dae: error: the file cannot be read: "}};
   for (const Case& c : cases) {
     CAPTURE(c.text);
