@@ -225,7 +225,7 @@ class Page(View):
                 (["view", scene, "--frame", "3"], 2, "--png"),
                 (["view", scene, "--size", "64x64"], 2, "--png or --movie"),
                 (["view", scene, "--look", "turn=3"], 2, "--png or --movie"),
-                (["view", scene, "--movie", "a.avi"], 2, ".mp4, .gif or .webm"),
+                (["view", scene, "--movie", "a.avi"], 2, "allowed: .mp4, .gif, .webm"),
                 (["view", scene, "--movie", "a.mp4", "--png", "a.png"], 2, "--png"),
                 (["view", scene, "--movie", "a.mp4", "--size", "641x361"], 2, "must be even"),
                 (["view", scene, "--movie", "a.mp4", "--frames", "5:99"], 2, "--frames 5:99"),
@@ -242,7 +242,7 @@ class Page(View):
         bare = self.path("bin")
         os.mkdir(bare)
         result = self.run_pliant("view", scene, "--movie", "a.mp4", code=1, env={"PATH": bare})
-        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs ffmpeg.*none on the PATH\n\Z")
+        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs ffmpeg.*not on the PATH\n\Z")
         with open(os.path.join(bare, "ffmpeg"), "w", encoding="utf-8") as file:
             file.write("#!/bin/sh\n")
         os.chmod(file.name, 0o755)
