@@ -1082,7 +1082,7 @@ test("a movie that is interrupted leaves nothing", async () => {
   assert.equal(command.exitCode, null, errors);
   const code = await new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); });
   assert.equal(code, 1);
-  assert.match(errors, /^pliant: error: interrupted at frame \d+\n$/);
+  assert.match(errors, /^pliant: error: interrupted at frame \d+; no movie was written\n$/);
   assert.deepEqual(readdirSync(out), []);
   assert.deepEqual(readdirSync(scratch).filter((name) => name.startsWith("pliant-view-")), []);
 });
