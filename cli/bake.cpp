@@ -35,8 +35,8 @@ Result<SolverChoice> parse_solver(const std::string& name) {
   const auto choice = solver_choice(name);
   if (choice && is_available(*choice)) return *choice;
   return fail(ErrorCode::InvalidInput,
-              fmt::format("--solver {}: this build has none; it was made without "
-                          "PLIANT_WITH_CHOLMOD. Use auto or spectral",
+              fmt::format("--solver {}: this build does not have it (PLIANT_WITH_CHOLMOD is off); "
+                          "use auto or spectral",
                           name));
 }
 
@@ -61,8 +61,9 @@ Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
     if (!options.surface || *options.surface == names.back()) chosen.push_back(k);
   }
   if (!chosen.empty()) return chosen;
-  return fail(ErrorCode::InvalidInput, fmt::format("--surface {}: the scene has the surfaces {}",
-                                                   *options.surface, fmt::join(names, ", ")));
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--surface {}: the scene has no such surface; it has {}",
+                          *options.surface, fmt::join(names, ", ")));
 }
 
 AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options,
@@ -90,8 +91,7 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
 Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
   const auto refuse = [&](const std::filesystem::path& input) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("-o {}: would overwrite {}, which the scene is made from; choose "
-                            "another name",
+                fmt::format("-o {}: would overwrite {}, an input of the scene; choose another name",
                             printable(plan.file), printable(input.string())));
   };
   for (const SceneInput& input : inputs_of(scene)) {
@@ -116,7 +116,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
   };
   if (const auto input = input_named(regions, scene); !input.empty()) return refuse(input);
   if (is_named_at_the_end(plan, regions.filename().string()))
-    return refuse("it is named as what -o writes");
+    return refuse("it has the name of a file that -o may write");
   for (const std::filesystem::path file : files_of(plan)) {
     // Compares names first: querying the disk for each of a million frames would be slow.
     if (file.filename() == regions.filename() && name_one_file(regions, file)) {
@@ -234,10 +234,11 @@ std::string kept_text(const BakeOptions& options) {
   const std::string ending = ending_of(options.out);
   const bool is_sequence = ending == ".obj" || ending == ".ply";
   const std::string files =
-      is_sequence ? "the files written stay, and --resume goes on with them" : "no file is written";
+      is_sequence ? "the files written so far are kept, and --resume continues with them"
+                  : "no file was written";
   return files + (options.cache.folder
-                      ? "; the frames solved are in --cache, and the next run reads them"
-                      : "; with --cache DIR the frames solved are kept for the next run");
+                      ? "; the solved frames are in the --cache folder, and the next run reads them"
+                      : "; --cache DIR would keep the solved frames for the next run");
 }
 
 // Prints the time of each stage, and the rest: reading the scene, finding grids, progress, files
@@ -261,33 +262,34 @@ void print_profile(const Profile& profile, double elapsed) {
 void add_bake(CLI::App& app, BakeOptions& options) {
   CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
   bake->add_option("SCENE", options.scene, "Scene file")->required();
-  bake->add_option(
-          "-o,--out", options.out,
-          fmt::format("Output; its ending picks the format: {}. Several surfaces go to "
-                      "OUT-NAME, but to one .glb, .gltf or .usda; a sequence (.obj, .ply) has the "
-                      "frame in each name (OUT.0001.obj; a run of # sets the digits)",
-                      fmt::join(known_endings(), ", ")))
+  bake->add_option("-o,--out", options.out,
+                   fmt::format("Output file; its ending selects the format: {}. Several surfaces "
+                               "are written to a file each, OUT-NAME, but all to one .glb, .gltf "
+                               "or .usda. A sequence (.obj, .ply) has the frame in each name: "
+                               "OUT.0001.obj; a run of # in OUT sets the number of digits",
+                               fmt::join(known_endings(), ", ")))
       ->required();
-  bake->add_option("--frames", options.frames, "A:B, or one frame; all of them by default");
+  bake->add_option("--frames", options.frames, "Frames to write, A:B or one frame; all by default");
   bake->add_option("--surface", options.surface, "Write this surface only");
   bake->add_option("--space", options.space, "Space of the positions")
       ->check(CLI::IsMember({"world", "object"}))
       ->capture_default_str();
   bake->add_option("--solver", options.solver,
-                   "Who solves the plates: in sine space, by CHOLMOD's factors, or whichever suits "
-                   "each region; results differ by 2e-9 of their size at most")
+                   "Solver of the plates: in sine space, by CHOLMOD's sparse factors, or the one "
+                   "that suits each region; results differ by at most 2e-9 of their size")
       ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
       ->capture_default_str();
-  bake->add_flag("--resume", options.resume,
-                 "Keep the files of an .obj or .ply sequence that are what would be written");
+  bake->add_flag(
+      "--resume", options.resume,
+      "Keep the files of an .obj or .ply sequence that are already identical to the result");
   add_root(*bake, options.root);
   add_cache(*bake, options.cache);
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
-                   "JSON file that tells what is solved in each frame, and under which forces");
+                   "Write the regions that each frame solves, and their forces, to this JSON file");
   bake->add_flag("--profile", options.is_profiled,
-                 "A table on stderr at the end: how long the run spent in each stage");
+                 "Print a table on stderr at the end: the time spent in each stage of the run");
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
 }
 
@@ -315,7 +317,7 @@ int run_bake(const BakeOptions& options) {
   run.profile = options.is_profiled;
   run.store = store->get();
   auto simulation = Simulation::make(*std::move(scene), run);
-  if (!simulation) return report(with_kept(simulation.error(), "no file is written"));
+  if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
   auto output = open_output(*simulation, options, *frames);
   if (!output) return report(output.error());
 

@@ -20,13 +20,14 @@ void print_note(const CacheOptions& options, const std::string& message) {
 }  // namespace
 
 void add_cache(CLI::App& command, CacheOptions& options) {
-  CLI::Option* const folder =
-      command.add_option("--cache", options.folder,
-                         "Folder that keeps each frame's state: what is the same the next time is "
-                         "read, not solved, after an edit or an interrupted bake");
+  CLI::Option* const folder = command.add_option(
+      "--cache", options.folder,
+      "Folder that stores each frame's state; a later bake, after an edit or an interrupt, reads "
+      "the states that are still valid instead of solving them");
   command
       .add_option("--cache-size", options.gigabytes,
-                  "Disk space in GB that the folder may take; what was not used for long goes")
+                  "Most disk space that the folder may use, in GB; the states unused for longest "
+                  "are removed first")
       ->check(number_from(0))
       ->capture_default_str()
       ->needs(folder);
@@ -34,7 +35,8 @@ void add_cache(CLI::App& command, CacheOptions& options) {
 
 Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options) {
   if (!options.folder) return nullptr;
-  if (options.folder->empty()) return fail(ErrorCode::InvalidInput, "--cache: names no folder");
+  if (options.folder->empty())
+    return fail(ErrorCode::InvalidInput, "--cache: the name of the folder is empty");
   auto store =
       FolderFrameStore::open(*options.folder, static_cast<std::size_t>(options.gigabytes * 1e9));
   if (store) return store;
@@ -42,7 +44,7 @@ Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options
     return fail(store.error().code,
                 fmt::format("--cache {}: {}", printable(*options.folder), store.error().message));
   }
-  print_note(options, store.error().message + "; no frame is kept");
+  print_note(options, store.error().message + "; no frame is stored");
   return nullptr;
 }
 
@@ -53,7 +55,7 @@ void print_cache_notes(const FolderFrameStore* store, const CacheOptions& option
                                     damaged, damaged == 1 ? "" : "s"));
   }
   if (const std::string trouble = store->trouble(); !trouble.empty()) {
-    print_note(options, trouble + "; not all frames are kept");
+    print_note(options, trouble + "; not all frames are stored");
   }
 }
 

@@ -59,7 +59,7 @@ Result<Frames> read_frames(const std::string& file) {
     const auto frame = to_number(word);
     if (!frame) {
       return fail(ErrorCode::InvalidInput,
-                  "this is not a frame: one finite number a line is required", file, line);
+                  "this is not a frame; each line must have one finite number", file, line);
     }
     frames.listed.push_back(*frame);
   }
@@ -80,7 +80,8 @@ Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
                         ? from
                         : to_number(std::string_view(options.frames).substr(colon + 1));
     if (!from || !to || *from > *to) {
-      return usage(fmt::format("--frames {}: not of the form A:B with A <= B", options.frames));
+      return usage(
+          fmt::format("--frames {}: must be one frame, or A:B with A <= B", options.frames));
     }
     first = *from;
     last = *to;
@@ -89,8 +90,8 @@ Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
   // If the steps reach the last frame up to rounding, the last frame is included.
   const double steps = std::floor((last - first) / options.step * (1 + 1e-14) + 1e-9);
   if (!(steps < most)) {
-    return usage(
-        fmt::format("frames {} to {} by {} are more than {}", first, last, options.step, most));
+    return usage(fmt::format("frames {} to {} in steps of {} are too many; at most {} are allowed",
+                             first, last, options.step, most));
   }
   return Frames{{}, first, options.step, static_cast<std::size_t>(steps) + 1};
 }
@@ -221,7 +222,8 @@ class Table {
 // Plots from the first to the last requested frame.
 Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channels,
                         const Frames& frames, const CurvesOptions& options) {
-  if (frames.count == 0) return fail(ErrorCode::InvalidInput, "no frames to plot");
+  if (frames.count == 0)
+    return fail(ErrorCode::InvalidInput, "a plot needs at least two frames; there are none");
   double first = frames[0], last = frames[frames.count - 1];
   for (const double frame : frames.listed) {
     first = std::min(first, frame);
@@ -229,7 +231,7 @@ Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channe
   }
   if (!(first < last)) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("a plot needs two frames at least, not {} alone", first));
+                fmt::format("a plot needs at least two frames; there is only {}", first));
   }
   const std::string title = std::filesystem::path(options.scene).filename().string();
   return output.write(curve_plot(channels, first, last, title));
@@ -239,7 +241,8 @@ Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channe
 Result<void> check_place(const CurvesOptions& options, const Scene& scene) {
   if (options.out.empty()) return {};
   std::string input = input_named(options.out, scene);
-  if (!options.at.empty() && name_one_file(options.out, options.at)) input = "it is that of --at";
+  if (!options.at.empty() && name_one_file(options.out, options.at))
+    input = "it is the file of --at";
   if (input.empty()) return {};
   return fail(ErrorCode::InvalidInput,
               fmt::format("-o {}: {}; choose another name", printable(options.out), input));
@@ -251,21 +254,21 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
   CLI::App* curves = app.add_subcommand("curves", "Sample channels of a scene at full precision");
   curves->add_option("SCENE", options.scene, "Scene file")->required();
   curves->add_option("--channel", options.channels,
-                     "Paths NAME.attribute; all animated channels by default");
+                     "Channels, as NAME.attribute; all animated channels by default");
   auto* frames = curves->add_option("--frames", options.frames,
-                                    "A:B, or one frame, whole or not, also outside the scene's; "
-                                    "the scene's by default");
+                                    "Frames, A:B or one, which may be fractional and outside the "
+                                    "scene's range; the scene's frames by default");
   auto* step = curves->add_option("--step", options.step, "Frames from one row to the next")
                    ->check(number_from(1e-9))
                    ->capture_default_str();
-  curves->add_option("--at", options.at, "File with the frames, one a line")
+  curves->add_option("--at", options.at, "File with the frames, one per line")
       ->excludes(frames)
       ->excludes(step);
   curves->add_option("-o,--out", options.out,
-                     "A .csv table or an .svg plot; CSV on stdout by default");
+                     "Output file, a .csv table or an .svg plot; CSV on stdout by default");
   add_root(*curves, options.root);
   curves->add_flag("--sides", options.has_sides,
-                   "Left value, velocity and left velocity (per frame) too");
+                   "Add left value, velocity and left velocity (per frame) to each row");
 }
 
 int run_curves(const CurvesOptions& options) {
@@ -276,7 +279,7 @@ int run_curves(const CurvesOptions& options) {
   const std::string ending = ending_of(options.out);
   if (!options.out.empty() && ending != ".csv" && ending != ".svg") {
     return report({ErrorCode::InvalidInput,
-                   fmt::format("{}: no format of curves has the ending \"{}\"; allowed: .csv, .svg",
+                   fmt::format("{}: no format has the ending \"{}\"; allowed: .csv, .svg",
                                options.out, ending)});
   }
   const auto scene = read_scene(options.scene, options.root);
@@ -293,8 +296,9 @@ int run_curves(const CurvesOptions& options) {
                                   : Table(*output, *frames, options.has_sides).write(*channels);
   if (TextOutput::is_lost()) return exit_failed;
   if (!written) {
-    return report(with_kept(written.error(), options.out.empty() ? "the rows written are whole"
-                                                                 : "no file is written"));
+    return report(with_kept(written.error(), options.out.empty()
+                                                 ? "the rows printed so far are complete"
+                                                 : "no file was written"));
   }
   if (auto finished = output->finish(); !finished) return report(finished.error());
   return exit_done;

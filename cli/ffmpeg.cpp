@@ -31,8 +31,9 @@ constexpr auto pause = 20ms;
 tl::unexpected<Error> missing(const std::string& reason) {
   return fail(
       ErrorCode::Unwritable,
-      fmt::format("--movie needs ffmpeg, which writes the movie (Debian's package ffmpeg): {}",
-                  reason));
+      fmt::format(
+          "--movie: cannot start ffmpeg, which writes the movie (Debian package ffmpeg): {}",
+          reason));
 }
 
 // Starts it in its own process group, so that Ctrl-C reaches only us.
@@ -146,10 +147,9 @@ tl::unexpected<Error> Ffmpeg::failure() const {
   std::string line;
   std::getline(file, line);
   constexpr std::size_t longest = 300;
-  return fail(
-      ErrorCode::Unwritable,
-      fmt::format("ffmpeg could not write the movie: {}",
-                  line.empty() ? "it does not say why" : printable(line.substr(0, longest))));
+  return fail(ErrorCode::Unwritable,
+              fmt::format("ffmpeg could not write the movie: {}",
+                          line.empty() ? "it gave no reason" : printable(line.substr(0, longest))));
 }
 
 }  // namespace pliant::cli

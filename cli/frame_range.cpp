@@ -14,12 +14,11 @@ Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const S
   const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
   if (!first || !last || *first > *last) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("--frames {}: not of the form A:B with A <= B", text));
+                fmt::format("--frames {}: must be one frame, or A:B with A <= B", text));
   }
   if (*first < scene.start || *last > scene.end) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--frames {}: the scene has the frames {} to {}", text, scene.start,
-                            scene.end));
+    return fail(ErrorCode::InvalidInput, fmt::format("--frames {}: the scene has frames {} to {}",
+                                                     text, scene.start, scene.end));
   }
   return FrameRange{*first, *last};
 }

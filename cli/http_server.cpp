@@ -466,11 +466,10 @@ Result<HttpServer> HttpServer::listen(int port, const HttpLimits& limits) {
   if (!error) acceptor.bind(place, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) {
-    return fail(
-        ErrorCode::Unwritable,
-        fmt::format("cannot listen on {}:{}: the port is taken or not allowed; name another "
-                    "one, or 0 for any that is free",
-                    this_machine, port));
+    return fail(ErrorCode::Unwritable,
+                fmt::format("cannot listen on {}:{}: the port is in use or not allowed; choose "
+                            "another, or 0 for any free port",
+                            this_machine, port));
   }
   return HttpServer(std::move(state));
 }

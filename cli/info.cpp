@@ -54,17 +54,18 @@ std::string idle_reason(const Force& force, const Scene& scene) {
                                   [&](const Group& one) { return one.name == force.group; });
   for (int frame = scene.start; frame <= scene.end; ++frame) {
     if (force.enabled.at(frame) && (group == scene.groups.end() || group->enabled.at(frame))) {
-      return "no surface that is solved while it is enabled";
+      return "no surface is solved while it is enabled";
     }
   }
   return "never enabled";
 }
 
 void add_info(CLI::App& app, InfoOptions& options) {
-  CLI::App* info = app.add_subcommand("info", "Tell what is in a scene, to choose numbers by");
+  CLI::App* info =
+      app.add_subcommand("info", "Show what is in a scene and what each force would do");
   info->add_option("SCENE", options.scene, "Scene file")->required();
   add_root(*info, options.root);
-  info->add_flag("--json", options.is_json, "Tell it as JSON: docs/info.md");
+  info->add_flag("--json", options.is_json, "Print JSON instead; docs/info.md describes it");
   add_memory(*info, options.resources);
 }
 

@@ -57,7 +57,7 @@ std::string vibration_text(const RegionPreview& region, double fps) {
                                        frequency_text(region.first_frequency), region.damping_ratio)
                          : "    first natural frequency: none, the density is 0\n";
   const auto& [frequency, ratio] = region.animated;
-  text += "    in the animation, with what backward Euler adds: ";
+  text += "    in the animation, with the damping of backward Euler: ";
   if (frequency > 0) {
     text += fmt::format("{}, damping ratio {:.3g}{}, it {}", frequency_text(frequency), ratio,
                         frequency > fps / 2 ? ", faster than frames can show" : "",
@@ -94,7 +94,7 @@ std::string regions_text(const Preview& preview, double fps) {
     text += fmt::format("    region of {}: {}\n", region_text(*regions[k]),
                         regions[k]->is_solvable
                             ? fmt::format("static peak {:.4g}", regions[k]->static_peak)
-                            : "too few to solve");
+                            : "too few nodes to solve");
     if (regions[k]->has_vibration) text += vibration_text(*regions[k], fps);
   }
   if (regions.size() > most) text += fmt::format("    and {} more\n", regions.size() - most);
@@ -111,7 +111,7 @@ std::string shares_text(const Preview& preview, const Scene& scene) {
     return std::abs(a.share) > std::abs(b.share);
   });
   constexpr std::size_t most = 8;
-  std::string text = "    of which";
+  std::string text = "    of the static peak:";
   for (std::size_t k = 0; k < std::min(shares.size(), most); ++k) {
     text += fmt::format("{} {} {}", k > 0 ? "," : "", scene.forces[shares[k].force].name,
                         percent(shares[k].share));
@@ -119,7 +119,7 @@ std::string shares_text(const Preview& preview, const Scene& scene) {
   if (shares.size() > most) {
     double others = 0;
     for (std::size_t k = most; k < shares.size(); ++k) others += shares[k].share;
-    text += fmt::format(", the {} others {}", shares.size() - most, percent(others));
+    text += fmt::format(", the {} others together {}", shares.size() - most, percent(others));
   }
   return text + '\n';
 }
@@ -151,17 +151,17 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
                       is_force ? fmt::format(", at magnitude {:g},", preview.magnitude) : "",
                       preview.of == Preview::Of::All ? "they select" : "it selects", box.columns(),
                       box.rows(), box.i0, box.i1, box.j0, box.j1);
-  if (!preview.is_every_frame) text += "    not every frame was looked at, the range is long\n";
+  if (!preview.is_every_frame)
+    text += "    not every frame was examined, because the range is long\n";
   if (preview.is_apart) {
     text +=
         "    their boxes do not all meet: one region around all of them is solved, in which each "
-        "moves "
-        "more than alone; combine=\"islands\" solves each by itself\n";
+        "force moves the surface more than alone; combine=\"islands\" solves each box by itself\n";
   }
   if (!preview.is_solvable) {
     text += "    fewer than 3 x 3 nodes: too few to solve\n";
   } else if (!preview.is_solved) {
-    text += "    too many to preview the static peak and the natural frequency\n";
+    text += "    too many nodes to preview the static peak and the natural frequency\n";
   } else {
     text += fmt::format("    static peak displacement {:.4g}", preview.static_peak);
   }
@@ -170,7 +170,7 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
                         preview.is_solved ? "; " : "    peak displacement ", preview.played->peak,
                         preview.played->frame);
   } else if (preview.is_solved) {
-    text += "; too many frames and nodes to play the animation here\n";
+    text += "; too many frames and nodes to play the animation\n";
   }
   if (!preview.is_solved) return text;
   return text + shares_text(preview, scene) + regions_text(preview, scene.fps);
@@ -206,7 +206,7 @@ std::string forces_text(const SceneFacts& facts) {
     text += fmt::format("  {}: {}\n", title(scene.forces[k]), idle_reason(scene.forces[k], scene));
   }
   if (scene.forces.empty()) text += "  none\n";
-  if (!scene.groups.empty()) text += "groups, with what their forces do together\n";
+  if (!scene.groups.empty()) text += "groups, each with all its forces\n";
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {
     const Group& group = scene.groups[k];
     bool is_told = false;
@@ -218,9 +218,9 @@ std::string forces_text(const SceneFacts& facts) {
     const bool is_empty =
         std::none_of(scene.forces.begin(), scene.forces.end(),
                      [&](const Force& force) { return force.group == group.name; });
-    if (is_empty) text += fmt::format("  {} (group): no force in it\n", group.name);
+    if (is_empty) text += fmt::format("  {} (group): it has no forces\n", group.name);
     if (!is_told && !is_empty) {
-      text += fmt::format("  {} (group): no force that acts\n", group.name);
+      text += fmt::format("  {} (group): none of its forces acts\n", group.name);
     }
   }
   std::string together;
@@ -228,7 +228,7 @@ std::string forces_text(const SceneFacts& facts) {
     if (preview.of != Preview::Of::All || is_told_already(preview, facts.previews)) continue;
     together += preview_text(preview, "together", scene);
   }
-  if (!together.empty()) text += "all that acts, together\n" + together;
+  if (!together.empty()) text += "all forces of a surface, together\n" + together;
   return text;
 }
 
@@ -279,7 +279,7 @@ std::string info_text(const SceneFacts& facts) {
   std::string text =
       fmt::format("{}\nframes {} to {} at {:g} frames/s, {:.4g} s\n", printable(facts.file),
                   scene.start, scene.end, scene.fps, (scene.end - scene.start) / scene.fps);
-  if (facts.surfaces.empty()) return text + "no surface\n" + channels_text(scene);
+  if (facts.surfaces.empty()) return text + "no surfaces\n" + channels_text(scene);
   text += "surfaces\n";
   for (std::size_t k = 0; k < facts.surfaces.size(); ++k) {
     text += surface_text(scene.surfaces[k], facts.surfaces[k]);

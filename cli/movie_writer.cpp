@@ -92,7 +92,8 @@ struct MovieWriter::State {
   // The second pass, with the palette.
   Result<void> write_gif() {
     pictures.close();
-    if (!pictures) return fail(ErrorCode::Unwritable, "the folder for temporary files is full");
+    if (!pictures)
+      return fail(ErrorCode::Unwritable, "cannot write to the folder for temporary files");
     auto second =
         Ffmpeg::start(gif_words(plan, "file:" + scratch("pictures"),
                                 "file:" + scratch("palette.png"), "file:" + scratch("movie")),
@@ -126,8 +127,8 @@ Result<MovieFormat> movie_format(const std::filesystem::path& file) {
   if (ending == ".gif") return MovieFormat::Gif;
   if (ending == ".webm") return MovieFormat::Webm;
   return fail(ErrorCode::InvalidInput,
-              fmt::format("--movie {}: its ending picks the format, .mp4, .gif or .webm",
-                          printable(file.string())));
+              fmt::format("--movie {}: no format has the ending \"{}\"; allowed: .mp4, .gif, .webm",
+                          printable(file.string()), printable(ending)));
 }
 
 MovieWriter::MovieWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -150,7 +151,7 @@ Result<void> MovieWriter::write(std::string_view picture) {
   if (state_->pictures.is_open()) {
     state_->pictures.write(picture.data(), static_cast<std::streamsize>(picture.size()));
     if (!state_->pictures) {
-      return fail(ErrorCode::Unwritable, "the folder for temporary files is full");
+      return fail(ErrorCode::Unwritable, "cannot write to the folder for temporary files");
     }
   }
   return state_->ffmpeg.write(picture);

@@ -13,21 +13,24 @@ Result<void> check_output_folder(std::string_view option, const std::filesystem:
   if (folder.empty()) return {};
   std::error_code unknown;  // if the status is unknown, the write will report it
   const auto status = std::filesystem::status(folder, unknown);
+  const std::string name = printable(folder.string());
   const auto refuse = [&](std::string_view reason) {
     return fail(ErrorCode::Unwritable,
-                fmt::format("{} {}: the folder {} {}", option, printable(file.string()),
-                            printable(folder.string()), reason));
+                fmt::format("{} {}: {}", option, printable(file.string()), reason));
   };
-  if (status.type() == std::filesystem::file_type::not_found) return refuse("does not exist");
-  if (!unknown && !std::filesystem::is_directory(status)) return refuse("is no folder");
+  if (status.type() == std::filesystem::file_type::not_found)
+    return refuse(fmt::format("the folder {} does not exist", name));
+  if (!unknown && !std::filesystem::is_directory(status))
+    return refuse(fmt::format("{} is not a folder", name));
   return {};
 }
 
 Result<void> check_output_file(std::string_view option, const std::string& file) {
   if (file == "-") {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("{} -: this cannot go to the standard output; name a file (./- is one)",
-                            option));
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("{} -: cannot write this to the standard output; name a file, such as ./-",
+                    option));
   }
   if (auto there = check_output_folder(option, file); !there) return there;
   return check_output_place(file);

@@ -33,23 +33,23 @@ struct Chunk {
 
 // The chunks of a file; IEND must be the last.
 Result<std::vector<Chunk>> chunks_of(std::string_view bytes) {
-  if (!bytes.starts_with(signature)) return invalid("it does not begin as a PNG");
+  if (!bytes.starts_with(signature)) return invalid("it is not a PNG");
   constexpr std::size_t frame = 12;  // length, type and checksum
   std::vector<Chunk> chunks;
   for (bytes.remove_prefix(signature.size()); !bytes.empty();) {
-    if (bytes.size() < frame) return invalid("it breaks off");
+    if (bytes.size() < frame) return invalid("it is truncated");
     const std::size_t length = number_at(bytes, 0);
-    if (length > bytes.size() - frame) return invalid("it breaks off");
+    if (length > bytes.size() - frame) return invalid("it is truncated");
     const std::string_view sealed = bytes.substr(4, 4 + length);
     const auto sum = crc32_z(crc32_z(0, nullptr, 0), zlib_bytes(sealed), sealed.size());
     if (sum != number_at(bytes, 8 + length)) return invalid("a chunk has a wrong checksum");
     chunks.push_back({sealed.substr(0, 4), sealed.substr(4)});
     bytes.remove_prefix(frame + length);
     if (chunks.back().type != "IEND") continue;
-    if (length > 0 || !bytes.empty()) return invalid("there is something behind its end");
+    if (length > 0 || !bytes.empty()) return invalid("there is data after its end");
     return chunks;
   }
-  return invalid("it breaks off");
+  return invalid("it is truncated");
 }
 
 // Bytes of a row, including its filter byte.
@@ -63,7 +63,7 @@ Result<std::size_t> row_bytes(const Chunk& first, PictureSize size) {
   }
   const std::string_view form = first.content.substr(8);
   constexpr std::string_view rgb("\x08\x02\0\0\0", 5), rgba("\x08\x06\0\0\0", 5);
-  if (form != rgb && form != rgba) return invalid("its pixels are not of 8 bits, RGB or RGBA");
+  if (form != rgb && form != rgba) return invalid("its pixels are not 8-bit RGB or RGBA");
   return 1 + static_cast<std::size_t>(width) * (form == rgb ? 3 : 4);
 }
 
@@ -73,7 +73,7 @@ class Rows {
   Rows(std::size_t bytes, std::size_t count) : row_bytes_(bytes), left_(bytes * count) {}
 
   Result<void> take(std::string_view packed) {
-    if (!is_open_) return invalid("it cannot be unpacked");
+    if (!is_open_) return invalid("its rows cannot be decompressed");
     stream_.next_in = const_cast<Bytef*>(zlib_bytes(packed));
     stream_.avail_in = static_cast<uInt>(packed.size());
     while (!has_ended_) {
@@ -81,11 +81,11 @@ class Rows {
       stream_.avail_out = static_cast<uInt>(piece_.size());
       const int state = inflate(&stream_, Z_NO_FLUSH);
       if (state == Z_BUF_ERROR) return {};  // all input so far is consumed
-      if (state != Z_OK && state != Z_STREAM_END) return invalid("it cannot be unpacked");
+      if (state != Z_OK && state != Z_STREAM_END) return invalid("its rows cannot be decompressed");
       if (auto seen = look_at(piece_.size() - stream_.avail_out); !seen) return seen;
       has_ended_ = state == Z_STREAM_END;
     }
-    return stream_.avail_in == 0 ? Result<void>() : invalid("there is something behind its rows");
+    return stream_.avail_in == 0 ? Result<void>() : invalid("there is data after its rows");
   }
 
   bool is_whole() const { return has_ended_ && left_ == 0; }
@@ -103,7 +103,7 @@ class Rows {
     constexpr int most_filter = 4;
     for (std::size_t row = (begin + row_bytes_ - 1) / row_bytes_ * row_bytes_; row < place_;
          row += row_bytes_) {
-      if (piece_[row - begin] > most_filter) return invalid("a row has no known filter");
+      if (piece_[row - begin] > most_filter) return invalid("a row has an unknown filter");
     }
     return {};
   }
@@ -131,11 +131,11 @@ Result<void> check_png(std::string_view bytes, PictureSize size) {
   for (std::size_t k = 1; k + 1 < chunks->size(); ++k) {
     const Chunk& chunk = (*chunks)[k];
     if (chunk.type == "IDAT") {
-      if (has_rows && before != "IDAT") return invalid("its rows are not in one place");
+      if (has_rows && before != "IDAT") return invalid("its IDAT chunks are not consecutive");
       has_rows = true;
       if (auto taken = rows.take(chunk.content); !taken) return taken;
     } else if ((chunk.type.front() & 0x20) == 0) {  // upper case: a critical chunk
-      return invalid(fmt::format("it has a chunk {}", printable(chunk.type)));
+      return invalid(fmt::format("it has the unexpected chunk {}", printable(chunk.type)));
     }
     before = chunk.type;
   }

@@ -25,7 +25,8 @@ CLI::Validator integer_from(int least) {
   return CLI::Validator(
       [=](std::string& text) -> std::string {
         const auto number = to_integer(text);
-        return number && *number >= least ? "" : fmt::format("{}: no integer {}", text, range);
+        return number && *number >= least ? ""
+                                          : fmt::format("{}: must be an integer {}", text, range);
       },
       range);
 }
@@ -49,15 +50,14 @@ auto with_progress(const ReplayCommandOptions& options, const Work& work) {
 
 int record(const ReplayCommandOptions& options) {
   catch_interrupts();
-  if (auto file = check_scene_is_file(options.scene, "a log names the scene that it is of");
-      !file) {
+  if (auto file = check_scene_is_file(options.scene, "a log names the file of its scene"); !file) {
     return report(file.error());
   }
   if (auto place = check_output_file("-o", options.log); !place) return report(place.error());
   const auto recorded = with_progress(options, [&](const ReplayOptions& replay) {
     return record_replay(options.scene, options.log, replay);
   });
-  if (!recorded) return report(with_kept(recorded.error(), "no log is written"));
+  if (!recorded) return report(with_kept(recorded.error(), "no log was written"));
   if (!options.is_quiet) {
     print(stdout, fmt::format("{}: {}, {} recorded\n", printable(options.log),
                               counted(recorded->frame_count(), "frame"),
@@ -71,8 +71,8 @@ int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdi
          std::string_view done) {
   if (!verdict) {
     return report(with_kept(verdict.error(), options.keeps_going
-                                                 ? "the differences until then are not told"
-                                                 : "what was compared until then holds"));
+                                                 ? "the differences found before are not printed"
+                                                 : "all frames compared before agree"));
   }
   const std::string log = printable(options.log);
   for (const std::string& cause : verdict->causes) {
@@ -94,7 +94,8 @@ int tell(const ReplayCommandOptions& options, const Result<ReplayVerdict>& verdi
 
 int verify(const ReplayCommandOptions& options) {
   catch_interrupts();
-  if (auto file = check_scene_is_file(options.scene, "a log is of a scene in a file"); !file) {
+  if (auto file = check_scene_is_file(options.scene, "verify compares a log with a scene file");
+      !file) {
     return report(file.error());
   }
   std::optional<std::filesystem::path> scene;
@@ -102,7 +103,7 @@ int verify(const ReplayCommandOptions& options) {
   const auto verdict = with_progress(options, [&](const ReplayOptions& replay) {
     return verify_replay(options.log, scene, replay);
   });
-  return tell(options, verdict, "as they were recorded");
+  return tell(options, verdict, "as recorded");
 }
 
 int diff(const ReplayCommandOptions& options) {
@@ -119,20 +120,21 @@ void add_record(CLI::App& replay, ReplayCommandOptions& options) {
   record->add_option("-o,--out", options.log, "The log, RUN.replay")->required();
   record
       ->add_option("--states", options.states_every,
-                   "Record whole states too, every so many frames, so that a difference there "
-                   "can be told by node and size")
+                   "Also record the whole state every so many frames, so that verify and diff can "
+                   "name the node and size of a difference there")
       ->check(integer_from(1));
-  record->add_option("--last", options.last_frame, "The last frame to record; all by default")
+  record
+      ->add_option("--last", options.last_frame, "The last frame to record; the scene's by default")
       ->check(integer_from(std::numeric_limits<int>::min()));
 }
 
 void add_verify(CLI::App& replay, ReplayCommandOptions& options) {
   CLI::App* verify = replay.add_subcommand(
-      "verify", "Simulate what a log recorded and name the first frame and surface that differ");
+      "verify", "Simulate a log's scene again and name the first frame and surface that differ");
   verify->add_option("LOG", options.log, "The log, RUN.replay")->required();
   verify->add_option("SCENE", options.scene,
-                     "Scene file; by default the one that was recorded, or its text in the log "
-                     "where that is not there");
+                     "Scene file; by default the recorded one, or its text in the log if that file "
+                     "does not exist");
 }
 
 void add_diff(CLI::App& replay, ReplayCommandOptions& options) {
@@ -144,8 +146,8 @@ void add_diff(CLI::App& replay, ReplayCommandOptions& options) {
 }  // namespace
 
 void add_replay(CLI::App& app, ReplayCommandOptions& options) {
-  CLI::App* replay =
-      app.add_subcommand("replay", "Record what a scene computes, and hold it against that later");
+  CLI::App* replay = app.add_subcommand(
+      "replay", "Record a run of a scene as a log of hashes, and compare later runs with it");
   replay->require_subcommand(1);
   add_record(*replay, options);
   add_verify(*replay, options);
@@ -161,7 +163,7 @@ void add_replay(CLI::App& app, ReplayCommandOptions& options) {
   }
   for (const char* any : {"record", "verify", "diff"}) {
     replay->get_subcommand(any)->add_flag("--quiet", options.is_quiet,
-                                          "No progress, and no summary when all went well");
+                                          "No progress and no success summary");
   }
 }
 

@@ -41,18 +41,21 @@ CLI::Validator number_from(double least) {
       [=](std::string& text) -> std::string {
         const auto number = to_number(text);
         if (number && *number >= least && *number <= most) return "";
-        return fmt::format("{}: not a number {}", text, range);
+        return fmt::format("{}: must be a number {}", text, range);
       },
       range);
 }
 
 void add_threads(CLI::App& command, ResourceOptions& options) {
   command
-      .add_option("--threads", options.threads, "Threads; as many as the machine has by default")
+      .add_option("--threads", options.threads,
+                  "Number of threads; as many as the machine has by default")
       ->check(CLI::Validator(
           [](std::string& text) -> std::string {
             const auto count = to_integer(text);
-            return count && *count >= 1 && *count <= 1024 ? "" : text + ": not from 1 to 1024";
+            return count && *count >= 1 && *count <= 1024
+                       ? ""
+                       : text + ": must be an integer from 1 to 1024";
           },
           "from 1 to 1024"));
 }
@@ -61,8 +64,8 @@ void add_memory(CLI::App& command, ResourceOptions& options) {
   constexpr double least = 1e-6;  // a kilobyte
   command
       .add_option("--max-memory", options.max_memory,
-                  "Memory in GB, refused ahead where a run needs more; three quarters of what the "
-                  "machine has by default")
+                  "Most memory to use, in GB; a run that needs more is refused before it "
+                  "allocates; three quarters of the machine's memory by default")
       ->check(number_from(least));
 }
 

@@ -20,7 +20,7 @@ constexpr const char* name = "standard input";
 constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
 
 tl::unexpected<Error> interrupted() {
-  return fail(ErrorCode::Interrupted, "interrupted ahead of the first frame");
+  return fail(ErrorCode::Interrupted, "interrupted before the first frame");
 }
 
 Result<std::string> read_standard_input() {
@@ -45,16 +45,16 @@ Result<std::string> read_standard_input() {
 }  // namespace
 
 void add_root(CLI::App& command, Root& root) {
-  command.add_option("--root", root,
-                     "Folder that the files which meshes refer to lie in, or below; that of the "
-                     "scene by default");
+  command.add_option(
+      "--root", root,
+      "Folder that must contain the files that meshes refer to; the scene's folder by default");
 }
 
 Result<std::filesystem::path> folder_of(const Root& root) {
   if (!root) return std::filesystem::path();
   std::error_code ignored;
   if (std::filesystem::is_directory(*root, ignored)) return std::filesystem::path(*root);
-  return fail(ErrorCode::InvalidInput, fmt::format("--root {}: is no folder", printable(*root)));
+  return fail(ErrorCode::InvalidInput, fmt::format("--root {}: is not a folder", printable(*root)));
 }
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
@@ -68,8 +68,9 @@ Result<Scene> read_scene(const std::string& scene, const Root& root) {
     return loaded;
   }
   if (isatty(STDIN_FILENO) != 0) {
-    return fail(ErrorCode::InvalidInput,
-                "SCENE -: the standard input is a terminal; give a file, or a pipe: … | pliant");
+    return fail(
+        ErrorCode::InvalidInput,
+        "SCENE -: the standard input is a terminal; give a file, or pipe the scene: … | pliant");
   }
   const auto text = read_standard_input();
   if (!text) return fail(text.error());
@@ -80,7 +81,8 @@ Result<void> check_scene_is_file(std::string_view scene, std::string_view reason
   if (!is_standard_input(scene)) return {};
   return fail(
       ErrorCode::InvalidInput,
-      fmt::format("SCENE -: the standard input does not do here: {}; save it to a file", reason));
+      fmt::format("SCENE -: the standard input is not allowed here: {}; save the scene to a file",
+                  reason));
 }
 
 }  // namespace pliant::cli

@@ -14,7 +14,7 @@ Result<std::string> make_token() {
   while (count < bytes.size()) {
     const ssize_t got = getrandom(bytes.data() + count, bytes.size() - count, 0);
     if (got < 0 && errno == EINTR) continue;  // a signal while the system still collects entropy
-    if (got <= 0) return fail(ErrorCode::Unreadable, "the system gives no random bytes");
+    if (got <= 0) return fail(ErrorCode::Unreadable, "cannot get random bytes from the system");
     count += static_cast<std::size_t>(got);
   }
   std::string token;

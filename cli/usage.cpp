@@ -65,7 +65,7 @@ int no_command(const CLI::App& parent, const std::string& word) {
 int no_option(const CLI::App& command, const std::string& argument) {
   const std::string word = argument.substr(0, argument.find('='));
   const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
-  return complain(fmt::format("{} has no option \"{}\"; {}{} --help tells more", full_name(command),
+  return complain(fmt::format("{} has no option \"{}\"; {}see {} --help", full_name(command),
                               printable(word), question(bare, options_of(command), "--"),
                               full_name(command)));
 }
@@ -86,8 +86,8 @@ const CLI::App* find_command(const CLI::App& parent, const std::string& name) {
 }  // namespace
 
 void add_help(CLI::App& app, HelpOptions& options) {
-  CLI::App* help = app.add_subcommand("help", "Tell every option of a command");
-  help->add_option("COMMAND", options.command, "The command; what there is by default");
+  CLI::App* help = app.add_subcommand("help", "Show all options of a command");
+  help->add_option("COMMAND", options.command, "The command; the list of commands by default");
 }
 
 int run_help(const CLI::App& app, const HelpOptions& options) {
@@ -96,7 +96,7 @@ int run_help(const CLI::App& app, const HelpOptions& options) {
     const CLI::App* const next = find_command(*command, name);
     if (!next) {
       if (commands_of(*command).empty()) {
-        return complain(fmt::format("{} has no commands of its own, such as \"{}\"",
+        return complain(fmt::format("{} has no subcommands, but \"{}\" was given",
                                     full_name(*command), printable(name)));
       }
       return no_command(*command, name);
@@ -120,8 +120,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   });
   if (awaits_command && option != unknown.begin()) return no_command(command, unknown.front());
   if (option != unknown.end()) return no_option(command, *option);
-  return complain(
-      fmt::format("{}; {} --help tells more", printable(error.what()), full_name(command)));
+  return complain(fmt::format("{}; see {} --help", printable(error.what()), full_name(command)));
 }
 
 }  // namespace pliant::cli

@@ -76,10 +76,9 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
     return tell(checked.error(), file, findings);
   }
   if (!options.is_quiet && !findings) {
-    print(stdout,
-          fmt::format("{}: all right: {}, {}, frames {} to {}\n", printable(scene->origin.file),
-                      counted(scene->surfaces.size(), "surface"),
-                      counted(scene->forces.size(), "force"), scene->start, scene->end));
+    print(stdout, fmt::format("{}: valid: {}, {}, frames {} to {}\n", printable(scene->origin.file),
+                              counted(scene->surfaces.size(), "surface"),
+                              counted(scene->forces.size(), "force"), scene->start, scene->end));
   }
   return exit_done;
 }
@@ -89,9 +88,10 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
 void add_validate(CLI::App& app, ValidateOptions& options) {
   CLI::App* validate = app.add_subcommand("validate", "Read and check scenes without running them");
   validate->add_option("SCENE", options.scenes, "Scene files")->required();
-  validate->add_flag("--quiet", options.is_quiet, "Say nothing of scenes that are all right");
+  validate->add_flag("--quiet", options.is_quiet, "Print nothing for valid scenes");
   add_root(*validate, options.root);
-  validate->add_flag("--json", options.is_json, "List all problems as JSON: docs/info.md");
+  validate->add_flag("--json", options.is_json,
+                     "Print all problems as JSON; docs/info.md describes it");
   add_memory(*validate, options.resources);
 }
 

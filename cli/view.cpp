@@ -30,8 +30,8 @@ constexpr std::size_t longest_page = 500'000'000;
 Result<void> write_page(const std::filesystem::path& file, const std::string& page) {
   if (page.size() > longest_page) {
     return fail(ErrorCode::OutOfMemory,
-                fmt::format("the page would have {}, more than the {} that a browser takes; show "
-                            "some of the frames with --frames A:B",
+                fmt::format("the page would be {}, larger than the {} that a browser can load; "
+                            "choose fewer frames with --frames A:B",
                             bytes_text(page.size()), bytes_text(longest_page)));
   }
   auto output = AtomicFile::create(file);
@@ -51,7 +51,7 @@ int page_view(const ViewOptions& options, std::string_view page) {
                    fmt::format("-o {}: {}; choose another name", printable(out), input)});
   }
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
-  if (!baked) return report(with_kept(baked.error(), "no page is written"));
+  if (!baked) return report(with_kept(baked.error(), "no page was written"));
   const std::string made = page_with(page, title_of(baked->scene), baked->bake.packed);
   if (auto written = write_page(out, made); !written) return report(written.error());
   if (options.is_quiet) return exit_done;
@@ -70,7 +70,7 @@ CLI::Validator port_number() {
       [](std::string& text) -> std::string {
         const auto port = to_integer(text);
         if (port && *port >= 0 && *port <= 65535) return "";
-        return text + ": not a port, 0 to 65535; SCENE stands ahead of --serve";
+        return text + ": must be a port from 0 to 65535; write SCENE before --serve";
       },
       "PORT");
 }
@@ -82,7 +82,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
   view->add_option("SCENE", options.scene, "Scene file")->required();
   auto* out = view->add_option("-o,--out", options.out,
                                "The page, one file that needs no network; view.html by default");
-  view->add_option("--frames", options.frames, "A:B, or one frame; all of them by default");
+  view->add_option("--frames", options.frames, "Frames to show, A:B or one frame; all by default");
   auto* serve = view->add_option("--serve", options.port,
                                  "Serve the page on this machine, and bake again on every save; "
                                  "any free port by default")
@@ -90,23 +90,27 @@ void add_view(CLI::App& app, ViewOptions& options) {
                     ->default_str("0")
                     ->check(port_number())
                     ->excludes(out);
-  auto* png = view->add_option("--png", options.png, "A picture in place of the page")
+  auto* png = view->add_option("--png", options.png, "Write a picture instead of the page")
                   ->excludes(out)
                   ->excludes(serve);
-  auto* movie = view->add_option("--movie", options.movie,
-                                 "A movie in place of the page, .mp4, .gif or .webm; needs ffmpeg")
-                    ->excludes(out)
-                    ->excludes(serve)
-                    ->excludes(png);
-  auto* frame = view->add_option("--frame", options.frame, "Frame of the picture")->needs(png);
+  auto* movie =
+      view->add_option("--movie", options.movie,
+                       "Write a movie instead of the page: .mp4, .gif or .webm; needs ffmpeg")
+          ->excludes(out)
+          ->excludes(serve)
+          ->excludes(png);
+  auto* frame =
+      view->add_option("--frame", options.frame, "Frame of the picture; the first by default")
+          ->needs(png);
   view->add_flag("--contact-sheet", options.is_sheet, "Twelve frames in one picture")
       ->needs(png)
       ->excludes(frame);
-  auto* size = view->add_option("--size", options.size,
-                                "Pixels of the picture, of each in a sheet, or of the movie")
-                   ->capture_default_str();
+  auto* size =
+      view->add_option("--size", options.size,
+                       "Size in pixels of the picture, of each frame in a sheet, or of the movie")
+          ->capture_default_str();
   auto* look = view->add_option("--look", options.look,
-                                "How the picture or movie looks, as the page's address says it: "
+                                "Look of the picture or movie, written as in the page's address: "
                                 "\"turn=30&tilt=20&colour=velocity&theme=dark\"");
   view->callback([=] {
     const CLI::Option* given = size->count() > 0 ? size : look;
@@ -125,7 +129,8 @@ int run_view(const ViewOptions& options) {
   const auto page = page_template();
   if (!page) return report(page.error());
   if (options.port) {
-    if (auto file = check_scene_is_file(options.scene, "--serve reads the scene at every save");
+    if (auto file =
+            check_scene_is_file(options.scene, "--serve reads the scene again after every save");
         !file) {
       return report(file.error());
     }

@@ -235,8 +235,8 @@ Result<void> check_memory(const Simulation& simulation, const FrameRange& frames
                       static_cast<double>(std::min(max_memory, simulation.surface_memory()));
   if (bytes <= free) return {};
   return fail(ErrorCode::OutOfMemory,
-              fmt::format("{} frames of {} vertices take {} to make a page of, more than the {} "
-                          "left of --max-memory; show some of them with --frames A:B",
+              fmt::format("a page of {} frames of {} vertices needs {}, more than the {} left of "
+                          "--max-memory; choose fewer frames with --frames A:B",
                           frames.count(), vertex_count, bytes_text(static_cast<std::size_t>(bytes)),
                           bytes_text(static_cast<std::size_t>(free))));
 }

@@ -20,7 +20,7 @@ uInt portion(std::size_t bytes) {
 
 Result<std::string> deflated(std::string_view bytes) {
   const auto no_memory = [] {
-    return fail(ErrorCode::OutOfMemory, "not enough memory to pack the frames of the page");
+    return fail(ErrorCode::OutOfMemory, "the packed frames of the page do not fit in memory");
   };
   z_stream stream = {};
   constexpr int raw_window = -15;  // no header, no checksum

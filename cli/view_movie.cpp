@@ -30,9 +30,9 @@ struct Plan {
 
 Result<void> check_programs() {
   if (!is_on_path("ffmpeg")) {
-    return fail(ErrorCode::Unwritable,
-                "--movie needs ffmpeg, which writes the movie (Debian's package ffmpeg); there is "
-                "none on the PATH");
+    return fail(
+        ErrorCode::Unwritable,
+        "--movie needs ffmpeg to write the movie (Debian package ffmpeg); it is not on the PATH");
   }
   return check_browser("--movie");
 }
@@ -49,18 +49,20 @@ Result<Plan> make_plan(const ViewOptions& options, const Scene& scene) {
   if (!size) return fail(size.error());
   if (*format != MovieFormat::Gif && (size->width % 2 != 0 || size->height % 2 != 0)) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("--size {}: a .mp4 or .webm has even numbers of pixels", options.size));
+                fmt::format("--size {}: the width and height of a .mp4 or .webm must be even",
+                            options.size));
   }
   const auto rate = frame_rate(scene.fps);
   if (!rate) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--movie {}: the scene has {} frames a second, and a movie {} to {}",
-                            name, scene.fps, least_rate, most_rate));
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("--movie {}: the scene has {} frames per second; a movie can have {} to {}",
+                    name, scene.fps, least_rate, most_rate));
   }
   if (*format == MovieFormat::Gif && scene.fps > 50) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("--movie {}: the scene has {} frames a second, and a .gif can show 50; "
-                            ".mp4 and .webm take more",
+                fmt::format("--movie {}: the scene has {} frames per second; a .gif can have at "
+                            "most 50, .mp4 and .webm more",
                             name, scene.fps));
   }
   return Plan{*format, *size, *rate};
@@ -123,7 +125,7 @@ Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
 int movie_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
   const auto movie = make_movie(options, page);
-  if (!movie) return report(movie.error());
+  if (!movie) return report(with_kept(movie.error(), "no movie was written"));
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   print(stdout,

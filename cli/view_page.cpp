@@ -51,8 +51,8 @@ Result<std::string_view> page_template() {
                             embedded_page.size());
   }
   return fail(ErrorCode::Unwritable,
-              "this build has no viewer: npm or its packages were missing when it was made; "
-              "script/bootstrap && script/build puts it in");
+              "this build has no viewer, because npm or its packages were missing; "
+              "script/bootstrap && script/build adds it");
 }
 
 std::string policy_of(std::string_view page) {

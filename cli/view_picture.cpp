@@ -40,10 +40,9 @@ constexpr std::array<const char*, 4> browsers = {"chromium", "chromium-browser",
                                                  "google-chrome-stable"};
 
 tl::unexpected<Error> no_browser(std::string_view option) {
-  return fail(ErrorCode::Unwritable,
-              fmt::format("{} needs Chromium, which draws the picture (Debian's package chromium); "
-                          "there is none of {} on the PATH",
-                          option, fmt::join(browsers, ", ")));
+  return fail(ErrorCode::Unwritable, fmt::format("{} needs Chromium to draw the picture (Debian "
+                                                 "package chromium); none of {} is on the PATH",
+                                                 option, fmt::join(browsers, ", ")));
 }
 
 // A headless browser, ended by the destructor.
@@ -119,8 +118,8 @@ Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRa
   if (!options.is_sheet) {
     const int frame = options.frame.value_or(frames.first);
     if (frame >= frames.first && frame <= frames.last) return std::vector<int>{frame};
-    return fail(ErrorCode::InvalidInput, fmt::format("--frame {}: the frames are {} to {}", frame,
-                                                     frames.first, frames.last));
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--frame {}: must be from {} to {}", frame, frames.first, frames.last));
   }
   constexpr int most = 12;
   const int count = std::min(most, frames.count());
@@ -204,7 +203,7 @@ Result<PictureSize> parse_size(const std::string& text) {
     return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
   }
   return fail(ErrorCode::InvalidInput,
-              fmt::format("--size {}: not of the form WxH, from 16x16 to {}x{}", text, most, most));
+              fmt::format("--size {}: must be WxH, from 16x16 to {}x{}", text, most, most));
 }
 
 Result<void> check_browser(std::string_view option) {
@@ -216,7 +215,7 @@ Result<ScratchFolder> ScratchFolder::make() {
   std::error_code error;
   std::string name = (std::filesystem::temp_directory_path(error) / "pliant-view-XXXXXX").string();
   if (error || mkdtemp(name.data()) == nullptr) {
-    return fail(ErrorCode::Unwritable, "no folder for temporary files can be made");
+    return fail(ErrorCode::Unwritable, "cannot create a folder for temporary files");
   }
   return ScratchFolder(name);
 }
@@ -267,19 +266,19 @@ Result<std::string> PictureTaker::take() {
     if (auto picture = state_->server.take_picture()) {
       if (*picture) return *std::move(picture);
       return fail(ErrorCode::Unwritable,
-                  "Chromium sent no picture that can be used: " + picture->error().message);
+                  "Chromium sent an unusable picture: " + picture->error().message);
     }
     if (!state_->browser->is_running()) {
       return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
     }
     std::this_thread::sleep_for(2ms);
   }
-  return fail(ErrorCode::Unwritable, "Chromium gave no picture within 120 s");
+  return fail(ErrorCode::Unwritable, "Chromium sent no picture within 120 s");
 }
 
 int picture_view(const ViewOptions& options, std::string_view page) {
   if (auto made = make_picture(options, page); !made) {
-    return report(with_kept(made.error(), "no picture is written"));
+    return report(with_kept(made.error(), "no picture was written"));
   }
   if (!options.is_quiet) print(stdout, printable(*options.png) + '\n');
   return exit_done;

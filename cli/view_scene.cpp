@@ -14,8 +14,8 @@ namespace {
 
 void print_weight(const ViewBake& bake) {
   if (bake.position_bytes <= heavy_positions) return;
-  print(stderr, fmt::format("pliant: note: the page unpacks to {} of positions, and may be slow to "
-                            "open; --frames A:B shows some of the frames\n",
+  print(stderr, fmt::format("pliant: note: the page unpacks to {} of positions and may be slow to "
+                            "open; choose fewer frames with --frames A:B\n",
                             bytes_text(bake.position_bytes)));
 }
 

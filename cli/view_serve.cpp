@@ -90,7 +90,7 @@ std::string error_json(const Error& error) {
   const std::size_t shown = std::min(error.others.size(), most_shown);
   for (std::size_t k = 0; k < shown; ++k) add(error.others[k]);
   if (const std::size_t left = error.others.size() - shown; left > 0) {
-    add({error.code, fmt::format("{} more; see the terminal", left)});
+    add({error.code, fmt::format("{} more errors; see the terminal", left)});
   }
   return messages.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -8,7 +8,7 @@ cmake_minimum_required(VERSION 3.25)
 # The digest is part of the keys of stored states (docs/caching.md), not of replay logs, which are
 # compared across compilers.
 if(NOT -ffp-contract=off IN_LIST FLAGS)
-  message(FATAL_ERROR "these are not the flags that the engine is compiled with: ${FLAGS}")
+  message(FATAL_ERROR "the engine must be compiled with -ffp-contract=off, but its flags are: ${FLAGS}")
 endif()
 set(digests "${ARCHITECTURE}\n${COMPILER}\n${VERSIONS}\n")
 foreach(flag IN LISTS FLAGS)

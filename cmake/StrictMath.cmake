@@ -16,8 +16,8 @@ function(pliant_refuse_fast_math where)
         OR (word MATCHES "^-ffp-model=" AND NOT word STREQUAL "-ffp-model=strict")
         OR (word MATCHES "^-fexcess-precision=" AND NOT word STREQUAL "-fexcess-precision=standard")
         OR (word MATCHES "^-fdenormal-fp-math" AND NOT word MATCHES "=ieee(,ieee)?$"))
-      message(FATAL_ERROR "pliant gives the same bits everywhere: it cannot be built with ${word}, "
-                          "which stands in ${where}")
+      message(FATAL_ERROR "pliant must give the same bits everywhere: it cannot be built with "
+                          "${word}, which is in ${where}")
     endif()
   endforeach()
 endfunction()

@@ -15,17 +15,17 @@ BAD_SCENES = {
     "a missing mesh file": (GRID, '<mesh file="none.obj"/>', 3, "No such file"),
     "a folder as a mesh file": (GRID, '<mesh file="folder.obj"/>', 3, "it is a folder"),
     "nan": ("3000", "nan", 4, "not a finite number"),
-    "a decimal comma": ("3000", "1,5", 4, 'a decimal point is written "."'),
-    "a hexadecimal number": ("3000", "0x10", 4, "stands after 0"),
+    "a decimal comma": ("3000", "1,5", 4, 'write the decimal point as "."'),
+    "a hexadecimal number": ("3000", "0x10", 4, "follows 0"),
     "a number beyond all": ("3000", "1e999", 4, "outside the range"),
-    "text after a number": ("3000", "3000N", 4, '"N" stands after 3000'),
+    "text after a number": ("3000", "3000N", 4, '"N" follows 3000'),
     "a vector of two numbers": ("0 0 0", "0 0", 4, "three numbers are required, not 2"),
     "two surfaces of one name": ("<point", f'<surface name="sheet">{GRID}</surface><point', 4,
-                                 "the name is taken at line 3"),
+                                 "the name is already used at line 3"),
     "two keys at one frame": (POINT, '<point name="p">' + animated("magnitude", (1, 0), (1, 2)) +
                               "</point>", 4, "repeats the key"),
     "an attribute given and animated": (POINT, '<point name="p" magnitude="3">' +
-                                        animated("magnitude", (1, 0)) + "</point>", 4, "one of both"),
+                                        animated("magnitude", (1, 0)) + "</point>", 4, "remove one of them"),
     "two columns": ('columns="13"', 'columns="2"', 3, "at least 3"),
     "end before start": ('end="9"', 'end="0"', 2, "must not be before"),
     "dt of 0": (GRID, GRID + '<solver dt="0"/>', 3, "must be greater than 0"),
@@ -34,18 +34,18 @@ BAD_SCENES = {
         GRID, GRID + "<material>" + animated("c", (1, 0), (5, -3), (9, 0)) + "</material>", 3,
         "sheet.c at frame 4 is -2."),
     "a deformationRadius in a group": (POINT, f'<group name="g">{POINT}</group>', 4,
-                                       "a force in a <group> selects no region"),
+                                       "a force in a <group> must not have one"),
     "a group in a group": (POINT, '<group name="g"><group name="h"/></group>', 4,
                            'it belongs in <scene>'),
     "a group for a target": (POINT, '<group name="g"/><uniform name="u" targets="g"/>', 4,
                              '"g" is a <group>, not a surface'),
     "a name twice, once in a group": (POINT, '<group name="g"><noise name="sheet"/></group>', 4,
-                                      "the name is taken at line 3"),
+                                      "the name is already used at line 3"),
     "a group's radius below 0 at a frame": (
         POINT, '<group name="g">' + animated("deformationRadius", (1, 1), (9, -1)) + "</group>", 4,
         "g.deformationRadius at frame 6 is -"),
     "two falloffs": (POINT, '<point name="p" falloff="linear"><falloff><key at="0" value="1"/>'
-                            "</falloff></point>", 4, "one of both must go"),
+                            "</falloff></point>", 4, "remove one of them"),
     "a falloff's key beyond 1": (POINT, '<point name="p"><falloff><key at="2" value="1"/></falloff>'
                                         "</point>", 4, 'at="2": must be at most 1'),
     "a misspelt kind of force": (POINT, '<vortx name="v"/>', 4, 'did you mean "vortex"'),
@@ -53,13 +53,13 @@ BAD_SCENES = {
                                  'no attribute "direction"'),
     "a seed below 0": (POINT, '<noise name="n" seed="-1"/>', 4, "must be at least 0"),
     "a position given and on a path": (
-        POINT, f'<point name="p" center="0 0 0">{PATH}</point>', 4, "one of both must go"),
+        POINT, f'<point name="p" center="0 0 0">{PATH}</point>', 4, "remove one of them"),
     "a path of two waypoints": (
         POINT, '<point name="p">' + PATH.replace('<waypoint at="1 1 0"/>', "") + "</point>", 4,
-        "three waypoints or more"),
+        "at least three waypoints"),
     "a path for a direction": (
         POINT, '<point name="p">' + PATH.replace('"center"', '"direction"') + "</point>", 4,
-        "is no position; the positions of <point> are: center"),
+        "is not a position; the positions of <point> are: center"),
     "progress beyond the end at a frame": (
         POINT, '<point name="p">' + PATH.replace("</path>", animated("progress", (1, 0), (5, 2)) +
                                                  "</path>") + "</point>", 4,

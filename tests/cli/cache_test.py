@@ -207,7 +207,7 @@ class Trouble(Cache):
         with open(self.cache, "w", encoding="utf-8") as file:
             file.write("text")
         result = self.bake(code=2)
-        self.assertEqual(result.stderr, f"pliant: error: --cache {self.cache}: is there, and no folder\n")
+        self.assertEqual(result.stderr, f"pliant: error: --cache {self.cache}: is not a folder\n")
         self.assertEqual(self.bake("--cache", "", cache=False, code=2).stderr.count("\n"), 1)
         self.assertFalse(os.path.exists(self.path("out.npy")))
 
@@ -217,8 +217,8 @@ class Trouble(Cache):
             file.write("text")
         self.cache = self.path("file/cache")
         result = self.bake()
-        self.assertRegex(result.stderr, r"^[^\n]*file/cache: note: cannot make the folder: [^\n]+; "
-                                        r"no frame is kept\n$")
+        self.assertRegex(result.stderr, r"^[^\n]*file/cache: note: cannot create the folder: [^\n]+; "
+                                        r"no frame is stored\n$")
         self.assertEqual(self.read("out.npy"), self.expected())
 
     @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
@@ -230,7 +230,7 @@ class Trouble(Cache):
         self.check(0, 40)
         self.scene(last=3000)
         result = self.bake()
-        self.assertIn("Permission denied; not all frames are kept", result.stderr)
+        self.assertIn("Permission denied; not all frames are stored", result.stderr)
         self.assertIn("19 frames solved, 21 read", result.stdout)
 
     def test_a_full_disk_does_not_cost_the_bake(self):
@@ -246,7 +246,7 @@ class Trouble(Cache):
         result = self.bake("--surface", "tiny", preexec_fn=lambda: resource.setrlimit(
             resource.RLIMIT_FSIZE, (100_000, 100_000)))
         self.assertRegex(result.stderr, r"^[^\n]*cache: note: cannot write the file: [^\n]+; not all "
-                                        r"frames are kept\n$")
+                                        r"frames are stored\n$")
         self.assertIn("10 frames solved, 0 read", result.stdout)
         self.assertEqual(self.read("out.npy"), self.read("plain.npy"))
         self.assertTrue(all(name.endswith(".state") for name in os.listdir(self.cache)))

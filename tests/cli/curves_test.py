@@ -102,9 +102,9 @@ class Curves(Command):
                                  (["--channel", "none.b"], "no such channel"),
                                  (["--frames", "3:1"], "A:B with A <= B"),
                                  (["--frames", "nan:1"], "A:B with A <= B"),
-                                 (["--frames", "0:1e300"], "more than"),
-                                 (["--step", "0"], "not a number from"),
-                                 (["--step", "nan"], "not a number from"),
+                                 (["--frames", "0:1e300"], "too many; at most"),
+                                 (["--step", "0"], "must be a number from"),
+                                 (["--step", "nan"], "must be a number from"),
                                  (["--at", "at.txt", "--step", "2"], "excludes"),
                                  (["-o", "c.png"], "allowed: .csv, .svg"),
                                  (["-o", "c.svg", "--frames", "3"], "two frames")):

@@ -43,13 +43,13 @@ class Inputs(Command):
         self.assertEqual({name: self.read(name) for name in before}, before)
 
     def test_no_output_takes_the_place_of_what_a_mesh_refers_to(self):
-        made_from = r"would overwrite \S*buffers\.\w+\.bin, which the scene is made from"
+        made_from = r"would overwrite \S*buffers\.\w+\.bin, an input of the scene"
         refers = "it is a file that a mesh of the scene refers to; choose another name"
         self.refused("bake", "mesh.xml", "-o", "buffers.gltf", says=made_from)
         self.refused("bake", "mesh.xml", "-o", "a.npy", "--regions", BUFFERS,
                      says=f"--regions {BUFFERS}: it is a file that a mesh of the scene refers to")
         self.refused("replay", "record", "mesh.xml", "-o", BUFFERS,
-                     says="would take the place of a file that a mesh of the scene refers to")
+                     says="would overwrite a file that a mesh of the scene refers to")
         if HAS_PAGE:
             self.refused("view", "mesh.xml", "-o", BUFFERS, says=refers)
             self.refused("view", "mesh.xml", "--png", BUFFERS, says=refers)
@@ -61,7 +61,7 @@ class Inputs(Command):
                              says=f"-o n.{ending}: {refers}")
             else:
                 self.refused("bake", "mesh.xml", "-o", "n." + ending,
-                             says=rf"would overwrite \S*n\.{ending}, which")
+                             says=rf"would overwrite \S*n\.{ending}, an input of the scene")
             os.rename(self.path("n." + ending), self.path(BUFFERS))
         os.rename(self.path(BUFFERS), self.path("s.0002.obj"))
         self.refer_to("s.0002.obj")
@@ -80,11 +80,11 @@ class Inputs(Command):
         self.refused("curves", "mesh.csv", "-o", "mesh.csv", says="it is the scene")
         self.write("frames.csv", "1\n2\n")
         self.refused("curves", "mesh.csv", "--at", "frames.csv", "-o", "frames.csv",
-                     says="it is that of --at")
+                     says="it is the file of --at")
 
     def test_what_a_mesh_refers_to_lies_in_the_scenes_folder(self):
         self.run_pliant("validate", "mesh.xml")
-        outside = r"head\.gltf: error: the file refers to \"%s\", which lies outside \S*"
+        outside = r"head\.gltf: error: the file refers to \"%s\", which is outside \S*"
         os.mkdir(self.path("shot"))
         shutil.copy(self.path("mesh.xml"), self.path("shot/mesh.xml"))
         shutil.copy(self.path("head.gltf"), self.path("shot/head.gltf"))
@@ -98,7 +98,7 @@ class Inputs(Command):
             self.refused(*command, "shot/mesh.xml", says=outside % r"\.\./buffers\.\w+\.bin")
             self.run_pliant(*command, "shot/mesh.xml", "--root", ".")
         self.run_pliant("replay", "verify", "a.replay", "--root", ".")
-        self.assertIn("lies outside", self.run_pliant("replay", "verify", "a.replay", code=2).stderr)
+        self.assertIn("is outside", self.run_pliant("replay", "verify", "a.replay", code=2).stderr)
         self.run_pliant("curves", "shot/mesh.xml", "--root", ".")
         os.symlink(f"../{BUFFERS}", self.path("shot/near.bin"))
         self.refer_to("near.bin", "shot/head.gltf")
@@ -108,7 +108,7 @@ class Inputs(Command):
                           ("file:///etc/passwd", 'the scheme "file"'),
                           ("http://localhost/a.bin", 'the scheme "http"'),
                           ("%2Fetc%2Fpasswd", "which is an absolute path"),
-                          ("../../../../../../etc/passwd", "which lies outside")):
+                          ("../../../../../../etc/passwd", "which is outside")):
             self.refer_to(uri)
             self.refused("bake", "mesh.xml", "-o", "a.npy", says=says)
 
@@ -116,7 +116,7 @@ class Inputs(Command):
         os.mkdir(self.path("shot"))
         text = self.read("mesh.xml").decode("utf-8")
         self.write("shot/mesh.xml", text.replace("head.gltf", "../head.gltf"))
-        self.refused("validate", "shot/mesh.xml", says="which lies outside")
+        self.refused("validate", "shot/mesh.xml", says="which is outside")
         self.run_pliant("validate", "shot/mesh.xml", "--root", ".")
         self.run_pliant("bake", "mesh.xml", "-o", "a.obj", "--frames", "1")
         self.write("shot/obj.xml", text.replace("head.gltf", "../a.0001.obj"))
@@ -129,7 +129,7 @@ class Inputs(Command):
             commands.append(["view"])
         for command in commands:
             for root in ("none", "mesh.xml"):
-                self.refused(*command, "mesh.xml", "--root", root, says=f"--root {root}: is no folder")
+                self.refused(*command, "mesh.xml", "--root", root, says=f"--root {root}: is not a folder")
 
     def test_a_replay_knows_what_a_mesh_refers_to(self):
         self.run_pliant("replay", "record", "mesh.xml", "-o", "run.replay")
@@ -142,7 +142,7 @@ class Inputs(Command):
         with open(self.path(BUFFERS), "wb") as file:
             file.write(b"cut")
         told = self.run_pliant("replay", "verify", "run.replay", code=2)
-        self.assertRegex(told.stderr, r"buffers\[0\] has 3 of its \d+ bytes")
+        self.assertRegex(told.stderr, r"buffers\[0\] is truncated: it has 3 of \d+ bytes")
         self.assertIn(f"the file {BUFFERS} was changed", told.stderr)
 
     def test_a_save_of_what_a_mesh_refers_to_is_seen(self):

@@ -168,7 +168,7 @@ class Names(Command):
                         self.assertTrue(all(ord(c) >= 0x20 and not 0x7f <= ord(c) < 0xa0 and c != "\u202e"
                                             for c in line), (command, line))
         for words in (r"\\x1b\]0;title\\x07\S*: warning: ", r"\\x1b\]0;title\\x07\S*: note: ",
-                      r"\\x1b\]0;title\\x07\S*: error: ", r"n\\x0afake\.xml: error: no\.xml: all right",
+                      r"\\x1b\]0;title\\x07\S*: error: ", r"n\\x0afake\.xml: error: no\.xml: valid",
                       r"mesh \S*\\x0afake\.xml|mesh \S*n\\xc2\\x9b31m\.obj", r"\\xff\\xfe\.xml\nframes 1 to 3"):
             self.assertRegex(everything, words)  # each kind of message occurred
 
@@ -181,7 +181,7 @@ class Placements(Command):
                 "</surface>", f"<transform {place}/></surface>").replace("<point", '<point enabled="false"'))
             for ending in (".gltf", ".glb"):
                 errors = self.run_pliant("bake", scene, "-o", "a" + ending, "--space", "object", code=1).stderr
-                self.assertIn(f'surface "sheet" at frame 1 has a {single}, which is beyond the single precision',
+                self.assertIn(f'surface "sheet" at frame 1 has a {single}, which is too large for the single precision',
                               errors)
                 self.assertEqual(self.files(), ["p.xml"])
             self.run_pliant("bake", scene, "-o", "a.usda", "--space", "object")

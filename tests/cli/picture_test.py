@@ -151,14 +151,14 @@ post(png(64, 48))
         self.assertEqual(results["second"], [503])
 
     def test_what_is_no_such_picture_ends_the_run(self):
-        for work, words in (("b'<html>'", "it does not begin as a PNG"), ("b''", "it does not begin as a PNG"),
-                            ("png(64, 48)[:-1]", "it breaks off"), ("png(64, 48) + b'x'", "behind its end"),
+        for work, words in (("b'<html>'", "it is not a PNG"), ("b''", "it is not a PNG"),
+                            ("png(64, 48)[:-1]", "it is truncated"), ("png(64, 48) + b'x'", "data after its end"),
                             ("png(48, 64)", "it has 48 x 64 pixels, not 64 x 48"),
-                            ("b'GIF89a' + png(64, 48)", "it does not begin as a PNG"),
+                            ("b'GIF89a' + png(64, 48)", "it is not a PNG"),
                             ("png(64, 48).replace(b'IDAT', b'IDAU')", "checksum")):
             with self.subTest(work):
                 result, _ = self.draw(f"post({work})", code=1)
-                self.assertIn("no picture that can be used: ", result.stderr)
+                self.assertIn("an unusable picture: ", result.stderr)
                 self.assertIn(words, result.stderr)
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 self.assertNotIn("out.png", self.files())

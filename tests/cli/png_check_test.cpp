@@ -103,8 +103,8 @@ TEST_CASE("no beginning of a picture is one, and no picture with a byte more", "
     CAPTURE(length);
     CHECK_FALSE(check_png(whole.substr(0, length), size).has_value());
   }
-  CHECK(complaint(whole + '\0') == "there is something behind its end");
-  CHECK(complaint(whole + whole) == "there is something behind its end");
+  CHECK(complaint(whole + '\0') == "there is data after its end");
+  CHECK(complaint(whole + whole) == "there is data after its end");
 }
 
 TEST_CASE("a picture with one bit changed is none", "[cli][png]") {
@@ -127,35 +127,35 @@ TEST_CASE("what is sealed as a picture and is none", "[cli][png]") {
     return header({depth, colour, '\0', '\0', last});
   };
   const std::vector<Wrong> all = {
-      {"", "does not begin"},
-      {"<html>", "does not begin"},
-      {begin, "breaks off"},
+      {"", "is not a PNG"},
+      {"<html>", "is not a PNG"},
+      {begin, "is truncated"},
       {begin + end, "no header"},
       {begin + image + header() + end, "no header"},
       {begin + chunk("IHDR", "") + image + end, "no header"},
       {begin + header() + end, "rows are missing"},
-      {begin + header() + image, "breaks off"},
-      {begin + header() + header() + image + end, "a chunk IHDR"},
-      {begin + header() + chunk("PLTE", "abc") + image + end, "a chunk PLTE"},
-      {begin + header() + image + chunk("IEND", "x"), "behind its end"},
+      {begin + header() + image, "is truncated"},
+      {begin + header() + header() + image + end, "the unexpected chunk IHDR"},
+      {begin + header() + chunk("PLTE", "abc") + image + end, "the unexpected chunk PLTE"},
+      {begin + header() + image + chunk("IEND", "x"), "data after its end"},
       {begin + header() + chunk("IDAT", packed(rows(4))) + end, "rows are missing"},
       {begin + header() + chunk("IDAT", packed(rows(6))) + end, "too many rows"},
       {begin + header() + chunk("IDAT", packed(rows(5) + 'x')) + end, "too many rows"},
-      {begin + header() + chunk("IDAT", "rubbish") + end, "cannot be unpacked"},
-      {begin + header() + chunk("IDAT", packed(rows(5)) + 'x') + end, "behind its rows"},
-      {begin + header() + image + image + end, "behind its rows"},
+      {begin + header() + chunk("IDAT", "rubbish") + end, "cannot be decompressed"},
+      {begin + header() + chunk("IDAT", packed(rows(5)) + 'x') + end, "data after its rows"},
+      {begin + header() + image + image + end, "data after its rows"},
       {begin + header() + chunk("IDAT", packed(rows(5)).substr(0, 20)) + end, "rows are missing"},
       {begin + header() + chunk("IDAT", packed(rows(5)).substr(0, 20)) + chunk("tEXt", "a") +
            chunk("IDAT", packed(rows(5)).substr(20)) + end,
-       "not in one place"},
-      {begin + form(16, 6, 0) + image + end, "8 bits"},
-      {begin + form(8, 3, 0) + image + end, "8 bits"},
-      {begin + form(8, 6, 1) + image + end, "8 bits"},
+       "not consecutive"},
+      {begin + form(16, 6, 0) + image + end, "not 8-bit"},
+      {begin + form(8, 3, 0) + image + end, "not 8-bit"},
+      {begin + form(8, 6, 1) + image + end, "not 8-bit"},
       {begin + chunk("IHDR", number(7) + number(6) + rgba) + image + end,
        "7 x 6 pixels, not 7 x 5"},
       {begin + chunk("IHDR", number(0xFFFFFFFF) + number(5) + rgba) + image + end,
        "4294967295 x 5"},
-      {begin + number(0xFFFFFFFF) + "IHDR", "breaks off"},
+      {begin + number(0xFFFFFFFF) + "IHDR", "is truncated"},
   };
   for (const Wrong& wrong : all) {
     CAPTURE(wrong.words);

@@ -137,7 +137,7 @@ class Regions(Command):
         for command in (["validate", scene], ["bake", scene, "-o", "o.npy"]):
             result = self.run_pliant(*command, code=2)
             self.assertRegex(result.stderr, r'^\S*t\.xml:4: error: sheet\.sv1 at frame 3 is 0\.5, but '
-                                            r'release="recover" asks for tangents of 0\n$')
+                                            r'must be 0 with release="recover"\n$')
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ class Replay(Command):
                          ("run.replay: 8 frames, 2 surfaces recorded\n", ""))
         told = self.replay("verify", "run.replay")
         self.assertEqual((told.stdout, told.stderr),
-                         ("run.replay: 8 frames, all as they were recorded\n", ""))
+                         ("run.replay: 8 frames, all as recorded\n", ""))
         self.assertEqual(self.replay("verify", "run.replay", "scene.xml", "--quiet").stdout, "")
         self.assertEqual(self.replay("diff", "run.replay", "run.replay").stdout,
                          "run.replay: 8 frames, all equal\n")
@@ -79,8 +79,8 @@ class Replay(Command):
         told = self.replay("verify", "run.replay", code=1)
         self.assertRegex(told.stdout, r'\Arun.replay: frame 2: surface "sheet": positions differ, '
                                       r"most at node \(6,5\), by [0-9.e-]+\n\Z")
-        self.assertEqual(told.stderr, "run.replay: note: the scene scene.xml was edited, first in "
-                                      "line 6\n")
+        self.assertEqual(told.stderr, "run.replay: note: the scene scene.xml was edited; the first "
+                                      "change is in line 6\n")
         many = self.replay("verify", "run.replay", "--keep-going", code=1)
         self.assertEqual(many.stdout.splitlines()[0], told.stdout.strip())
         self.assertEqual(many.stdout.count("positions differ"), 7)
@@ -95,12 +95,12 @@ class Replay(Command):
         flipped = bytearray(sound)
         flipped[len(lines[0]) + len(lines[1]) + 20] ^= 4
         cases = {
-            "cut.replay": (b"".join(lines[:5]), r"cut.replay:6: error: .*cut short.* 4 of 8"),
-            "half.replay": (sound[:-40], r"half.replay:10: error: .*cut short"),
+            "cut.replay": (b"".join(lines[:5]), r"cut.replay:6: error: .*is truncated.* 4 of 8"),
+            "half.replay": (sound[:-40], r"half.replay:10: error: .*is truncated"),
             "flipped.replay": (bytes(flipped), r"flipped.replay:3: error: .*changed after"),
             "later.replay": (b'{"pliant_replay":7,"x":0}\n', r"later.replay:1: error: .*format 7"),
-            "empty.replay": (b"", r"empty.replay: error: this is no replay log"),
-            "scene.replay": (SCENE.encode(), r"scene.replay: error: this is no replay log"),
+            "empty.replay": (b"", r"empty.replay: error: this is not a replay log"),
+            "scene.replay": (SCENE.encode(), r"scene.replay: error: this is not a replay log"),
         }
         for name, (content, message) in cases.items():
             with self.subTest(name):

@@ -17,7 +17,7 @@ class Validate(Command):
         missing = self.write("m.xml", SCENE.format(end=9).replace(
             '<grid columns="13" rows="11" width="12" depth="10"/>', '<mesh file="none.obj"/>'))
         result = self.run_pliant("validate", good, bad, missing, code=2)
-        self.assertRegex(result.stdout, r"^\S*scene\.xml: all right: 1 surface, 1 force, "
+        self.assertRegex(result.stdout, r"^\S*scene\.xml: valid: 1 surface, 1 force, "
                                         r"frames 1 to 12\n$")
         self.assertRegex(result.stderr, r"bad\.xml:2: error: .*\n\S*m\.xml:3: error: .*none\.obj")
         self.assertEqual(self.run_pliant("validate", good, "--quiet").stdout, "")
@@ -49,7 +49,7 @@ class Validate(Command):
         scene = self.write("large.xml", SCENE.format(end=1000000).replace('"13"', '"10000"').replace(
             '"11"', '"10000"'))
         self.run_pliant("validate", scene, "--max-memory", "1000000")
-        self.assertIn("takes 85", self.run_pliant("validate", scene, "--max-memory", "2", code=1).stderr)
+        self.assertIn("needs 85", self.run_pliant("validate", scene, "--max-memory", "2", code=1).stderr)
 
     def test_interrupted_it_does_not_say_all_right(self):
         os.mkfifo(self.path("pipe.xml"))
@@ -67,7 +67,7 @@ class Validate(Command):
         os.symlink("/dev/zero", self.path("z.obj"))
         for name in ("m.obj", "z.obj"):
             scene = self.write("p.xml", SCENE.format(end=9).replace(GRID, f'<mesh file="{name}"/>'))
-            self.assertIn("it is no regular file", self.run_pliant("validate", scene, code=2).stderr)
+            self.assertIn("it is not a regular file", self.run_pliant("validate", scene, code=2).stderr)
 
     def test_notes_are_told(self):
         scene = self.write("n.xml", SCENE.format(end=9).replace(' magnitude="3000"/>', """>
@@ -88,7 +88,7 @@ class Info(Command):
                       "poke (point) on sheet: at frame 9, at magnitude -4000, it selects 9 x 9 nodes, "
                       "columns 2 to 10, rows 1 to 9",
                       "static peak displacement", "; in the animation", " Hz, damping ratio",
-                      "with what backward Euler adds", "settles to 5 % in",
+                      "with the damping of backward Euler", "settles to 5 % in",
                       "poke.magnitude  2 keys: 1 = 0, 9 = -4000", "memory"):
             self.assertIn(words, told)
 
@@ -96,8 +96,8 @@ class Info(Command):
         text = SCENE.format(end=9)
         for old, new, words in (
                 ("<point", '<point enabled="false"', "poke (point): never enabled"),
-                ('name="sheet"', 'name="sheet" enabled="false"', "poke (point): no surface that is solved"),
-                ("</surface>", '<solver startFrame="50"/></surface>', "poke (point): no surface that is solved")):
+                ('name="sheet"', 'name="sheet" enabled="false"', "poke (point): no surface is solved"),
+                ("</surface>", '<solver startFrame="50"/></surface>', "poke (point): no surface is solved")):
             self.assertIn(words, self.run_pliant("info", self.write("n.xml", text.replace(old, new))).stdout)
 
     def test_json_is_json_whatever_the_names(self):
@@ -119,7 +119,7 @@ class Info(Command):
     def test_what_would_take_too_long_is_left_out(self):
         scene = self.write("l.xml", SCENE.format(end=1000000).replace('"13"', '"601"').replace(
             '"11"', '"601"').replace('"4.5"', '"100"'))
-        self.assertIn("too many to preview", self.run_pliant("info", scene).stdout)
+        self.assertIn("too many nodes to preview", self.run_pliant("info", scene).stdout)
         scene = self.write("f.xml", SCENE.format(end=1000000).replace('"13"', '"201"').replace(
             '"11"', '"201"').replace('center="0 0 0"', "").replace('magnitude="3000"/>', """>
     <animate attribute="center"><key frame="1" value="0 60 0"/><key frame="1000000" value="0 5 0"/></animate></point>"""))
@@ -138,9 +138,9 @@ class Info(Command):
         for words in ("palm (point in hand) on sheet: at frame 1, at magnitude 3000, it selects 9 x 9 nodes",
                       "weight (uniform in hand) on sheet: at frame 1, at magnitude 0, it selects 9 x 9 nodes",
                       "jiggle (inertia) on sheet: at frame 1, at magnitude 1, it selects 13 x 11 nodes",
-                      "  hand on sheet: at frame 1 it selects 9 x 9 nodes", "    of which palm 100 %, weight 0 %",
+                      "  hand on sheet: at frame 1 it selects 9 x 9 nodes", "    of the static peak: palm 100 %, weight 0 %",
                       "together on sheet: at frame 1 they select 13 x 11 nodes",
-                      "empty (group): no force in it",
+                      "empty (group): it has no forces",
                       "hand.center.progress  2 keys: 1 = 0, 9 = 0.25"):
             self.assertIn(words, told)
         rows = self.run_pliant("curves", scene, "--channel", "hand.center.progress", "palm.magnitude",

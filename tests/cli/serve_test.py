@@ -438,7 +438,7 @@ class Slow(Command):
         told = server.wait_for("failed")
         self.assertGreater(len(told), 20_000)
         self.assertLess(len(told), 300_000)
-        self.assertIn("more; see the terminal", told)
+        self.assertIn("more errors; see the terminal", told)
         before = server.resident_bytes()
         for k in range(40):
             # Atomically, so that no incomplete save is read.

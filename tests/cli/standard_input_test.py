@@ -23,7 +23,7 @@ class StandardInput(Command):
         self.assertEqual(self.read("file.npy"), self.read("pipe.npy"))
         self.assertEqual(self.pipe(text, "curves", "-", "--channel", "poke.magnitude").stdout,
                          self.run_pliant("curves", scene, "--channel", "poke.magnitude").stdout)
-        self.assertIn("all right: 1 surface", self.pipe(text, "validate", "-").stdout)
+        self.assertIn("valid: 1 surface", self.pipe(text, "validate", "-").stdout)
         self.assertIn("poke (point)", self.pipe(text, "info", "-").stdout)
 
     def test_meshes_are_relative_to_the_current_folder(self):
@@ -51,7 +51,7 @@ class StandardInput(Command):
     def test_where_a_scene_is_read_again_it_is_refused(self):
         for arguments in (["replay", "record", "-", "-o", "a.replay"], ["replay", "verify", "a.replay", "-"]):
             self.assertRegex(self.pipe(SCENE.format(end=2), *arguments, code=2).stderr,
-                             r"^pliant: error: SCENE -: the standard input does not do here: [^\n]+\n$")
+                             r"^pliant: error: SCENE -: the standard input is not allowed here: [^\n]+\n$")
 
     def test_a_terminal_is_not_waited_for(self):
         leader, follower = os.openpty()
@@ -70,7 +70,7 @@ class StandardInput(Command):
             process.wait(timeout=60)
             errors = process.stderr.read()
         self.assertEqual(process.returncode, 1, errors)
-        self.assertIn("interrupted ahead of the first frame", errors)
+        self.assertIn("interrupted before the first frame", errors)
 
 
 if __name__ == "__main__":

@@ -35,10 +35,10 @@ class Usage(Command):
                 (["help", "vew"], 'pliant has no command "vew"; did you mean "view"? the commands are '),
                 (["replay", "recrd", scene], 'pliant replay has no command "recrd"; did you mean "record"?'),
                 (["bake", scene, "-o", "a.obj", "--reume"],
-                 'pliant bake has no option "--reume"; did you mean "--resume"? pliant bake --help'),
+                 'pliant bake has no option "--reume"; did you mean "--resume"? see pliant bake --help'),
                 (["bake", scene, "--frame=1:3"], 'no option "--frame"; did you mean "--frames"?'),
                 (["bake", scene, "-resume"], "pliant bake has no option"),
-                (["curves", "--nothing-like-it", scene], 'has no option "--nothing-like-it"; pliant curves')):
+                (["curves", "--nothing-like-it", scene], 'has no option "--nothing-like-it"; see pliant curves')):
             result = self.run_pliant(*arguments, code=2)
             self.assertRegex(result.stderr, r"^pliant: error: [^\n]+\n$", arguments)
             self.assertIn(words, result.stderr)
@@ -52,10 +52,10 @@ class Usage(Command):
             result = self.run_pliant(*arguments, code=2)
             self.assertRegex(result.stderr, r"^pliant: error: [^\n]+\n$", arguments)
             self.assertEqual(result.stdout, "", arguments)
-        for arguments, words in ((["--frames", "0:3"], "the scene has the frames 1 to 12"),
+        for arguments, words in ((["--frames", "0:3"], "the scene has frames 1 to 12"),
                                  (["--frames", "5:3"], "A:B with A <= B"),
                                  (["--frames", "x"], "A:B with A <= B"),
-                                 (["--surface", "none"], "the scene has the surfaces sheet")):
+                                 (["--surface", "none"], "the scene has no such surface; it has sheet")):
             result = self.run_pliant("bake", scene, "-o", "a.npy", *arguments, code=2)
             self.assertIn(words, result.stderr)
         result = self.run_pliant("bake", scene, "-o", "a.xyz", code=2)
@@ -111,7 +111,7 @@ class Errors(Command):
                              f"pliant: error: {option}: the folder no/such does not exist\n")
         scene = self.scene()
         result = self.run_pliant("bake", scene, "-o", "scene.xml/a.npy", code=1)
-        self.assertIn("the folder scene.xml is no folder", result.stderr)
+        self.assertIn("scene.xml is not a folder", result.stderr)
         self.assertEqual(self.files(), ["scene.xml"])
 
     def test_a_run_that_fails_leaves_nothing(self):
@@ -127,8 +127,8 @@ class Errors(Command):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             code, errors = self.interrupt(scene, "a.npy", number)
             self.assertEqual(code, 1, errors)
-            self.assertRegex(errors, r"^pliant: error: interrupted at frame \d+; no file is written; "
-                                     r"with --cache DIR the frames solved are kept for the next run\n$")
+            self.assertRegex(errors, r"^pliant: error: interrupted at frame \d+; no file was written; "
+                                     r"--cache DIR would keep the solved frames for the next run\n$")
             self.assertEqual(self.files(), ["scene.xml"])
 
     def test_interrupt_within_a_frame_of_many_steps(self):
@@ -143,7 +143,7 @@ class Errors(Command):
     def test_whole_frames_of_an_interrupted_sequence_stay(self):
         scene = self.scene(end=900000)
         _, errors = self.interrupt(scene, "a.obj", signal.SIGINT, there="a.0002.obj")
-        self.assertRegex(errors, r"interrupted at frame \d+; the files written stay, and --resume goes on with them")
+        self.assertRegex(errors, r"interrupted at frame \d+; the files written so far are kept, and --resume continues with them")
         files = self.files()
         self.assertEqual([name for name in files if name.endswith(".part")], [])
         line_counts = set()

@@ -220,15 +220,15 @@ class Page(View):
                 (["view", scene, "--png", scene], 2, "it is the scene"),
                 (["view", scene, "--frames", "5:99"], 2, "--frames 5:99"),
                 (["view", scene, "-o", "no/where/view.html"], 1, "no/where/view.html"),
-                (["view", scene, "--serve", "99999"], 2, "not a port"),
+                (["view", scene, "--serve", "99999"], 2, "must be a port"),
                 (["view", scene, "--png", "a.png", "--frame", "99"], 2, "--frame 99"),
                 (["view", scene, "--png", "a.png", "--size", "3x99999"], 2, "--size 3x99999"),
                 (["view", scene, "--frame", "3"], 2, "--png"),
                 (["view", scene, "--size", "64x64"], 2, "--png or --movie"),
                 (["view", scene, "--look", "turn=3"], 2, "--png or --movie"),
-                (["view", scene, "--movie", "a.avi"], 2, ".mp4, .gif or .webm"),
+                (["view", scene, "--movie", "a.avi"], 2, "allowed: .mp4, .gif, .webm"),
                 (["view", scene, "--movie", "a.mp4", "--png", "a.png"], 2, "--png"),
-                (["view", scene, "--movie", "a.mp4", "--size", "641x361"], 2, "even numbers"),
+                (["view", scene, "--movie", "a.mp4", "--size", "641x361"], 2, "must be even"),
                 (["view", scene, "--movie", "a.mp4", "--frames", "5:99"], 2, "--frames 5:99"),
                 (["view", scene, "--png", "a.png", "--contact-sheet", "--frame", "3"], 2, "--frame")):
             with self.subTest(arguments):
@@ -243,7 +243,7 @@ class Page(View):
         bare = self.path("bin")
         os.mkdir(bare)
         result = self.run_pliant("view", scene, "--movie", "a.mp4", code=1, env={"PATH": bare})
-        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs ffmpeg.*none on the PATH\n\Z")
+        self.assertRegex(result.stderr, r"\Apliant: error: --movie needs ffmpeg.*not on the PATH\n\Z")
         with open(os.path.join(bare, "ffmpeg"), "w", encoding="utf-8") as file:
             file.write("#!/bin/sh\n")
         os.chmod(file.name, 0o755)
@@ -255,7 +255,7 @@ class Page(View):
         scene = self.scene("scene.mp4", end=3)
         result = self.run_pliant("view", scene, "--movie", scene, code=2)
         self.assertIn("it is the scene", result.stderr)
-        for fps, name, words in (("2000", "a.webm", "0.01 to 1000"), ("60", "a.gif", "a .gif can show 50")):
+        for fps, name, words in (("2000", "a.webm", "0.01 to 1000"), ("60", "a.gif", "a .gif can have at most 50")):
             scene = self.scene(end=3)
             with open(scene, encoding="utf-8") as file:
                 text = file.read()
@@ -273,7 +273,7 @@ class Page(View):
     def test_more_frames_than_memory_holds_are_refused_ahead(self):
         scene = self.scene(end=3000)
         result = self.run_pliant("view", scene, "--max-memory", "0.006", code=1)
-        self.assertRegex(result.stderr, r"3000 frames of 163 vertices take .* --frames A:B\n$")
+        self.assertRegex(result.stderr, r"a page of 3000 frames of 163 vertices needs .* --frames A:B\n$")
         self.assertEqual(os.listdir(self.folder), ["scene.xml"])
         self.run_pliant("view", scene, "--max-memory", "0.006", "--frames", "1:40")
 

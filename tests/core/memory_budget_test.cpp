@@ -52,5 +52,5 @@ TEST_CASE("bytes are spelled with three digits", "[core][memory]") {
   MemoryBudget budget(2'000'000'000);
   MemoryShare a(&budget), b(&budget);
   REQUIRE((a.try_resize(500'000'000) && b.try_resize(300'000'000)));
-  CHECK(a.complaint(5'000'000'000) == "takes 5 GB, more than the 1.7 GB left of the 2 GB allowed");
+  CHECK(a.complaint(5'000'000'000) == "needs 5 GB, more than the 1.7 GB left of the 2 GB allowed");
 }

@@ -36,7 +36,7 @@ def main():
     assert commands == set(re.findall(r"^\| `pliant ([a-z]+)", page, re.MULTILINE)), commands
     offered = options_of()
     assert offered == options_in(page), offered ^ options_in(page)
-    listed = re.search(r"picks the format: (.*?)\. Several", " ".join(help_of("bake").split())).group(1)
+    listed = re.search(r"selects the format: (.*?)\. Several", " ".join(help_of("bake").split())).group(1)
     endings = re.findall(r"^\| `(\.\w+)`", page, re.MULTILINE)
     assert sorted(endings) == sorted(listed.split(", ")), (endings, listed)
     print("ok", sorted(commands), sorted(offered), endings)

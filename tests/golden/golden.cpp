@@ -1,7 +1,7 @@
 // Verifies every golden replay with this build: with the kernels of every width that the machine
-// has, and with several numbers of threads; with --lanes or --threads only these, with --once in one
-// way only. --bless records all of them again, and prints new ones and differences. docs/replay.md,
-// "Golden replays".
+// has, and with several numbers of threads; with --lanes or --threads only these, with --once in
+// one way only. --bless records all of them again, and prints new ones and differences.
+// docs/replay.md, "Golden replays".
 //
 // usage: golden SOURCE_FOLDER [--once | --lanes | --threads | --bless]
 
@@ -215,7 +215,7 @@ int main(int count, char* arguments[]) {
     }
   }
   if (failed > 0 && !blesses) {
-    say("script/test --bless records again what differs, and tells how much");
+    say("script/test --bless records the logs that differ again, and prints by how much");
   }
   say(fmt::format("{} passed, {} failed", passed, failed));
   return failed == 0 && passed > 0 ? 0 : 1;

@@ -369,13 +369,17 @@ TEST_CASE("a placement that glTF cannot hold is an error with its place", "[io][
     const char* twice;   // USD's message; null: no error
   };
   const std::vector<Case> cases = {
-      {{{0, 1e300, 0}}, "translate of 1e+300, which is beyond the single precision", nullptr},
-      {{{0, 0, 0}, {0, 0, 0}, {1, 1, 3.5e38}}, "scale of 3.5e+38, which is beyond", nullptr},
-      {{{0, 0, 0}, {0, 0, 0}, {1, -1e-50, 1}}, "scale of -1e-50, which is below", nullptr},
+      {{{0, 1e300, 0}},
+       "translate of 1e+300, which is too large for the single precision",
+       nullptr},
+      {{{0, 0, 0}, {0, 0, 0}, {1, 1, 3.5e38}}, "scale of 3.5e+38, which is too large", nullptr},
+      {{{0, 0, 0}, {0, 0, 0}, {1, -1e-50, 1}}, "scale of -1e-50, which is too small", nullptr},
       {{{1e-50, 0, 0}}, nullptr, nullptr},
       {{{0, 0, 0}, {0, 1e300, 0}}, nullptr, nullptr},
-      {{{-inf, 0, 0}}, "translate of -inf, which is no finite", "translate of -inf, which is no"},
-      {{{0, 0, 0}, {0, 0, inf}}, "rotate of inf, which is no finite", "rotate of inf, which is no"},
+      {{{-inf, 0, 0}}, "translate of -inf, which is not finite", "translate of -inf, which is no"},
+      {{{0, 0, 0}, {0, 0, inf}},
+       "rotate of inf, which is not finite",
+       "rotate of inf, which is no"},
       {{{0, 0, 0}, {0, 0, 0}, {1, inf, 1}}, "scale of inf", "scale of inf"}};
   for (const Case& each : cases) {
     for (const char* name : {"a.gltf", "a.glb", "a.usda"}) {
@@ -411,8 +415,8 @@ TEST_CASE("a position that a format cannot hold is told by the mesh's own vertex
       REQUIRE_FALSE(all);
       CHECK_THAT(all.error().message, contains_text("vertex 3 at frame "));
       CHECK_THAT(all.error().message,
-                 contains_text(std::isinf(coordinate) ? "which is no finite number"
-                                                      : ".npy, .obj and .ply hold double"));
+                 contains_text(std::isinf(coordinate) ? "which is not finite"
+                                                      : ".npy, .obj and .ply store double"));
     }
   }
 }
@@ -437,7 +441,7 @@ TEST_CASE("times beyond single precision are refused ahead", "[io][gltf]") {
     plan.fps = 1e-39;
     const auto writer = make_writer(plan);
     REQUIRE_FALSE(writer);
-    CHECK_THAT(writer.error().message, contains_text("beyond the single precision"));
+    CHECK_THAT(writer.error().message, contains_text("too large for the single precision"));
   }
   CHECK(folder.entry_count() == 0);
 }

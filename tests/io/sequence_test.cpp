@@ -148,7 +148,7 @@ TEST_CASE("one file cannot be resumed", "[io][sequence]") {
     plan.resume = true;
     const auto writer = make_writer(plan);
     REQUIRE_FALSE(writer);
-    CHECK_THAT(writer.error().message, contains_text("whole at its end only"));
+    CHECK_THAT(writer.error().message, contains_text("one file, which cannot be resumed"));
   }
   CHECK(folder.entry_count() == 0);
 }

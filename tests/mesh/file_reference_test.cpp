@@ -75,28 +75,29 @@ TEST_CASE("a reference that leads out of the root is refused", "[mesh][file_refe
         "stays.bin", "door/outside.bin", "door/none.bin", "../shot2/own.bin"}) {
     CAPTURE(uri);
     CHECK(at.bytes(uri) ==
-          fmt::format("the file refers to \"{}\", which lies outside {}; --root DIR allows another "
-                      "folder",
-                      uri, at.shot.string()));
+          fmt::format(
+              "the file refers to \"{}\", which is outside {}; --root DIR allows another folder",
+              uri, at.shot.string()));
   }
   // A folder whose name begins like the root's is a different one.
   fs::create_directory(at.inside / "shots");
   std::ofstream(at.inside / "shots" / "own.bin") << "another";
-  CHECK_THAT(at.bytes("../shots/own.bin"), contains_text("which lies outside"));
+  CHECK_THAT(at.bytes("../shots/own.bin"), contains_text("which is outside"));
   // The target of the link may be created later.
-  CHECK_THAT(at.bytes("dangling.bin"), EndsWith("\"dangling.bin\", a link that leads nowhere"));
+  CHECK_THAT(at.bytes("dangling.bin"),
+             EndsWith("\"dangling.bin\", a symbolic link to a file that does not exist"));
   CHECK_THAT(at.bytes("/etc/passwd"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("%2Fetc%2Fpasswd"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("//host/a.bin"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes((at.shot / "own.bin").string()), contains_text("which is an absolute path"));
-  CHECK_THAT(at.bytes("own.bin%00.png"), contains_text("which is no name of a file"));
+  CHECK_THAT(at.bytes("own.bin%00.png"), contains_text("which is not the name of a file"));
   for (const std::string scheme : {"file", "http", "https", "C", "x-y+z.1"}) {
-    CHECK_THAT(
-        at.bytes(scheme + ":///etc/passwd"),
-        EndsWith(fmt::format("but nothing is read by the scheme \"{}\", files only", scheme)));
+    CHECK_THAT(at.bytes(scheme + ":///etc/passwd"),
+               EndsWith(fmt::format("but the scheme \"{}\" is not supported; only files are read",
+                                    scheme)));
   }
   CHECK_THAT(at.bytes("own.bin", at.outside / "none"),
-             contains_text("but the folder for what it refers to cannot be found"));
+             contains_text("but the folder that must contain it cannot be found"));
 }
 
 TEST_CASE("a reference is a regular file that can be read", "[mesh][file_reference]") {

@@ -102,7 +102,7 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
   }
   SECTION("a corner without (u,v)") {
     mesh.corner_uvs[7] = -1;
-    CHECK_THAT(complaint(mesh), Contains(" has no (u,v) (UVs), like 1 of the 160 corners"));
+    CHECK_THAT(complaint(mesh), Contains(" has no (u,v) (UVs); 1 of the 160 corners"));
     mesh.corner_uvs.assign(mesh.corner_uvs.size(), -1);
     CHECK_THAT(complaint(mesh), Contains("the mesh has no (u,v) (UVs); unwrap it"));
     return;
@@ -132,7 +132,7 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
     mesh.uvs[22] = mesh.uvs[23];
     mesh.positions.row(22) = mesh.positions.row(23);
     mesh.uvs.push_back({0, 0});
-    expected = "no vertex lies at (u,v) = (0.5, 0.4), node (4, 2)";
+    expected = "there is no vertex at (u,v) = (0.5, 0.4), node (4, 2)";
     // One more vertex, so that the number of vertices does not reveal the error.
     mesh.positions.conservativeResize(55, 3);
     mesh.positions.row(54) = mesh.positions.row(23);
@@ -179,19 +179,20 @@ Mesh torus(double gap) {
 TEST_CASE("vertices in one place with other (u,v) are a seam", "[mesh][grid_mapping]") {
   const double diagonal = std::sqrt(8.0 * 8 + 2 * 2 + 8 * 8);
   // Rounding leaves the ends of the torus 1e-15 apart.
-  CHECK_THAT(complaint(torus(0)), Contains(" are in one place, but have the (u,v) (0, 0) and (") &&
-                                      Contains(": a seam; a surface that is closed"));
+  CHECK_THAT(complaint(torus(0)),
+             Contains(" are at the same position, but have the (u,v) (0, 0) and (") &&
+                 Contains(": a seam; a surface that is closed"));
   CHECK_THAT(complaint(torus(0.9e-6 * diagonal)), Contains(": a seam"));
   CHECK(complaint(torus(1.2e-6 * diagonal)) == "none");
 
   Mesh folded = sheet();  // inside, only exactly equal positions are one place
   folded.positions.row(31) = folded.positions.row(21);
-  CHECK_THAT(complaint(folded), Contains("vertices 21 and 31 are in one place"));
+  CHECK_THAT(complaint(folded), Contains("vertices 21 and 31 are at the same position"));
   folded.positions(31, 1) += 1e-12;
   CHECK(complaint(folded) == "none");
   folded.positions.row(21) << 0.0, 0.0, 0.0;
   folded.positions.row(31) << -0.0, 0.0, -0.0;
-  CHECK_THAT(complaint(folded), Contains("are in one place"));
+  CHECK_THAT(complaint(folded), Contains("are at the same position"));
 }
 
 TEST_CASE("a seam is found wherever cells of the search divide", "[mesh][grid_mapping]") {
@@ -211,5 +212,5 @@ TEST_CASE("a seam is found wherever cells of the search divide", "[mesh][grid_ma
 TEST_CASE("a mesh whose nodes all lie in one place takes no time", "[mesh][grid_mapping]") {
   Mesh mesh = make_mesh({.columns = 1000, .rows = 1000});
   mesh.positions.setZero();
-  CHECK_THAT(complaint(mesh), Contains("vertices 0 and 1 are in one place"));
+  CHECK_THAT(complaint(mesh), Contains("vertices 0 and 1 are at the same position"));
 }

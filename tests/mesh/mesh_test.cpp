@@ -60,11 +60,11 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   SECTION("a normal of nobody") {
     mesh.corner_normals.assign(16, 2);
     mesh.corner_normals[3] = 0;
-    expected = "no corner has the normal 1 of the 3";
+    expected = "no corner uses the normal 1 of 3";
   }
   SECTION("number of materials") {
     mesh.materials = {{"a"}, {0, 0}};
-    expected = "2 of the mesh's 4 faces have a material";
+    expected = "the list of face materials has 2 entries, but the mesh has 4 faces";
   }
   SECTION("a group too large") {
     mesh.groups = {{"a"}, {0, -1, 1, 0}};
@@ -72,7 +72,7 @@ TEST_CASE("a mesh that a program made is checked", "[mesh]") {
   }
   SECTION("numbers of vertices") {
     mesh.file_vertices = {4, 5};
-    expected = "2 of the mesh's 9 vertices have a number in the file";
+    expected = "the list of vertex numbers has 2 entries, but the mesh has 9 vertices";
   }
   const auto checked = check_mesh(mesh);
   REQUIRE_FALSE(checked);

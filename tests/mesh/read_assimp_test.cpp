@@ -148,12 +148,11 @@ TEST_CASE("an object is a node with faces, taken by its name", "[mesh][read_assi
   CHECK(left.object == "left");
   CHECK(read_assimp(file, "right")->positions.col(0) ==
         (left.positions.col(0).array() + 5).matrix());
-  CHECK_THAT(complaint(file),
-             EndsWith("a.dae: error: the file holds 2 objects; name one with object: \"left\", "
-                      "\"right\""));
+  CHECK_THAT(complaint(file), EndsWith("a.dae: error: the file has 2 objects; choose one with the "
+                                       "attribute object: \"left\", \"right\""));
   CHECK_THAT(complaint(file, "empty"),
-             EndsWith("the file holds no object \"empty\"; it holds: \"left\", \"right\""));
-  CHECK_THAT(complaint(file, "cloth"), contains_text("2 objects of the name \"cloth\""));
+             EndsWith("the file has no object \"empty\"; it has: \"left\", \"right\""));
+  CHECK_THAT(complaint(file, "cloth"), contains_text("2 objects named \"cloth\""));
   const auto single = folder.write("b.dae", sheet_collada(collada_node("left", instance)));
   CHECK(read_assimp(single, "cloth")->positions == left.positions);  // the mesh's own name
 }
@@ -185,9 +184,9 @@ TEST_CASE("the set of (u,v) is taken by its number", "[mesh][read_assimp][thread
   CHECK(first.uvs == by_corner(sheet).uvs);
   for (std::size_t k = 0; k < first.uvs.size(); ++k)
     CHECK(second.uvs[k] == std::array{first.uvs[k][1], first.uvs[k][0]});
-  CHECK_THAT(complaint(file, "", 2),
-             EndsWith("a.dae: error: the object has 2 UV sets, so there is no set 2 (they count "
-                      "from 0)"));
+  CHECK_THAT(
+      complaint(file, "", 2),
+      EndsWith("a.dae: error: the object has 2 UV sets, so there is no set 2 (counted from 0)"));
   CHECK(read_assimp(folder.write("a.fbx", fbx_text(sheet)), "", 1)->uvs == by_corner(sheet).uvs);
 }
 
@@ -212,7 +211,7 @@ TEST_CASE("points and lines are passed over, and are not enough", "[mesh][read_a
   const auto both = collada(sheet, lines + collada_faces(sheet, 0, 4, false) + lines, node);
   check_equal(read_assimp(folder.write("a.dae", both)).value(), by_corner(sheet));
   CHECK_THAT(complaint(folder.write("b.dae", collada(sheet, lines, node))),
-             EndsWith("b.dae: error: the file holds no faces"));
+             EndsWith("b.dae: error: the file has no faces"));
 }
 
 TEST_CASE("coordinates that are not finite are refused", "[mesh][read_assimp][threads]") {
@@ -253,12 +252,12 @@ TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp][thre
     std::string name, text, expected;
   };
   const std::vector<Case> cases = {
-      {"a.fbx", "", "a.fbx: error: the file is no FBX"},
+      {"a.fbx", "", "a.fbx: error: the file is not FBX"},
       {"a.fbx", "Kaydara FBX Binary  ", "a.fbx: error: the "},
       {"a.fbx", "; FBX 7.4.0\nObjects: {", "a.fbx: error: the file cannot be read: "},
-      {"a.dae", "", "a.dae: error: the file is no Collada"},
+      {"a.dae", "", "a.dae: error: the file is not Collada"},
       {"a.dae", "<COLLADA/>", "a.dae: error: the file "},
-      {"a.dae", "<scene>", "a.dae: error: the file is no Collada"},
+      {"a.dae", "<scene>", "a.dae: error: the file is not Collada"},
       {"a.dae", changed_collada("<p>0 ", "<p>99 "), "a.dae: error: the file cannot be read: "}};
   for (const Case& c : cases) {
     CAPTURE(c.text);

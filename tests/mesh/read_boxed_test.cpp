@@ -41,12 +41,12 @@ TEST_CASE("whatever becomes of the reader is one line that names the file",
   };
   check("crash", "crashed on this file (signal 11, Segmentation fault)");
   check("abort", "crashed on this file (signal 6, Aborted)");
-  check("give up", "gave up with exit code 3");
-  check("rubbish", "gave an answer that is no mesh");
-  check("uninitialised", "found more in this file than it holds");
-  check("nothing", "gave an answer that is no mesh");
+  check("give up", "failed with exit code 3");
+  check("rubbish", "produced something that is not a mesh");
+  check("uninitialised", "produced two different meshes from this file");
+  check("nothing", "produced something that is not a mesh");
   check("allocate", "needs more than 537 MB of memory for a file of 7 B");
-  check("flood", "made more than 134 MB of this file of 7 B");
+  check("flood", "produced more than 134 MB from this file of 7 B");
   CHECK_THAT(boxed_complaint(folder.write("b.dae", ""), "crash"),
              contains_text("the Collada reader"));
 }

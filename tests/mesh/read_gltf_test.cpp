@@ -70,8 +70,9 @@ TEST_CASE("a glTF finds its buffers beside it", "[mesh][read_gltf]") {
              contains_text("b.gltf: error: the file refers to ") &&
                  EndsWith("none.bin: cannot read the file: No such file or directory"));
   folder.write("short.bin", gltf.bytes().substr(0, 40));
-  CHECK_THAT(complaint("short.bin"),
-             EndsWith(fmt::format("buffers[0] has 40 of its {} bytes", gltf.bytes().size())));
+  CHECK_THAT(
+      complaint("short.bin"),
+      EndsWith(fmt::format("buffers[0] is truncated: it has 40 of {} bytes", gltf.bytes().size())));
   CHECK_THAT(complaint("."), EndsWith("it is a folder") || EndsWith("it is not a regular file"));
 }
 
@@ -102,10 +103,11 @@ TEST_CASE("glTF's modes of triangles are read, points and lines passed over", "[
   indexed.primitives = R"({"attributes":{"POSITION":0},"indices":1})";
   for (const int index : {3, 2, 1, 1, 0, 3}) indexed.bytes += little_endian(index, 2);
   CHECK(corners(indexed.text()) == std::vector{3, 2, 1, 1, 0, 3});
-  CHECK_THAT(gltf_complaint(square(4).text()),
-             EndsWith("meshes[0].primitives[0] has 4 corners of triangles, no multiple of 3"));
+  CHECK_THAT(
+      gltf_complaint(square(4).text()),
+      EndsWith("meshes[0].primitives[0] has 4 corners of triangles, which is not a multiple of 3"));
   CHECK_THAT(gltf_complaint(square(7).text()),
-             EndsWith("meshes[0].primitives[0].mode is 7, not 0 to 6"));
+             EndsWith("meshes[0].primitives[0].mode is 7, but must be from 0 to 6"));
 
   Gltf gltf;
   const std::string sheet = gltf.primitive(small_sheet(true));
@@ -117,7 +119,7 @@ TEST_CASE("glTF's modes of triangles are read, points and lines passed over", "[
       small_sheet(true));
   for (const std::string& only : {lines, points}) {
     CHECK_THAT(gltf_complaint(gltf.text(gltf_mesh(only), cloth_node)),
-               EndsWith("a.gltf: error: the file holds no faces"));
+               EndsWith("a.gltf: error: the file has no faces"));
   }
 }
 
@@ -244,11 +246,10 @@ TEST_CASE("an object of a glTF is a node with faces, taken by its name", "[mesh]
   CHECK(parse_exactly(text, "left")->object == "left");
   CHECK(parse_exactly(text, "right")->positions == other.positions);
   CHECK(parse_exactly(text, "knit")->positions == other.positions);  // the mesh's own name
-  CHECK_THAT(gltf_complaint(text),
-             EndsWith("a.gltf: error: the file holds 2 objects; name one with object: \"left\", "
-                      "\"right\""));
+  CHECK_THAT(gltf_complaint(text), EndsWith("a.gltf: error: the file has 2 objects; choose one "
+                                            "with the attribute object: \"left\", \"right\""));
   CHECK_THAT(gltf_complaint(text, "empty"),
-             EndsWith("the file holds no object \"empty\"; it holds: \"left\", \"right\""));
+             EndsWith("the file has no object \"empty\"; it has: \"left\", \"right\""));
   const std::string nameless = R"({"children":[1,2]},{"mesh":0},{"mesh":1})";
   CHECK(parse_exactly(gltf.text(first + "," + second, nameless), "nodes[2]")->positions ==
         other.positions);
@@ -270,7 +271,8 @@ TEST_CASE("only what the shown scene of a glTF holds is an object", "[mesh][read
   CHECK(parse_exactly(first)->object == "a");
   std::string none = text;
   none.replace(none.find("\"scene\":0"), 9, "\"scene\":2");
-  CHECK_THAT(gltf_complaint(none), EndsWith("scene is 2, but the file's scenes go from 0 to 1"));
+  CHECK_THAT(gltf_complaint(none),
+             EndsWith("scene is 2, but the file's scenes are numbered from 0 to 1"));
 }
 
 TEST_CASE("an instanced mesh of a glTF is an object in each of its nodes", "[mesh][read_gltf]") {
@@ -280,7 +282,7 @@ TEST_CASE("an instanced mesh of a glTF is an object in each of its nodes", "[mes
       R"({"name":"left","mesh":0},{"name":"right","mesh":0,"translation":[5,0,0]})";
   const std::string text = gltf.text(meshes, nodes, "0,1");
   CHECK_THAT(gltf_complaint(text), contains_text("2 objects"));
-  CHECK_THAT(gltf_complaint(text, "weave"), contains_text("2 objects of the name \"weave\""));
+  CHECK_THAT(gltf_complaint(text, "weave"), contains_text("2 objects named \"weave\""));
   CHECK(parse_exactly(text, "right")->positions.col(0) ==
         (parse_exactly(text, "left")->positions.col(0).array() + 5).matrix());
 }
@@ -340,12 +342,12 @@ TEST_CASE("a glTF's set of (u,v) is taken by its number", "[mesh][read_gltf]") {
   const std::string text = gltf.text(gltf_mesh(gltf.primitive(triangles, {swapped})), cloth_node);
   CHECK(parse_exactly(text)->uvs == triangles.uvs);
   CHECK(parse_exactly(text, "", 1)->uvs == swapped);
-  CHECK_THAT(gltf_complaint(text, "", 2),
-             EndsWith("a.gltf: error: the object has 2 UV sets, so there is no set 2 (they count "
-                      "from 0)"));
+  CHECK_THAT(
+      gltf_complaint(text, "", 2),
+      EndsWith("a.gltf: error: the object has 2 UV sets, so there is no set 2 (counted from 0)"));
   std::string without = text;
   without.replace(without.find("TEXCOORD_0"), 10, "TEXCOORD_2");
-  CHECK_THAT(gltf_complaint(without), EndsWith("the object has no UV set 0, but others"));
+  CHECK_THAT(gltf_complaint(without), EndsWith("the object has UV sets, but not set 0"));
 }
 
 TEST_CASE("a glTF without (u,v) is read, and is no grid", "[mesh][read_gltf]") {

@@ -63,9 +63,9 @@ TEST_CASE("object and set of (u,v) reach each reader", "[mesh][read_mesh]") {
   const auto file = folder.write("a.obj", obj);
   CHECK(read_mesh(file, "b")->corner_vertices == std::vector{2, 1, 0});
   CHECK_THAT(complaint_of_file(file), contains_text("2 objects"));
-  CHECK_THAT(complaint_of_file(file, "b", 1),
-             EndsWith("a.obj: error: the object has 1 UV set, so there is no set 1 (they count "
-                      "from 0)"));
+  CHECK_THAT(
+      complaint_of_file(file, "b", 1),
+      EndsWith("a.obj: error: the object has 1 UV set, so there is no set 1 (counted from 0)"));
   const auto twice = folder.write("b.obj", obj + "o a\nf 1/1 2/2 3/3\n");
-  CHECK_THAT(complaint_of_file(twice, "a"), contains_text("2 objects of the name \"a\""));
+  CHECK_THAT(complaint_of_file(twice, "a"), contains_text("2 objects named \"a\""));
 }

@@ -90,31 +90,30 @@ TEST_CASE("a bad OBJ file says what is wrong in which line", "[mesh][read_obj]")
       Case{"v 0 0 inf\n", "m.obj:1: error: vertex has the coordinate \"inf\""},
       Case{"\nv 0 1,5 0\n", "m.obj:2: error: vertex has the coordinate \"1,5\""},
       Case{"v 0 0 1e999\n", "m.obj:1: error: vertex has the coordinate \"1e999\""},
-      Case{"v 0 0\n", "m.obj:1: error: vertex has 2 of 3 numbers"},
-      Case{"vt\n", "m.obj:1: error: texture vertex has 0 of 1 numbers"},
+      Case{"v 0 0\n", "m.obj:1: error: vertex has 2 numbers, but needs 3"},
+      Case{"vt\n", "m.obj:1: error: texture vertex has 0 numbers, but needs 1"},
       Case{"vt 0 0 0 0\n", "m.obj:1: error: texture vertex has more than 3 numbers"},
-      Case{obj_quad + "f 1 2\n", "m.obj:9: error: face has 2 of at least 3 corners"},
+      Case{obj_quad + "f 1 2\n", "m.obj:9: error: face has 2 corners, but needs at least 3"},
       Case{obj_quad + "f 1/1 2/2 x/3\n", "m.obj:9: error: face corner \"x/3\" is not of the form"},
       Case{obj_quad + "f 1/1 2/2 3/y\n", "m.obj:9: error: face corner \"3/y\""},
       Case{obj_quad + "f 1/1/1 2/2/1 3/3/z\n", "m.obj:9: error: face corner \"3/3/z\""},
-      Case{
-          obj_quad + "f 1/1 2/2 5/3\n",
-          "m.obj:9: error: corner 3 of the face refers to vertex 5, outside the file, which has 4"},
+      Case{obj_quad + "f 1/1 2/2 5/3\n",
+           "m.obj:9: error: corner 3 of the face refers to vertex 5, but the file has 4"},
       Case{obj_quad + "f 1/1 2/9 3/3\n",
-           "m.obj:9: error: corner 2 of the face refers to texture vertex 9, outside"},
+           "m.obj:9: error: corner 2 of the face refers to texture vertex 9, but the file has"},
       Case{obj_quad + "f 1/0 2/2 3/3\n",
-           "m.obj:9: error: corner 1 of the face refers to a texture vertex ahead of"},
+           "m.obj:9: error: corner 1 of the face refers to a texture vertex before the"},
       Case{obj_quad + "f 1/ 2/2 3/3\n", "m.obj:9: error: face corner \"1/\""},
       Case{obj_quad + "f 0/1 2/2 3/3\n",
-           "m.obj:9: error: corner 1 of the face refers to a vertex ahead of the file's first"},
+           "m.obj:9: error: corner 1 of the face refers to a vertex before the file's first"},
       Case{obj_quad + "f -9/1 2/2 3/3\n",
-           "m.obj:9: error: corner 1 of the face refers to a vertex ahead of the file's first"},
+           "m.obj:9: error: corner 1 of the face refers to a vertex before the file's first"},
       Case{obj_quad + "f 99999999999/1 2/2 3/3\n", "m.obj:9: error: face corner \"99999999999/1\""},
-      Case{obj_quad, "m.obj: error: the file holds no faces (f)"},
-      Case{"", "m.obj: error: the file holds no"},
+      Case{obj_quad, "m.obj: error: the file has no faces (f)"},
+      Case{"", "m.obj: error: the file has no"},
       Case{"\x7f"
            "ELF\x02\x01",
-           "m.obj:1: error: the file is no OBJ"});
+           "m.obj:1: error: the file is not OBJ"});
   CHECK_THAT(obj_complaint(c.text), StartsWith(c.expected));
 }
 
@@ -136,8 +135,8 @@ TEST_CASE("a file that is no OBJ is refused without quoting it", "[mesh][read_ob
     const auto mesh = parse_obj(text, "m.obj");
     REQUIRE_FALSE(mesh);
     CHECK(to_lines(mesh.error()) ==
-          std::vector<std::string>{"m.obj:3: error: the file is no OBJ: no statement of one begins "
-                                   "like this line"});
+          std::vector<std::string>{
+              "m.obj:3: error: the file is not OBJ: no OBJ statement begins like this line"});
   }
   CHECK(parse_obj("mtllib a.mtl\nsomething else\n" + obj_quad + "f 1 2 3\n", "m.obj"));
 }

@@ -13,7 +13,7 @@ TEST_CASE("a copy of a load that does not fit is called that", "[plate][memory]"
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::OutOfMemory);
   CHECK(refused.error().message ==
-        "a copy of the load on 600 nodes takes 14.4 kB, more than the 10 kB left of the 10 kB "
+        "a copy of the load on 600 nodes needs 14.4 kB, more than the 10 kB left of the 10 kB "
         "allowed");
   CHECK(copy.memory() == 0);
   CHECK(budget.available() == 10'000);

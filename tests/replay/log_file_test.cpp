@@ -147,7 +147,7 @@ TEST_CASE("a log that is cut short anywhere is told apart", "[replay]") {
     CAPTURE(size);
     const auto trouble = trouble_in(folder, sound.substr(0, size));
     REQUIRE(trouble);
-    if (size > 16) REQUIRE_THAT(trouble->message, Contains("cut short"));
+    if (size > 16) REQUIRE_THAT(trouble->message, Contains("is truncated"));
   }
   const auto lines = lines_of(sound);
   const auto trouble = trouble_in(folder, lines[0] + lines[1] + lines[2]);
@@ -180,7 +180,7 @@ TEST_CASE("what is no log, or a later one, is told apart", "[replay]") {
   for (const std::string bytes : {"", "<scene/>", "{\"pliant\":1}\n", "\0\0\0\0"}) {
     const auto trouble = trouble_in(folder, bytes);
     REQUIRE(trouble);
-    CHECK_THAT(trouble->message, Contains("this is no replay log"));
+    CHECK_THAT(trouble->message, Contains("this is not a replay log"));
   }
   const auto later = trouble_in(folder, "{\"pliant_replay\":2,\"more\":\"then\"}\n");
   REQUIRE(later);

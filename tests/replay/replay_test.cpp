@@ -276,10 +276,11 @@ TEST_CASE("keeping going names every difference in order, by any number of threa
   folder.write("scene.xml", replaced(scene_text, "magnitude=\"3000\"", "magnitude=\"3001\""));
   const auto alone = verify_replay(log, {}, {.keeps_going = true});
   REQUIRE(alone);
-  CHECK_THAT(said(alone).front(), Equals("the scene scene.xml was edited, first in line 7"));
+  CHECK_THAT(said(alone).front(),
+             Equals("the scene scene.xml was edited; the first change is in line 7"));
   CHECK_THAT(
       said(alone)[1],
-      StartsWith("frame 2: surface \"sheet\": positions differ, their peak displacement of"));
+      StartsWith("frame 2: surface \"sheet\": positions differ; their peak displacement of"));
   CHECK_THAT(said(alone)[3], StartsWith("frame 3: surface \"sheet\": positions differ, most at"));
   CHECK(alone->differences.size() > 20);
   CHECK(alone->frame_count == 10);
@@ -303,12 +304,13 @@ TEST_CASE("a scene that was edited is told apart, whether it matters or not", "[
   const auto same = edited("</scene>", "<!-- done -->\n</scene>");
   REQUIRE(same);
   CHECK(same->holds());
-  CHECK(said(same) == std::vector<std::string>{"the scene scene.xml was edited, first in line 13"});
+  CHECK(said(same) ==
+        std::vector<std::string>{"the scene scene.xml was edited; the first change is in line 13"});
 
   const auto frames = edited("end=\"10\"", "end=\"8\"");
   REQUIRE(frames);
   CHECK_FALSE(frames->holds());
-  CHECK_THAT(said(frames)[1], Equals("other frames: 1 to 10, and 1 to 8"));
+  CHECK_THAT(said(frames)[1], Equals("the frames differ: 1 to 10, and 1 to 8"));
 
   const auto surfaces = edited("columns=\"9\"", "columns=\"8\"");
   REQUIRE(surfaces);
@@ -333,7 +335,7 @@ TEST_CASE("without its scene a log is verified by the text in it", "[replay]") {
   REQUIRE(verdict);
   CHECK(verdict->holds());
   CHECK(verdict->frame_count == 10);
-  CHECK_THAT(said(verdict).front(), Contains("scene.xml is not there"));
+  CHECK_THAT(said(verdict).front(), Contains("scene.xml does not exist"));
   const auto missing = verify_replay(log, scene);
   REQUIRE_FALSE(missing);
   CHECK(missing.error().code == ErrorCode::Unreadable);
@@ -373,10 +375,11 @@ TEST_CASE("another version and another solver are told apart", "[replay]") {
   record(folder.write("scene.xml", scene_text), log);
   rewrite(log, other, [](ReplayHeader& header, const auto&) { header.version = "0.0.7"; });
   CHECK_THAT(said(verify_replay(other)).front(),
-             StartsWith("another version of pliant: 0.0.7 and "));
+             StartsWith("the versions of pliant differ: 0.0.7 and "));
   CHECK(verify_replay(other)->holds());
   rewrite(log, other, [](ReplayHeader& header, const auto&) { header.factors = "abacus"; });
-  CHECK_THAT(said(verify_replay(other)).front(), StartsWith("another solver: auto (abacus) and "));
+  CHECK_THAT(said(verify_replay(other)).front(),
+             StartsWith("the solvers differ: auto (abacus) and "));
   rewrite(log, other, [](ReplayHeader& header, const auto&) { header.solver = "abacus"; });
   CHECK_FALSE(verify_replay(other));
 }
@@ -399,7 +402,7 @@ TEST_CASE("comparing logs finds where either was damaged", "[replay]") {
        {compare_replays(log, cut), compare_replays(cut, log), verify_replay(cut)}) {
     REQUIRE_FALSE(verdict);
     CHECK(verdict.error().line == 12);
-    CHECK_THAT(verdict.error().message, Contains("cut short") && Contains("10 of 10 frames"));
+    CHECK_THAT(verdict.error().message, Contains("is truncated") && Contains("10 of 10 frames"));
   }
 }
 
@@ -437,8 +440,8 @@ TEST_CASE("what a program's tests are told is all that is wrong", "[replay]") {
   record(scene, log);
   folder.write("scene.xml", replaced(scene_text, "magnitude=\"3000\"", "magnitude=\"3001\""));
   const std::string told = expect_replay(scene, log);
-  CHECK_THAT(told, StartsWith("the scene scene.xml was edited, first in line 7\n"
-                              "frame 2: surface \"sheet\": positions differ, their peak"));
+  CHECK_THAT(told, StartsWith("the scene scene.xml was edited; the first change is in line "
+                              "7\nframe 2: surface \"sheet\": positions differ; their peak"));
   CHECK(std::count(told.begin(), told.end(), '\n') == 2);
   CHECK_THAT(expect_replay(scene, folder.file("none")), Contains("none"));
 }

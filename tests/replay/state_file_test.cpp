@@ -39,7 +39,9 @@ TEST_CASE("a state outlives an edit of what comes later", "[replay][state]") {
   const auto refused = third.restore(state);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::InvalidInput);
-  CHECK_THAT(refused.error().message, contains_text("surface \"first\" is not the same"));
+  CHECK_THAT(refused.error().message,
+             contains_text("surface \"first\", its channels or forces before frame 10, or the "
+                           "engine is not the same"));
   CHECK(state_at(third, s.end) == all_states(s).back());
 }
 
@@ -52,13 +54,13 @@ TEST_CASE("a state of something else is refused", "[replay][state]") {
   };
   const std::string good = simulation.state_bytes(8).value();
   CHECK(refusal(good).empty());
-  CHECK_THAT(refusal("anything"), contains_text("none, or damaged"));
+  CHECK_THAT(refusal("anything"), contains_text("not a saved state, or it is damaged"));
   auto longer = Simulation::make(scene({sheet("s")}, {poke("f", {0, 0, 0})}, 20)).value();
   CHECK_THAT(refusal(longer.state_bytes(15).value()),
              contains_text("frame 15 is outside the scene's frames 1 to 12"));
   CHECK(refusal(longer.state_bytes(12).value()).empty());
   auto two = Simulation::make(scene({sheet("s"), sheet("t")}, {})).value();
-  CHECK_THAT(refusal(two.state_bytes(8).value()), contains_text("2 surfaces, the scene has 1"));
+  CHECK_THAT(refusal(two.state_bytes(8).value()), contains_text("2 surfaces, but the scene has 1"));
   auto other = Simulation::make(scene({sheet("s", 11)}, {poke("f", {0, 0, 0})})).value();
   CHECK_THAT(refusal(other.state_bytes(8).value()), contains_text("is not the same"));
   const Field expected = Simulation::make(s)->at(12)->surface("s").positions();

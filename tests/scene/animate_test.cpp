@@ -26,13 +26,13 @@ TEST_CASE("an animate names one channel of its element, once", "[scene][animate]
       {scene_with("<point name=\"p\" magnitude=\"3\">\n<animate attribute=\"magnitude\">" +
                   one_key + "</animate></point>"),
        3,
-       {"attribute=\"magnitude\": is given already (line 2)"}},
+       {"attribute=\"magnitude\": is already given (line 2)"}},
       {force_with("<animate attribute=\"magnitude\">" + one_key +
                   "</animate>\n<animate "
                   "attribute=\"magnitude\">" +
                   one_key + "</animate>"),
        4,
-       {"is animated already (line 3)"}},
+       {"is already animated (line 3)"}},
   });
 }
 
@@ -92,11 +92,11 @@ TEST_CASE("a boolean channel steps", "[scene][animate]") {
   check_each({
       {with("", "interpolation=\"linear\""), 4, {"<key> interpolation", "steps", "step, stepNext"}},
       {with("interpolation=\"bezier\"", ""), 3, {"<animate> interpolation", "step, stepNext"}},
-      {with("", "tangent=\"flat\""), 4, {"<key> tangent", "no meaning"}},
-      {with("", "inLength=\"1\""), 4, {"<key> inLength", "no meaning"}},
-      {with("", "amplitude=\"1\""), 4, {"<key> amplitude", "no meaning"}},
-      {with("tangent=\"flat\"", ""), 3, {"<animate> tangent", "no meaning"}},
-      {with("overshoot=\"limit\"", ""), 3, {"<animate> overshoot", "no meaning"}},
+      {with("", "tangent=\"flat\""), 4, {"<key> tangent", "so tangent is not allowed"}},
+      {with("", "inLength=\"1\""), 4, {"<key> inLength", "so inLength is not allowed"}},
+      {with("", "amplitude=\"1\""), 4, {"<key> amplitude", "so amplitude is not allowed"}},
+      {with("tangent=\"flat\"", ""), 3, {"<animate> tangent", "so tangent is not allowed"}},
+      {with("overshoot=\"limit\"", ""), 3, {"<animate> overshoot", "so overshoot is not allowed"}},
       {with("after=\"linear\"", ""), 3, {"hold, repeat and mirror"}},
       {with("before=\"slope 1\"", ""), 3, {"hold, repeat and mirror"}},
       {with("after=\"repeatOffset\"", ""), 3, {"hold, repeat and mirror"}},

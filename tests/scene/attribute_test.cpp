@@ -65,8 +65,8 @@ TEST_CASE("a tangent takes one number or three", "[scene][attribute]") {
   CHECK(std::get<Channel<1>>(place).at(1) == Value<1>{0.5});
   REQUIRE(row.read("0 2 0"));
   CHECK(std::get<Channel<3>>(place).at(1) == Value<3>{0, 2, 0});
-  CHECK(row.read("0 1").error() == "one number or three are required");
-  CHECK(row.read("").error() == "one number or three are required");
+  CHECK(row.read("0 1").error() == "one or three numbers are required");
+  CHECK(row.read("").error() == "one or three numbers are required");
   CHECK_THAT(row.read("x").error(), contains_text("not a number"));
   CHECK_THAT(row.read("0 1 x").error(), contains_text("not a number"));
 }
@@ -95,8 +95,8 @@ TEST_CASE("a list of names holds each once", "[scene][attribute]") {
   REQUIRE(row.read(" sheet\n body "));
   CHECK(targets == std::vector<std::string>{"sheet", "body"});
   CHECK_THAT(row.read("").error(), contains_text("leave the attribute out"));
-  CHECK_THAT(row.read("sheet,body").error(), contains_text("\"sheet,body\" is no name"));
-  CHECK_THAT(row.read("sheet sheet").error(), contains_text("\"sheet\" stands twice"));
+  CHECK_THAT(row.read("sheet,body").error(), contains_text("\"sheet,body\" is not a name"));
+  CHECK_THAT(row.read("sheet sheet").error(), contains_text("\"sheet\" is given twice"));
 }
 
 }  // namespace

@@ -61,11 +61,11 @@ TEST_CASE("each channel's rule is checked at each frame of the range", "[scene][
   }
   SECTION("scale") {
     surface.transform.scale = vector_curve({{1, {1, 1, 1}}, {9, {1, 0, 1}}, {24, {1, 1, 1}}});
-    expected = "s.scale at frame 9 is 1 0 1, but a scale of 0";
+    expected = "s.scale at frame 9 is 1 0 1, but must not be 0";
   }
   SECTION("a scale that is too small") {
     surface.transform.scale = vector_curve({{1, {1, 1, 1}}, {9, {1, 1, 1e-320}}, {24, {1, 1, 1}}});
-    expected = "s.scale at frame 9 is 1 1 1e-320, but a scale of 0, or so near 0";
+    expected = "s.scale at frame 9 is 1 1 1e-320, but must not be 0, nor so near 0";
   }
   SECTION("a tangent where nodes recover") {
     surface.solver.release = Release::Recover;
@@ -75,7 +75,7 @@ TEST_CASE("each channel's rule is checked at each frame of the range", "[scene][
   SECTION("a tangent of three numbers where nodes recover") {
     surface.solver.release = Release::Recover;
     surface.tangents.su1 = Channel<3>(Value<3>{0, 0, -2});
-    expected = "s.su1 at frame 1 is 0 0 -2, but release=\"recover\" asks for tangents of 0";
+    expected = "s.su1 at frame 1 is 0 0 -2, but must be 0 with release=\"recover\"";
   }
   SECTION("deformation radius") {
     force.deformation_radius = dips;

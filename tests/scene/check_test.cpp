@@ -38,11 +38,11 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("end before start") {
     s.end = 0;
-    expected = "end is 0, before start, which is 1";
+    expected = "end is 0, but must not be before start, which is 1";
   }
   SECTION("too many frames") {
     s.end = 1'000'001;
-    expected = "more than 1000000 frames";
+    expected = "are too many frames; at most 1000000 are allowed";
   }
   SECTION("far away") {
     s.start = s.end = std::numeric_limits<int>::max();
@@ -50,7 +50,7 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("a name") {
     s.surfaces[1].name = "2b";
-    expected = "the name \"2b\" is not";
+    expected = "the name \"2b\" must be a letter or _";
   }
   SECTION("a name twice") {
     s.forces[0].name = "b";
@@ -58,7 +58,7 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("a target") {
     s.forces[0].targets = {"a", "c"};
-    expected = "targets \"c\", which is no surface";
+    expected = "targets \"c\", which is not a surface";
   }
   SECTION("columns") {
     grid.columns = 2;

@@ -93,11 +93,13 @@ TEST_CASE("an attribute that is needed and missing is told at its element", "[sc
 
 TEST_CASE("text belongs nowhere", "[scene][element]") {
   check_each({
-      {scene_with("hello"), 2, {"<scene> holds the text \"hello\"; no text belongs here"}},
-      {surface_with("<material>40</material>"), 3, {"<material> holds the text \"40\""}},
-      {force_with("\n<![CDATA[x]]>"), 4, {"<point> holds the text \"x\""}},
-      {animate_with("", "<key frame=\"1\" value=\"1\">2</key>"), 4, {"<key> holds the text \"2\""}},
-      {scene_with("<radial name=\"r\">z</radial>"), 2, {"<radial> holds the text"}},
+      {scene_with("hello"), 2, {"<scene> contains the text \"hello\"; no text is allowed here"}},
+      {surface_with("<material>40</material>"), 3, {"<material> contains the text \"40\""}},
+      {force_with("\n<![CDATA[x]]>"), 4, {"<point> contains the text \"x\""}},
+      {animate_with("", "<key frame=\"1\" value=\"1\">2</key>"),
+       4,
+       {"<key> contains the text \"2\""}},
+      {scene_with("<radial name=\"r\">z</radial>"), 2, {"<radial> contains the text"}},
   });
 }
 

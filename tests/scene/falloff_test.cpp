@@ -51,7 +51,7 @@ TEST_CASE("what is wrong with a falloff is told", "[scene][falloff]") {
        {"<point> has a second <falloff>; the first is at line 3"}},
       {scene_with("<point name=\"p\" falloff=\"linear\">\n<falloff>" + key + "</falloff></point>"),
        3,
-       {"has a <falloff>, and the attribute falloff too (line 2); one of both must go"}},
+       {"has both a <falloff> and the attribute falloff (line 2); remove one of them"}},
       {surface_with("<material><falloff/></material>"), 3, {"it belongs in <point> or <radial>"}},
       {animate_with("", "<key frame=\"1\" at=\"0\" value=\"1\"/>"), 4, {"no attribute \"at\""}},
   });

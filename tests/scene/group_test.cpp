@@ -37,20 +37,20 @@ TEST_CASE("what is wrong in a group is told", "[scene][group]") {
   check_each({
       {scene_with("<group name=\"g\">\n<point name=\"p\"\n deformationRadius=\"2\"/></group>"),
        4,
-       {"<point> deformationRadius: a force in a <group> selects no region"}},
+       {"<point> deformationRadius: a force in a <group> must not have one"}},
       {scene_with("<group name=\"g\">\n<line name=\"l\">\n<animate attribute=\"deformationRadius\">"
                   "<key frame=\"1\" value=\"2\"/></animate></line></group>"),
        4,
-       {"<line> deformationRadius: a force in a <group> selects no region"}},
+       {"<line> deformationRadius: a force in a <group> must not have one"}},
       {scene_with("<group name=\"g\">\n<group name=\"h\"/></group>"),
        3,
        {"<group> has no element \"group\"; it belongs in <scene>; allowed: animate, path, point"}},
       {scene_with("<group name=\"g\">\n<point name=\"g\"/></group>"),
        3,
-       {"<point> name=\"g\": the name is taken at line 2"}},
+       {"<point> name=\"g\": the name is already used at line 2"}},
       {scene_with("<group name=\"g\"><point name=\"p\"/></group>\n<radial name=\"p\"/>"),
        3,
-       {"the name is taken at line 2"}},
+       {"the name is already used at line 2"}},
       {scene_with("<group name=\"g\" forceRadius=\"1\"/>"),
        2,
        {"<group> has no attribute \"forceRadius\"", "name, enabled, targets, center"}},
@@ -74,7 +74,7 @@ TEST_CASE("a target that the group has not is noted", "[scene][group]") {
   REQUIRE(scene.notes.size() == 1);
   CHECK(scene.notes[0].line == 4);
   CHECK(scene.notes[0].message ==
-        "p.targets: \"b\" is no target of its group \"g\": nothing acts there");
+        "p.targets: \"b\" is not a target of the group \"g\": the force has no effect there");
 }
 
 }  // namespace

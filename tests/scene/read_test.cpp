@@ -212,7 +212,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
       "8: <radial> has no attribute \"falof\"",
       "8: <radial> targets: no surface is named \"sheat\"",
       "9: <point> enabled=\"yes\"",
-      "9: <point> name=\"bulge\": the name is taken",
+      "9: <point> name=\"bulge\": the name is already used",
       "11: <key> in=\"fat\"",
       "12: <key> value=\"1.5abc\"",
       "12: <key> frame 1 repeats the key of line 11",
@@ -333,7 +333,7 @@ TEST_CASE("channels of names given twice, or over bad frames, are not judged", "
       "<animate attribute=\"b\"><key frame=\"1\" value=\"-1\"/></animate></material></surface>\n";
   const auto twice = problems_of(scene_with(fmt::format("{0}{0}", surface)));
   REQUIRE(twice.size() == 1);
-  CHECK_THAT(twice[0], contains_text("the name is taken"));
+  CHECK_THAT(twice[0], contains_text("the name is already used"));
   const auto backwards =
       problems_of(fmt::format("<scene version=\"1\" start=\"9\" end=\"1\">{}</scene>", surface));
   REQUIRE(backwards.size() == 1);

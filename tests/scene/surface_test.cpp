@@ -67,14 +67,14 @@ TEST_CASE("an animate stands in its part or directly in the surface", "[scene][s
   check_each({
       {surface_with("<animate attribute=\"density\">" + keys + "\n<material density=\"3\"/>"),
        4,
-       {"density=\"3\": density is animated too (line 3)"}},
+       {"density=\"3\": density is already animated (line 3)"}},
       {surface_with("<material density=\"3\"/>\n<animate attribute=\"density\">" + keys),
        4,
-       {"attribute=\"density\": is given already (line 3)"}},
+       {"attribute=\"density\": is already given (line 3)"}},
       {surface_with("<material><animate attribute=\"density\">" + keys +
                     "</material>\n<animate attribute=\"density\">" + keys),
        4,
-       {"attribute=\"density\": is animated already (line 3)"}},
+       {"attribute=\"density\": is already animated (line 3)"}},
       {surface_with("<animate attribute=\"enabled\">" + keys),
        3,
        {"\"enabled\": cannot be animated", "translate"}},

@@ -58,7 +58,7 @@ TEST_CASE("a shape that cannot be had is the scene's error or the file's",
              StartsWith("a.xml:4: error: surface \"s\": ") && Contains("none.obj") &&
                  Contains("No such file"));
   CHECK_THAT(complaint(MeshFile{folder.write("bad.obj", "v 1 2\n")}),
-             Contains("bad.obj:1: error: vertex has 2 of 3 numbers"));
+             Contains("bad.obj:1: error: vertex has 2 numbers, but needs 3"));
   CHECK_THAT(complaint(MeshFile{folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")}),
              StartsWith("a.xml:4: error: surface \"s\", mesh ") && Contains("has no (u,v)"));
   for (const std::string ending : {".ply", ".gltf", ".glb", ".fbx", ".dae"}) {

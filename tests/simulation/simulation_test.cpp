@@ -378,7 +378,7 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   CHECK(too_large.error().code == ErrorCode::OutOfMemory);
   CHECK(too_large.error().line == 4);
   CHECK_THAT(too_large.error().message,
-             StartsWith("surface \"large\" takes ") && EndsWith("of the 1 GB allowed"));
+             StartsWith("surface \"large\" needs ") && EndsWith("of the 1 GB allowed"));
   CHECK(Simulation::check(s));  // apart from its memory it is valid
   CHECK(Simulation::check(s, {.max_memory = 1'000'000'000}).error().message ==
         too_large.error().message);
@@ -395,12 +395,12 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   const auto refused = simulation.at(3);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::OutOfMemory);
-  CHECK_THAT(refused.error().message,
-             StartsWith(choice == SolverChoice::Auto
-                            ? "surface \"s\", frame 2: the working memory for the plate's 22201 "
-                              "unknowns takes "
-                            : "surface \"s\", frame 2: the factor of the plate's matrix of 22201 "
-                              "unknowns takes "));
+  CHECK_THAT(
+      refused.error().message,
+      StartsWith(choice == SolverChoice::Auto
+                     ? "surface \"s\", frame 2: the solve of the plate of 22201 unknowns needs "
+                     : "surface \"s\", frame 2: the factor of the plate's matrix of 22201 "
+                       "unknowns needs "));
   CHECK(simulation.at(2));  // the simulation is still usable
   options.max_memory += 30'000'000;
   CHECK(Simulation::make(s, options).value().at(3));

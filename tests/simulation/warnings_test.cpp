@@ -84,8 +84,8 @@ TEST_CASE("a force box outside the region is a warning, one that reaches out is 
   const auto outside = warnings_of(s, 5);
   REQUIRE(outside.size() == 2);
   CHECK(outside[0].kind == Warning::Kind::OutsideRegion);
-  CHECK_THAT(outside[0].message(), Contains("box of \"g\" lies outside the region solved on \"a\" "
-                                            "at frames 1-4"));
+  CHECK_THAT(outside[0].message(),
+             Contains("box of \"g\" is outside the region solved on \"a\" at frames 1-4"));
   CHECK(outside[1].kind == Warning::Kind::SelectsNothing);
   s.forces[1].magnitude = 0.0;
   CHECK(warnings_of(s, 5).size() == 1);  // nothing is lost
@@ -192,11 +192,9 @@ TEST_CASE("forces far apart in one box are a warning that names them", "[simulat
   REQUIRE(apart.size() == 1);
   CHECK(apart[0].kind == Warning::Kind::ForcesApart);
   CHECK(apart[0].surface == "a");
-  CHECK_THAT(
-      apart[0].message(),
-      Contains("\"beside\", \"left\" and \"right\" select boxes of \"a\" that do not all meet, at "
-               "frames 1-5:") &&
-          Contains("combine=\"islands\""));
+  CHECK_THAT(apart[0].message(), Contains("\"beside\", \"left\" and \"right\" select boxes of "
+                                          "\"a\" that do not all meet at frames 1-5:") &&
+                                     Contains("combine=\"islands\""));
   for (const Combine combine : {Combine::Islands, Combine::Union}) {
     s.surfaces[0].solver.combine = combine;
     CHECK(warnings_of(s, 6).empty());

@@ -39,9 +39,8 @@ TEST_CASE("every rule names the key, the number and itself", "[timeline][checks]
   CHECK_FAULT(1, "frame is nan; it must be a finite number", keys.keys[1].frame = none);
   CHECK_FAULT(2, "frame is inf; it must be a finite number", keys.keys[2].frame = infinite);
   CHECK_FAULT(2, "frame is 1e+200; its size must not exceed 1e+150", keys.keys[2].frame = 1e200);
-  CHECK_FAULT(
-      2, "frame 5 does not come after frame 5 of the key before; frames must strictly increase",
-      keys.keys[2].frame = 5);
+  CHECK_FAULT(2, "frame 5 is not after frame 5 of the previous key; frames must strictly increase",
+              keys.keys[2].frame = 5);
   CHECK_FAULT(1, "value is -inf; it must be a finite number", keys.keys[1].value = {-infinite});
   CHECK_FAULT(1, "left value is nan; it must be a finite number",
               keys.keys[1].left = Value<1>{none});
@@ -58,7 +57,7 @@ TEST_CASE("every rule names the key, the number and itself", "[timeline][checks]
 }
 
 TEST_CASE("the rules of interpolations", "[timeline][checks]") {
-  CHECK_FAULT(0, "control of cubicBezier has x = 1.5; x1 and x2 must lie in [0, 1]",
+  CHECK_FAULT(0, "control of cubicBezier has x = 1.5; x1 and x2 must be from 0 to 1",
               keys.keys[0].next.kind = SegmentKind::CubicBezier;
               keys.keys[0].next.control = {0.5, 0, 1.5, 0});
   CHECK_FAULT(0, "control of cubicBezier is nan; it must be a finite number",
@@ -69,7 +68,7 @@ TEST_CASE("the rules of interpolations", "[timeline][checks]") {
               keys.keys[0].next.amplitude = none);
   CHECK_FAULT(0, "period is inf; it must be a finite number", keys.keys[0].next = elastic;
               keys.keys[0].next.period = infinite);
-  CHECK_FAULT(0, "period is 1e-30; the segment must not hold more than 1e15 periods",
+  CHECK_FAULT(0, "period is 1e-30; the segment must not have more than 1e15 periods",
               keys.keys[0].next = elastic;
               keys.keys[0].next.period = 1e-30);
   CHECK_FAULT(0, "back is nan; it must be a finite number",
@@ -94,7 +93,7 @@ TEST_CASE("the rules outside the keys and of loops", "[timeline][checks]") {
               keys.loop = (Loop<1>{.from = 5, .to = 5}));
   CHECK_FAULT(0, "loop has -1 copies on one side; the number must not be negative",
               keys.loop = (Loop<1>{.to = 9, .before = -1}));
-  CHECK_FAULT(0, "the loop writes out 2147483648 keys; at most 1e+06 are possible",
+  CHECK_FAULT(0, "the loop writes out 2147483648 keys; at most 1e+06 are allowed",
               keys.loop = (Loop<1>{.to = 4, .after = 2147483647}));
   CHECK_FAULT(0, "a copy of this key by the loop reaches 2e+150; no number may exceed 1e+150",
               keys.loop = (Loop<1>{.to = 4, .after = 2, .offset = {1e150}}));
@@ -106,8 +105,8 @@ TEST_CASE("copies that rounding puts on one frame are an error", "[timeline][che
   const Fault fault = fault_of(keys);
   CHECK(fault.key == 1);
   CHECK(fault.message ==
-        "a copy of this key by the loop falls on frame 1e+09 together with the key before; frames "
-        "must strictly increase, also after rounding");
+        "a copy of this key by the loop falls on frame 1e+09 together with the previous key; "
+        "frames must strictly increase, also after rounding");
 }
 
 TEST_CASE("numbers that nobody reads need not be sound", "[timeline][checks]") {

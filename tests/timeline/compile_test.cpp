@@ -22,12 +22,12 @@ TEST_CASE("each correction is noted with key, old and new length", "[timeline][c
   REQUIRE(contained.notes().size() == 2);
   CHECK(contained.notes()[0].key == 0);
   CHECK(contained.notes()[0].message ==
-        "out tangent shortened from 25 to 10 frames: none may be longer than its segment of 10 "
-        "frames");
+        "out tangent shortened from 25 to 10 frames: no tangent may be longer than its segment of "
+        "10 frames");
   CHECK(contained.notes()[1].key == 1);
   CHECK(contained.notes()[1].message ==
-        "in tangent shortened from 12.5 to 10 frames: none may be longer than its segment of 10 "
-        "frames");
+        "in tangent shortened from 12.5 to 10 frames: no tangent may be longer than its segment of "
+        "10 frames");
   const Curve<1> limited = make(bold(30, 30, Overshoot::Limit));
   REQUIRE(limited.notes().size() == 2);
   CHECK(limited.notes()[1].message ==
@@ -43,8 +43,8 @@ TEST_CASE("overshoot = error refuses and blames the longer tangent", "[timeline]
   REQUIRE(!out);
   CHECK(out.error().key == 0);
   CHECK(out.error().message ==
-        "out tangent reaches 25 frames into a segment of 10 frames: time would run backwards, and "
-        "overshoot is an error");
+        "out tangent reaches 25 frames into a segment of 10 frames: time would run backwards, "
+        "which overshoot=\"error\" does not allow");
   const auto in = Curve<1>::make(bold(5, 25, Overshoot::Error));
   REQUIRE(!in);
   CHECK(in.error().key == 1);
@@ -58,7 +58,7 @@ TEST_CASE("handles that point backwards count as none", "[timeline][compile]") {
   const Curve<1> curve = make(keys);
   REQUIRE(curve.notes().size() == 2);
   CHECK(curve.notes()[0].message ==
-        "out handle points backwards in time (-2 frames) and counts as none");
+        "out handle points backwards in time (-2 frames) and is treated as having no length");
   keys.keys[0].out = of_handle(0, 0);
   keys.keys[1].in = of_handle(0, 0);
   for (double t = 0; t <= 10; t += 0.5) CHECK(at(curve, t) == at(make(keys), t));
@@ -69,7 +69,7 @@ TEST_CASE("a negative length counts as none", "[timeline][compile]") {
   REQUIRE(curve.notes().size() == 1);
   CHECK(curve.notes()[0].key == 0);
   CHECK(curve.notes()[0].message ==
-        "out tangent has the negative length -1 and counts as one of length 0");
+        "out tangent has the negative length -1 and is treated as having no length");
   for (double t = 0; t <= 10; t += 0.5) {
     CHECK(at(curve, t) == at(make(bold(0, 4, Overshoot::Limit)), t));
   }
@@ -80,7 +80,7 @@ TEST_CASE("left after a step has no effect but a note", "[timeline][compile]") {
   REQUIRE(curve.notes().size() == 1);
   CHECK(curve.notes()[0].key == 1);
   CHECK(curve.notes()[0].message ==
-        "left has no effect: the segment before is a step, which holds");
+        "left has no effect: the segment before is a step, which keeps its value");
   CHECK(curve.left_value(2)[0] == 1);
 }
 
@@ -94,8 +94,7 @@ TEST_CASE("slopes beyond all numbers are an error", "[timeline][compile]") {
   CurveKeys<1> keys = {.keys = {key(0, 0), key(1e-300, 1e100), key(1, 2e100)}};
   const auto curve = Curve<1>::make(with_kinds(keys, TangentKind::Spline));
   REQUIRE(!curve);
-  CHECK(curve.error().message.find("rises beyond all numbers within its segment") !=
-        std::string::npos);
+  CHECK(curve.error().message.find("overflows within its segment") != std::string::npos);
   for (Key<1>& each : keys.keys) each.next.kind = SegmentKind::Linear;
   CHECK(Curve<1>::make(keys).has_value());  // the slopes are not read
 }

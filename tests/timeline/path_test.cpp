@@ -181,7 +181,7 @@ TEST_CASE("waypoints that make no path are told", "[timeline][path]") {
     return path.error();
   };
   CHECK(error({}).waypoint == 0);
-  CHECK(error({{0, 0, 0}, {1, 0, 0}}).message == "a path has three waypoints or more");
+  CHECK(error({{0, 0, 0}, {1, 0, 0}}).message == "a path must have at least three waypoints");
   CHECK(error({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}).waypoint == 2);
   CHECK(error({{0, 0, 0}, {1, nan, 0}, {2, 0, 0}}).waypoint == 1);
   CHECK(error({{0, 0, 0}, {1, 1e151, 0}, {2, 0, 0}}).waypoint == 1);

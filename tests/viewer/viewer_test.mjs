@@ -331,7 +331,7 @@ test("keys, buttons and the field go to frames", async () => {
       assert.equal(await slider.getAttribute("aria-valuenow"), String(frame));
     }
     assert.match(await slider.getAttribute("aria-valuetext"), /frame 12, 0\.46 s, key/);
-    await page.getByRole("button", { name: "One frame on" }).click();
+    await page.getByRole("button", { name: "One frame forward" }).click();
     assert.equal(await frameOf(page), 13);
     await page.getByRole("button", { name: "First frame" }).click();
     assert.equal(await frameOf(page), 1);
@@ -372,7 +372,7 @@ test("frames are whole unless asked for more", async () => {
     assert.notEqual(ten, eleven);
     assert.equal(await heightAt(10.3), ten);
     await page.keyboard.press("d");
-    await page.getByLabel("Between frames").check();
+    await page.getByLabel("Interpolate frames").check();
     near(await heightAt(10.25), 0.75 * ten + 0.25 * eleven, 1e-5, "between");
   });
 });
@@ -1088,7 +1088,7 @@ test("a movie that is interrupted leaves nothing", async () => {
   assert.equal(command.exitCode, null, errors);
   const code = await new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGINT"); });
   assert.equal(code, 1);
-  assert.match(errors, /^pliant: error: interrupted at frame \d+\n$/);
+  assert.match(errors, /^pliant: error: interrupted at frame \d+; no movie was written\n$/);
   assert.deepEqual(readdirSync(out), []);
   assert.deepEqual(readdirSync(scratch).filter((name) => name.startsWith("pliant-view-")), []);
 });

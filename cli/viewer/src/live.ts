@@ -13,7 +13,7 @@ export interface LiveListener {
 
 export async function fetchBake(): Promise<Bake> {
   const response = await fetch("bake", { cache: "no-store" });
-  if (!response.ok) throw new Error(`the command answers ${response.status}`);
+  if (!response.ok) throw new Error(`the server answered ${response.status}`);
   return unpack(new Uint8Array(await response.arrayBuffer()));
 }
 

@@ -213,7 +213,7 @@ function load(bake: Bake): void {
   const error = Math.max(0, ...head.surfaces.map((each) => each.error));
   const summary = element<HTMLElement>("summary");
   summary.textContent = `${bake.frameCount} ${bake.frameCount === 1 ? "frame" : "frames"} · ${Number(head.fps.toPrecision(5))} fps · ${vertices.toLocaleString("en")} vertices`;
-  summary.title = `Positions of this page are within ${numberText(error)} of the bake's`;
+  summary.title = `Positions on this page differ from the baked ones by at most ${numberText(error)}`;
   frameField.min = String(head.first);
   frameField.max = String(head.last);
   timeline.keyFrames = [...new Set(head.channels.flatMap((channel) => channel.keys.map((key) => key.at[0])))].sort((a, b) => a - b);
@@ -297,7 +297,7 @@ async function sendPictures(): Promise<void> {
     const picture = await takePicture(viewer, themes, order);
     done = order.number!;
     const answer = await fetch("picture", { method: "POST", body: picture });
-    if (!answer.ok) throw new Error(`the command answers ${answer.status} to its picture`);
+    if (!answer.ok) throw new Error(`the server answered ${answer.status} to the picture`);
   }
 }
 

@@ -59,5 +59,5 @@ export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: Pict
     context.restore();
   });
   if (legend && isSheet) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);
-  return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no memory for the picture"))), "image/png"));
+  return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("not enough memory for the picture"))), "image/png"));
 }

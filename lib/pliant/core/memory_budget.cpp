@@ -40,7 +40,7 @@ void MemoryShare::give_back() {
 
 std::string MemoryShare::complaint(std::size_t bytes) const {
   PLIANT_EXPECTS(budget_);
-  return fmt::format("takes {}, more than the {} left of the {} allowed", bytes_text(bytes),
+  return fmt::format("needs {}, more than the {} left of the {} allowed", bytes_text(bytes),
                      bytes_text(budget_->available() + bytes_), bytes_text(budget_->total()));
 }
 

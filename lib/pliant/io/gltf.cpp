@@ -120,8 +120,8 @@ class GltfWriter final : public AnimationWriter {
 
   tl::unexpected<Error> too_large() const {
     return fail(ErrorCode::Unwritable,
-                "the animation is larger than the 4 GiB that a .glb can hold; .gltf, .usda, .pc2, "
-                ".mdd and .npy hold more",
+                "the animation is larger than the 4 GiB that a .glb can store; .gltf, .usda, .pc2, "
+                ".mdd and .npy can store more",
                 file_.string());
   }
 
@@ -220,9 +220,9 @@ class GltfWriter final : public AnimationWriter {
 Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& plan) {
   if (plan.frame_count() > most_gltf_frames) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("{}: glTF has a weight for each frame at each frame, which is too much "
-                            "for {} frames; at most {} are written; .usda, .pc2, .mdd and .npy "
-                            "hold more, and --frames takes a part",
+                fmt::format("{}: glTF stores a weight of each frame at each frame, which is too "
+                            "much for {} frames; at most {} are allowed; use .usda, .pc2, .mdd or "
+                            ".npy, or choose fewer frames with --frames",
                             plan.file, plan.frame_count(), most_gltf_frames));
   }
   if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());

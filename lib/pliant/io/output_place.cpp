@@ -21,7 +21,7 @@ std::string_view obstacle(const std::filesystem::path& file) {
     case S_IFDIR:
       return "it is a folder";
     case S_IFLNK:
-      return "it is a symbolic link; name the file that it leads to";
+      return "it is a symbolic link; name the file that it points to";
     case S_IFIFO:
       return "it is a pipe; a regular file is required";
     case S_IFSOCK:

@@ -27,13 +27,14 @@ Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
   const Eigen::Index place = beyond - numbers.begin();
   const Eigen::Index row = first + place / 3;
   const double coordinate = positions(row, place % 3);
-  return fail(ErrorCode::NotFinite,
-              fmt::format("vertex {} at frame {} has the coordinate {}, which is {}",
-                          first_index + row, frame, coordinate,
-                          std::isfinite(coordinate)
-                              ? "beyond the single precision of the format; .npy, .obj and .ply "
-                                "hold double"
-                              : "no finite number"));
+  return fail(
+      ErrorCode::NotFinite,
+      fmt::format(
+          "vertex {} at frame {} has the coordinate {}, which is {}", first_index + row, frame,
+          coordinate,
+          std::isfinite(coordinate)
+              ? "too large for the single precision of the format; .npy, .obj and .ply store double"
+              : "not finite"));
 }
 
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
@@ -46,10 +47,10 @@ Result<void> check_placement(const Placement& placement, PlacementNumbers number
   const auto check = [&](const char* attribute, const Vector3d& vector,
                          bool is_single) -> Result<void> {
     for (const double number : vector) {
-      if (!std::isfinite(number)) return refused(attribute, number, "no finite number");
+      if (!std::isfinite(number)) return refused(attribute, number, "not finite");
       if (is_single && std::isinf(static_cast<float>(number))) {
         return refused(attribute, number,
-                       "beyond the single precision of the format; .usda holds double");
+                       "too large for the single precision of the format; .usda stores double");
       }
     }
     return {};
@@ -62,7 +63,7 @@ Result<void> check_placement(const Placement& placement, PlacementNumbers number
   for (const double number : placement.scale) {
     if (is_single && std::fabs(number) < std::numeric_limits<float>::min()) {
       return refused("scale", number,
-                     "below the single precision of the format; .usda holds double");
+                     "too small for the single precision of the format; .usda stores double");
     }
   }
   return {};
@@ -72,11 +73,9 @@ Result<float> to_single_seconds(int frame_count, double fps) {
   const double seconds = (frame_count - 1) / fps;
   const auto rounded = static_cast<float>(seconds);
   if (std::isfinite(rounded)) return rounded;
-  return fail(
-      ErrorCode::NotFinite,
-      fmt::format("{} frames at {} frames/s take {} s, which is beyond the single precision "
-                  "of the format",
-                  frame_count, fps, seconds));
+  return fail(ErrorCode::NotFinite, fmt::format("{} frames at {} frames/s last {} s, which is too "
+                                                "large for the single precision of the format",
+                                                frame_count, fps, seconds));
 }
 
 }  // namespace pliant

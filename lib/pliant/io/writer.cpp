@@ -169,10 +169,11 @@ Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan) 
   }
   const Format& format = *find_format(plan.file);
   if (plan.resume && !format.is_sequence) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("{}: a {} is one file, which is whole at its end only; what can be "
-                            "resumed is a sequence of .obj or .ply",
-                            plan.file, format.ending));
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format(
+            "{}: a {} is one file, which cannot be resumed; only a sequence of .obj or .ply can",
+            plan.file, format.ending));
   }
   return format.make_writer ? format.make_writer(plan) : make_surface_by_surface(plan, format);
 }

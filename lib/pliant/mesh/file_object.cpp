@@ -38,19 +38,18 @@ Result<std::size_t> choose_object(std::span<const std::string> names, const std:
   if (object.empty()) {
     if (names.size() == 1) return 0;
     return fail(ErrorCode::InvalidInput,
-                fmt::format("the file holds {} objects; name one with object: {}", names.size(),
-                            listed(names)));
+                fmt::format("the file has {} objects; choose one with the attribute object: {}",
+                            names.size(), listed(names)));
   }
   const auto found = std::find(names.begin(), names.end(), object);
   if (found == names.end()) {
-    return fail(ErrorCode::InvalidInput, fmt::format("the file holds no object {}; it holds: {}",
+    return fail(ErrorCode::InvalidInput, fmt::format("the file has no object {}; it has: {}",
                                                      in_quotes(object), listed(names)));
   }
   if (const auto count = std::count(found, names.end(), object); count > 1) {
-    return fail(
-        ErrorCode::InvalidInput,
-        fmt::format("the file holds {} objects of the name {}; give them names of their own", count,
-                    in_quotes(object)));
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the file has {} objects named {}; give them different names", count,
+                            in_quotes(object)));
   }
   return static_cast<std::size_t>(found - names.begin());
 }
@@ -58,7 +57,7 @@ Result<std::size_t> choose_object(std::span<const std::string> names, const std:
 Result<std::size_t> choose_node(std::span<const std::string> nodes,
                                 std::span<const std::string> meshes, const std::string& object) {
   PLIANT_EXPECTS(nodes.size() == meshes.size());
-  if (nodes.empty()) return invalid("the file holds no faces");
+  if (nodes.empty()) return invalid("the file has no faces");
   const bool is_node = std::find(nodes.begin(), nodes.end(), object) != nodes.end();
   const bool is_mesh = std::find(meshes.begin(), meshes.end(), object) != meshes.end();
   return choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
@@ -80,7 +79,7 @@ Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions) {
 Result<void> check_uv_set(int uv_set, int set_count) {
   if (uv_set == 0 || uv_set < set_count) return {};
   return fail(ErrorCode::InvalidInput,
-              fmt::format("the object has {} UV set{}, so there is no set {} (they count from 0)",
+              fmt::format("the object has {} UV set{}, so there is no set {} (counted from 0)",
                           set_count, set_count == 1 ? "" : "s", uv_set));
 }
 

@@ -58,12 +58,13 @@ bool is_there(const fs::path& file) {
 // Rejects URIs that are not relative paths to a file.
 Result<void> check_uri(const std::string& uri, std::string_view decoded) {
   if (const std::string_view scheme = scheme_of(uri); !scheme.empty()) {
-    return refuse(
-        uri, fmt::format("but nothing is read by the scheme {}, files only", in_quotes(scheme)));
+    return refuse(uri, fmt::format("but the scheme {} is not supported; only files are read",
+                                   in_quotes(scheme)));
   }
-  if (decoded.starts_with('/')) return refuse(uri, "which is an absolute path, not a relative one");
+  if (decoded.starts_with('/'))
+    return refuse(uri, "which is an absolute path; a relative one is required");
   if (decoded.find('\0') != std::string_view::npos)
-    return refuse(uri, "which is no name of a file");
+    return refuse(uri, "which is not the name of a file");
   return {};
 }
 
@@ -76,7 +77,7 @@ Result<fs::path> find_reference(const std::string& uri, const fs::path& mesh_fil
   const fs::path folder = or_current(mesh_file.parent_path());
   std::error_code trouble;
   const fs::path allowed = fs::canonical(root.empty() ? folder : root, trouble);
-  if (trouble) return refuse(uri, "but the folder for what it refers to cannot be found");
+  if (trouble) return refuse(uri, "but the folder that must contain it cannot be found");
   // Resolves links before checking whether the file exists.
   const auto place = [&](const std::string& path) {
     return fs::weakly_canonical(fs::absolute(folder / path, trouble), trouble);
@@ -86,11 +87,11 @@ Result<fs::path> find_reference(const std::string& uri, const fs::path& mesh_fil
   const fs::path file = is_written ? as_written : place(decoded);
   if (trouble) return refuse(uri, fmt::format("which cannot be found: {}", trouble.message()));
   if (!is_below(file, allowed)) {
-    return refuse(uri, fmt::format("which lies outside {}; --root DIR allows another folder",
+    return refuse(uri, fmt::format("which is outside {}; --root DIR allows another folder",
                                    allowed.string()));
   }
   if (fs::is_symlink(fs::symlink_status(file, trouble)))
-    return refuse(uri, "a link that leads nowhere");
+    return refuse(uri, "a symbolic link to a file that does not exist");
   return file;
 }
 

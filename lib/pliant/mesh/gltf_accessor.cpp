@@ -98,7 +98,8 @@ Result<std::vector<double>> AccessorReader::vectors(std::size_t accessor, int wi
         fmt::format("is of type {}, not VEC{}", in_quotes(read.accessor.type), width));
   }
   if (size_of(component) == 0 || static_cast<Component>(component) == Component::UInt32)
-    return read.broken(fmt::format("has the componentType {}; vectors have none such", component));
+    return read.broken(
+        fmt::format("has the componentType {}, which vectors must not have", component));
   return this->read(read);
 }
 
@@ -107,9 +108,9 @@ Result<std::vector<std::uint32_t>> AccessorReader::indices(std::size_t accessor)
   if (read.accessor.type != "SCALAR")
     return read.broken(fmt::format("is of type {}, not SCALAR", in_quotes(read.accessor.type)));
   if (!is_index(read.accessor.component_type) || read.accessor.is_normalized) {
-    return read.broken(fmt::format("has the componentType {}{}; indices have 5121, 5123 or 5125",
-                                   read.accessor.component_type,
-                                   read.accessor.is_normalized ? ", normalized" : ""));
+    return read.broken(fmt::format(
+        "has the componentType {}{}; indices must have 5121, 5123 or 5125",
+        read.accessor.component_type, read.accessor.is_normalized ? ", normalized" : ""));
   }
   const auto numbers = this->read(read);
   if (!numbers) return fail(numbers.error());
@@ -180,9 +181,9 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
     return read.broken(fmt::format("replaces {} of its {} elements", sparse.count, accessor.count));
   }
   if (!is_index(sparse.index_type)) {
-    return read.broken(
-        fmt::format("has sparse indices of the componentType {}; indices have 5121, 5123 or 5125",
-                    sparse.index_type));
+    return read.broken(fmt::format(
+        "has sparse indices of the componentType {}; indices must have 5121, 5123 or 5125",
+        sparse.index_type));
   }
   const std::size_t index_size = size_of(sparse.index_type);
   const std::size_t size = size_of(accessor.component_type);
@@ -196,10 +197,9 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
   for (std::size_t k = 0; k < sparse.count; ++k) {
     const std::uint64_t index = bits_at(indices->bytes.data() + k * indices->stride, index_size);
     if (index < least || index >= accessor.count) {
-      return read.broken(
-          fmt::format("has the sparse index {}, not from {} to {} as those before "
-                      "it have it",
-                      index, least, accessor.count - 1));
+      return read.broken(fmt::format(
+          "has the sparse index {}, but must have one from {} to {} after those before it", index,
+          least, accessor.count - 1));
     }
     least = index + 1;
     const char* const element = values->bytes.data() + k * values->stride;

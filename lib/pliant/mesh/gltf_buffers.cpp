@@ -53,7 +53,7 @@ Result<std::string> bytes_of_data(std::string_view uri, std::size_t buffer) {
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(marker))
     return invalid(fmt::format("buffers[{}].uri is data that is not marked as base64", buffer));
   auto bytes = from_base64(uri.substr(comma + 1));
-  if (!bytes) return invalid(fmt::format("buffers[{}].uri is no sound base64", buffer));
+  if (!bytes) return invalid(fmt::format("buffers[{}].uri is not valid base64", buffer));
   return *std::move(bytes);
 }
 
@@ -87,8 +87,8 @@ Result<std::string_view> Buffers::bytes(std::size_t buffer) {
     return invalid(fmt::format("buffers[{}] has no uri, and no bytes in the file", buffer));
   }
   if (entry.size <= bytes.size()) return bytes.substr(0, static_cast<std::size_t>(entry.size));
-  return invalid(
-      fmt::format("buffers[{}] has {} of its {} bytes", buffer, bytes.size(), entry.size));
+  return invalid(fmt::format("buffers[{}] is truncated: it has {} of {} bytes", buffer,
+                             bytes.size(), entry.size));
 }
 
 Result<std::string> Buffers::read(std::size_t buffer) const {

@@ -24,12 +24,14 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at) {
 
 Result<Container> open_container(std::string_view bytes) {
   if (!bytes.starts_with("glTF")) return Container{bytes};
-  if (bytes.size() < header_size) return invalid("the file is cut short within its header");
+  if (bytes.size() < header_size)
+    return invalid("the file is truncated: it ends within its header");
   if (const auto version = number_at(bytes, 4); version != 2)
-    return invalid(fmt::format("the file is a glTF of version {}; 2 is read", version));
+    return invalid(
+        fmt::format("the file is glTF version {}; only version 2 is supported", version));
   if (const auto length = number_at(bytes, 8); length != bytes.size()) {
     return invalid(fmt::format("the file {}: it has {} of {} bytes",
-                               length > bytes.size() ? "is cut short" : "goes on after its end",
+                               length > bytes.size() ? "is truncated" : "has data after its end",
                                bytes.size(), length));
   }
   std::optional<std::string_view> json, binary;
@@ -40,7 +42,7 @@ Result<Container> open_container(std::string_view bytes) {
     const auto size = static_cast<std::size_t>(number_at(bytes, at));
     const std::uint64_t kind = number_at(bytes, at + 4);
     const std::string_view content = bytes.substr(at + chunk_header_size, size);
-    if (!json && kind != json_chunk) return invalid("the file's first chunk is no JSON");
+    if (!json && kind != json_chunk) return invalid("the file's first chunk is not JSON");
     if (!json) {
       json = content;
     } else if (kind == binary_chunk && !binary) {
@@ -48,7 +50,7 @@ Result<Container> open_container(std::string_view bytes) {
     }  // chunks of other types are unknown but allowed
     at += chunk_header_size + size;
   }
-  if (!json) return invalid("the file holds no JSON");
+  if (!json) return invalid("the file has no JSON");
   return Container{*json, binary};
 }
 

@@ -28,7 +28,7 @@ Result<void> check_size(std::string_view json) {
     } else if (!is_quoted && (c == '[' || c == '{')) {
       ++values;
       if (++depth > deepest_json)
-        return invalid(fmt::format("the file nests its parts more than {} deep", deepest_json));
+        return invalid(fmt::format("the file's JSON is nested more than {} deep", deepest_json));
     } else if (!is_quoted && (c == ']' || c == '}') && depth > 0) {
       --depth;
     } else if (!is_quoted && c == ',') {
@@ -36,7 +36,7 @@ Result<void> check_size(std::string_view json) {
     }
   }
   if (values <= most_json_values) return {};
-  return invalid(fmt::format("the file's JSON holds more than {} values", most_json_values));
+  return invalid(fmt::format("the file's JSON has more than {} values", most_json_values));
 }
 
 // The parser's own messages quote the text, which may be that of any file.
@@ -49,10 +49,10 @@ Result<Json> parse(std::string_view text) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    return invalid("the file is no glTF: it is no sound JSON from here on",
+    return invalid("the file is not glTF: it is not valid JSON from here on",
                    line_at(error.byte > 0 ? error.byte - 1 : 0));
   } catch (const Json::exception&) {
-    return invalid("the file is no glTF: its JSON holds a number that is too large");
+    return invalid("the file is not glTF: its JSON has a number that is too large");
   }
 }
 
@@ -75,7 +75,7 @@ class DocumentReader {
     if (auto checked = check_asset(); !checked) return fail(checked.error());
     check_extensions();
     if (list_size("buffers") > most_buffers)
-      refuse("buffers", fmt::format("holds more than {}", most_buffers));
+      refuse("buffers", fmt::format("has more than {} elements", most_buffers));
     each(root_, "buffers", [&](Json& json) { document_.buffers.push_back(read_buffer(json)); });
     each(root_, "bufferViews", [&](Json& json) { document_.views.push_back(read_view(json)); });
     each(root_, "accessors",
@@ -114,14 +114,15 @@ class DocumentReader {
   Result<void> check_asset() {
     Json* const asset = root_.is_object() ? member(root_, "asset") : nullptr;
     const Json* const version = asset && asset->is_object() ? member(*asset, "version") : nullptr;
-    if (!version || !version->is_string()) return invalid("the file is no glTF: no asset.version");
+    if (!version || !version->is_string())
+      return invalid("the file is not glTF: it has no asset.version");
     for (const char* key : {"version", "minVersion"}) {
       const Json* const written = member(*asset, key);
       if (!written) continue;
       const auto* const number = written->get_ptr<const std::string*>();
       if (!number || !number->starts_with("2.") || (key[0] == 'm' && *number != "2.0")) {
-        return invalid(fmt::format("asset.{} is {}, but glTF 2.0 is what is read", key,
-                                   number ? in_quotes(*number) : "no text"));
+        return invalid(fmt::format("asset.{} is {}; only glTF 2.0 is supported", key,
+                                   number ? in_quotes(*number) : "not text"));
       }
     }
     return {};
@@ -130,14 +131,14 @@ class DocumentReader {
   void check_extensions() {
     const Json* const required = member(root_, "extensionsRequired");
     if (!required) return;
-    if (!required->is_array()) return refuse("extensionsRequired", "is no list");
+    if (!required->is_array()) return refuse("extensionsRequired", "is not a list");
     for (const Json& each : *required) {
       const auto* const name = each.get_ptr<const std::string*>();
-      if (!name) return refuse("extensionsRequired", "holds something other than names");
+      if (!name) return refuse("extensionsRequired", "has an element that is not a name");
       if (!is_known(*name)) {
         return refuse(
             "extensionsRequired",
-            fmt::format("names {}, which is not read here; export without it", in_quotes(*name)));
+            fmt::format("names {}, which is not supported; export without it", in_quotes(*name)));
       }
     }
   }
@@ -152,14 +153,14 @@ class DocumentReader {
   void each(Json& parent, const char* key, const Read& read) {
     Json* const list = member(parent, key);
     if (!list) return;
-    if (!list->is_array()) return refuse(key, "is no list");
+    if (!list->is_array()) return refuse(key, "is not a list");
     for (std::size_t k = 0; k < list->size() && !fault_; ++k) {
       place_.push_back({key, k});
       Json& element = (*list)[k];
       if (element.is_object())
         read(element);
       else
-        refuse("", "is no object");
+        refuse("", "is not an object");
       place_.pop_back();
     }
   }
@@ -180,7 +181,7 @@ class DocumentReader {
     Json* const json = member(parent, key);
     if (!json) return {};
     if (auto* const written = json->get_ptr<std::string*>()) return std::move(*written);
-    refuse(key, "is no text");
+    refuse(key, "is not text");
     return {};
   }
 
@@ -198,7 +199,7 @@ class DocumentReader {
     const Json* const json = member(parent, key);
     if (!json) return {};
     const auto number = to_whole(*json);
-    if (!number) refuse(key, "is no whole number from 0 on");
+    if (!number) refuse(key, "is not a whole number of at least 0");
     return number;
   }
 
@@ -219,8 +220,8 @@ class DocumentReader {
     const std::size_t size = list_size(list);
     if (number < size) return static_cast<std::size_t>(number);
     refuse(key, size == 0 ? fmt::format("is {}, but the file has no {}", number, list)
-                          : fmt::format("is {}, but the file's {} go from 0 to {}", number, list,
-                                        size - 1));
+                          : fmt::format("is {}, but the file's {} are numbered from 0 to {}",
+                                        number, list, size - 1));
     return {};
   }
 
@@ -233,7 +234,7 @@ class DocumentReader {
   Json* part(Json& parent, const char* key) {
     Json* const json = member(parent, key);
     if (!json || json->is_object()) return json;
-    refuse(key, "is no object");
+    refuse(key, "is not an object");
     return nullptr;
   }
 
@@ -245,7 +246,8 @@ class DocumentReader {
                     whole(json, "byteStride").value_or(0)};
     constexpr std::uint64_t least = 4, most = 252;
     if (member(json, "byteStride") && (view.stride < least || view.stride > most))
-      refuse("byteStride", fmt::format("is {}, not from {} to {}", view.stride, least, most));
+      refuse("byteStride",
+             fmt::format("is {}, but must be from {} to {}", view.stride, least, most));
     return view;
   }
 
@@ -276,7 +278,7 @@ class DocumentReader {
       return sparse;
     }
     for (Json* const each : {indices, values})
-      if (!member(*each, "bufferView")) refuse("", "names no bufferView");
+      if (!member(*each, "bufferView")) refuse("", "has no bufferView");
     within("indices", [&] {
       sparse.index_view = required_index(*indices, "bufferView", "bufferViews");
       sparse.index_offset = whole(*indices, "byteOffset").value_or(0);
@@ -299,7 +301,8 @@ class DocumentReader {
   Primitive read_primitive(Json& json) {
     Primitive primitive;
     primitive.mode = whole(json, "mode").value_or(primitive.mode);
-    if (primitive.mode > 6) refuse("mode", fmt::format("is {}, not 0 to 6", primitive.mode));
+    if (primitive.mode > 6)
+      refuse("mode", fmt::format("is {}, but must be from 0 to 6", primitive.mode));
     primitive.indices = index(json, "indices", "accessors");
     primitive.material = index(json, "material", "materials");
     Json* const attributes = part(json, "attributes");
@@ -320,10 +323,10 @@ class DocumentReader {
     std::vector<std::size_t> nodes;
     const Json* const list = member(parent, key);
     if (!list) return nodes;
-    if (!list->is_array()) refuse(key, "is no list");
+    if (!list->is_array()) refuse(key, "is not a list");
     for (std::size_t k = 0; k < list->size() && !fault_; ++k) {
       const auto number = to_whole((*list)[k]);
-      if (!number) refuse(key, "holds something other than whole numbers from 0 on");
+      if (!number) refuse(key, "has an element that is not a whole number of at least 0");
       if (number) nodes.push_back(checked_index(*number, key, "nodes").value_or(0));
     }
     return nodes;
@@ -341,7 +344,7 @@ class DocumentReader {
       is_sound = number.is_number();
       if (is_sound) values[k] = number.get<double>();
     }
-    if (!is_sound) refuse(key, fmt::format("does not hold {} numbers", count));
+    if (!is_sound) refuse(key, fmt::format("is not a list of {} numbers", count));
     return values;
   }
 
@@ -358,14 +361,15 @@ class DocumentReader {
     const auto scale = numbers<3>(json, "scale");
     if (matrix) {
       if (translation || rotation || scale)
-        refuse("matrix", "stands beside a translation, rotation or scale");
+        refuse("matrix", "is given together with a translation, rotation or scale");
       return matrix->reshaped(4, 4);
     }
     Eigen::Affine3d transform = Eigen::Affine3d::Identity();
     if (translation) transform.translate(*translation);
     if (rotation) {
       const double size = rotation->norm();
-      if (!(size > 0 && std::isfinite(size))) refuse("rotation", "is no quaternion of length 1");
+      if (!(size > 0 && std::isfinite(size)))
+        refuse("rotation", "is a quaternion whose length is 0 or not finite");
       const Eigen::Vector4d unit = *rotation / size;
       transform.rotate(Eigen::Quaterniond(unit[3], unit[0], unit[1], unit[2]));
     }
@@ -381,7 +385,7 @@ class DocumentReader {
       auto nodes = node_list(scene, "nodes");
       if (number++ == shown.value_or(0)) document_.roots = std::move(nodes);
     });
-    if (number == 0) refuse("scenes", "is missing: the file shows nothing");
+    if (number == 0) refuse("scenes", "is missing: the file has no scene");
   }
 
   Json& root_;

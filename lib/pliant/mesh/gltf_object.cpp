@@ -85,7 +85,7 @@ class Merger {
                       [](const std::optional<std::size_t>& set) { return set.has_value(); });
     if (auto checked = check_uv_set(uv_set_, static_cast<int>(count)); !checked) return checked;
     if (count > 0)  // a file may omit its first set
-      return invalid(fmt::format("the object has no UV set {}, but others", uv_set_));
+      return invalid(fmt::format("the object has UV sets, but not set {}", uv_set_));
     return {};
   }
 
@@ -163,8 +163,9 @@ class Merger {
     if (!indices) return indices;
     for (std::size_t n = 0; n < indices->size(); ++n) {
       if ((*indices)[n] < place.count) continue;
-      return invalid(fmt::format("{}: index {} is of vertex {}, but there are {} (from 0)",
-                                 name_of(k), n, (*indices)[n], place.count));
+      return invalid(
+          fmt::format("{}: index {} refers to vertex {}, but there are {} (counted from 0)",
+                      name_of(k), n, (*indices)[n], place.count));
     }
     return indices;
   }
@@ -174,8 +175,8 @@ class Merger {
     const auto list = list_of(k, place);
     if (!list) return fail(list.error());
     if (from.mode == Triangles && list->size() % 3 != 0) {
-      return invalid(fmt::format("{} has {} corners of triangles, no multiple of 3", name_of(k),
-                                 list->size()));
+      return invalid(fmt::format("{} has {} corners of triangles, which is not a multiple of 3",
+                                 name_of(k), list->size()));
     }
     const std::size_t face_count = from.mode == Triangles ? list->size() / 3 : list->size() - 2;
     if (mesh_.corner_vertices.size() + 3 * face_count > most)

@@ -43,7 +43,7 @@ Result<std::vector<Object>> objects_of(const Document& document) {
     visits.pop_back();
     if (is_seen[number]) {
       return fail(ErrorCode::InvalidInput,
-                  fmt::format("nodes[{}] stands twice in the tree of the scene", number));
+                  fmt::format("nodes[{}] is in the tree of the scene twice", number));
     }
     is_seen[number] = true;
     const Node& node = document.nodes[number];

@@ -16,9 +16,9 @@ namespace pliant {
 namespace {
 
 constexpr std::string_view what_is_needed =
-    "; the (u,v) must form an even grid, one pair a vertex (docs/your-mesh.md)";
+    "; the (u,v) must form an even grid, one pair per vertex (docs/your-mesh.md)";
 constexpr std::string_view no_seams =
-    "; a surface that is closed or meets itself is not taken (docs/your-mesh.md)";
+    "; a surface that is closed or meets itself is not supported (docs/your-mesh.md)";
 
 // Border nodes nearer to each other than this times the diagonal of the bounding box count as one
 // place.
@@ -36,8 +36,9 @@ tl::unexpected<Error> without_uvs(const Mesh& mesh, int vertex) {
         "the mesh has no (u,v) (UVs); unwrap it in the program that it comes from, "
         "and export it with its UVs");
   }
-  return not_a_grid(fmt::format("vertex {} has no (u,v) (UVs), like {} of the {} corners of faces",
-                                mesh.number_of(vertex), missing, mesh.corner_uvs.size()));
+  return not_a_grid(
+      fmt::format("vertex {} has no (u,v) (UVs); {} of the {} corners of faces have none",
+                  mesh.number_of(vertex), missing, mesh.corner_uvs.size()));
 }
 
 // One direction of the lattice: `count` values from `least` on, `spacing` apart.
@@ -206,8 +207,8 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
          {std::tuple{&u_axis, us[vertex], 'u'}, std::tuple{&v_axis, vs[vertex], 'v'}}) {
       if (axis->count > 1 && !axis->is_even(value)) {
         return not_a_grid(fmt::format(
-            "vertex {} has {} = {}, which is not within {} of a spacing of the even lattice of {} "
-            "values {} apart",
+            "vertex {} has {} = {}, which is more than {} of a spacing away from the even lattice "
+            "of {} values {} apart",
             mesh.number_of(vertex), name, value, lattice_tolerance, axis->count, axis->spacing));
       }
     }
@@ -263,18 +264,16 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     if (node_vertices[node] < 0) {
       const int i = node % grid.columns, j = node / grid.columns;
       return not_a_grid(fmt::format(
-          "no vertex lies at (u,v) = ({}, {}), node ({}, {}) of the grid of "
-          "{} x {}",
+          "there is no vertex at (u,v) = ({}, {}), node ({}, {}) of the grid of {} x {}",
           u_axis.least + i * grid.hu, v_axis.least + j * grid.hv, i, j, grid.columns, grid.rows));
     }
   }
   if (const auto pair = nodes_in_one_place(mapping)) {
     const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
-    return seam(
-        fmt::format("vertices {} and {} are in one place, but have the (u,v) ({}, {}) and "
-                    "({}, {})",
-                    mesh.number_of(first), mesh.number_of(second), us[first], vs[first], us[second],
-                    vs[second]));
+    return seam(fmt::format(
+        "vertices {} and {} are at the same position, but have the (u,v) ({}, {}) and ({}, {})",
+        mesh.number_of(first), mesh.number_of(second), us[first], vs[first], us[second],
+        vs[second]));
   }
   return mapping;
 }

@@ -11,8 +11,8 @@ namespace {
 
 Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* thing) {
   if (!names.of_faces.empty() && names.of_faces.size() != mesh.face_sizes.size()) {
-    return invalid(fmt::format("{} of the mesh's {} faces have a {} or none", names.of_faces.size(),
-                               mesh.face_sizes.size(), thing));
+    return invalid(fmt::format("the list of face {2}s has {0} entries, but the mesh has {1} faces",
+                               names.of_faces.size(), mesh.face_sizes.size(), thing));
   }
   for (std::size_t face = 0; face < names.of_faces.size(); ++face) {
     const int index = names.of_faces[face];
@@ -43,7 +43,7 @@ Result<void> check_normals(const Mesh& mesh) {
   }
   for (std::size_t normal = 0; normal < is_used.size(); ++normal) {
     if (!is_used[normal])
-      return invalid(fmt::format("no corner has the normal {} of the {}", normal + mesh.first_index,
+      return invalid(fmt::format("no corner uses the normal {} of {}", normal + mesh.first_index,
                                  is_used.size()));
   }
   return {};
@@ -55,15 +55,16 @@ Result<void> check_mesh(const Mesh& mesh) {
   if (mesh.face_sizes.empty()) return invalid("the mesh has no faces");
   if (!mesh.file_vertices.empty() &&
       mesh.file_vertices.size() != static_cast<std::size_t>(mesh.vertex_count())) {
-    return invalid(fmt::format("{} of the mesh's {} vertices have a number in the file",
-                               mesh.file_vertices.size(), mesh.vertex_count()));
+    return invalid(
+        fmt::format("the list of vertex numbers has {} entries, but the mesh has {} vertices",
+                    mesh.file_vertices.size(), mesh.vertex_count()));
   }
   std::int64_t corners = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int size = mesh.face_sizes[face];
     if (size < 3)
-      return invalid(
-          fmt::format("face {} has {} of at least 3 corners", face + mesh.first_index, size));
+      return invalid(fmt::format("face {} has {} corners, but needs at least 3",
+                                 face + mesh.first_index, size));
     corners += size;
   }
   if (corners != static_cast<std::int64_t>(mesh.corner_vertices.size()) ||

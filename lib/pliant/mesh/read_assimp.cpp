@@ -64,7 +64,7 @@ Result<void> check_sets(const MeshMessage& message, int uv_set) {
     if (!part.uvs.empty()) continue;
     if (auto checked = check_uv_set(uv_set, set_count); !checked) return checked;
     if (set_count > 0)  // a file may omit its first set
-      return invalid(fmt::format("the object has no UV set {}, but others", uv_set));
+      return invalid(fmt::format("the object has UV sets, but not set {}", uv_set));
   }
   return {};
 }
@@ -78,10 +78,9 @@ Result<void> check_size(const MeshMessage& message) {
   }
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   if (vertices <= most && corners <= most) return {};
-  return invalid(
-      fmt::format("the object has {} vertices and {} corners of faces; at most {} "
-                  "of each can be counted",
-                  vertices, corners, most));
+  return invalid(fmt::format(
+      "the object has {} vertices and {} corners of faces; at most {} of each are allowed",
+      vertices, corners, most));
 }
 
 // Appends the faces of one part, whose vertices and (u,v) are numbered from the given ones on.
@@ -92,8 +91,8 @@ Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, 
   for (std::size_t corner = 0; corner < part.corners.size(); ++corner) {
     const std::uint32_t index = part.corners[corner];
     if (index >= vertex_count) {
-      return invalid(fmt::format("corner {} of its faces refers to vertex {} of {}", corner, index,
-                                 vertex_count));
+      return invalid(fmt::format("corner {} of its faces refers to vertex {}, but there are {}",
+                                 corner, index, vertex_count));
     }
     mesh.corner_vertices.push_back(first_vertex + static_cast<int>(index));
     mesh.corner_uvs.push_back(first_uv < 0 ? -1 : first_uv + static_cast<int>(index));
@@ -169,8 +168,8 @@ Error reader_failed(const std::string& format, const std::string& what) {
 Error out_of_memory(const std::string& format, const BoxLimits& limits, std::size_t file_bytes) {
   if (limits.memory < box_limits(file_bytes, std::numeric_limits<std::size_t>::max()).memory) {
     return {ErrorCode::OutOfMemory,
-            fmt::format("the {} reader needs more than the {} of memory that are left for it",
-                        format, bytes_text(limits.memory))};
+            fmt::format("the {} reader needs more than the {} of memory left for it", format,
+                        bytes_text(limits.memory))};
   }
   return reader_failed(format, fmt::format("needs more than {} of memory for a file of {}",
                                            bytes_text(limits.memory), bytes_text(file_bytes)));
@@ -184,11 +183,11 @@ Result<void> check_end(const BoxedEnd& end, const std::string& format, const Box
       return fail(reader_failed(format, fmt::format("crashed on this file (signal {}, {})",
                                                     end.number, strsignal(end.number))));
     case BoxedEnd::How::TimedOut:
-      return fail(
-          reader_failed(format, fmt::format("has not ended after {:.0f} seconds", limits.seconds)));
+      return fail(reader_failed(
+          format, fmt::format("did not finish within {:.0f} seconds", limits.seconds)));
     case BoxedEnd::How::TooLong:
       return fail(reader_failed(
-          format, fmt::format("made more than {} of this file of {}",
+          format, fmt::format("produced more than {} from this file of {}",
                               bytes_text(limits.answer_bytes), bytes_text(file_bytes))));
     case BoxedEnd::How::Exited:
       break;
@@ -197,29 +196,29 @@ Result<void> check_end(const BoxedEnd& end, const std::string& format, const Box
   if (end.number == boxed_out_of_memory) return fail(out_of_memory(format, limits, file_bytes));
   if (end.number == not_loaded) {
     return fail(ErrorCode::Unreadable,
-                fmt::format("the {} reader does not start: is libassimp installed?", format));
+                fmt::format("the {} reader cannot start: is libassimp installed?", format));
   }
-  return fail(reader_failed(format, fmt::format("gave up with exit code {}", end.number)));
+  return fail(reader_failed(format, fmt::format("failed with exit code {}", end.number)));
 }
 
 Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const std::string& object,
                      int uv_set) {
   const auto message = parse_mesh_message(answer);
-  if (!message) return fail(reader_failed(format, "gave an answer that is no mesh"));
+  if (!message) return fail(reader_failed(format, "produced something that is not a mesh"));
   switch (message->kind) {
     case MessageKind::OtherFormat:
-      return invalid(fmt::format("the file is no {}", format));
+      return invalid(fmt::format("the file is not {}", format));
     case MessageKind::Refused:
       return invalid(fmt::format("the file cannot be read: {}", in_one_line(message->reason)));
     case MessageKind::TooManyObjects:
-      return invalid(fmt::format("the file holds more than {} objects", most_objects));
+      return invalid(fmt::format("the file has more than {} objects", most_objects));
     case MessageKind::Scene:
       break;
   }
   const auto chosen = choose(*message, object);
   if (!chosen) return fail(chosen.error());
   if (message->chosen != *chosen)
-    return fail(reader_failed(format, "gave another object than it was asked for"));
+    return fail(reader_failed(format, "produced a different object from the one requested"));
   auto mesh = merged(*message, uv_set);
   if (!mesh) return mesh;
   if (auto applied = to_file_space(message->to_file, mesh->positions); !applied)
@@ -276,7 +275,7 @@ Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& 
       return fail(checked.error());
   }
   if (end->answer != other_end->answer)
-    return fail(reader_failed(format, "found more in this file than it holds"));
+    return fail(reader_failed(format, "produced two different meshes from this file"));
   return to_mesh(end->answer, format, object, uv_set);
 }
 

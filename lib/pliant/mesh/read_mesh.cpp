@@ -38,7 +38,7 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
   const std::string ending = ending_of(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("no mesh file has the ending of {}; allowed: {}", file.string(),
+                fmt::format("no mesh format has the ending of {}; allowed: {}", file.string(),
                             fmt::join(endings, ", ")));
   }
   if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);

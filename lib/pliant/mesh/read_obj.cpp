@@ -119,7 +119,7 @@ class ObjReader {
   Result<Mesh> finish(const std::string& object) {
     check_indices();
     if (errors_.empty() && mesh_.face_sizes.empty()) {
-      add_error(0, "the file holds no faces (f)");
+      add_error(0, "the file has no faces (f)");
     }
     if (!errors_.empty()) return failure();
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
@@ -134,7 +134,7 @@ class ObjReader {
     // Checked before any text is quoted, as it may be of any file.
     if (!is_obj_ && !keyword.empty()) {
       is_obj_ = is_keyword(keyword);
-      if (!is_obj_) return refuse("the file is no OBJ: no statement of one begins like this line");
+      if (!is_obj_) return refuse("the file is not OBJ: no OBJ statement begins like this line");
     }
     if (keyword == "v") {
       const auto numbers = read_numbers(statement, "vertex", 3, 7);
@@ -184,8 +184,9 @@ class ObjReader {
     for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
       const auto number = to_number(word);
       if (!number) {
-        add_error(line_, fmt::format("{} has the coordinate {}, which is no finite decimal number",
-                                     thing, in_quotes(word)));
+        add_error(line_,
+                  fmt::format("{} has the coordinate {}, which is not a finite decimal number",
+                              thing, in_quotes(word)));
         return {};
       }
       if (count == most) {
@@ -195,7 +196,7 @@ class ObjReader {
       numbers[count++] = *number;
     }
     if (count < least)
-      add_error(line_, fmt::format("{} has {} of {} numbers", thing, count, least));
+      add_error(line_, fmt::format("{} has {} numbers, but needs {}", thing, count, least));
     return numbers;
   }
 
@@ -243,7 +244,7 @@ class ObjReader {
     const std::size_t size = mesh_.corner_vertices.size() - first_corner;
     if (size < 3) {
       drop_corners(first_corner);
-      return add_error(line_, fmt::format("face has {} of at least 3 corners", size));
+      return add_error(line_, fmt::format("face has {} corners, but needs at least 3", size));
     }
     mesh_.face_sizes.push_back(static_cast<int>(size));
     face_lines_.push_back(line_);
@@ -268,8 +269,8 @@ class ObjReader {
   }
 
   static std::string outside(std::string_view thing, int index, std::size_t count) {
-    if (index == missing_index) return fmt::format("a {} ahead of the file's first", thing);
-    return fmt::format("{} {}, outside the file, which has {}", thing, index + 1, count);
+    if (index == missing_index) return fmt::format("a {} before the file's first", thing);
+    return fmt::format("{} {}, but the file has {}", thing, index + 1, count);
   }
 
   void check_indices() {

@@ -128,7 +128,7 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
     }
     const auto has_name = [&](const Element& element) { return element.name == words[1]; };
     if (std::any_of(header.elements.begin(), header.elements.end(), has_name))
-      return invalid(fmt::format("the element {} stands twice", in_quotes(words[1])), line);
+      return invalid(fmt::format("the element {} is given twice", in_quotes(words[1])), line);
     header.elements.push_back({std::string(words[1]), *count, {}});
     return {};
   }
@@ -136,19 +136,20 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
     const auto property = to_property(words);
     if (!property) {
       return invalid(
-          "a property is not of the form `property TYPE NAME` or `property list TYPE "
-          "TYPE NAME`",
+          "a property must have the form `property TYPE NAME` or `property list TYPE TYPE NAME`",
           line);
     }
     Element& element = header.elements.back();
     if (element.find({property->name}) >= 0)
-      return invalid(fmt::format("the property {} stands twice", in_quotes(property->name)), line);
+      return invalid(fmt::format("the property {} is given twice", in_quotes(property->name)),
+                     line);
     element.properties.push_back(*property);
     return {};
   }
-  return invalid(fmt::format("the header has the line {}, which is no part of one",
-                             in_quotes(std::string(keyword))),
-                 line);
+  return invalid(
+      fmt::format("the header has a line that begins with {}, which is not part of a PLY header",
+                  in_quotes(std::string(keyword))),
+      line);
 }
 
 Result<Header> read_header(std::string_view bytes) {
@@ -172,8 +173,8 @@ Result<Header> read_header(std::string_view bytes) {
     has_format = has_format || words[0] == "format";
     if (auto read = read_header_line(words, line, header); !read) return fail(read.error());
   }
-  return invalid(header.line_count < 2 ? "the file is no PLY: its first line is not `ply`"
-                                       : "the file ends within its header");
+  return invalid(header.line_count < 2 ? "the file is not PLY: its first line is not `ply`"
+                                       : "the file is truncated: it ends within its header");
 }
 
 // The numbers of the elements, one after the other.
@@ -261,13 +262,13 @@ class PlyReader {
     for (const Element& element : header_.elements) {
       if (auto read = read_element(element); !read) return fail(read.error());
     }
-    if (!numbers_.is_at_end()) return invalid("the file goes on after its last element", line());
+    if (!numbers_.is_at_end()) return invalid("the file has data after its last element", line());
     if (!mesh_.corner_vertices.empty()) {
       if (auto checked = check_indices(); !checked) return fail(checked.error());
     }
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
-    if (mesh_.face_sizes.empty()) return invalid("the file holds no faces");
+    if (mesh_.face_sizes.empty()) return invalid("the file has no faces");
     if (!normals_.empty()) {
       mesh_.corner_normals =
           shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}});
@@ -355,13 +356,13 @@ class PlyReader {
   tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
                                   std::size_t property) const {
     if (numbers_.has_run_out()) return ends_within(element, index);
-    return invalid(fmt::format("{} {} has no finite number where its {} should be", element.name,
-                               index, in_quotes(element.properties[property].name)),
+    return invalid(fmt::format("{} {}: {} is not a finite number", element.name, index,
+                               in_quotes(element.properties[property].name)),
                    line());
   }
 
   tl::unexpected<Error> ends_within(const Element& element, std::int64_t index) const {
-    return invalid(fmt::format("the file ends within {} {}, counted from 0, of {}",
+    return invalid(fmt::format("the file is truncated: it ends within {} {} of {}, counted from 0",
                                in_quotes(element.name), index, element.count),
                    line());
   }
@@ -401,8 +402,8 @@ class PlyReader {
   }
 
   static std::string outside(int vertex, std::size_t count) {
-    if (vertex < 0) return "no vertex of the file: they count from 0";
-    return fmt::format("vertex {}, outside the file, which has {}", vertex, count);
+    if (vertex < 0) return "an invalid vertex number; vertices are counted from 0";
+    return fmt::format("vertex {}, but the file has {}", vertex, count);
   }
 
   // Corners without (u,v) of their own use the vertex's.

@@ -26,9 +26,8 @@ using Seconds = std::chrono::duration<double>;
 constexpr Seconds tick{0.05};
 
 tl::unexpected<Error> not_started(const char* what, int error) {
-  return fail(ErrorCode::Unreadable,
-              fmt::format("a process of its own cannot be started for the file: {}: {}", what,
-                          std::strerror(error)));
+  return fail(ErrorCode::Unreadable, fmt::format("cannot start a process to read the file: {}: {}",
+                                                 what, std::strerror(error)));
 }
 
 // An open file, closed by the destructor. Not one of the numbered descriptors of a sandboxed

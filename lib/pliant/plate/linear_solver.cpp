@@ -49,7 +49,7 @@ Error factor_too_large(long size, const std::string& complaint) {
 
 Error no_memory_to_solve(long size, const std::string& complaint) {
   return {ErrorCode::OutOfMemory,
-          fmt::format("the working memory for the plate's {} unknowns {}", size, complaint)};
+          fmt::format("the solve of the plate of {} unknowns {}", size, complaint)};
 }
 
 Error no_memory_for_factor(long size) {

@@ -24,7 +24,7 @@ Result<void> check_time_step(double interval, double dt) {
   if (const double count = step_count(interval, dt); count > max_steps) {
     return fail(
         ErrorCode::InvalidInput,
-        fmt::format("is {}, which makes {} steps of a frame of {} s; at most {} are allowed", dt,
+        fmt::format("is {}, which makes {} steps in a frame of {} s; at most {} are allowed", dt,
                     count, interval, max_steps));
   }
   return {};

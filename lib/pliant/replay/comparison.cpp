@@ -75,7 +75,7 @@ std::string ReplayDifference::message() const {
   std::string text = fmt::format("frame {}: surface \"{}\": {} {}", frame, printable(surface),
                                  field, field == "region" ? "differs" : "differ");
   if (peaks && !node) {
-    text += fmt::format(", their peak displacement of {:.6g} by {:.3g}", (*peaks)[0],
+    text += fmt::format("; their peak displacement of {:.6g} differs by {:.3g}", (*peaks)[0],
                         std::abs((*peaks)[1] - (*peaks)[0]));
   }
   if (node) text += fmt::format(", most at node ({},{}), by {:.3g}", (*node)[0], (*node)[1], size);
@@ -92,15 +92,15 @@ std::vector<std::string> ReplayVerdict::lines() const {
 std::vector<std::string> causes_in(const ReplayHeader& a, const ReplayHeader& b) {
   std::vector<std::string> causes;
   if (a.version != b.version) {
-    causes.push_back(fmt::format("another version of pliant: {} and {}", printable(a.version),
+    causes.push_back(fmt::format("the versions of pliant differ: {} and {}", printable(a.version),
                                  printable(b.version)));
   }
   if (a.solver != b.solver || a.factors != b.factors) {
-    causes.push_back(fmt::format("another solver: {} ({}) and {} ({})", printable(a.solver),
+    causes.push_back(fmt::format("the solvers differ: {} ({}) and {} ({})", printable(a.solver),
                                  printable(a.factors), b.solver, b.factors));
   }
   if (a.scene_text != b.scene_text) {
-    causes.push_back(fmt::format("the scene {} was edited, first in line {}",
+    causes.push_back(fmt::format("the scene {} was edited; the first change is in line {}",
                                  printable(a.scene_file),
                                  first_other_line(a.scene_text, b.scene_text)));
   }
@@ -117,11 +117,11 @@ std::vector<std::string> mismatches_in(const ReplayHeader& a, const ReplayHeader
   std::vector<std::string> mismatches;
   if (a.start != b.start || a.end != b.end) {
     mismatches.push_back(
-        fmt::format("other frames: {} to {}, and {} to {}", a.start, a.end, b.start, b.end));
+        fmt::format("the frames differ: {} to {}, and {} to {}", a.start, a.end, b.start, b.end));
   }
   if (a.surfaces != b.surfaces) {
     mismatches.push_back(
-        fmt::format("other surfaces: {}, and {}", list_of(a.surfaces), list_of(b.surfaces)));
+        fmt::format("the surfaces differ: {}, and {}", list_of(a.surfaces), list_of(b.surfaces)));
   }
   return mismatches;
 }

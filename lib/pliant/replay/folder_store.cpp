@@ -146,10 +146,10 @@ Result<std::unique_ptr<FolderFrameStore>> FolderFrameStore::open(const std::stri
   fs::create_directories(folder, error);
   std::error_code unknown;
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::InvalidInput, "is there, and no folder", folder);
+    return fail(ErrorCode::InvalidInput, "is not a folder", folder);
   }
   if (!fs::is_directory(folder, unknown)) {
-    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(), folder);
+    return fail(ErrorCode::Unwritable, "cannot create the folder: " + error.message(), folder);
   }
   return std::unique_ptr<FolderFrameStore>(
       new FolderFrameStore(std::make_unique<Folder>(folder, byte_budget)));

@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 constexpr const char* broken_seal =
-    "this line breaks its seal: the log was changed after it was recorded";
+    "this line does not match its seal: the log was changed after it was recorded";
 
 }  // namespace
 
@@ -56,7 +56,7 @@ Result<void> ReplayLogReader::read_header() {
   std::string start(replay::first_member.size(), '\0');
   stream_.read(start.data(), static_cast<std::streamsize>(start.size()));
   if (start != replay::first_member) {
-    return fail(ErrorCode::InvalidInput, "this is no replay log", name_);
+    return fail(ErrorCode::InvalidInput, "this is not a replay log", name_);
   }
   auto line = next_line();
   if (!line) return fail(line.error());
@@ -64,7 +64,7 @@ Result<void> ReplayLogReader::read_header() {
   // The format version is checked before the seal, which belongs to this version.
   if (const auto format = replay::format_of(whole); format && *format != replay_format) {
     return at_fault(
-        fmt::format("a log of format {}; this version reads format {}", *format, replay_format));
+        fmt::format("the log has format {}; this version reads format {}", *format, replay_format));
   }
   if (!replay::is_sound(whole, seal_)) return at_fault(broken_seal);
   auto header = replay::read_header(whole);
@@ -98,7 +98,7 @@ Result<void> ReplayLogReader::read_end(long frame_count) {
   }
   if (stream_.peek() != std::ifstream::traits_type::eof()) {
     ++line_;
-    return at_fault("something follows the end of the log");
+    return at_fault("there is data after the end of the log");
   }
   is_at_end_ = true;
   return {};
@@ -110,8 +110,8 @@ Result<std::string> ReplayLogReader::next_line() {
   const bool is_there = static_cast<bool>(std::getline(stream_, line));
   // A last line without its newline is truncated, even if only that byte is missing.
   if (is_there && !stream_.eof()) return line;
-  if (line_ == 1) return at_fault("the log is cut short in its first line");
-  return at_fault(fmt::format("the log is cut short: it holds {} of {} frames", frame_count_,
+  if (line_ == 1) return at_fault("the log is truncated: it ends within its first line");
+  return at_fault(fmt::format("the log is truncated: it has {} of {} frames", frame_count_,
                               header_.frame_count()));
 }
 

@@ -40,9 +40,10 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
       given ? std::filesystem::path(*given) : log_file.parent_path() / header.scene_file;
   std::error_code ignored;
   if (!given && !std::filesystem::exists(file, ignored)) {
-    return FoundScene{{file, header.scene_text, root},
-                      fmt::format("the scene {} is not there; its text in the log is simulated",
-                                  printable(header.scene_file))};
+    return FoundScene{
+        {file, header.scene_text, root},
+        fmt::format("the scene {} does not exist; its text in the log is simulated instead",
+                    printable(header.scene_file))};
   }
   auto written = read_scene_text(file, root);
   if (!written) return fail(written.error());
@@ -54,7 +55,7 @@ Result<SolverChoice> solver_of(const ReplayHeader& header, const std::filesystem
   const auto choice = solver_choice(header.solver);
   if (choice && is_available(*choice)) return *choice;
   return fail(ErrorCode::InvalidInput,
-              fmt::format("recorded with the solver {}, which this build has not",
+              fmt::format("recorded with the solver {}, which this build does not have",
                           printable(header.solver)),
               log_file.string(), 1);
 }
@@ -112,7 +113,7 @@ Result<ReplayHeader> record_replay(const std::string& scene_file, const std::str
   if (options.last_frame &&
       (*options.last_frame < scene.start || *options.last_frame > scene.end)) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("the last frame to record is {}; the scene has the frames {} to {}",
+                fmt::format("the last frame to record is {}; the scene has frames {} to {}",
                             *options.last_frame, scene.start, scene.end),
                 scene_file);
   }

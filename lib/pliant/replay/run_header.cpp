@@ -100,7 +100,7 @@ Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOp
 
 Result<void> check_log_place(const fs::path& log_file, const Scene& scene) {
   const auto refuse = [&](std::string_view reason) {
-    return fail(ErrorCode::InvalidInput, fmt::format("the log would take the place of {}", reason),
+    return fail(ErrorCode::InvalidInput, fmt::format("the log would overwrite {}", reason),
                 log_file.string());
   };
   if (auto place = check_output_place(log_file); !place) return place;

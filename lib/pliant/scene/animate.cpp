@@ -125,7 +125,7 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* cons
       findings.add_problem(
           animate.GetLineNum(),
           value_problem(animate, "attribute", name,
-                        fmt::format("is {} already (line {}); one of both must go",
+                        fmt::format("is already {} (line {}); remove one of them",
                                     row.is_animated ? "animated" : "given", row.line)));
     else
       row.line = animate.GetLineNum();

@@ -63,7 +63,7 @@ Reading<void> read_tangent(std::string_view text, TangentChannel& place) {
   if (Reading<void> read = parse_numbers(text, vector); !read)
     return words_of(text).size() == 3
                ? read
-               : tl::unexpected(std::string("one number or three are required"));
+               : tl::unexpected(std::string("one or three numbers are required"));
   place = Channel<3>(vector);
   return {};
 }
@@ -167,8 +167,8 @@ Attribute boolean(std::string_view name, bool& place) { return boolean_row(name,
 Attribute name_of(std::string& place) {
   return required(custom("name", "name", "", "", "unique", [&place](std::string_view text) {
     if (!is_name(text))
-      return Reading<void>(tl::unexpected(std::string(
-          "a name begins with a letter or _ and goes on with letters, digits, _ and -")));
+      return Reading<void>(tl::unexpected(
+          std::string("must be a letter or _ followed by letters, digits, _ and -")));
     place = text;
     return Reading<void>();
   }));
@@ -178,12 +178,12 @@ Attribute names(std::string_view name, std::vector<std::string>& place) {
   return custom(name, "names", "", "", "", [&place](std::string_view text) -> Reading<void> {
     const std::vector<std::string_view> words = words_of(text);
     if (words.empty())
-      return tl::unexpected(std::string("names nothing; leave the attribute out to mean all"));
+      return tl::unexpected(std::string("is empty; leave the attribute out for all"));
     for (auto word = words.begin(); word != words.end(); ++word) {
       if (!is_name(*word))
-        return tl::unexpected(in_quotes(*word) + " is no name (names are separated by spaces)");
+        return tl::unexpected(in_quotes(*word) + " is not a name (names are separated by spaces)");
       if (std::find(words.begin(), word, *word) != word)
-        return tl::unexpected(in_quotes(*word) + " stands twice");
+        return tl::unexpected(in_quotes(*word) + " is given twice");
     }
     place.assign(words.begin(), words.end());
     return {};

@@ -44,7 +44,7 @@ Complaint greater_than_zero(const Value<1>& value) {
 
 Complaint a_share_of_the_way(const Value<1>& value) {
   if (value[0] >= 0 && value[0] <= 1) return {};
-  return fmt::format("is {}, but must be within 0 to 1", value[0]);
+  return fmt::format("is {}, but must be from 0 to 1", value[0]);
 }
 
 template <int D>
@@ -65,9 +65,8 @@ class ChannelChecker {
       const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
                                                  {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
       if (transform.is_invertible()) return {};
-      return fmt::format(
-          "is {}, but a scale of 0, or so near 0 that its inverse is not finite, cannot be undone",
-          spelled<3>(scale));
+      return fmt::format("is {}, but must not be 0, nor so near 0 that its inverse is not finite",
+                         spelled<3>(scale));
     });
     const MaterialChannels& material = surface.material;
     check(surface.name, "density", material.density, at_least_zero);
@@ -152,8 +151,7 @@ class ChannelChecker {
     }
     check(surface.name, attribute, channel, [](const Value<D>& value) -> Complaint {
       if (value == Value<D>{}) return {};
-      return fmt::format("is {}, but release=\"recover\" asks for tangents of 0",
-                         spelled<D>(value));
+      return fmt::format("is {}, but must be 0 with release=\"recover\"", spelled<D>(value));
     });
   }
 

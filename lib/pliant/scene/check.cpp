@@ -33,11 +33,12 @@ class SceneChecker {
     }
     if (scene_.end < scene_.start) {
       complain("", "end",
-               fmt::format("end is {}, before start, which is {}", scene_.end, scene_.start));
+               fmt::format("end is {}, but must not be before start, which is {}", scene_.end,
+                           scene_.start));
     } else if (std::int64_t{scene_.end} - scene_.start >= max_frames) {
       complain("", "end",
-               fmt::format("start {} to end {} are more than {} frames", scene_.start, scene_.end,
-                           max_frames));
+               fmt::format("start {} to end {} are too many frames; at most {} are allowed",
+                           scene_.start, scene_.end, max_frames));
     }
     for (const Surface& surface : scene_.surfaces) {
       check_name(surface.name);
@@ -60,10 +61,10 @@ class SceneChecker {
  private:
   void check_name(const std::string& name) {
     if (!is_name(name)) {
-      complain(name, "name",
-               fmt::format("the name \"{}\" is not a letter or _ followed by letters, "
-                           "digits, _ and -",
-                           name));
+      complain(
+          name, "name",
+          fmt::format("the name \"{}\" must be a letter or _ followed by letters, digits, _ and -",
+                      name));
     } else if (!names_.insert(name).second) {
       complain(name, "name", fmt::format("the name \"{}\" is given twice", name));
     }
@@ -79,8 +80,8 @@ class SceneChecker {
     }
     if (std::int64_t{sheet.columns} * sheet.rows > max_sheet_vertices) {
       complain(name, "columns",
-               fmt::format("{} x {} vertices are more than {}", sheet.columns, sheet.rows,
-                           max_sheet_vertices));
+               fmt::format("{} x {} vertices are too many; at most {} are allowed", sheet.columns,
+                           sheet.rows, max_sheet_vertices));
     }
     for (const auto& [attribute, extent] :
          {std::pair{"width", sheet.width}, std::pair{"depth", sheet.depth}}) {
@@ -96,8 +97,9 @@ class SceneChecker {
                      const std::vector<std::string>& targets) {
     for (const std::string& target : targets) {
       if (!surfaces_.contains(target)) {
-        complain(name, "targets",
-                 fmt::format("{} \"{}\" targets \"{}\", which is no surface", what, name, target));
+        complain(
+            name, "targets",
+            fmt::format("{} \"{}\" targets \"{}\", which is not a surface", what, name, target));
       }
     }
   }
@@ -106,7 +108,7 @@ class SceneChecker {
     if (!force.group.empty() && !groups_.contains(force.group)) {
       complain(
           force.name, "group",
-          fmt::format("force \"{}\" is in \"{}\", which is no group", force.name, force.group));
+          fmt::format("force \"{}\" is in \"{}\", which is not a group", force.name, force.group));
     }
   }
 
@@ -146,7 +148,8 @@ Result<void> check_mesh_file(const std::filesystem::path& file) {
   if (auto readable = check_readable(file); !readable) return readable;
   std::error_code status_error;
   if (std::filesystem::is_regular_file(file, status_error)) return {};
-  return fail(ErrorCode::Unreadable, "cannot read the file: it is no regular file", file.string());
+  return fail(ErrorCode::Unreadable, "cannot read the file: it is not a regular file",
+              file.string());
 }
 
 Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin) {

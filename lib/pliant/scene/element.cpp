@@ -47,8 +47,8 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
     return findings.add_problem(
         given.GetLineNum(),
         value_problem(element, given.Name(), given.Value(),
-                      fmt::format("{} is animated too (line {}); one of both must go", given.Name(),
-                                  row.line)));
+                      fmt::format("{} is already animated (line {}); remove one of them",
+                                  given.Name(), row.line)));
   row.line = given.GetLineNum();
   if (row.format.need == Need::Later) {
     row.is_sound = false;
@@ -95,8 +95,8 @@ bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> c
        node = node->NextSibling()) {
     if (node->ToText())
       findings.add_problem(node->GetLineNum(),
-                           fmt::format("{} holds the text {}; no text belongs here", tag(element),
-                                       in_quotes(trimmed(node->Value()))));
+                           fmt::format("{} contains the text {}; no text is allowed here",
+                                       tag(element), in_quotes(trimmed(node->Value()))));
     const auto* child = node->ToElement();
     if (!child) continue;
     const auto known = std::find_if(children.begin(), children.end(), [&](const Child& candidate) {

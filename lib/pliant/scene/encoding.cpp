@@ -35,15 +35,17 @@ std::optional<EncodingFault> find_encoding_fault(std::string_view text) {
     return EncodingFault{0, "the file is UTF-16; save it as UTF-8"};
   for (std::size_t at = 0; at < text.size();) {
     const unsigned byte = byte_at(text, at);
-    if (byte == 0) return EncodingFault{at, "a NUL byte; a scene is text in UTF-8"};
+    if (byte == 0)
+      return EncodingFault{at, "the file contains a NUL byte; a scene must be text in UTF-8"};
     if (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r')
-      return EncodingFault{at, fmt::format("the control character 0x{:02X}, which XML does not "
-                                           "allow",
-                                           byte)};
+      return EncodingFault{
+          at,
+          fmt::format("the file contains the control character 0x{:02X}, which XML does not allow",
+                      byte)};
     const std::size_t length = character_length(text, at);
     if (length == 0)
       return EncodingFault{
-          at, fmt::format("the byte 0x{:02X} is no UTF-8; save the file as UTF-8", byte)};
+          at, fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8", byte)};
     at += length;
   }
   return std::nullopt;

@@ -20,9 +20,10 @@ void check_single_falloff(const tinyxml2::XMLElement& falloff, const Attribute& 
     findings.add_problem(line, fmt::format("{} has a second <falloff>; the first is at line {}",
                                            parent, first_line));
   else if (attribute.line != 0)
-    findings.add_problem(line, fmt::format("{} has a <falloff>, and the attribute falloff too "
-                                           "(line {}); one of both must go",
-                                           parent, attribute.line));
+    findings.add_problem(
+        line, fmt::format(
+                  "{} has both a <falloff> and the attribute falloff (line {}); remove one of them",
+                  parent, attribute.line));
   if (first_line == 0) first_line = line;
 }
 

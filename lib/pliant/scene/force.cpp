@@ -19,8 +19,8 @@ void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& f
   if (row.line == 0) return;
   row.is_sound = false;
   findings.add_problem(row.line,
-                       fmt::format("{} deformationRadius: a force in a <group> selects no region, "
-                                   "the deformationRadius of the group does; leave it out",
+                       fmt::format("{} deformationRadius: a force in a <group> must not have one; "
+                                   "the deformationRadius of the group selects the region",
                                    tag(element)));
 }
 

@@ -23,8 +23,9 @@ void note_idle_targets(const Group& group, std::span<const Force> forces, SceneF
       if (std::find(group.targets.begin(), group.targets.end(), target) == group.targets.end())
         file.findings.add_note(
             file.origin.line_of(force.name, "targets"),
-            fmt::format("{}.targets: {} is no target of its group {}: nothing acts there",
-                        force.name, in_quotes(target), in_quotes(group.name)));
+            fmt::format(
+                "{}.targets: {} is not a target of the group {}: the force has no effect there",
+                force.name, in_quotes(target), in_quotes(group.name)));
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ Reading<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind k
                        result.kind == Kind::Mirror;
   if (kind == ValueKind::Boolean && result.kind != Kind::Hold && result.kind != Kind::Repeat &&
       result.kind != Kind::Mirror)
-    return tl::unexpected(std::string("a boolean channel only has hold, repeat and mirror"));
+    return tl::unexpected(std::string("a boolean channel allows only hold, repeat and mirror"));
   if (result.kind == Kind::Slope) {
     const Reading<Value<D>> slope = parse_value<D>(rest, kind);
     if (!slope) return tl::unexpected("the slope: " + slope.error());
@@ -137,7 +137,7 @@ Reading<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind k
     result.count = static_cast<double>(*count);
   } else if (!rest.empty()) {
     return tl::unexpected(
-        fmt::format("{} stands after {}, which takes nothing", in_quotes(rest), word));
+        fmt::format("{} follows {}, which has no parameter", in_quotes(rest), word));
   }
   return result;
 }
@@ -159,7 +159,7 @@ Reading<std::array<double, 4>> parse_control(std::string_view text) {
   if (Reading<void> read = parse_numbers(text, control); !read)
     return tl::unexpected("x1 y1 x2 y2: " + read.error());
   for (const double x : {control[0], control[2]})
-    if (x < 0 || x > 1) return tl::unexpected(std::string("x1 and x2 must lie within 0 to 1"));
+    if (x < 0 || x > 1) return tl::unexpected(std::string("x1 and x2 must be from 0 to 1"));
   return control;
 }
 

@@ -147,8 +147,7 @@ void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
   else if (previous_ && key_.frame < *previous_)
     findings_.add_problem(
         element.GetLineNum(),
-        fmt::format("{} {} {} is not after {} {} of line {}: keys stand in "
-                    "increasing order",
+        fmt::format("{} {} {} is not after {} {} of line {}: keys must be in increasing order",
                     tag(element), name, key_.frame, name, *previous_, previous_line_));
   previous_ = key_.frame;
   previous_line_ = element.GetLineNum();
@@ -165,7 +164,7 @@ void CurveReader<D>::check_stepping(const tinyxml2::XMLElement& element, Table& 
   for (const std::string_view name : shaping)
     if (is_given(table, name))
       findings_.add_problem(find(table, name)->line,
-                            fmt::format("{} {}: a boolean channel steps, {} has no meaning for it",
+                            fmt::format("{} {}: a boolean channel steps, so {} is not allowed",
                                         tag(element), name, name));
   const bool is_step = interpolation.kind == Interpolation::Kind::Step ||
                        interpolation.kind == Interpolation::Kind::StepNext;
@@ -233,7 +232,7 @@ Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_
     if (is_given(key_table_, first) && is_given(key_table_, second))
       findings_.add_problem(
           find(key_table_, second)->line,
-          fmt::format("{} has both {} and {}; one of them must go", tag(element), first, second));
+          fmt::format("{} has both {} and {}; remove one of them", tag(element), first, second));
   };
   exclude("tangent", name);
   exclude("tangent", handle_name);

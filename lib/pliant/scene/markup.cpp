@@ -20,7 +20,7 @@ constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_attributes = 100;     // per element
 constexpr std::size_t most_markup = 20'000'000;  // elements and attributes per file
 
-constexpr std::string_view one_scene = "; a scene file holds one <scene>";
+constexpr std::string_view one_scene = "; a scene file must contain one <scene>";
 
 bool begins_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
@@ -164,7 +164,7 @@ void MarkupScanner::finish() {
                                    open_.back().name, open_.back().line));
   if (trimmed(text_).empty())
     return findings_.add_problem(1, fmt::format("the file is empty{}", one_scene));
-  if (!has_root_) stop(line_, fmt::format("the file holds no element{}", one_scene));
+  if (!has_root_) stop(line_, fmt::format("the file contains no element{}", one_scene));
 }
 
 void MarkupScanner::scan_text() {
@@ -174,8 +174,8 @@ void MarkupScanner::scan_text() {
   if (open_.empty() && !trimmed(text).empty()) {
     const auto ahead = text.substr(0, text.find_first_not_of(blanks));
     stop(line + static_cast<int>(std::count(ahead.begin(), ahead.end(), '\n')),
-         has_root_ ? fmt::format("the text {} stands outside the <scene>", in_quotes(trimmed(text)))
-                   : fmt::format("text stands ahead of the <scene>{}", one_scene));
+         has_root_ ? fmt::format("the text {} is outside the <scene>", in_quotes(trimmed(text)))
+                   : fmt::format("there is text before the <scene>{}", one_scene));
   }
 }
 
@@ -186,7 +186,7 @@ void MarkupScanner::scan_comment() {
 }
 
 void MarkupScanner::scan_cdata() {
-  if (open_.empty()) return stop(line_, "a CDATA section stands outside the <scene>");
+  if (open_.empty()) return stop(line_, "a CDATA section is outside the <scene>");
   take(9);
   take_until("]]>", "a CDATA section");
 }
@@ -194,7 +194,7 @@ void MarkupScanner::scan_cdata() {
 void MarkupScanner::scan_doctype() {
   const int line = line_;
   is_prologue_ = false;
-  if (has_root_) return stop(line, "a DOCTYPE stands ahead of the <scene> only");
+  if (has_root_) return stop(line, "a DOCTYPE is allowed only before the <scene>");
   const std::string_view text = take_until(">", "a DOCTYPE");
   if (text.find('[') != std::string_view::npos)
     stop(line,
@@ -205,7 +205,8 @@ void MarkupScanner::scan_doctype() {
 void MarkupScanner::scan_instruction() {
   const int line = line_;
   if (!is_prologue_)
-    return stop(line, "the XML declaration and processing instructions stand ahead of all else");
+    return stop(line,
+                "the XML declaration and processing instructions must come before everything else");
   take(2);
   const std::string_view name = take_name();
   const std::string_view text = take_until("?>", "an XML declaration or processing instruction");
@@ -230,15 +231,15 @@ void MarkupScanner::scan_closing_tag() {
   skip_blanks();
   if (at_end()) return stop(line_, "the file ends inside a closing tag");
   if (name.empty() || next() != '>')
-    return stop(line, fmt::format("a closing tag is </name>, not {}",
+    return stop(line, fmt::format("a closing tag must be </name>, not {}",
                                   in_quotes(fmt::format("</{}{}", name, next()))));
   take(1);
   if (open_.empty()) {
-    return stop(line, has_root_ ? fmt::format("</{}> closes nothing that is open", name)
-                                : std::string("a closing tag stands ahead of the <scene>"));
+    return stop(line, has_root_ ? fmt::format("</{}> has no opening tag", name)
+                                : std::string("there is a closing tag before the <scene>"));
   }
   if (open_.back().name != name)
-    return stop(line, fmt::format("</{}> stands where <{}> of line {} has to be closed first", name,
+    return stop(line, fmt::format("</{}> comes before <{}> of line {} is closed", name,
                                   open_.back().name, open_.back().line));
   open_.pop_back();
 }
@@ -250,11 +251,12 @@ void MarkupScanner::scan_opening_tag() {
   const Open element{take_name(), line};
   if (element.name.empty())
     return stop(line, at_end() ? std::string("the file ends inside a tag")
-                               : fmt::format("{} begins no tag; a literal < is written &lt;",
+                               : fmt::format("{} does not begin a tag; write a literal < as &lt;",
                                              in_quotes(fmt::format("<{}", next()))));
   if (open_.empty() && has_root_)
-    return stop(line, fmt::format("<{}> stands outside the root element; a file holds one <scene>",
-                                  element.name));
+    return stop(line,
+                fmt::format("<{}> is outside the root element; a file must contain one <scene>",
+                            element.name));
   if (!has_root_) is_scene_ = element.name == "scene";
   has_root_ = true;
   if (open_.size() >= deepest)
@@ -278,7 +280,7 @@ void MarkupScanner::scan_opening_tag() {
       return;
     }
     if (at_ == before && !names.empty() && begins_name(next()))
-      return stop(line_, fmt::format("a blank is missing behind the value of {} in <{}>",
+      return stop(line_, fmt::format("a space is missing after the value of {} in <{}>",
                                      in_quotes(names.back()), element.name));
     if (!scan_attribute(element, names)) return;
   }
@@ -297,8 +299,9 @@ bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_
                                      element.line));
   };
   if (name.empty())
-    return refuse(line, fmt::format("{} in <{}> is no attribute; a quote or > is missing before it",
-                                    in_quotes(text_.substr(at_, 1)), element.name));
+    return refuse(line,
+                  fmt::format("{} in <{}> is not an attribute; a quote or > is missing before it",
+                              in_quotes(text_.substr(at_, 1)), element.name));
   skip_blanks();
   if (at_end()) return ends();
   if (next() != '=')
@@ -309,7 +312,7 @@ bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_
   if (at_end()) return ends();
   const char quote = next();
   if (quote != '"' && quote != '\'')
-    return refuse(line, fmt::format("the value of {} in <{}> stands in no quotes", in_quotes(name),
+    return refuse(line, fmt::format("the value of {} in <{}> is not in quotes", in_quotes(name),
                                     element.name));
   take(1);
   const int value_line = line_;
@@ -320,10 +323,9 @@ bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_
                                      in_quotes(name), element.name, line));
   }
   if (text_[closing] == '<')
-    return refuse(line,
-                  fmt::format("the value of {} in <{}> has no closing quote ahead of the next "
-                              "<; a literal < is written &lt;",
-                              in_quotes(name), element.name));
+    return refuse(line, fmt::format("the value of {} in <{}> has no closing quote before the next "
+                                    "<; write a literal < as &lt;",
+                                    in_quotes(name), element.name));
   check_references(take(closing - at_), value_line);
   take(1);
   if (std::find(names.begin(), names.end(), name) != names.end())
@@ -346,9 +348,9 @@ void MarkupScanner::check_references(std::string_view text, int line) {
     counted = at;
     const std::size_t end = text.substr(at, longest).find(';');
     if (end == std::string_view::npos)
-      add(line, "\"&\" begins no entity; a literal & is written &amp;");
+      add(line, "\"&\" does not begin an entity; write a literal & as &amp;");
     else if (!is_reference(text.substr(at + 1, end - 1)))
-      add(line, fmt::format("{} is no known entity; a literal & is written &amp;",
+      add(line, fmt::format("{} is not a known entity; write a literal & as &amp;",
                             in_quotes(text.substr(at, end + 1))));
   }
 }

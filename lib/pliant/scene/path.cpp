@@ -51,7 +51,7 @@ Attribute* find_position(const tinyxml2::XMLElement& element, std::span<Attribut
         given->GetLineNum(),
         value_problem(
             element, "attribute", name,
-            row ? fmt::format("is no position; the positions of {} are: {}", parent,
+            row ? fmt::format("is not a position; the positions of {} are: {}", parent,
                               positions.empty() ? "none" : listed(positions))
                 : fmt::format("{} has no such position{}", parent, hint(name, positions))));
     return nullptr;
@@ -60,7 +60,7 @@ Attribute* find_position(const tinyxml2::XMLElement& element, std::span<Attribut
     findings.add_problem(
         element.GetLineNum(),
         value_problem(element, "attribute", name,
-                      fmt::format("is {} already (line {}); one of both must go",
+                      fmt::format("is already {} (line {}); remove one of them",
                                   row->is_animated ? "animated" : "given", row->line)));
   else
     row->line = element.GetLineNum();

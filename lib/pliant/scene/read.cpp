@@ -99,8 +99,8 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
                  .origin = {.file = name, .lines = {}},
                  .findings = Findings(name)};
   if (text.size() > largest_file)
-    return fail(ErrorCode::InvalidInput, fmt::format("is larger than {} MiB", largest_file >> 20U),
-                name);
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the scene is larger than {} MiB", largest_file >> 20U), name);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
   if (!check_markup(text, file.findings)) return fail(file.findings.to_error());
 

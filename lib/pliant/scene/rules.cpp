@@ -92,8 +92,8 @@ void check_unique(std::span<const Named> named, Findings& findings) {
     const auto [first, is_new] = first_lines.emplace(one.name, one.line);
     if (!is_new)
       findings.add_problem(one.line,
-                           fmt::format("<{}> name={}: the name is taken at line {}; surfaces, "
-                                       "forces and groups have names of their own",
+                           fmt::format("<{}> name={}: the name is already used at line {}; "
+                                       "surfaces, forces and groups must have different names",
                                        one.element, in_quotes(one.name), first->second));
   }
 }

@@ -73,7 +73,8 @@ Attribute frame_rate(double& fps) {
 /// Makes a path relative to the scene's folder into one that can be opened.
 Attribute mesh_path(std::string& path, const std::filesystem::path& folder) {
   return required(custom("file", "path", "", "", "", [&path, folder](std::string_view text) {
-    if (trimmed(text).empty()) return Reading<void>(tl::unexpected(std::string("names no file")));
+    if (trimmed(text).empty())
+      return Reading<void>(tl::unexpected(std::string("is empty; the name of a file is required")));
     path = (folder / text).string();
     return Reading<void>();
   }));
@@ -82,7 +83,8 @@ Attribute mesh_path(std::string& path, const std::filesystem::path& folder) {
 Attribute object_name(std::string& object) {
   return custom("object", "text", "", "", "", [&object](std::string_view text) -> Reading<void> {
     if (text.empty())
-      return tl::unexpected(std::string("names no object; leave it out when the file holds one"));
+      return tl::unexpected(
+          std::string("is empty; leave the attribute out if the file has only one object"));
     object = text;
     return {};
   });

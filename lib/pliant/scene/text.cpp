@@ -25,9 +25,9 @@ std::string trailing_complaint(std::string_view word, std::string_view rest,
                                std::string_view what) {
   const std::string_view number = word.substr(0, word.size() - rest.size());
   if (rest.front() == ',')
-    return fmt::format("not {}: {} stands after {} (a decimal point is written \".\")", what,
+    return fmt::format("not {}: {} follows {} (write the decimal point as \".\")", what,
                        in_quotes(rest), number);
-  return fmt::format("not {}: {} stands after {}", what, in_quotes(rest), number);
+  return fmt::format("not {}: {} follows {}", what, in_quotes(rest), number);
 }
 
 /// Reads a whole word by from_chars; `what` names the expected kind.
@@ -43,7 +43,7 @@ Reading<T> parse_word(std::string_view word, std::string_view what) {
   if (stop != end)
     return tl::unexpected(trailing_complaint(word, word.substr(stop - word.data()), what));
   if (failure == std::errc::result_out_of_range)
-    return tl::unexpected(std::string("outside the range of the numbers that can be stored"));
+    return tl::unexpected(std::string("outside the range of numbers that can be stored"));
   return number;
 }
 
@@ -128,7 +128,8 @@ Reading<double> parse_rate(std::string_view text) {
     const Reading<double> under = parse_finite(whole.substr(slash + 1));
     if (!under)
       return tl::unexpected(fmt::format("after the \"/\" of the fraction: {}", under.error()));
-    if (*under <= 0) return tl::unexpected(std::string("a fraction needs a number > 0 below"));
+    if (*under <= 0)
+      return tl::unexpected(std::string("the denominator of the fraction must be greater than 0"));
     rate /= *under;
   }
   if (!(rate > 0) || !std::isfinite(rate))

@@ -282,7 +282,7 @@ Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
   MemoryShare surfaces_share(&memory);
   if (!surfaces_share.try_resize(std::min(options.max_memory, simulation.surface_memory())))
     return fail(ErrorCode::OutOfMemory,
-                "the surfaces' memory " + surfaces_share.complaint(simulation.surface_memory()));
+                "simulating the surfaces " + surfaces_share.complaint(simulation.surface_memory()));
   std::vector<std::vector<Case>> cases;
   std::size_t count = 0;
   for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {

@@ -51,7 +51,7 @@ Result<void> PreviewBody::reserve() {
   const std::size_t bytes =
       static_cast<std::size_t>(node_count()) * 9 * 3 * sizeof(double) * (has_two ? 2 : 1);
   if (!share_.try_resize(bytes)) {
-    return fail(ErrorCode::OutOfMemory, "what its forces would do " + share_.complaint(bytes));
+    return fail(ErrorCode::OutOfMemory, "previewing its forces " + share_.complaint(bytes));
   }
   real_.emplace(make(settings_.reference));
   if (has_two) plain_.emplace(make(Reference::Rest));

@@ -120,10 +120,10 @@ Result<std::string> Simulation::Run::state_bytes(int frame) {
 
 Result<int> Simulation::Run::restore(std::string_view bytes) {
   const auto refuse = [](std::string message) {
-    return fail(ErrorCode::InvalidInput, "cannot go on from the state: " + std::move(message));
+    return fail(ErrorCode::InvalidInput, "cannot restore the state: " + std::move(message));
   };
   const auto held = unsealed(bytes, checkpoint_magic);
-  if (!held) return refuse("it is none, or damaged");
+  if (!held) return refuse("it is not a saved state, or it is damaged");
   ByteReader reader(*held);
   const auto frame = static_cast<std::int64_t>(reader.number());
   const std::uint64_t count = reader.number();
@@ -132,7 +132,7 @@ Result<int> Simulation::Run::restore(std::string_view bytes) {
                               scene_.start, scene_.end));
   }
   if (count != bodies_.size()) {
-    return refuse(fmt::format("it is of {} surface{}, the scene has {}", count,
+    return refuse(fmt::format("it has {} surface{}, but the scene has {}", count,
                               count == 1 ? "" : "s", bodies_.size()));
   }
   std::vector<BodyState> states;
@@ -142,10 +142,9 @@ Result<int> Simulation::Run::restore(std::string_view bytes) {
     const Hash of_scene = sealing_key(k, static_cast<int>(frame));
     auto stored = from_bytes(state, of_scene, bodies_[k].rest(), has_marks(k));
     if (!stored) {
-      return refuse(
-          fmt::format("surface \"{}\" is not the same, or what acts on it before frame "
-                      "{} is not, or the engine",
-                      scene_.surfaces[k].name, frame));
+      return refuse(fmt::format(
+          "surface \"{}\", its channels or forces before frame {}, or the engine is not the same",
+          scene_.surfaces[k].name, frame));
     }
     states.push_back(std::move(stored->state));
   }

@@ -43,7 +43,7 @@ tl::unexpected<Error> fail_with_all(std::vector<Error> errors, const SceneOrigin
 }
 
 tl::unexpected<Error> interrupted() {
-  return fail(ErrorCode::Interrupted, "interrupted ahead of the first frame");
+  return fail(ErrorCode::Interrupted, "interrupted before the first frame");
 }
 
 }  // namespace

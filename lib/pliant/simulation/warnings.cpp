@@ -31,7 +31,7 @@ std::string Warning::message() const {
   const std::string when = (is_single ? "at frame " : "at frames ") + frames.to_string(most_ranges);
   switch (kind) {
     case Kind::RegionTooSmall:
-      return fmt::format("{} \"{}\" selects fewer than 3 x 3 nodes of \"{}\", too few to solve, {}",
+      return fmt::format("{} \"{}\" selects fewer than 3 x 3 nodes of \"{}\" {}: too few to solve",
                          noun, force, surface, when);
     case Kind::LostNodes:
       return fmt::format(
@@ -40,11 +40,11 @@ std::string Warning::message() const {
           noun, force, surface, when);
     case Kind::OutsideRegion:
       return fmt::format(
-          "the force box of \"{}\" lies outside the region solved on \"{}\" {}: it pushes nothing",
+          "the force box of \"{}\" is outside the region solved on \"{}\" {}: it pushes no node",
           force, surface, when);
     case Kind::SelectsNothing:
       return fmt::format(
-          "{} \"{}\" selects no node of {} {}: none is nearer than its deformationRadius", noun,
+          "{} \"{}\" selects no node of {} {}: no node is nearer than its deformationRadius", noun,
           force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
     case Kind::PushesNothing:
       return fmt::format(
@@ -52,18 +52,16 @@ std::string Warning::message() const {
           "or its direction or falloff is 0 there",
           force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
     case Kind::NeverStarts:
-      return fmt::format("surface \"{}\" is not solved {}: its startFrame comes later", surface,
-                         when);
+      return fmt::format("surface \"{}\" is not solved {}: its startFrame is later", surface, when);
     case Kind::TangentsUnused:
       return fmt::format("the tangents of \"{}\" have no effect {}: no force selects a region",
                          surface, when);
     case Kind::ForcesApart:
       return fmt::format(
-          "{} select boxes of \"{}\" that do not all meet, {}: one region around all of them is "
-          "solved, "
-          "in which each moves more than it would alone; combine=\"islands\" solves each by "
-          "itself, "
-          "and combine=\"box\" written out says that this is meant",
+          "{} select boxes of \"{}\" that do not all meet {}: one region around all of them is "
+          "solved, in which each force moves the surface more than alone; combine=\"islands\" "
+          "solves each box by itself, combine=\"box\" in the scene keeps one region without this "
+          "warning",
           names_text(force, others), surface, when);
   }
   return {};

@@ -19,7 +19,8 @@ Arm<D> arm_of(const Tangent<D>& tangent, const Value<D>& slope, double span, boo
     arm.length = direction * tangent.handle_frames;
     if (arm.length < 0) {
       changes.push_back(name + " handle points backwards in time (" +
-                        number_text(tangent.handle_frames) + " frames) and counts as none");
+                        number_text(tangent.handle_frames) +
+                        " frames) and is treated as having no length");
       arm.length = 0;
       return arm;
     }
@@ -35,7 +36,7 @@ Arm<D> arm_of(const Tangent<D>& tangent, const Value<D>& slope, double span, boo
   arm.length = *tangent.length;
   if (arm.length < 0) {
     changes.push_back(name + " tangent has the negative length " + number_text(arm.length) +
-                      " and counts as one of length 0");
+                      " and is treated as having no length");
     arm.length = 0;
   }
   arm.length = std::fabs(arm.length);

@@ -63,7 +63,7 @@ void check_interpolation(const Interpolation& next, Checker& check) {
     check.numbers("control of cubicBezier", next.control);
     for (const double x : {next.control[0], next.control[2]}) {
       check.rule(x >= 0 && x <= 1, "control of cubicBezier has x = " + number_text(x) +
-                                       "; x1 and x2 must lie in [0, 1]");
+                                       "; x1 and x2 must be from 0 to 1");
     }
   }
   if (next.kind != Interpolation::Kind::Easing) return;
@@ -118,9 +118,9 @@ std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
     check.number("frame", key.frame);
     if (k > 0) {
       const double before = keys.keys[k - 1].frame;
-      check.rule(key.frame > before, "frame " + number_text(key.frame) +
-                                         " does not come after frame " + number_text(before) +
-                                         " of the key before; frames must strictly increase");
+      check.rule(key.frame > before, "frame " + number_text(key.frame) + " is not after frame " +
+                                         number_text(before) +
+                                         " of the previous key; frames must strictly increase");
     }
     check.numbers("value", key.value);
     if (key.left) check.numbers("left value", *key.left);
@@ -130,7 +130,7 @@ std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
     if (k + 1 < keys.keys.size()) {
       check.rule(Easing::is_sound(key.next, keys.keys[k + 1].frame - key.frame),
                  "period is " + number_text(key.next.period.value_or(0)) +
-                     "; the segment must not hold more than 1e15 periods");
+                     "; the segment must not have more than 1e15 periods");
     }
   }
   if (check.error()) return check.error();

@@ -88,7 +88,8 @@ class Compiler {
       const bool jumps = has_jump(keys(), k);
       const bool follows_step = k > 0 && keys()[k - 1].next.kind == Interpolation::Kind::Step;
       if (key.left && !jumps) {
-        note(k, Subject::Left, "left has no effect: the segment before is a step, which holds");
+        note(k, Subject::Left,
+             "left has no effect: the segment before is a step, which keeps its value");
       }
       if (follows_step) {
         track().arrivals.push_back(keys()[k - 1].value);
@@ -165,7 +166,8 @@ class Compiler {
       fail(blames_out ? k : k + 1,
            std::string(blames_out ? "out" : "in") + " tangent reaches " +
                number_text(blames_out ? out.length : in.length) + " frames into a segment of " +
-               number_text(span) + " frames: time would run backwards, and overshoot is an error");
+               number_text(span) +
+               " frames: time would run backwards, which overshoot=\"error\" does not allow");
       return;
     }
     const Lengths legal = corrected(lengths, span, author_.overshoot);
@@ -205,7 +207,7 @@ class Compiler {
   std::string correction(const std::string& side, double from, double to, double span) const {
     const std::string reason =
         author_.overshoot == Overshoot::Contain
-            ? "none may be longer than its segment of " + number_text(span) + " frames"
+            ? "no tangent may be longer than its segment of " + number_text(span) + " frames"
             : "time would run backwards otherwise";
     return side + " tangent " + (to < from ? "shortened" : "lengthened") + " from " +
            number_text(from) + " to " + number_text(to) + " frames: " + reason;
@@ -217,8 +219,8 @@ class Compiler {
       if (std::fabs(rate[c]) <= largest_rate) continue;
       fail(key, side + " tangent has " +
                     (std::isfinite(slope[c]) ? "the slope " + number_text(slope[c]) : "a slope") +
-                    ", which rises beyond all numbers within its segment; keys must not be that "
-                    "close together for their change of value");
+                    ", which overflows within its segment; the keys are too close together for "
+                    "their change of value");
     }
   }
 

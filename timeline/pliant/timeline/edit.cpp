@@ -63,13 +63,13 @@ tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t
   CurveKeys<D> keys = curve.keys();
   const double frame = keys.keys[key].frame;
   if (keys.keys.size() == 1) {
-    return tl::unexpected(
-        CurveError{key, "the key at frame " + timeline::number_text(frame) +
-                            " is the only one and must stay; a curve has at least one key"});
+    return tl::unexpected(CurveError{
+        key, "the key at frame " + timeline::number_text(frame) +
+                 " is the only one and cannot be deleted; a curve must have at least one key"});
   }
   if (keys.loop && keys.loop->from == frame) {
     return tl::unexpected(CurveError{key, "the key at frame " + timeline::number_text(frame) +
-                                              " must stay; the loop starts from it"});
+                                              " cannot be deleted; the loop starts from it"});
   }
   join_around(key, keys);
   keys.keys.erase(keys.keys.begin() + key);

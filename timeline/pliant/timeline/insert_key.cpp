@@ -91,9 +91,9 @@ class Insertion {
       if (!is_loop(*side) && !(side->kind == Outer::Linear && keys().size() == 1)) continue;
       if (keys().size() > 1) {
         return CurveError{is_before ? 0 : keys().size() - 1,
-                          "frame " + number_text(frame_) + " lies outside the keys, of which " +
+                          "frame " + number_text(frame_) + " is outside the keys, and " +
                               (side == &result_.before ? "before" : "after") +
-                              " shows copies; a key there would become part of every copy"};
+                              " shows copies of them; a key there would become part of every copy"};
       }
       *side = {};  // for a single key
     }
@@ -193,9 +193,9 @@ class Insertion {
     }
     if (!is_row_of_cubics(easing.ease)) {
       return CurveError{k, "the segment from frame " + number_text(segment.start) +
-                               " is eased by " + name_of(easing) +
-                               ", which has no key inside: only quad, cubic, back and bounce are "
-                               "made of cubics; bake it first"};
+                               " has the easing " + name_of(easing) +
+                               ", which a key cannot divide: only quad, cubic, back and bounce "
+                               "consist of cubics; bake it first"};
     }
     std::vector<double> frames = {segment.start, frame_, segment.end};
     for (const double joint : joints_of(easing)) {

@@ -46,13 +46,13 @@ std::optional<CurveError> fault_of_copies(const WrittenKeys<D>& written) {
     if (!(keys[k].frame > keys[k - 1].frame)) {
       return CurveError{written.origin[k], "a copy of this key by the loop falls on frame " +
                                                number_text(keys[k].frame) +
-                                               " together with the key before; frames must "
+                                               " together with the previous key; frames must "
                                                "strictly increase, also after rounding"};
     }
     if (!Easing::is_sound(keys[k - 1].next, keys[k].frame - keys[k - 1].frame)) {
       return CurveError{written.origin[k - 1],
                         "period is " + number_text(*keys[k - 1].next.period) +
-                            "; the segment must not hold more than 1e15 periods"};
+                            "; the segment must not have more than 1e15 periods"};
     }
   }
   return std::nullopt;
@@ -87,7 +87,7 @@ tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
   if (count > most_written_keys) {
     return tl::unexpected(
         CurveError{looped.front(), "the loop writes out " + number_text(count) + " keys; at most " +
-                                       number_text(most_written_keys) + " are possible"});
+                                       number_text(most_written_keys) + " are allowed"});
   }
 
   for (std::size_t k = 0; k < keys.keys.size(); ++k) {

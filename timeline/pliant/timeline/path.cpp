@@ -59,25 +59,25 @@ Value<3> chord_rate(const Value<3>& from, const Value<3>& to) {
 
 std::optional<PathError> broken_rule(const std::vector<Value<3>>& waypoints, bool is_closed) {
   if (waypoints.size() < Path::least_waypoints) {
-    return PathError{waypoints.size(), "a path has three waypoints or more"};
+    return PathError{waypoints.size(), "a path must have at least three waypoints"};
   }
   if (waypoints.size() > Path::most_waypoints) {
-    return PathError{waypoints.size(), "a path has at most 100000 waypoints"};
+    return PathError{waypoints.size(), "a path must have at most 100000 waypoints"};
   }
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     for (const double x : waypoints[k]) {
       if (!(std::abs(x) <= timeline::largest_number)) {
-        return PathError{
-            k, "the coordinate " + timeline::number_text(x) + " is not finite or beyond 1e150"};
+        return PathError{k, "has the coordinate " + timeline::number_text(x) +
+                                ", which is not finite or beyond 1e150"};
       }
     }
     if (k == 0 && !is_closed) continue;
     const Value<3>& before = waypoints[k == 0 ? waypoints.size() - 1 : k - 1];
     if (!(distance(before, waypoints[k]) > 0)) {
-      return PathError{k, k == 0
-                              ? "is in the place of the last one, from which a closed path comes "
-                                "back to it"
-                              : "is in the place of the one before"};
+      return PathError{
+          k, k == 0
+                 ? "is at the same position as the last one, from which a closed path returns to it"
+                 : "is at the same position as the one before"};
     }
   }
   return {};

@@ -190,10 +190,9 @@ tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) 
   before.loop.reset();
   if (const auto key = EndKeys<D>(before).held_jump()) {
     return tl::unexpected(CurveError{
-        written->origin[*key],
-        "the key at frame " + number_text(before.keys[*key].frame) +
-            " jumps, and its value is held after the last copy of a side that repeats; reversed "
-            "it cannot be: remove the count, or the jump"});
+        written->origin[*key], "the key at frame " + number_text(before.keys[*key].frame) +
+                                   " jumps, and a side that repeats keeps its value after the last "
+                                   "copy, which cannot be reversed; remove the count or the jump"});
   }
   const auto shape_before = shape_of(before);
   if (!shape_before) return tl::unexpected(shape_before.error());

@@ -122,7 +122,7 @@ std::optional<CurveError> fault_of(const Curve<D>& curve, const Scaling<D>& scal
       return CurveError{0, name + " is " + number_text(number) + "; it must be a finite number"};
     }
     if (is_factor && number == 0) {
-      return CurveError{0, name + " is 0; a curve cannot be scaled to nothing"};
+      return CurveError{0, name + " is 0; it must be a number other than 0"};
     }
     return std::nullopt;
   };
