@@ -40,10 +40,21 @@ Result<void> write_page(const std::filesystem::path& file, const std::string& pa
   return output->commit();
 }
 
+std::string page_file(const ViewOptions& options) { return options.out.value_or("view.html"); }
+
+// Whether the scene can be served, or the result can be written to its place.
+Result<void> check_places(const ViewOptions& options) {
+  if (options.port) {
+    return check_scene_is_file(options.scene, "--serve reads the scene again after every save");
+  }
+  if (options.png) return check_output_file("--png", *options.png);
+  if (options.movie) return check_output_file("--movie", *options.movie);
+  return check_output_file("-o", page_file(options));
+}
+
 int page_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::string out = options.out.value_or("view.html");
-  if (auto place = check_output_file("-o", out); !place) return report(place.error());
+  const std::string out = page_file(options);
   auto scene = read_scene(options.scene, options.root);
   if (!scene) return report(scene.error());
   if (const auto input = input_named(out, *scene); !input.empty()) {
@@ -126,16 +137,10 @@ void add_view(CLI::App& app, ViewOptions& options) {
 
 int run_view(const ViewOptions& options) {
   catch_interrupts();
+  if (auto places = check_places(options); !places) return report(places.error());
   const auto page = page_template();
   if (!page) return report(page.error());
-  if (options.port) {
-    if (auto file =
-            check_scene_is_file(options.scene, "--serve reads the scene again after every save");
-        !file) {
-      return report(file.error());
-    }
-    return serve_view(options, *page);
-  }
+  if (options.port) return serve_view(options, *page);
   if (options.png) return picture_view(options, *page);
   if (options.movie) return movie_view(options, *page);
   return page_view(options, *page);

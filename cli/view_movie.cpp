@@ -94,7 +94,6 @@ struct Movie {
 
 Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
   // All checks that do not need a run come first.
-  if (auto place = check_output_file("--movie", *options.movie); !place) return fail(place.error());
   if (auto format = movie_format(*options.movie); !format) return fail(format.error());
   auto scene = read_scene(options.scene, options.root);
   if (!scene) return fail(scene.error());

@@ -162,7 +162,6 @@ PictureOrder order_of(int number, const std::vector<int>& frames, PictureSize si
 }
 
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
-  if (auto place = check_output_file("--png", *options.png); !place) return place;
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
   auto scene = read_scene(options.scene, options.root);
