@@ -1,6 +1,7 @@
-# Installs the build to a scratch prefix, builds the consumer against it alone, and runs it.
+# Installs the build to a scratch prefix, builds the consumer against it alone, and runs it. If PREFIX
+# is given, the consumer is built against the installation there.
 # The C++ of the README is built with it, so that it stays true.
-# usage: cmake -DBUILD=… -DSOURCE=… -DREADME=… -DWORK=… -DCOMPILER=… -P run.cmake
+# usage: cmake {-DBUILD=… | -DPREFIX=…} -DSOURCE=… -DREADME=… -DWORK=… -DCOMPILER=… -P run.cmake
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -9,14 +10,16 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE "${WORK}")
-run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/prefix")
-
-foreach(completion bash-completion/completions/pliant zsh/site-functions/_pliant
-                   fish/vendor_completions.d/pliant.fish)
-  if(NOT EXISTS "${WORK}/prefix/share/${completion}")
-    message(FATAL_ERROR "there is no share/${completion}")
-  endif()
-endforeach()
+if(NOT PREFIX)
+  set(PREFIX "${WORK}/prefix")
+  run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
+  foreach(completion bash-completion/completions/pliant zsh/site-functions/_pliant
+                     fish/vendor_completions.d/pliant.fish)
+    if(NOT EXISTS "${PREFIX}/share/${completion}")
+      message(FATAL_ERROR "there is no share/${completion}")
+    endif()
+  endforeach()
+endif()
 
 file(READ "${README}" readme)
 string(REGEX MATCH "```cpp\n(#include[^\n]*\n)([^`]*)```" code "${readme}")
@@ -27,7 +30,7 @@ file(WRITE "${WORK}/readme.cpp" "${CMAKE_MATCH_1}\nint main() {\n${CMAKE_MATCH_2
 
 set(flags "-DCMAKE_CXX_COMPILER=${COMPILER}")
 # A replay that holds, and one of another scene.
-set(pliant "${WORK}/prefix/bin/pliant")
+set(pliant "${PREFIX}/bin/pliant")
 file(READ "${SOURCE}/scene.xml" scene)
 string(REPLACE "4000" "4001" scene "${scene}")
 file(WRITE "${WORK}/other.xml" "${scene}")
@@ -35,7 +38,7 @@ run("${pliant}" replay record "${SOURCE}/scene.xml" -o "${WORK}/scene.replay")
 run("${pliant}" replay record "${WORK}/other.xml" -o "${WORK}/other.replay")
 
 run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${WORK}/build"
-    "-DCMAKE_PREFIX_PATH=${WORK}/prefix" "-DREADME_CODE=${WORK}/readme.cpp" "-DLOGS=${WORK}"
+    "-DCMAKE_PREFIX_PATH=${PREFIX}" "-DREADME_CODE=${WORK}/readme.cpp" "-DLOGS=${WORK}"
     ${flags})
 run("${CMAKE_COMMAND}" --build "${WORK}/build")
 run("${WORK}/build/consumer")
