@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-// The memory that parts of a run need, known before it is allocated. Not for other rooms.
+// The memory that parts of a run need, known before it is allocated. Internal to simulation.
 
 /// A mesh. [bytes]
 std::size_t bytes_of(const Mesh& mesh);

@@ -13,7 +13,7 @@
 
 namespace pliant {
 
-// A body for trying forces, for `preview_forces`; not for other rooms. It is the engine's own
+// A body for trying forces, for `preview_forces`; internal to simulation. It is the engine's own
 // `Body`, so that a preview and a bake agree. *Plain* means: elastic about its rest shape and
 // without tangents, so that only forces move it.
 class PreviewBody {

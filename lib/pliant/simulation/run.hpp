@@ -22,7 +22,7 @@
 namespace pliant {
 
 /// The bodies of a simulation, and the frame that they are at. Its public members are those of
-/// `Simulation`, which forwards to them. Not for other rooms.
+/// `Simulation`, which forwards to them. Internal to simulation.
 class Simulation::Run {
  public:
   Run(Scene scene, const SimulationOptions& options);

@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-// From channels to the values of one frame; not for other rooms.
+// From channels to the values of one frame; internal to simulation.
 
 /// Invalid results of custom forces: a negative or NaN distance, a force that is not finite. They
 /// are replaced by "out of reach" and 0; the caller that sampled the inputs must end the run.

@@ -11,7 +11,7 @@
 namespace pliant {
 
 // Bytes that begin with a magic number and end with a seal, the hash of all bytes before it;
-// numbers have 8 bytes, little-endian. Not for other rooms.
+// numbers have 8 bytes, little-endian. Internal to simulation.
 
 void append(std::string& bytes, const void* from, std::size_t size);
 void append(std::string& bytes, std::uint64_t number);

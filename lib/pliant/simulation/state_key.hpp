@@ -13,7 +13,7 @@ namespace pliant {
 
 struct SurfaceInputs;
 
-// Keys for states, computed from everything that determines a state. Not for other rooms.
+// Keys for states, computed from everything that determines a state. Internal to simulation.
 
 /// The key of a surface at rest under this engine: from its grid and rest positions, the settings
 /// of its body and the solver. An engine whose sources differ in any byte gives other keys.

@@ -9,7 +9,7 @@
 namespace pliant {
 
 // Facts about a step, for warnings. They contain no names of the scene, so they can be stored with
-// the state that the step computed. Not for other rooms.
+// the state that the step computed. Internal to simulation.
 
 /// The facts about one force.
 struct ForceFacts {

@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-// One surface's state as bytes. docs/caching.md describes the layout. Not for other rooms.
+// One surface's state as bytes. docs/caching.md describes the layout. Internal to simulation.
 
 /// A state, and the facts for warnings of the step that computed it.
 struct StoredState {

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-// Which forces act on which surfaces, looked up by name once per scene; not for other rooms.
+// Which forces act on which surfaces, looked up by name once per scene; internal to simulation.
 
 /// The forces and groups that target one surface, enabled or not, in the order of the scene.
 struct SurfaceTargets {
