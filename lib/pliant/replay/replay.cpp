@@ -23,7 +23,7 @@ Result<void> write_frames(Simulation& simulation, const ReplayHeader& header, Re
     const auto frame = digest(simulation, number, threads, has_states);
     if (!frame) return fail(frame.error());
     if (auto written = log.write(*frame); !written) return written;
-    options.frame_done(header.frame_count());
+    if (options.frame_done) options.frame_done(header.frame_count());
   }
   return log.finish();
 }
@@ -89,7 +89,7 @@ Result<void> compare_frames(ReplayLogReader& log, long last, const ReplayOptions
       if (!options.keeps_going) break;
     }
     ++verdict.frame_count;
-    options.frame_done(log.header().frame_count());
+    if (options.frame_done) options.frame_done(log.header().frame_count());
   }
 }
 

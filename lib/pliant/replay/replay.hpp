@@ -30,7 +30,7 @@ struct ReplayOptions {
   bool keeps_going = false;
 
   /// Called after each frame, with the total number of frames.
-  std::function<void(long frame_count)> frame_done = [](long) {};
+  std::function<void(long frame_count)> frame_done = {};
 };
 
 /// Simulates a scene and writes the log, which appears whole or not at all. Errors: those of

@@ -12,12 +12,30 @@
 
 namespace pliant {
 
+SurfaceFrame::SurfaceFrame() = default;
+SurfaceFrame::SurfaceFrame(const SurfaceFrame&) = default;
+SurfaceFrame::SurfaceFrame(SurfaceFrame&&) noexcept = default;
+SurfaceFrame& SurfaceFrame::operator=(const SurfaceFrame&) = default;
+SurfaceFrame& SurfaceFrame::operator=(SurfaceFrame&&) noexcept = default;
+SurfaceFrame::~SurfaceFrame() = default;
+
 SurfaceFrame::SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
                            double peak_displacement)
     : name_(std::move(name)),
       object_positions_(std::move(object_positions)),
       transform_(transform),
       peak_displacement_(peak_displacement) {}
+
+Field SurfaceFrame::positions(Field reuse) const {
+  return to_world(transform_, object_positions_, std::move(reuse));
+}
+
+Frame::Frame() = default;
+Frame::Frame(const Frame&) = default;
+Frame::Frame(Frame&&) noexcept = default;
+Frame& Frame::operator=(const Frame&) = default;
+Frame& Frame::operator=(Frame&&) noexcept = default;
+Frame::~Frame() = default;
 
 Frame::Frame(int number, std::vector<SurfaceFrame> surfaces)
     : number_(number), surfaces_(std::move(surfaces)) {}

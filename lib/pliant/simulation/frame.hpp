@@ -3,7 +3,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -14,17 +13,20 @@ namespace pliant {
 /// One surface at one frame. Owns its data: it may outlive the simulation.
 class SurfaceFrame {
  public:
-  SurfaceFrame() = default;
+  SurfaceFrame();
   SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
                double peak_displacement);
+  SurfaceFrame(const SurfaceFrame&);
+  SurfaceFrame(SurfaceFrame&&) noexcept;
+  SurfaceFrame& operator=(const SurfaceFrame&);
+  SurfaceFrame& operator=(SurfaceFrame&&) noexcept;
+  ~SurfaceFrame();
 
   const std::string& name() const { return name_; }
 
   /// #vertices x 3 in the order of the mesh, world space [length]. Computed from the object-space
   /// positions at each call; reuses the memory of `reuse`.
-  Field positions(Field reuse = {}) const {
-    return to_world(transform_, object_positions_, std::move(reuse));
-  }
+  Field positions(Field reuse = {}) const;
 
   /// #vertices x 3 in the order of the mesh, object space [length].
   const Field& object_positions() const { return object_positions_; }
@@ -46,7 +48,12 @@ class SurfaceFrame {
 /// All surfaces at one frame.
 class Frame {
  public:
-  Frame() = default;
+  Frame();
+  Frame(const Frame&);
+  Frame(Frame&&) noexcept;
+  Frame& operator=(const Frame&);
+  Frame& operator=(Frame&&) noexcept;
+  ~Frame();
   Frame(int number, std::vector<SurfaceFrame> surfaces);
 
   int number() const { return number_; }

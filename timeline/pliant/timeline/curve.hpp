@@ -1,12 +1,12 @@
 #pragma once
 
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include <tl/expected.hpp>
 
+#include "pliant/timeline/bounds.hpp"
 #include "pliant/timeline/curve_report.hpp"
-#include "pliant/timeline/extrapolated.hpp"
 #include "pliant/timeline/handle.hpp"
 #include "pliant/timeline/key.hpp"
 
@@ -17,8 +17,10 @@ class Sampler;
 
 namespace timeline {
 template <int D>
-struct Compiled;
+struct Extrapolated;
 }
+
+namespace timeline {}  // namespace timeline
 
 /// The least and the greatest value of a curve over an interval, per component [unit].
 template <int D>
@@ -61,22 +63,23 @@ class Curve {
   /// for any number of copies.
   ValueRange<D> range(double from, double to) const;
 
-  const CurveKeys<D>& keys() const { return keys_; }
-  const std::vector<CurveNote>& notes() const { return notes_; }
+  const CurveKeys<D>& keys() const;
+  const std::vector<CurveNote>& notes() const;
 
   /// The handles of the Bézier segments, including those of a loop's copies, in the order of
   /// frames: for drawing the curve as its author sees it.
-  const std::vector<KeyHandle<D>>& handles() const { return handles_; }
+  const std::vector<KeyHandle<D>>& handles() const;
 
  private:
   friend class Sampler<D>;
 
-  Curve(CurveKeys<D> keys, timeline::Compiled<D> compiled);
+  struct Parts;
 
-  CurveKeys<D> keys_;
-  timeline::Extrapolated<D> compiled_;
-  std::vector<CurveNote> notes_;
-  std::vector<KeyHandle<D>> handles_;
+  const timeline::Extrapolated<D>& compiled() const;
+
+  explicit Curve(Parts parts);
+
+  std::unique_ptr<const Parts> parts_;  // null once moved from
 };
 
 extern template class Curve<1>;

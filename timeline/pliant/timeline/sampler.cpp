@@ -6,8 +6,8 @@
 namespace pliant {
 
 template <int D>
-Sampler<D>::Sampler(const Curve<D>& curve) : curve_(&curve) {
-  const auto& segments = curve.compiled_.track.segments;
+Sampler<D>::Sampler(const Curve<D>& curve) : curve_(&curve.compiled()) {
+  const auto& segments = curve_->track.segments;
   if (segments.empty()) return;
   here_ = segments.data();
   last_ = here_ + (segments.size() - 1);
@@ -15,7 +15,7 @@ Sampler<D>::Sampler(const Curve<D>& curve) : curve_(&curve) {
 
 template <int D>
 std::size_t Sampler<D>::locate(double frame) {
-  const auto& track = curve_->compiled_.track;
+  const auto& track = curve_->track;
   if (here_ == nullptr) return 0;
   // A segment includes its start but not its end, as in the search.
   if (frame >= here_->end && here_ != last_) ++here_;
@@ -30,7 +30,7 @@ Value<D> Sampler<D>::value(double frame) {
   if (here_ != nullptr) {
     if (frame >= here_->end && here_ != last_) ++here_;
     if (frame > here_->start && frame < here_->end) {
-      return curve_->compiled_.track.value_in(*here_, frame);
+      return curve_->track.value_in(*here_, frame);
     }
   }
   return value_anywhere(frame);
@@ -38,26 +38,25 @@ Value<D> Sampler<D>::value(double frame) {
 
 template <int D>
 Value<D> Sampler<D>::value_anywhere(double frame) {
-  return curve_->compiled_.value(frame, timeline::Limit::At,
-                                 [this](double inner) { return locate(inner); });
+  return curve_->value(frame, timeline::Limit::At, [this](double inner) { return locate(inner); });
 }
 
 template <int D>
 Value<D> Sampler<D>::left_value(double frame) {
-  return curve_->compiled_.value(frame, timeline::Limit::Left,
-                                 [this](double inner) { return locate(inner); });
+  return curve_->value(frame, timeline::Limit::Left,
+                       [this](double inner) { return locate(inner); });
 }
 
 template <int D>
 Value<D> Sampler<D>::velocity(double frame) {
-  return curve_->compiled_.velocity(frame, timeline::Limit::Right,
-                                    [this](double inner) { return locate(inner); });
+  return curve_->velocity(frame, timeline::Limit::Right,
+                          [this](double inner) { return locate(inner); });
 }
 
 template <int D>
 Value<D> Sampler<D>::left_velocity(double frame) {
-  return curve_->compiled_.velocity(frame, timeline::Limit::Left,
-                                    [this](double inner) { return locate(inner); });
+  return curve_->velocity(frame, timeline::Limit::Left,
+                          [this](double inner) { return locate(inner); });
 }
 
 template class Sampler<1>;

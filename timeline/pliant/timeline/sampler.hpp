@@ -6,6 +6,13 @@
 
 namespace pliant {
 
+namespace timeline {
+template <int D>
+struct Extrapolated;
+template <int D>
+struct Segment;
+}  // namespace timeline
+
 /// Evaluates one curve at one frame after the other. It remembers the last segment, so that
 /// playback needs no search; the values are bit-identical to those of the curve. Not thread-safe;
 /// use one sampler per thread.
@@ -25,7 +32,7 @@ class Sampler {
   std::size_t locate(double frame);
   [[gnu::noinline]] Value<D> value_anywhere(double frame);  // keeps value() short
 
-  const Curve<D>* curve_;
+  const timeline::Extrapolated<D>* curve_;
   const timeline::Segment<D>* here_ = nullptr;  // of the last frame; null for a single key
   const timeline::Segment<D>* last_ = nullptr;  // the last one of the curve
 };
