@@ -25,7 +25,7 @@ std::array<int, 3> axes(RotateOrder order);
 /// An affine map from object to world space: p_world = linear p + translation.
 struct Transform {
   Matrix3d linear{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  ///< R S
-  Vector3d translation = {0, 0, 0};        ///< [length]
+  Vector3d translation = {0, 0, 0};                  ///< [length]
 
   /// Whether the inverse exists: no direction is collapsed.
   bool is_invertible() const;
