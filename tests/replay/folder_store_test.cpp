@@ -14,6 +14,7 @@
 #include "support/catch.hpp"
 #include "support/moving_scene.hpp"
 #include "support/scratch_folder.hpp"
+#include "support/shared_store.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -244,6 +245,20 @@ TEST_CASE("a folder that is gone ends the keeping, not the run", "[replay][store
   CHECK(run(s, *store, states).solved == s.end - s.start);
   CHECK(states == all_states(s));
   CHECK_THAT(store->trouble(), contains_text("No such file"));
+}
+
+TEST_CASE("threads share a folder's store", "[replay][store][threads]") {
+  const ScratchFolder scratch;
+  SECTION("with room for all") {
+    const auto store = open(scratch.path());
+    CHECK(share(*store) == shared_states);
+    CHECK(store->trouble().empty());
+  }
+  SECTION("with room for a third") {
+    const auto store = open(scratch.path(), 200'000);
+    CHECK(share(*store) > 0);
+    CHECK(store->trouble().empty());
+  }
 }
 
 TEST_CASE("runs share a folder at the same time", "[replay][store][threads]") {

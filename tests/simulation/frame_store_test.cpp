@@ -10,6 +10,7 @@
 #include "support/catch.hpp"
 #include "support/moving_scene.hpp"
 #include "support/scenes.hpp"
+#include "support/shared_store.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -260,6 +261,14 @@ TEST_CASE("a store that damages what it keeps changes no result", "[simulation][
     const int frame = std::uniform_int_distribution(s.start, s.end)(random);
     CHECK(state_at(simulation, frame) == expected[static_cast<std::size_t>(frame - s.start)]);
   }
+}
+
+TEST_CASE("threads share a store in memory", "[simulation][store][threads]") {
+  MemoryFrameStore large(plenty);
+  CHECK(share(large) == shared_states);
+  MemoryFrameStore small(200'000);
+  CHECK(share(small) > 0);
+  CHECK(small.bytes() <= small.byte_budget());
 }
 
 TEST_CASE("a store that is too small is of less use", "[simulation][store]") {

@@ -1,5 +1,9 @@
 #include "pliant/simulation/noise_clock.hpp"
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 #include "support/catch.hpp"
 
 using namespace pliant;
@@ -47,6 +51,22 @@ TEST_CASE("a noise clock tells the same in any order", "[simulation][noise]") {
     CAPTURE(start, frame);
     REQUIRE(clock.sum(frame, rate_at) == sum_by_hand(start, frame));
   }
+}
+
+TEST_CASE("a noise clock may be asked from many threads at once", "[simulation][noise][threads]") {
+  NoiseClock clock(0);
+  std::atomic<int> wrong = 0;
+  std::vector<std::jthread> threads;
+  for (int thread = 0; thread < 8; ++thread) {
+    threads.emplace_back([&, thread] {
+      for (int k = 0; k < 100; ++k) {
+        const int frame = (k * 37 + thread * 101) % 500;
+        if (clock.sum(frame, rate_at) != sum_by_hand(0, frame)) ++wrong;
+      }
+    });
+  }
+  threads.clear();
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("a frame that was passed costs a stride at most", "[simulation][noise]") {
