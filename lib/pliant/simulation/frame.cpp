@@ -12,13 +12,6 @@
 
 namespace pliant {
 
-SurfaceFrame::SurfaceFrame() = default;
-SurfaceFrame::SurfaceFrame(const SurfaceFrame&) = default;
-SurfaceFrame::SurfaceFrame(SurfaceFrame&&) noexcept = default;
-SurfaceFrame& SurfaceFrame::operator=(const SurfaceFrame&) = default;
-SurfaceFrame& SurfaceFrame::operator=(SurfaceFrame&&) noexcept = default;
-SurfaceFrame::~SurfaceFrame() = default;
-
 SurfaceFrame::SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
                            double peak_displacement)
     : name_(std::move(name)),
@@ -29,13 +22,6 @@ SurfaceFrame::SurfaceFrame(std::string name, Field object_positions, const Trans
 Field SurfaceFrame::positions(Field reuse) const {
   return to_world(transform_, object_positions_, std::move(reuse));
 }
-
-Frame::Frame() = default;
-Frame::Frame(const Frame&) = default;
-Frame::Frame(Frame&&) noexcept = default;
-Frame& Frame::operator=(const Frame&) = default;
-Frame& Frame::operator=(Frame&&) noexcept = default;
-Frame::~Frame() = default;
 
 Frame::Frame(int number, std::vector<SurfaceFrame> surfaces)
     : number_(number), surfaces_(std::move(surfaces)) {}

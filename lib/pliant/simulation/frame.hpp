@@ -13,14 +13,9 @@ namespace pliant {
 /// One surface at one frame. Owns its data: it may outlive the simulation.
 class SurfaceFrame {
  public:
-  SurfaceFrame();
+  SurfaceFrame() = default;
   SurfaceFrame(std::string name, Field object_positions, const Transform& transform,
                double peak_displacement);
-  SurfaceFrame(const SurfaceFrame&);
-  SurfaceFrame(SurfaceFrame&&) noexcept;
-  SurfaceFrame& operator=(const SurfaceFrame&);
-  SurfaceFrame& operator=(SurfaceFrame&&) noexcept;
-  ~SurfaceFrame();
 
   const std::string& name() const { return name_; }
 
@@ -48,12 +43,7 @@ class SurfaceFrame {
 /// All surfaces at one frame.
 class Frame {
  public:
-  Frame();
-  Frame(const Frame&);
-  Frame(Frame&&) noexcept;
-  Frame& operator=(const Frame&);
-  Frame& operator=(Frame&&) noexcept;
-  ~Frame();
+  Frame() = default;
   Frame(int number, std::vector<SurfaceFrame> surfaces);
 
   int number() const { return number_; }

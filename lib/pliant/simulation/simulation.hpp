@@ -24,7 +24,7 @@ namespace pliant {
 
 class FrameStore;
 
-/// Options of a simulation's run. Only the solver changes results, by a relative 1e-9 or so at
+/// Options of a simulation's run. Only the solver changes results, by 2e-9 of their size at
 /// most: docs/model.md.
 struct SimulationOptions {
   /// Memory for kept states, so that earlier frames are quick to reach: see `FrameCache` for the
