@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "json.hpp"
+#include "pliant/forces/force.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -42,10 +43,10 @@ Json force_json(const ForceReport& report) {
   const auto& [name, kind, sampled, selection, push] = report;
   Json json = {{"name", name},
                {"kind", kind},
-               {"magnitude", sampled.magnitude},
-               {"deformationRadius", sampled.deformation_radius},
-               {"forceRadius", sampled.force_radius}};
-  std::visit(AddShape{json}, sampled.shape);
+               {"magnitude", sampled->magnitude},
+               {"deformationRadius", sampled->deformation_radius},
+               {"forceRadius", sampled->force_radius}};
+  std::visit(AddShape{json}, sampled->shape);
   json["deformationBox"] = to_json(selection.deformation);
   json["forceBox"] = to_json(selection.force);
   json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);

@@ -12,8 +12,7 @@ int line_of(const Warning& warning, const SceneOrigin& origin) {
     return origin.line_of(warning.surface, "startFrame");
   }
   for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
-    const auto found = origin.lines.find(warning.surface + '.' + tangent);
-    if (found != origin.lines.end()) return found->second;
+    if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
   }
   return origin.line_of(warning.surface);
 }

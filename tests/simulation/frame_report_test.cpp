@@ -131,7 +131,7 @@ TEST_CASE("a report may outlive the simulation, custom forces included", "[simul
     s = {};
     return simulation.report(2).value();
   }();
-  const ForceShape& shape = report.surfaces[0].forces.at(0).sampled.shape;
+  const ForceShape& shape = report.surfaces[0].forces.at(0).sampled->shape;
   CHECK(unit_force(shape, {1, 2, 3}) == Vector3d(0, 1, 0));
   CHECK(unit_force(shape, {101, 0, 0}) == Vector3d::Zero());
 }

@@ -372,7 +372,7 @@ TEST_CASE("the width of the solver's vectors changes no bit", "[simulation]") {
 
 TEST_CASE("what a run takes is known before it is allocated", "[simulation][memory]") {
   Scene s = scene({sheet("small"), sheet("large", 10'000)}, {poke("f", {0, 0, 0})});
-  s.origin = {"scene.xml", {{"small", 3}, {"large", 4}}};
+  s.origin = {"scene.xml", {{"large", 4}, {"small", 3}}};
   const auto too_large = Simulation::make(s, {.max_memory = 1'000'000'000});
   REQUIRE_FALSE(too_large);
   CHECK(too_large.error().code == ErrorCode::OutOfMemory);

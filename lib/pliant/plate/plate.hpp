@@ -36,10 +36,10 @@ struct Dynamics {
 /// Slopes prescribed on the rim: dw/du on the edges of smallest and largest u, dw/dv on those of
 /// smallest and largest v. [length/uv]
 struct EdgeTangents {
-  Vector3d su0 = Vector3d::Zero();
-  Vector3d su1 = Vector3d::Zero();
-  Vector3d sv0 = Vector3d::Zero();
-  Vector3d sv1 = Vector3d::Zero();
+  Vector3d su0 = {0, 0, 0};
+  Vector3d su1 = {0, 0, 0};
+  Vector3d sv0 = {0, 0, 0};
+  Vector3d sv1 = {0, 0, 0};
 
   bool are_zero() const { return su0.isZero(0) && su1.isZero(0) && sv0.isZero(0) && sv1.isZero(0); }
 };

@@ -135,7 +135,7 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
 void record(const std::string& name, std::span<const Attribute> table, SceneFile& file) {
   for (const Attribute& row : table) {
     const std::string path = fmt::format("{}.{}", name, row.format.name);
-    if (row.line != 0) file.origin.lines[path] = row.line;
+    if (row.line != 0) file.lines[path] = row.line;
     if (!row.is_sound) file.unsound.insert(path);
   }
 }
@@ -145,7 +145,7 @@ void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
   if (!targets.empty())
     file.targets.push_back({element.Name(), targets, find(table, "targets")->line});
   if (name.empty()) return;
-  file.origin.lines[name] = element.GetLineNum();
+  file.lines[name] = element.GetLineNum();
   record(name, table, file);
 }
 

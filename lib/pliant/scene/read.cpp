@@ -42,7 +42,7 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   Table table = attributes_of(scene);
   read_attributes(root, table, file.findings);
   check_frames(scene, table, file.findings);
-  file.origin.lines[""] = root.GetLineNum();
+  file.lines[""] = root.GetLineNum();
   record("", table, file);
 
   const std::optional<double> fps =
@@ -65,7 +65,8 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   add_named_children(root, named);
   check_unique(named, file.findings);
   check_targets(scene, file.targets, named, file.findings);
-  scene.origin = file.origin;
+  for (const auto& [part, line] : file.lines) scene.origin.lines.push_back({part, line});
+  note_idle_targets(scene, file.findings);
   if (file.findings.problem_count() != 0) check_further(scene, named, file);
   return scene;
 }
@@ -94,10 +95,7 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
                           const std::string& root) {
   // An empty root would mean each mesh's own folder.
   const std::string own = folder.empty() ? "." : folder;
-  SceneFile file{.folder = folder,
-                 .root = root.empty() ? own : root,
-                 .origin = {.file = name, .lines = {}},
-                 .findings = Findings(name)};
+  SceneFile file{.folder = folder, .root = root.empty() ? own : root, .findings = Findings(name)};
   if (text.size() > largest_file)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene is larger than {} MiB", largest_file >> 20U), name);
@@ -112,6 +110,7 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
   }
   std::optional<Scene> scene = read_document(document, file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
+  scene->origin.file = name;
   scene->notes = file.findings.notes();
   return std::move(*scene);
 }

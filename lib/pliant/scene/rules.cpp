@@ -126,6 +126,23 @@ void check_targets(const Scene& scene, std::span<const Targets> targets,
     }
 }
 
+void note_idle_targets(const Scene& scene, Findings& findings) {
+  std::map<std::string_view, const std::vector<std::string>*> targets_of;
+  for (const Group& group : scene.groups) targets_of.emplace(group.name, &group.targets);
+  for (const Force& force : scene.forces) {
+    const auto group = targets_of.find(force.group);
+    if (group == targets_of.end() || group->second->empty()) continue;
+    const std::vector<std::string>& known = *group->second;
+    for (const std::string& target : force.targets)
+      if (std::find(known.begin(), known.end(), target) == known.end())
+        findings.add_note(
+            scene.origin.line_of(force.name, "targets"),
+            fmt::format(
+                "{}.targets: {} is not a target of the group {}: the force has no effect there",
+                force.name, in_quotes(target), in_quotes(force.group)));
+  }
+}
+
 void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file) {
   std::map<std::string_view, int> times;  // times that a name is used
   for (const Named& one : named) ++times[one.name];
@@ -148,7 +165,7 @@ void check_further(const Scene& scene, std::span<const Named> named, SceneFile& 
   for (const NamedMesh& mesh : file.meshes) {
     if (const auto readable = check_mesh_file(mesh.path); !readable)
       file.findings.add_problem(
-          mesh.line, unreadable_mesh(readable.error(), mesh.surface, file.origin).message);
+          mesh.line, unreadable_mesh(readable.error(), mesh.surface, scene.origin).message);
   }
 }
 

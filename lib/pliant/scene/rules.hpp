@@ -43,6 +43,9 @@ void check_unique(std::span<const Named> named, Findings& findings);
 void check_targets(const Scene& scene, std::span<const Targets> targets,
                    std::span<const Named> named, Findings& findings);
 
+/// A force in a group may have fewer targets than the group; other targets have no effect.
+void note_idle_targets(const Scene& scene, Findings& findings);
+
 /// Also checks what a run would reject, so that all problems of a file are reported at once:
 /// channels that break their rule at a frame, and mesh files that cannot be opened. Only sound
 /// values are checked.

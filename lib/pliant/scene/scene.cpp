@@ -1,8 +1,20 @@
 #include "pliant/scene/scene.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 namespace pliant {
+namespace {
+
+/// The line of a part, 0 if it is not in the file.
+int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
+  const auto found = std::lower_bound(
+      lines.begin(), lines.end(), part,
+      [](const SceneLine& line, const std::string& wanted) { return line.part < wanted; });
+  return found != lines.end() && found->part == part ? found->line : 0;
+}
+
+}  // namespace
 
 std::string_view kind_of(const Force& force) {
   constexpr std::string_view kinds[] = {"point",  "radial", "line",    "uniform",
@@ -12,11 +24,12 @@ std::string_view kind_of(const Force& force) {
 }
 
 int SceneOrigin::line_of(const std::string& name, const std::string& attribute) const {
-  if (!attribute.empty())
-    if (const auto found = lines.find(name + '.' + attribute); found != lines.end())
-      return found->second;
-  const auto found = lines.find(name);
-  return found != lines.end() ? found->second : 0;
+  if (gives(name, attribute)) return find_line(lines, name + '.' + attribute);
+  return find_line(lines, name);
+}
+
+bool SceneOrigin::gives(const std::string& name, const std::string& attribute) const {
+  return find_line(lines, name + '.' + attribute) != 0;
 }
 
 }  // namespace pliant

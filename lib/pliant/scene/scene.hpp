@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -182,15 +181,24 @@ struct Group {
   Channel<1> deformation_radius = 1;           ///< selects the region, world [length], >= 0
 };
 
+/// A part of a scene that its file contains.
+struct SceneLine {
+  std::string part;  ///< `NAME` or `NAME.attribute`; the scene itself: ``, `.fps`, `.end`
+  int line = 0;      ///< counted from 1
+
+  friend bool operator==(const SceneLine&, const SceneLine&) = default;
+};
+
 /// The lines of a scene's parts in its file, for messages. Empty for a scene built in code.
 struct SceneOrigin {
-  std::string file;  ///< the name given by the caller
-  /// By `NAME` and `NAME.attribute`, if given in the file. The empty name is the scene itself: ``,
-  /// `.fps`, `.end`.
-  std::map<std::string, int, std::less<>> lines;
+  std::string file;              ///< the name given by the caller
+  std::vector<SceneLine> lines;  ///< in the order of `part`, each part once
 
-  /// The line of a channel, otherwise of its element, otherwise 0.
+  /// The line of `NAME.attribute`, otherwise of `NAME`, otherwise 0.
   int line_of(const std::string& name, const std::string& attribute = {}) const;
+
+  /// Whether the file gives the attribute.
+  bool gives(const std::string& name, const std::string& attribute) const;
 };
 
 /// A remark on valid content of a scene file, such as a tangent that the curve rules shortened.

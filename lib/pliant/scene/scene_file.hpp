@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -29,8 +30,8 @@ struct NamedMesh {
 struct SceneFile {
   std::filesystem::path folder;  ///< mesh paths are relative to it
   std::filesystem::path root;    ///< contains the files that meshes refer to
-  SceneOrigin origin;
   Findings findings;
+  std::map<std::string, int> lines = {};  ///< see SceneLine
   std::vector<Targets> targets = {};
   std::vector<NamedMesh> meshes = {};
   /// `NAME.attribute` of those with a problem: their values are not those of the author.

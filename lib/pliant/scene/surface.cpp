@@ -76,7 +76,7 @@ Surface SurfaceReader::read(std::optional<double> fps) {
                 solver_.line != 0 ? solver_.line : element_.GetLineNum(), file_.findings);
 
   if (!surface_.name.empty()) {
-    file_.origin.lines[surface_.name] = element_.GetLineNum();
+    file_.lines[surface_.name] = element_.GetLineNum();
     record(surface_.name, own_, file_);
     for (const Part* part : {&transform_, &material_, &tangents_, &solver_})
       record(surface_.name, part->table, file_);

@@ -26,6 +26,8 @@ Field SurfaceFrame::positions(Field reuse) const {
 Frame::Frame(int number, std::vector<SurfaceFrame> surfaces)
     : number_(number), surfaces_(std::move(surfaces)) {}
 
+std::span<const SurfaceFrame> Frame::surfaces() const { return surfaces_; }
+
 const SurfaceFrame* Frame::find_surface(std::string_view name) const {
   const auto found =
       std::find_if(surfaces_.begin(), surfaces_.end(),

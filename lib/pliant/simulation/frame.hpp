@@ -49,7 +49,7 @@ class Frame {
   int number() const { return number_; }
 
   /// In the order of the scene.
-  std::span<const SurfaceFrame> surfaces() const { return surfaces_; }
+  std::span<const SurfaceFrame> surfaces() const;
 
   /// The surface of that name, or null: for names from input data.
   const SurfaceFrame* find_surface(std::string_view name) const;

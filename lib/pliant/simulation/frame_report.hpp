@@ -1,22 +1,24 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pliant/forces/force.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/region/selection.hpp"
 
 namespace pliant {
 
+struct SampledForce;
+
 /// A force, or the region of a group, that is enabled at a frame and targets the surface.
 struct ForceReport {
   std::string name;       ///< of the force, or of the group whose region it is
   std::string_view kind;  ///< the name of its element: point, ..., group; "custom"
-  /// Centre, radii, direction, magnitude at the frame; world space. A falloff curve is owned by the
-  /// simulation's scene.
-  SampledForce sampled;
+  /// Centre, radii, direction, magnitude at the frame, world space: see forces/force.hpp. Never
+  /// null. A falloff curve is owned by the simulation's scene.
+  std::shared_ptr<const SampledForce> sampled;
   ForceSelection selection;  ///< its boxes in nodes, and the index of its region
   Push push;                 ///< its effect on the nodes that move
 };

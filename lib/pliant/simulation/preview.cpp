@@ -158,7 +158,7 @@ class SurfacePreviewer {
     preview.selected = step->selection.region;
     std::vector<Box> room;
     preview.is_apart = !is_plain && surface_.solver.combine == Combine::Box &&
-                       !scene_.origin.lines.contains(surface_.name + ".combine") &&
+                       !scene_.origin.gives(surface_.name, "combine") &&
                        falls_apart(step->selection, room);
     const int unknowns = step->unknown_count();
     preview.is_solvable = unknowns > 0;

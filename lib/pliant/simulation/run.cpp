@@ -165,7 +165,8 @@ Result<SurfaceReport> Simulation::Run::report_of(std::size_t index) const {
     const SampledForce& force = inputs.body.forces[k];
     const ForceSelection& selection = step->selection.forces[k];
     report.forces.push_back(
-        {std::string(inputs.sources[k].name), inputs.sources[k].kind, force, selection,
+        {std::string(inputs.sources[k].name), inputs.sources[k].kind,
+         std::make_shared<SampledForce>(force), selection,
          push_of(body.grid(), nodes, force, selection.force, step->patches_of_force(k))});
   }
   if (std::string fault = inputs.faults->first(); !fault.empty()) {
@@ -312,7 +313,7 @@ std::vector<Warning> Simulation::Run::warnings() const {
   // An author who writes combine="box" explicitly needs no warning.
   std::erase_if(warnings, [&](const Warning& warning) {
     return warning.kind == Warning::Kind::ForcesApart &&
-           scene_.origin.lines.contains(warning.surface + ".combine");
+           scene_.origin.gives(warning.surface, "combine");
   });
   for (Warning& warning : warnings) {
     warning.is_group = std::any_of(scene_.groups.begin(), scene_.groups.end(),

@@ -20,8 +20,6 @@ template <int D>
 struct Extrapolated;
 }
 
-namespace timeline {}  // namespace timeline
-
 /// The least and the greatest value of a curve over an interval, per component [unit].
 template <int D>
 using ValueRange = timeline::Bounds<D>;
