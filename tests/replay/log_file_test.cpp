@@ -213,7 +213,11 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
   const std::string hash = to_text(hash_of(""));
   const std::string digest = R"({"positions":")" + hash + R"(","velocities":")" + hash +
                              R"(","region":")" + hash + R"(","peak":1)";
+  ReplayFrame three = small_frame(-1, true);  // the header has two surfaces
+  three.surfaces.push_back(three.surfaces.back());
+  three.states.push_back(three.states.back());
   const std::vector<std::string> nonsense = {
+      replay::to_json(three),
       R"({"frame":-1})",
       R"({"frame":-1,"surfaces":[]})",
       R"({"frame":1e999,"surfaces":[]})",
