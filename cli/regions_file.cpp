@@ -1,52 +1,33 @@
 #include "regions_file.hpp"
 
+#include <algorithm>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
+#include "force_values.hpp"
 #include "json.hpp"
 #include "pliant/forces/force.hpp"
 
 namespace pliant::cli {
 namespace {
 
-// Adds the place and direction of the force, depending on its kind.
-struct AddShape {
-  Json& force;
-
-  void operator()(const PointForce& point) const {
-    force["center"] = to_json(point.center);
-    if (force["kind"] != "group") force["direction"] = to_json(point.direction);
-  }
-  void operator()(const RadialForce& radial) const { force["center"] = to_json(radial.center); }
-  void operator()(const LineForce& line) const {
-    force["from"] = to_json(line.from);
-    force["to"] = to_json(line.to);
-    if (line.direction) force["direction"] = to_json(*line.direction);
-  }
-  void operator()(const UniformForce& uniform) const {
-    force["direction"] = to_json(uniform.direction);
-  }
-  void operator()(const VortexForce& vortex) const {
-    force["center"] = to_json(vortex.center);
-    force["axis"] = to_json(vortex.axis);
-    force["pull"] = vortex.pull;
-  }
-  void operator()(const NoiseForce& noise) const {
-    force["center"] = to_json(noise.center);
-    force["frequency"] = noise.frequency;
-  }
-  void operator()(const InertiaForce&) const {}
-  void operator()(const FunctionForce&) const {}
-};
-
-Json force_json(const ForceReport& report) {
+// `force` is the force of the report; null: a group.
+Json force_json(const ForceReport& report, const Force* force, int frame) {
   const auto& [name, kind, sampled, selection, push] = report;
   Json json = {{"name", name},
                {"kind", kind},
                {"magnitude", sampled->magnitude},
                {"deformationRadius", sampled->deformation_radius},
                {"forceRadius", sampled->force_radius}};
-  std::visit(AddShape{json}, sampled->shape);
+  if (force) {
+    for_each_value(*force, [&](std::string_view attribute, const ValueAt& value_at) {
+      json[std::string(attribute)] = value_at(frame);
+    });
+  } else {
+    json["center"] = to_json(std::get<PointForce>(sampled->shape).center);
+  }
   json["deformationBox"] = to_json(selection.deformation);
   json["forceBox"] = to_json(selection.force);
   json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);
@@ -55,7 +36,7 @@ Json force_json(const ForceReport& report) {
   return json;
 }
 
-Json surface_json(const SurfaceReport& report, const std::string& name) {
+Json surface_json(const Scene& scene, int frame, std::size_t surface, const SurfaceReport& report) {
   Box selected;
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -67,8 +48,17 @@ Json surface_json(const SurfaceReport& report, const std::string& name) {
     regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
   }
   Json forces = Json::array();
-  for (const ForceReport& force : report.forces) forces.push_back(force_json(force));
-  return {{"name", name},
+  auto next = scene.forces.begin();  // reports are in the order of the scene
+  for (const ForceReport& force : report.forces) {
+    if (force.kind == "group") {
+      forces.push_back(force_json(force, nullptr, frame));
+      continue;
+    }
+    next = std::find_if(next, scene.forces.end(),
+                        [&](const Force& each) { return each.name == force.name; });
+    forces.push_back(force_json(force, &*next, frame));
+  }
+  return {{"name", scene.surfaces[surface].name},
           {"solved", report.is_solved},
           {"selected", to_json(selected)},
           {"steps", report.is_solved ? report.steps.count : 0},
@@ -95,7 +85,7 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
 Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
-    surfaces.push_back(surface_json(report.surfaces[k], scene.surfaces[k].name));
+    surfaces.push_back(surface_json(scene, report.frame, k, report.surfaces[k]));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

@@ -1,7 +1,10 @@
 #include "view_forces.hpp"
 
 #include <functional>
-#include <variant>
+#include <string>
+#include <string_view>
+
+#include "force_values.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -21,45 +24,6 @@ Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
 Json track(const Channel<1>& channel, const FrameRange& frames) {
   return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
 }
-Json track(const Channel<3>& channel, const FrameRange& frames) {
-  return track(frames, [&](int frame) { return Json(channel.at(frame)); });
-}
-Json track(const PositionChannel& position, const FrameRange& frames) {
-  return track(frames, [&](int frame) { return Json(position.at(frame)); });
-}
-
-// Adds the place and direction of a force, depending on its kind.
-struct AddPlace {
-  Json& force;
-  const FrameRange& frames;
-
-  void operator()(const PointChannels& point) const {
-    force["center"] = track(point.center, frames);
-    force["direction"] = track(point.direction, frames);
-  }
-  void operator()(const RadialChannels& radial) const {
-    force["center"] = track(radial.center, frames);
-  }
-  void operator()(const LineChannels& line) const {
-    force["from"] = track(line.from, frames);
-    force["to"] = track(line.to, frames);
-    if (line.direction) force["direction"] = track(*line.direction, frames);
-  }
-  void operator()(const UniformChannels& uniform) const {
-    force["direction"] = track(uniform.direction, frames);
-  }
-  void operator()(const VortexChannels& vortex) const {
-    force["center"] = track(vortex.center, frames);
-    force["axis"] = track(vortex.axis, frames);
-    force["pull"] = track(vortex.pull, frames);
-  }
-  void operator()(const NoiseChannels& noise) const {
-    force["center"] = track(noise.center, frames);
-  }
-  void operator()(const InertiaChannels&) const {}
-  void operator()(const CustomForce&) const {}
-};
-
 const Group* group_of(const Scene& scene, const Force& force) {
   for (const Group& group : scene.groups) {
     if (group.name == force.group) return &group;
@@ -76,7 +40,9 @@ Json force_json(const Force& force, const Group* group, const FrameRange& frames
   json["magnitude"] = track(force.magnitude, frames);
   if (group == nullptr) json["deformationRadius"] = track(force.deformation_radius, frames);
   json["forceRadius"] = track(force.force_radius, frames);
-  std::visit(AddPlace{json, frames}, force.shape);
+  for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
+    json[std::string(name)] = track(frames, value_at);
+  });
   return json;
 }
 
@@ -86,7 +52,7 @@ Json group_json(const Group& group, const FrameRange& frames) {
           {"targets", group.targets},
           {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
           {"deformationRadius", track(group.deformation_radius, frames)},
-          {"center", track(group.center, frames)}};
+          {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
 }
 
 Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }

@@ -47,7 +47,7 @@ BAD_SCENES = {
     "two falloffs": (POINT, '<point name="p" falloff="linear"><falloff><key at="0" value="1"/>'
                             "</falloff></point>", 4, "remove one of them"),
     "a falloff's key beyond 1": (POINT, '<point name="p"><falloff><key at="2" value="1"/></falloff>'
-                                        "</point>", 4, 'at="2": must be at most 1'),
+                                        "</point>", 4, 'at="2": must be from 0 to 1'),
     "a misspelt kind of force": (POINT, '<vortx name="v"/>', 4, 'did you mean "vortex"'),
     "another kind's attribute": (POINT, '<vortex name="v" direction="0 1 0"/>', 4,
                                  'no attribute "direction"'),

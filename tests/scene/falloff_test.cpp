@@ -36,8 +36,10 @@ TEST_CASE("every kind of force takes a falloff", "[scene][falloff]") {
 TEST_CASE("what is wrong with a falloff is told", "[scene][falloff]") {
   const std::string key = "<key at=\"0\" value=\"1\"/>\n";
   check_each({
-      {falloff(key + "<key at=\"1.5\" value=\"0\"/>"), 5, {"<key> at=\"1.5\": must be at most 1"}},
-      {falloff("<key at=\"-0.1\" value=\"0\"/>"), 4, {"must be at least 0"}},
+      {falloff(key + "<key at=\"1.5\" value=\"0\"/>"),
+       5,
+       {"<key> at=\"1.5\": must be from 0 to 1"}},
+      {falloff("<key at=\"-0.1\" value=\"0\"/>"), 4, {"must be from 0 to 1"}},
       {falloff(key + "<key at=\"0\" value=\"0\"/>"), 5, {"<key> at 0 repeats the key of line 4"}},
       {falloff("<key at=\"0.5\" value=\"0\"/>\n" + key), 5, {"<key> at 0 is not after at 0.5"}},
       {falloff("<key frame=\"0.5\" at=\"0\" value=\"0\"/>"), 4, {"no attribute \"frame\""}},

@@ -15,7 +15,7 @@ namespace {
 
 /// One row of a table of docs/scene-format.md that describes attributes.
 struct Row {
-  std::string element, attribute, type, unit, standard, range, keyable;
+  std::string element, attribute, type, unit, standard, range, keyable, meaning;
 };
 
 /// The cells of a line `| a | b |`, without blanks and backquotes; an en dash means an empty cell.
@@ -62,7 +62,8 @@ std::vector<Row> documented() {
     CAPTURE(cells);
     REQUIRE(cells.size() == 8);  // the last one is the meaning
     CHECK_FALSE(cells[7].empty());
-    rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6]});
+    rows.push_back(
+        {cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7]});
   }
   return rows;
 }
@@ -90,6 +91,9 @@ TEST_CASE("the page has one row for each attribute, as the reader knows it", "[s
             (attribute.need == Need::Required ? "required" : attribute.standard));
       CHECK(found->second.range == attribute.range);
       CHECK(found->second.keyable == (attribute.is_keyable ? "yes" : "no"));
+      std::string meaning = attribute.meaning;
+      std::erase(meaning, '`');
+      CHECK(found->second.meaning == meaning);
       rows.erase(found);
     }
   for (const auto& [key, row] : rows) FAIL_CHECK("the reader does not know " << key);

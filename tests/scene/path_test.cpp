@@ -61,7 +61,7 @@ TEST_CASE("what is wrong with a path is told", "[scene][path]") {
       {path(center, corner + "<waypoint at=\"1 1\"/>"), 7, {"three numbers are required, not 2"}},
       {path(center, corner + "<waypoint/>"), 7, {"<waypoint> needs the attribute \"at\""}},
       {path(center, corner + "<point at=\"1 2 3\"/>"), 7, {"<path> has no element \"point\""}},
-      {path(center + " progress=\"1.5\"", corner), 3, {"progress=\"1.5\": must be at most 1"}},
+      {path(center + " progress=\"1.5\"", corner), 3, {"progress=\"1.5\": must be from 0 to 1"}},
       {path(center + " closed=\"yes\"", corner), 3, {"closed=\"yes\": must be true or false"}},
       {path(center + " progress=\"1\"", corner + progress("<key frame=\"1\" value=\"0\"/>")),
        7,

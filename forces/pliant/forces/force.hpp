@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <tuple>
 #include <variant>
 
 #include "pliant/core/field.hpp"
@@ -15,6 +16,7 @@ namespace pliant {
 // 7. Every kind has two functions of a position p [length]:
 //   distance(p)    decides which nodes are selected, >= 0 [length]
 //   unit_force(p)  the force per unit of magnitude and falloff; for most kinds a unit vector or 0
+// and `values()`, all its members.
 // The force on a node is magnitude x falloff(distance / force radius) x unit_force.
 
 /// The thesis's force (5.2.2): a sphere around `center` that pushes along one direction.
@@ -22,6 +24,7 @@ struct PointForce {
   Vector3d center = {0, 0, 0};     ///< world [length]
   Vector3d direction = {0, 1, 0};  ///< any length; zero: no force
 
+  auto values() const { return std::tie(center, direction); }
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
 };
@@ -30,6 +33,7 @@ struct PointForce {
 struct RadialForce {
   Vector3d center = {0, 0, 0};  ///< world [length]
 
+  auto values() const { return std::tie(center); }
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
 };
@@ -41,6 +45,7 @@ struct LineForce {
   Vector3d to = {1, 0, 0};                 ///< world [length]; may equal `from`
   std::optional<Vector3d> direction = {};  ///< any length; zero: no force
 
+  auto values() const { return std::tie(from, to, direction); }
   double distance(const Vector3d& p) const;  ///< to the closest point of the segment
   Vector3d unit_force(const Vector3d& p) const;
 };
@@ -49,6 +54,7 @@ struct LineForce {
 struct UniformForce {
   Vector3d direction = {0, 1, 0};  ///< any length; zero: no force
 
+  auto values() const { return std::tie(direction); }
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
 };
@@ -61,6 +67,7 @@ struct VortexForce {
   Vector3d axis = {0, 1, 0};    ///< any length
   double pull = 0;              ///< inward part, relative to the rotating part; < 0: outward
 
+  auto values() const { return std::tie(center, axis, pull); }
   double distance(const Vector3d& p) const;      ///< to the line
   Vector3d unit_force(const Vector3d& p) const;  ///< of length sqrt(1 + pull^2)
 };
@@ -72,6 +79,7 @@ struct NoiseForce {
   double time = 0;              ///< [cells]
   std::uint64_t seed = 0;
 
+  auto values() const { return std::tie(center, frequency, time, seed); }
   double distance(const Vector3d& p) const;      ///< to the centre
   Vector3d unit_force(const Vector3d& p) const;  ///< components in [-1, 1]
 };
@@ -83,12 +91,16 @@ struct InertiaForce {
   Vector3d origin = {0, 0, 0};  ///< world [length]
   Vector3d offset = {0, 0, 0};
 
+  auto values() const { return std::tie(linear, origin, offset); }
   double distance(const Vector3d& p) const;
   Vector3d unit_force(const Vector3d& p) const;
 };
 
 /// A kind of force of an embedding program, at one frame. Requires: neither function is empty.
 struct FunctionForce {
+  /// None: a program identifies its functions by `CustomForce::key`.
+  std::tuple<> values() const { return {}; }
+
   std::function<double(const Vector3d& p)> distance;
   std::function<Vector3d(const Vector3d& p)> unit_force;
 };

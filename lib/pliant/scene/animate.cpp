@@ -13,21 +13,17 @@
 namespace pliant::xml {
 namespace {
 
-bool is_channel(const Attribute& row) {
-  return !std::holds_alternative<std::monostate>(row.channel);
-}
-
 /// Why `name` cannot be animated here.
-std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Attribute* const> rows,
+std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Slot* const> rows,
                        std::string_view name) {
   const std::string parent = tag(*animate.Parent()->ToElement());
   std::vector<std::string_view> channels;
   bool is_known = false;
-  for (const Attribute* row : rows) {
-    if (row->format.name == name && row->format.need == Need::Later)
+  for (const Slot* row : rows) {
+    if (row->attribute.name == name && row->attribute.need == Need::Later)
       return value_problem(animate, "attribute", name, not_supported());
-    is_known = is_known || row->format.name == name;
-    if (is_channel(*row)) channels.push_back(row->format.name);
+    is_known = is_known || row->attribute.name == name;
+    if (is_channel(row->place)) channels.push_back(row->attribute.name);
   }
   if (is_known)
     return value_problem(animate, "attribute", name,
@@ -67,7 +63,8 @@ struct CurveOfChannel {
   Findings& findings;
 
   /// An unknown channel: the keys are still read, to report their own problems.
-  void operator()(std::monostate) const {
+  template <class Other>
+  void operator()(const Other&) const {
     if (has_boolean_values(animate))
       read_into<1>(animate, ValueKind::Boolean, path, findings, [](auto&&) {});
     else if (value_width(animate) > 1)
@@ -109,18 +106,18 @@ struct CurveOfChannel {
 
 }  // namespace
 
-void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* const> rows,
+void read_animate(const tinyxml2::XMLElement& animate, std::span<Slot* const> rows,
                   const std::string& owner, Findings& findings) {
   const tinyxml2::XMLAttribute* given = animate.FindAttribute("attribute");
   const std::string name(given ? trimmed(given->Value()) : "");
-  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Attribute* row) {
-    return row->format.name == name && is_channel(*row);
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Slot* row) {
+    return row->attribute.name == name && is_channel(row->place);
   });
-  ChannelPlace place;
+  Place place;
   const std::size_t problems = findings.problem_count();
   if (found != rows.end()) {
-    Attribute& row = **found;
-    place = row.channel;
+    Slot& row = **found;
+    place = row.place;
     if (row.line != 0)
       findings.add_problem(
           animate.GetLineNum(),
@@ -139,8 +136,8 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Attribute* cons
 
 void read_animate(const tinyxml2::XMLElement& animate, Table& table, const std::string& owner,
                   Findings& findings) {
-  std::vector<Attribute*> rows;
-  for (Attribute& row : table) rows.push_back(&row);
+  std::vector<Slot*> rows;
+  for (Slot& row : table) rows.push_back(&row);
   read_animate(animate, rows, owner, findings);
 }
 

@@ -1,9 +1,16 @@
 #include "pliant/scene/channel_check.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +19,7 @@
 #include "pliant/core/transform.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
+#include "pliant/scene/description.hpp"
 
 namespace pliant {
 namespace {
@@ -32,26 +40,6 @@ bool is_finite(const Value<D>& value) {
   return true;
 }
 
-Complaint at_least_zero(const Value<1>& value) {
-  if (value[0] >= 0) return {};
-  return fmt::format("is {}, but must be at least 0", value[0]);
-}
-
-Complaint greater_than_zero(const Value<1>& value) {
-  if (value[0] > 0) return {};
-  return fmt::format("is {}, but must be greater than 0", value[0]);
-}
-
-Complaint a_share_of_the_way(const Value<1>& value) {
-  if (value[0] >= 0 && value[0] <= 1) return {};
-  return fmt::format("is {}, but must be from 0 to 1", value[0]);
-}
-
-template <int D>
-Complaint anything(const Value<D>&) {
-  return {};
-}
-
 class ChannelChecker {
  public:
   ChannelChecker(const Scene& scene, const ChannelFilter& is_checked,
@@ -59,100 +47,63 @@ class ChannelChecker {
       : scene_(scene), is_checked_(is_checked), should_stop_(should_stop) {}
 
   void check(const Surface& surface) {
-    check(surface.name, "translate", surface.transform.translate, anything<3>);
-    check(surface.name, "rotate", surface.transform.rotate, anything<3>);
-    check(surface.name, "scale", surface.transform.scale, [](const Value<3>& scale) -> Complaint {
-      const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
-                                                 {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
-      if (transform.is_invertible()) return {};
-      return fmt::format("is {}, but must not be 0, nor so near 0 that its inverse is not finite",
-                         spelled<3>(scale));
-    });
-    const MaterialChannels& material = surface.material;
-    check(surface.name, "density", material.density, at_least_zero);
-    check(surface.name, "damping", material.damping, at_least_zero);
-    const bool b_is_good = check(surface.name, "b", material.b, greater_than_zero);
-    const bool d_is_good = check(surface.name, "d", material.d, greater_than_zero);
-    if (b_is_good && d_is_good) check_ellipticity(surface);
-    for (const auto& [attribute, tangent] :
-         {std::pair{"su0", &surface.tangents.su0}, std::pair{"su1", &surface.tangents.su1},
-          std::pair{"sv0", &surface.tangents.sv0}, std::pair{"sv1", &surface.tangents.sv1}}) {
-      std::visit(
-          [&, name = attribute](const auto& channel) { check_tangent(surface, name, channel); },
-          *tangent);
-    }
-    check(surface.name, "dt", surface.solver.dt, [&](const Value<1>& dt) -> Complaint {
-      const auto checked = check_time_step(1 / scene_.fps, dt[0]);
-      return checked ? Complaint{} : checked.error().message;
-    });
+    check_channels(surface, surface.transform);
+    check_channels(surface, surface.material);
+    if (kept_.contains("b") && kept_.contains("d")) check_ellipticity(surface);
+    check_channels(surface, surface.tangents);
+    check_channels(surface, surface.solver);
   }
-
-  void check(const Force& force) {
-    check(force.name, "magnitude", force.magnitude, anything<1>);
-    if (force.group.empty()) {
-      check(force.name, "deformationRadius", force.deformation_radius, at_least_zero);
-    }
-    check(force.name, "forceRadius", force.force_radius, at_least_zero);
-    std::visit([&](const auto& shape) { check_shape(force.name, shape); }, force.shape);
-  }
-
-  void check(const Group& group) {
-    check_position(group.name, "center", group.center);
-    check(group.name, "deformationRadius", group.deformation_radius, at_least_zero);
-  }
+  void check(const Force& force) { check_channels(force, force); }
+  void check(const Group& group) { check_channels(group, group); }
 
   std::vector<Error> take_errors() { return std::move(errors_); }
 
  private:
-  void check_shape(const std::string& name, const PointChannels& point) {
-    check_position(name, "center", point.center);
-    check(name, "direction", point.direction, anything<3>);
+  // The channels of a part of a surface, or of a force or group. Notes which keep their rule.
+  template <class Owner, class Part>
+  void check_channels(const Owner& owner, const Part& part) {
+    kept_.clear();
+    for_each_channel(
+        part, [&]<class C>(const std::string& name, const Attribute& attribute, const C& channel) {
+          if constexpr (!std::is_same_v<C, Switch>) {
+            const auto rule = [&](const auto& value) { return complaint(owner, attribute, value); };
+            if (check(owner.name, name, channel, rule)) kept_.insert(name);
+          }
+        });
   }
-  void check_shape(const std::string& name, const RadialChannels& radial) {
-    check_position(name, "center", radial.center);
-  }
-  void check_shape(const std::string& name, const LineChannels& line) {
-    check_position(name, "from", line.from);
-    check_position(name, "to", line.to);
-    if (line.direction) check(name, "direction", *line.direction, anything<3>);
-  }
-  void check_shape(const std::string& name, const UniformChannels& uniform) {
-    check(name, "direction", uniform.direction, anything<3>);
-  }
-  void check_shape(const std::string& name, const VortexChannels& vortex) {
-    check_position(name, "center", vortex.center);
-    check(name, "axis", vortex.axis, anything<3>);
-    check(name, "pull", vortex.pull, anything<1>);
-  }
-  void check_shape(const std::string& name, const NoiseChannels& noise) {
-    check_position(name, "center", noise.center);
-    check(name, "frequency", noise.frequency, anything<1>);
-    check(name, "rate", noise.rate, anything<1>);
-  }
-  void check_shape(const std::string&, const InertiaChannels&) {}
-  void check_shape(const std::string&, const CustomForce&) {}
 
-  void check_position(const std::string& name, const std::string& attribute,
-                      const PositionChannel& position) {
-    if (const PathMotion* motion = position.path()) {
-      check(name, attribute + ".progress", motion->progress, a_share_of_the_way);
-    } else {
-      check(name, attribute, *position.channel(), anything<3>);
+  // The rules of single channels: their ranges, and those that need more than a range.
+  template <class Owner, std::size_t D>
+  Complaint complaint(const Owner& owner, const Attribute& attribute,
+                      const std::array<double, D>& value) const {
+    if constexpr (std::is_same_v<Owner, Surface>) {
+      if (attribute.name == "dt") return complaint_of_step(value[0]);
+      if (attribute.name == "scale") return complaint_of_scale(value);
+      if (attribute.unit == edge_slope) return complaint_of_tangent(owner, value);
     }
+    if (const auto rule = attribute.range.broken_rule(value))
+      return fmt::format("is {}, but {}", spelled<D>(value), *rule);
+    return {};
+  }
+
+  Complaint complaint_of_step(double dt) const {
+    const auto checked = check_time_step(1 / scene_.fps, dt);
+    return checked ? Complaint{} : checked.error().message;
+  }
+
+  static Complaint complaint_of_scale(std::span<const double> scale) {
+    const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
+                                               {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
+    if (transform.is_invertible()) return {};
+    return fmt::format("is {}, but must not be 0, nor so near 0 that its inverse is not finite",
+                       fmt::join(scale, " "));
   }
 
   // A body with tangents never comes to rest, so it cannot recover: SPEC 6.
-  template <int D>
-  void check_tangent(const Surface& surface, std::string_view attribute,
-                     const Channel<D>& channel) {
-    if (surface.solver.release == Release::Freeze) {
-      check(surface.name, attribute, channel, anything<D>);
-      return;
-    }
-    check(surface.name, attribute, channel, [](const Value<D>& value) -> Complaint {
-      if (value == Value<D>{}) return {};
-      return fmt::format("is {}, but must be 0 with release=\"recover\"", spelled<D>(value));
-    });
+  static Complaint complaint_of_tangent(const Surface& surface, std::span<const double> slopes) {
+    const bool is_zero = std::all_of(slopes.begin(), slopes.end(), [](double x) { return x == 0; });
+    if (surface.solver.release == Release::Freeze || is_zero) return {};
+    return fmt::format("is {}, but must be 0 with release=\"recover\"", fmt::join(slopes, " "));
   }
 
   // Whether the channel keeps `rule` at every frame; a constant one is checked once.
@@ -207,6 +158,7 @@ class ChannelChecker {
   const Scene& scene_;
   const ChannelFilter& is_checked_;
   const StopRequest& should_stop_;
+  std::set<std::string, std::less<>> kept_;  // channels of the present part that keep their rule
   std::vector<Error> errors_;
 };
 

@@ -10,19 +10,6 @@
 
 namespace pliant {
 
-/// The most frames that a scene may have.
-inline constexpr int max_frames = 1'000'000;
-
-/// The largest absolute value of a frame number.
-inline constexpr int largest_frame = 1'000'000'000;
-
-/// The most vertices that a grid sheet may have.
-inline constexpr int max_sheet_vertices = 100'000'000;
-
-/// The largest width or depth of a grid sheet [length]; it keeps products of coordinates and counts
-/// finite.
-inline constexpr double largest_extent = 1e300;
-
 /// Whether a name matches [A-Za-z_][A-Za-z0-9_-]*.
 bool is_name(std::string_view text);
 

@@ -11,10 +11,10 @@
 namespace pliant::xml {
 namespace {
 
-std::vector<std::string_view> supported_names(std::span<const Attribute> table) {
+std::vector<std::string_view> supported_names(std::span<const Slot> table) {
   std::vector<std::string_view> names;
-  for (const Attribute& attribute : table)
-    if (attribute.format.need != Need::Later) names.push_back(attribute.format.name);
+  for (const Slot& row : table)
+    if (row.attribute.need != Need::Later) names.push_back(row.attribute.name);
   return names;
 }
 
@@ -41,8 +41,8 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
                          : belongs + "; allowed: " + (names.empty() ? "none" : listed(names)));
 }
 
-void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given,
-                Attribute& row, Findings& findings) {
+void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given, Slot& row,
+                Findings& findings) {
   if (row.line != 0)
     return findings.add_problem(
         given.GetLineNum(),
@@ -50,7 +50,7 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
                       fmt::format("{} is already animated (line {}); remove one of them",
                                   given.Name(), row.line)));
   row.line = given.GetLineNum();
-  if (row.format.need == Need::Later) {
+  if (row.attribute.need == Need::Later) {
     row.is_sound = false;
     return findings.add_problem(
         row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.Name()), tag(element),
@@ -70,7 +70,7 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
   std::vector<std::string_view> meant;  // attributes that a misspelt one probably stands for
   for (const auto* given = element.FirstAttribute(); given && !findings.is_full();
        given = given->Next()) {
-    if (Attribute* row = find(table, given->Name())) {
+    if (Slot* row = find(table, given->Name())) {
       read_value(element, *given, *row, findings);
       continue;
     }
@@ -79,12 +79,13 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
                                      in_quotes(given->Name()), hint(given->Name(), names)));
     if (const auto near = nearest_word(given->Name(), names)) meant.push_back(*near);
   }
-  for (Attribute& row : table) {
-    if (std::find(meant.begin(), meant.end(), row.format.name) != meant.end()) row.is_sound = false;
-    if (row.format.need != Need::Required || row.line != 0 || !row.is_sound) continue;
+  for (Slot& row : table) {
+    if (std::find(meant.begin(), meant.end(), row.attribute.name) != meant.end())
+      row.is_sound = false;
+    if (row.attribute.need != Need::Required || row.line != 0 || !row.is_sound) continue;
     row.is_sound = false;
     findings.add_problem(element.GetLineNum(), fmt::format("{} needs the attribute \"{}\"",
-                                                           tag(element), row.format.name));
+                                                           tag(element), row.attribute.name));
   }
 }
 
@@ -115,10 +116,9 @@ bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> c
   return all_known;
 }
 
-Attribute* find(std::span<Attribute> table, std::string_view name) {
-  const auto found = std::find_if(table.begin(), table.end(), [&](const Attribute& attribute) {
-    return attribute.format.name == name;
-  });
+Slot* find(std::span<Slot> table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const Slot& row) { return row.attribute.name == name; });
   return found != table.end() ? &*found : nullptr;
 }
 
@@ -132,9 +132,9 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
 }
 
-void record(const std::string& name, std::span<const Attribute> table, SceneFile& file) {
-  for (const Attribute& row : table) {
-    const std::string path = fmt::format("{}.{}", name, row.format.name);
+void record(const std::string& name, std::span<const Slot> table, SceneFile& file) {
+  for (const Slot& row : table) {
+    const std::string path = fmt::format("{}.{}", name, row.attribute.name);
     if (row.line != 0) file.lines[path] = row.line;
     if (!row.is_sound) file.unsound.insert(path);
   }

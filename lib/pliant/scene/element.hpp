@@ -6,16 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/scene/attribute.hpp"
 #include "pliant/scene/scene_file.hpp"
+#include "pliant/scene/slot.hpp"
 
 namespace tinyxml2 {
 class XMLElement;
 }
 
 namespace pliant::xml {
-
-using Table = std::vector<Attribute>;
 
 /// An element that another may contain, and the function that reads it.
 struct Child {
@@ -34,7 +32,7 @@ bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> c
                    Findings& findings);
 
 /// The row of that name, or null.
-Attribute* find(std::span<Attribute> table, std::string_view name);
+Slot* find(std::span<Slot> table, std::string_view name);
 
 /// `<grid>`.
 std::string tag(const tinyxml2::XMLElement& element);
@@ -44,7 +42,7 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
                           std::string_view text, std::string_view complaint);
 
 /// Records the lines of the attributes of a table, and which attributes have problems.
-void record(const std::string& name, std::span<const Attribute> table, SceneFile& file);
+void record(const std::string& name, std::span<const Slot> table, SceneFile& file);
 
 /// The same for a force or a group, after it is read; also records its own line and its targets.
 /// Requires: the table has "targets".

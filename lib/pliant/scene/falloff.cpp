@@ -12,7 +12,7 @@ std::optional<Curve<1>> read_falloff(const tinyxml2::XMLElement& falloff, const 
   return read_curve<1>(falloff, KeyAxis::Falloff, ValueKind::Number, owner + ".falloff", findings);
 }
 
-void check_single_falloff(const tinyxml2::XMLElement& falloff, const Attribute& attribute,
+void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attribute,
                           int& first_line, Findings& findings) {
   const int line = falloff.GetLineNum();
   const std::string parent = tag(*falloff.Parent()->ToElement());

@@ -15,7 +15,7 @@ std::optional<Curve<1>> read_falloff(const tinyxml2::XMLElement& falloff, const 
 
 /// Checks that a force has only one falloff: its attribute or a single <falloff>. `first_line` is
 /// the line of an earlier <falloff>; 0: this is the first.
-void check_single_falloff(const tinyxml2::XMLElement& falloff, const Attribute& attribute,
+void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attribute,
                           int& first_line, Findings& findings);
 
 }  // namespace pliant::xml

@@ -8,14 +8,13 @@
 #include "pliant/scene/animate.hpp"
 #include "pliant/scene/falloff.hpp"
 #include "pliant/scene/path.hpp"
-#include "pliant/scene/tables.hpp"
 
 namespace pliant::xml {
 namespace {
 
 /// In a group the group selects the region, so its forces must not have a deformation radius.
 void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
-  Attribute& row = *find(table, "deformationRadius");
+  Slot& row = *find(table, "deformationRadius");
   if (row.line == 0) return;
   row.is_sound = false;
   findings.add_problem(row.line,
@@ -24,24 +23,37 @@ void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& f
                                    tag(element)));
 }
 
+template <class Kind>
+Force standard() {
+  Force force;
+  force.shape = Kind{};
+  if constexpr (requires { Description<Kind>::magnitude; })
+    force.magnitude = Description<Kind>::magnitude;
+  return force;
+}
+
+/// One force of each kind of the variant.
+template <class... Kinds>
+std::vector<Force> standards(const std::variant<Kinds...>&) {
+  return {standard<Kinds>()...};
+}
+
 }  // namespace
 
 std::vector<Force> force_kinds() {
-  std::vector<Force> kinds(7);
-  kinds[0].shape = PointChannels{};
-  kinds[1].shape = RadialChannels{};
-  kinds[2].shape = LineChannels{};
-  kinds[3].shape = UniformChannels{};
-  kinds[4].shape = VortexChannels{};
-  kinds[5].shape = NoiseChannels{};
-  kinds[6].shape = InertiaChannels{};
-  kinds[6].magnitude = 1;
+  std::vector<Force> kinds = standards(Force().shape);
+  std::erase_if(
+      kinds, [](const Force& force) { return std::holds_alternative<CustomForce>(force.shape); });
   return kinds;
+}
+
+Force standard_force(const Force& force) {
+  return std::visit([]<class Kind>(const Kind&) { return standard<Kind>(); }, force.shape);
 }
 
 Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
                  SceneFile& file) {
-  Table table = attributes_of(force);
+  Table table = table_of(force);
   read_attributes(element, table, file.findings);
   int falloff_line = 0;
   using Element = tinyxml2::XMLElement;

@@ -6,7 +6,7 @@
 
 #include "pliant/scene/force.hpp"
 #include "pliant/scene/key_text.hpp"
-#include "pliant/scene/tables.hpp"
+#include "pliant/scene/path.hpp"
 
 namespace pliant {
 
@@ -17,21 +17,21 @@ namespace {
 /// The formats of a table's rows. They do not refer to the table's places.
 std::vector<AttributeFormat> formats_of(const Table& table) {
   std::vector<AttributeFormat> formats;
-  for (const Attribute& row : table) formats.push_back(row.format);
+  for (const Slot& row : table) formats.push_back(format_of(row));
   return formats;
 }
 
 template <class Part>
-ElementFormat element(std::string_view name, std::vector<std::string_view> parents, Need need,
-                      Part part) {
-  return {name, std::move(parents), need, formats_of(attributes_of(part))};
+ElementFormat element(std::vector<std::string_view> parents, Need need = Need::Optional) {
+  Part part;
+  return {Description<Part>::element, std::move(parents), need, formats_of(table_of(part))};
 }
 
 template <class Part>
 ElementFormat key_element(std::string_view name, std::vector<std::string_view> parents, Need need,
                           KeyAxis axis) {
   Part part;
-  return {name, std::move(parents), need, formats_of(attributes_of(part, axis, ValueKind::Number))};
+  return {name, std::move(parents), need, formats_of(table_of(part, axis, ValueKind::Number))};
 }
 
 /// <key> is placed by `frame` in an <animate>, by `at` in a <falloff>.
@@ -39,8 +39,8 @@ ElementFormat key() {
   ElementFormat format =
       key_element<KeyText<1>>("key", {"animate", "falloff"}, Need::Required, KeyAxis::Frame);
   KeyText<1> part;
-  const Table table = attributes_of(part, KeyAxis::Falloff, ValueKind::Number);
-  format.attributes.insert(format.attributes.begin() + 1, table.front().format);
+  const Table table = table_of(part, KeyAxis::Falloff, ValueKind::Number);
+  format.attributes.insert(format.attributes.begin() + 1, format_of(table.front()));
   return format;
 }
 
@@ -56,16 +56,15 @@ ElementFormat later_element(std::string_view name, std::vector<std::string_view>
 }  // namespace
 
 std::vector<ElementFormat> scene_format() {
-  MeshFile mesh;
   Loop<1> loop;
   std::vector<std::string_view> forces, positioned;
   std::vector<ElementFormat> force_formats;
   for (Force& force : force_kinds()) {
     const std::string_view kind = kind_of(force);
-    const Table table = attributes_of(force);
+    const Table table = table_of(force);
     forces.push_back(kind);
-    if (std::any_of(table.begin(), table.end(), [](const Attribute& row) {
-          return std::holds_alternative<PositionChannel*>(row.channel);
+    if (std::any_of(table.begin(), table.end(), [](const Slot& row) {
+          return std::holds_alternative<PositionChannel*>(row.place);
         }))
       positioned.push_back(kind);
     force_formats.push_back({kind, {"scene", "group"}, Need::Optional, formats_of(table)});
@@ -76,23 +75,23 @@ std::vector<ElementFormat> scene_format() {
   animated.emplace_back("path");
 
   std::vector<ElementFormat> formats = {
-      element("scene", {}, Need::Required, Scene{}),
-      element("surface", {"scene"}, Need::Optional, Surface{}),
-      element("grid", {"surface"}, Need::Optional, GridSheet{}),
-      {"mesh", {"surface"}, Need::Optional, formats_of(attributes_of(mesh, {}))},
+      element<Scene>({}, Need::Required),
+      element<Surface>({"scene"}),
+      element<GridSheet>({"surface"}),
+      element<MeshFile>({"surface"}),
       later_element("nurbs", {"surface"}),
       later_element("subdivision", {"surface"}),
-      element("transform", {"surface"}, Need::Optional, TransformChannels{}),
-      element("material", {"surface"}, Need::Optional, MaterialChannels{}),
-      element("tangents", {"surface"}, Need::Optional, TangentChannels{}),
-      element("solver", {"surface"}, Need::Optional, SolverSettings{}),
-      element("group", {"scene"}, Need::Optional, Group{}),
-      element("path", with_groups(positioned), Need::Optional, PathText{}),
-      element("waypoint", {"path"}, Need::Required, Waypoint{}),
+      element<TransformChannels>({"surface"}),
+      element<MaterialChannels>({"surface"}),
+      element<TangentChannels>({"surface"}),
+      element<SolverSettings>({"surface"}),
+      element<Group>({"scene"}),
+      element<PathText>(with_groups(positioned)),
+      element<Waypoint>({"path"}, Need::Required),
       key_element<AnimateText<1>>("falloff", forces, Need::Optional, KeyAxis::Falloff),
       key_element<AnimateText<1>>("animate", with_groups(animated), Need::Optional, KeyAxis::Frame),
       key(),
-      {"loop", {"animate"}, Need::Optional, formats_of(attributes_of(loop, ValueKind::Number))},
+      {"loop", {"animate"}, Need::Optional, formats_of(table_of(loop, ValueKind::Number))},
   };
   formats.insert(formats.end(), force_formats.begin(), force_formats.end());
   return formats;

@@ -4,23 +4,19 @@
 #include <string_view>
 #include <vector>
 
-namespace pliant {
+#include "pliant/scene/description.hpp"
 
-/// Whether an attribute or element is optional, required or not supported.
-enum class Need {
-  Optional,
-  Required,
-  Later,  ///< known to the format, not supported by this version
-};
+namespace pliant {
 
 /// The format of an attribute: a row of docs/scene-format.md.
 struct AttributeFormat {
   std::string_view name;
-  std::string_view type;  ///< "number", "vector", "word", …
+  std::string type;       ///< "number", "vector", "word", …
   std::string unit = {};  ///< empty: none
   /// The default as a file would give it; in parentheses: what its absence means; empty: none.
   std::string standard = {};
-  std::string range = {};  ///< empty: anything of the type
+  std::string range = {};    ///< empty: anything of the type
+  std::string meaning = {};  ///< for people, in Markdown
   Need need = Need::Optional;
   bool is_keyable = false;
 };

@@ -7,13 +7,12 @@
 #include "pliant/scene/animate.hpp"
 #include "pliant/scene/force.hpp"
 #include "pliant/scene/path.hpp"
-#include "pliant/scene/tables.hpp"
 
 namespace pliant::xml {
 
 Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces, SceneFile& file) {
   Group group;
-  Table table = attributes_of(group);
+  Table table = table_of(group);
   read_attributes(element, table, file.findings);
   using Element = tinyxml2::XMLElement;
   std::vector<Child> children = {

@@ -163,42 +163,116 @@ Reading<std::array<double, 4>> parse_control(std::string_view text) {
   return control;
 }
 
-/// A row that stores the result of `parse(text)` in `place`.
-template <class Place, class Parse>
-Attribute parsed(std::string_view name, Place& place, std::string_view type, std::string_view unit,
-                 std::string standard, std::string range, Parse parse) {
-  return custom(name, type, unit, std::move(standard), std::move(range),
-                [&place, parse](std::string_view text) -> Reading<void> {
-                  auto read = parse(text);
-                  if (!read) return tl::unexpected(read.error());
-                  place = *read;
-                  return {};
-                });
+/// The text of each value that the functions above read.
+template <class Words, class E>
+std::string word_of(const Words& words, E value) {
+  for (const auto& word : words)
+    if (word.second == value) return std::string(word.first);
+  return "";
 }
 
-template <int D, class Place>
-Attribute value_row(std::string_view name, Place& place, ValueKind kind, std::string standard) {
-  return parsed(name, place, "value", "channel's", std::move(standard), "",
-                [kind](std::string_view text) { return parse_value<D>(text, kind); });
+std::string text_of(const Interpolation& interpolation) {
+  if (interpolation.kind != Interpolation::Kind::Easing)
+    return word_of(interpolations, interpolation.kind);
+  return word_of(eases, interpolation.ease) + word_of(sides, interpolation.side);
 }
 
-template <int D, class Place>
-Attribute tangent_row(std::string_view name, Place& place, ValueKind kind, std::string standard) {
-  return parsed(name, place, "tangent", "channel's/frame", std::move(standard), "",
-                [kind](std::string_view text) { return parse_tangent<D>(text, kind); });
+std::string text_of(const std::array<double, 4>& control) {
+  return fmt::format("{}", fmt::join(control, " "));
 }
 
 template <int D>
-Attribute handle_row(std::string_view name, std::optional<Handle<D>>& place, ValueKind kind) {
-  return parsed(name, place, "handle", "frames, channel's", "", "",
-                [kind](std::string_view text) { return parse_handle<D>(text, kind); });
+std::string text_of(const Tangent<D>& tangent, ValueKind kind) {
+  using Kind = typename Tangent<D>::Kind;
+  return tangent.kind == Kind::Slope ? value_text<D>(tangent.slope, kind)
+                                     : word_of(tangents<D>, tangent.kind);
 }
 
 template <int D>
-Attribute extrapolation_row(std::string_view name, Extrapolation<D>& place, ValueKind kind) {
-  return parsed(name, place, "extrapolation", "", "hold", "",
-                [kind](std::string_view text) { return parse_extrapolation<D>(text, kind); });
+std::string text_of(const Extrapolation<D>& extrapolation, ValueKind kind) {
+  std::string text = word_of(extrapolations<D>, extrapolation.kind);
+  if (extrapolation.kind == Extrapolation<D>::Kind::Slope)
+    text += ' ' + value_text<D>(extrapolation.slope, kind);
+  if (extrapolation.count) text += fmt::format(" {:.0f}", *extrapolation.count);
+  return text;
 }
+
+template <int D>
+std::string text_of(const Handle<D>& handle, ValueKind kind) {
+  return fmt::format("{} {}", handle.frames, value_text<D>(handle.value, kind));
+}
+
+/// A slot that reads its place by `parse(text)` and writes it by `write(value)`.
+template <class T, class Parse, class Write>
+Slot written(const Attribute& attribute, T& place, std::string_view type, std::string_view range,
+             Parse parse, Write write) {
+  return custom(
+      attribute, type, range,
+      [&place, parse](std::string_view text) -> Reading<void> {
+        auto read = parse(text);
+        if (!read) return tl::unexpected(read.error());
+        place = *read;
+        return {};
+      },
+      [&place, write] { return std::string(write(place)); });
+}
+
+/// An absent value has no text.
+template <class Write>
+auto if_present(Write write) {
+  return [write](const auto& place) { return place ? write(*place) : std::string(); };
+}
+
+/// The slots of the keys of a curve with D components.
+template <int D>
+struct KeySlots {
+  ValueKind kind;
+
+  Slot slot_of(const Attribute& attribute, Value<D>& place) const {
+    return written(attribute, place, "value", "", parse(parse_value<D>), write(value_text<D>));
+  }
+  Slot slot_of(const Attribute& attribute, std::optional<Value<D>>& place) const {
+    return written(attribute, place, "value", "", parse(parse_value<D>),
+                   if_present(write(value_text<D>)));
+  }
+  Slot slot_of(const Attribute& attribute, Tangent<D>& place) const {
+    return written(attribute, place, "tangent", "", parse(parse_tangent<D>), text());
+  }
+  Slot slot_of(const Attribute& attribute, std::optional<Tangent<D>>& place) const {
+    return written(attribute, place, "tangent", "", parse(parse_tangent<D>), if_present(text()));
+  }
+  Slot slot_of(const Attribute& attribute, Extrapolation<D>& place) const {
+    return written(attribute, place, "extrapolation", "", parse(parse_extrapolation<D>), text());
+  }
+  Slot slot_of(const Attribute& attribute, std::optional<Handle<D>>& place) const {
+    return written(attribute, place, "handle", "", parse(parse_handle<D>), if_present(text()));
+  }
+
+ private:
+  template <class Parse>
+  auto parse(Parse parse_text) const {
+    return [parse_text, kind = kind](std::string_view text) { return parse_text(text, kind); };
+  }
+  template <class Write>
+  auto write(Write write_value) const {
+    return [write_value, kind = kind](const auto& value) { return write_value(value, kind); };
+  }
+  auto text() const {
+    return [kind = kind](const auto& value) { return text_of(value, kind); };
+  }
+};
+
+Slot interpolation_slot(const Attribute& attribute, Interpolation& place) {
+  return written(attribute, place, "interpolation", "", parse_interpolation,
+                 [](const Interpolation& value) { return text_of(value); });
+}
+
+Slot interpolation_slot(const Attribute& attribute, std::optional<Interpolation>& place) {
+  return written(attribute, place, "interpolation", "", parse_interpolation,
+                 if_present([](const Interpolation& value) { return text_of(value); }));
+}
+
+constexpr std::string_view overshoot_words[] = {"limit", "keepStart", "contain", "error"};
 
 }  // namespace
 
@@ -222,76 +296,172 @@ Reading<Value<D>> parse_value(std::string_view text, ValueKind kind) {
 }
 
 template <int D>
-Table attributes_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
-  const std::string_view inherited = "its animate's";
-  const std::string_view third = "a third of the segment";
-  const auto interpolation =
-      parsed("interpolation", key.interpolation, "interpolation", "", "", "", parse_interpolation);
-  const auto control =
-      parsed("control", key.control, "four numbers", "1", "", "x1, x2: 0 to 1", parse_control);
+std::string value_text(const Value<D>& value, ValueKind kind) {
+  if (kind == ValueKind::Boolean) return value[0] != 0 ? "true" : "false";
+  return fmt::format("{}", fmt::join(value, " "));
+}
+
+template <int D>
+Table table_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
+  constexpr std::string_view inherited = "its animate's";
+  constexpr std::string_view third = "a third of the segment";
+  constexpr std::string_view slope = "channel's/frame";
+  const KeySlots<D> of{kind};
   return {
-      required(axis == KeyAxis::Frame ? number("frame", key.frame, "frame")
-                                      : number("at", key.frame, "1", a_share)),
-      required(value_row<D>("value", key.value, kind, "")),
-      if_absent(interpolation, inherited),
-      if_absent(number("amplitude", key.amplitude, "channel's", not_negative), "the change"),
-      if_absent(number("period", key.period, "frames", not_negative), "0.3 of the segment"),
-      if_absent(number("back", key.back, "1"), "1.70158"),
-      if_absent(control, "none"),
-      if_absent(tangent_row<D>("tangent", key.tangent, kind, ""), inherited),
-      if_absent(tangent_row<D>("in", key.in, kind, ""), inherited),
-      if_absent(tangent_row<D>("out", key.out, kind, ""), inherited),
-      if_absent(number("inLength", key.in_length, "frames"), third),
-      if_absent(number("outLength", key.out_length, "frames"), third),
-      if_absent(handle_row<D>("inHandle", key.in_handle, kind), "none"),
-      if_absent(handle_row<D>("outHandle", key.out_handle, kind), "none"),
-      if_absent(value_row<D>("left", key.left, kind, ""), "no jump"),
+      axis == KeyAxis::Frame ? slot({.name = "frame",
+                                     .meaning = "later than the key before; need not be whole",
+                                     .unit = "frame",
+                                     .need = Need::Required},
+                                    &key.frame)
+                             : slot({.name = "at",
+                                     .meaning = "in a `<falloff>`, instead of `frame`",
+                                     .unit = "1",
+                                     .range = a_share,
+                                     .need = Need::Required},
+                                    &key.frame),
+      of.slot_of({.name = "value",
+                  .meaning = "value at that frame; where the curve jumps, the value after the jump",
+                  .unit = "channel's",
+                  .need = Need::Required},
+                 key.value),
+      interpolation_slot({.name = "interpolation",
+                          .meaning = "interpolation to the next key",
+                          .absent = inherited},
+                         key.interpolation),
+      slot({.name = "amplitude",
+            .meaning = "amplitude of `elastic…`",
+            .unit = "channel's",
+            .range = not_negative,
+            .absent = "the change"},
+           &key.amplitude),
+      slot({.name = "period",
+            .meaning = "period of `elastic…`; 0 counts as absent",
+            .unit = "frames",
+            .range = not_negative,
+            .absent = "0.3 of the segment"},
+           &key.period),
+      slot({.name = "back",
+            .meaning = "overshoot of `back…` beyond its ends",
+            .unit = "1",
+            .absent = "1.70158"},
+           &key.back),
+      written({.name = "control",
+               .meaning = "`x1 y1 x2 y2` of `cubicBezier`, as in CSS",
+               .unit = "1",
+               .absent = "none"},
+              key.control, "four numbers", "x1, x2: 0 to 1", parse_control,
+              if_present([](const std::array<double, 4>& value) { return text_of(value); })),
+      of.slot_of({.name = "tangent",
+                  .meaning = "both sides; instead of the four below",
+                  .unit = slope,
+                  .absent = inherited},
+                 key.tangent),
+      of.slot_of({.name = "in",
+                  .meaning = "the tangent before the key",
+                  .unit = slope,
+                  .absent = inherited},
+                 key.in),
+      of.slot_of({.name = "out",
+                  .meaning = "the tangent after the key",
+                  .unit = slope,
+                  .absent = inherited},
+                 key.out),
+      slot({.name = "inLength",
+            .meaning = "length of `in`; a negative one counts as 0, with a note",
+            .unit = "frames",
+            .absent = third},
+           &key.in_length),
+      slot({.name = "outLength",
+            .meaning = "length of `out`; likewise",
+            .unit = "frames",
+            .absent = third},
+           &key.out_length),
+      of.slot_of({.name = "inHandle",
+                  .meaning = "instead of `in` and `inLength`: `frames value`, from the key, "
+                             "frames ≤ 0",
+                  .unit = "frames, channel's",
+                  .absent = "none"},
+                 key.in_handle),
+      of.slot_of({.name = "outHandle",
+                  .meaning = "instead of `out` and `outLength`: likewise, frames ≥ 0",
+                  .unit = "frames, channel's",
+                  .absent = "none"},
+                 key.out_handle),
+      of.slot_of({.name = "left",
+                  .meaning = "value before the jump, if the curve jumps at this key",
+                  .unit = "channel's",
+                  .absent = "no jump"},
+                 key.left),
   };
 }
 
 template <int D>
-Table attributes_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
+Table table_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
+  const bool is_falloff = axis == KeyAxis::Falloff;
+  const KeySlots<D> of{kind};
   Table table;
-  if (axis == KeyAxis::Frame)  // a <falloff> keeps its end values outside its keys
+  if (!is_falloff)  // a <falloff> keeps its end values outside its keys
     table = {
-        required(custom("attribute", "word", "", "", "a channel of its element",
-                        [](std::string_view) { return Reading<void>(); })),
-        extrapolation_row<D>("before", animate.before, kind),
-        extrapolation_row<D>("after", animate.after, kind),
+        custom(
+            {.name = "attribute", .meaning = "the channel", .need = Need::Required}, "word",
+            "a channel of its element", [](std::string_view) { return Reading<void>(); },
+            [] { return std::string(); }),
+        of.slot_of({.name = "before", .meaning = "values before the first key"}, animate.before),
+        of.slot_of({.name = "after", .meaning = "values after the last key"}, animate.after),
     };
   const Table shared = {
-      tangent_row<D>("tangent", animate.tangent, kind, "auto"),
-      parsed("interpolation", animate.interpolation, "interpolation", "", "bezier", "",
-             parse_interpolation),
-      choice("overshoot", animate.overshoot,
-             {{"limit", Overshoot::Limit},
-              {"keepStart", Overshoot::KeepStart},
-              {"contain", Overshoot::Contain},
-              {"error", Overshoot::Error}}),
+      of.slot_of({.name = "tangent",
+                  .meaning = is_falloff ? "default of its keys; slopes are per unit of s"
+                                        : "default of its keys",
+                  .unit = "channel's/frame"},
+                 animate.tangent),
+      interpolation_slot({.name = "interpolation", .meaning = "default of its keys"},
+                         animate.interpolation),
+      slot({.name = "overshoot",
+            .meaning = is_falloff ? "correction of tangents that would make s run backwards"
+                                  : "correction of tangents that would make time run backwards",
+            .words = overshoot_words},
+           choice(animate.overshoot)),
   };
   table.insert(table.end(), shared.begin(), shared.end());
   return table;
 }
 
 template <int D>
-Table attributes_of(Loop<D>& loop, ValueKind kind) {
-  constexpr int most_copies = 1'000'000;
+Table table_of(Loop<D>& loop, ValueKind kind) {
+  constexpr Range copies{.least = 0, .most = 1'000'000};
+  const KeySlots<D> of{kind};
   return {
-      required(number("from", loop.from, "frame")),
-      required(number("to", loop.to, "frame")),
-      integer("before", loop.before, "copies", 0, most_copies),
-      integer("after", loop.after, "copies", 0, most_copies),
-      value_row<D>("offset", loop.offset, kind, "0"),
+      slot({.name = "from",
+            .meaning = "first key of the repeated part",
+            .unit = "frame",
+            .need = Need::Required},
+           &loop.from),
+      slot({.name = "to",
+            .meaning = "end of the repeated part, after `from`",
+            .unit = "frame",
+            .need = Need::Required},
+           &loop.to),
+      slot({.name = "before", .meaning = "copies before it", .unit = "copies", .range = copies},
+           &loop.before),
+      slot({.name = "after", .meaning = "copies after it", .unit = "copies", .range = copies},
+           &loop.after),
+      of.slot_of({.name = "offset",
+                  .meaning = "added to each copy relative to the one before",
+                  .unit = "channel's"},
+                 loop.offset),
   };
 }
 
 template Reading<Value<1>> parse_value<1>(std::string_view, ValueKind);
 template Reading<Value<3>> parse_value<3>(std::string_view, ValueKind);
-template Table attributes_of<1>(KeyText<1>&, KeyAxis, ValueKind);
-template Table attributes_of<3>(KeyText<3>&, KeyAxis, ValueKind);
-template Table attributes_of<1>(AnimateText<1>&, KeyAxis, ValueKind);
-template Table attributes_of<3>(AnimateText<3>&, KeyAxis, ValueKind);
-template Table attributes_of<1>(Loop<1>&, ValueKind);
-template Table attributes_of<3>(Loop<3>&, ValueKind);
+template std::string value_text<1>(const Value<1>&, ValueKind);
+template std::string value_text<3>(const Value<3>&, ValueKind);
+template Table table_of<1>(KeyText<1>&, KeyAxis, ValueKind);
+template Table table_of<3>(KeyText<3>&, KeyAxis, ValueKind);
+template Table table_of<1>(AnimateText<1>&, KeyAxis, ValueKind);
+template Table table_of<3>(AnimateText<3>&, KeyAxis, ValueKind);
+template Table table_of<1>(Loop<1>&, ValueKind);
+template Table table_of<3>(Loop<3>&, ValueKind);
 
 }  // namespace pliant::xml

@@ -33,6 +33,10 @@ constexpr std::string_view place_name(KeyAxis axis) {
 template <int D>
 Reading<Value<D>> parse_value(std::string_view text, ValueKind kind);
 
+/// The text of such a value.
+template <int D>
+std::string value_text(const Value<D>& value, ValueKind kind);
+
 /// A handle as the file gives it: `frames value`, relative to its key.
 template <int D>
 struct Handle {
@@ -73,10 +77,10 @@ struct AnimateText {
 // The rows of <key>, <animate> or <falloff>, and <loop>.
 
 template <int D>
-Table attributes_of(KeyText<D>& key, KeyAxis axis, ValueKind kind);
+Table table_of(KeyText<D>& key, KeyAxis axis, ValueKind kind);
 template <int D>
-Table attributes_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind);
+Table table_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind);
 template <int D>
-Table attributes_of(Loop<D>& loop, ValueKind kind);
+Table table_of(Loop<D>& loop, ValueKind kind);
 
 }  // namespace pliant::xml

@@ -11,12 +11,12 @@ namespace pliant::xml {
 namespace {
 
 bool is_given(Table& table, std::string_view name) {
-  const Attribute* row = find(table, name);
+  const Slot* row = find(table, name);
   return row != nullptr && row->line != 0;
 }
 
 bool is_sound(Table& table, std::string_view name) {
-  const Attribute* row = find(table, name);
+  const Slot* row = find(table, name);
   return row != nullptr && row->is_sound;
 }
 
@@ -70,7 +70,7 @@ template <int D>
 std::optional<Curve<D>> CurveReader<D>::read() {
   const std::size_t problems_before = findings_.problem_count();
   read_defaults();
-  key_table_ = attributes_of(key_, axis_, kind_);
+  key_table_ = table_of(key_, axis_, kind_);
   std::vector<Child> children = {
       {"key", [&](const tinyxml2::XMLElement& element) { read_key(element); }},
   };
@@ -104,7 +104,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
 template <int D>
 void CurveReader<D>::read_defaults() {
   if (kind_ == ValueKind::Boolean) defaults_.interpolation.kind = Interpolation::Kind::Step;
-  Table table = attributes_of(defaults_, axis_, kind_);
+  Table table = table_of(defaults_, axis_, kind_);
   read_attributes(animate_, table, findings_);
   check_stepping(animate_, table, defaults_.interpolation);
   curve_.before = defaults_.before;
@@ -116,7 +116,7 @@ template <int D>
 void CurveReader<D>::read_key(const tinyxml2::XMLElement& element) {
   check_last_control(true);
   key_ = {};
-  for (Attribute& row : key_table_) {
+  for (Slot& row : key_table_) {
     row.line = 0;
     row.is_sound = true;
   }
@@ -252,7 +252,7 @@ Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_
 template <int D>
 void CurveReader<D>::read_loop(const tinyxml2::XMLElement& element) {
   Loop<D> loop;
-  Table table = attributes_of(loop, kind_);
+  Table table = table_of(loop, kind_);
   read_attributes(element, table, findings_);
   read_children(element, {}, findings_);
   if (curve_.loop)

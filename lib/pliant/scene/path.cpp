@@ -10,14 +10,11 @@
 
 #include "pliant/scene/animate.hpp"
 #include "pliant/scene/nearest.hpp"
-#include "pliant/scene/tables.hpp"
 
 namespace pliant::xml {
 namespace {
 
-bool is_position(const Attribute& row) {
-  return std::holds_alternative<PositionChannel*>(row.channel);
-}
+bool is_position(const Slot& row) { return std::holds_alternative<PositionChannel*>(row.place); }
 
 /// The waypoints in the order of the file, with their lines.
 struct Waypoints {
@@ -27,7 +24,7 @@ struct Waypoints {
 
 void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Findings& findings) {
   Waypoint waypoint;
-  Table table = attributes_of(waypoint);
+  Table table = table_of(waypoint);
   read_attributes(element, table, findings);
   read_children(element, {}, findings);
   waypoints.places.push_back(waypoint.at);
@@ -36,16 +33,15 @@ void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Fi
 
 /// The row of the position that `attribute` names, marked as animated; null if there is none, which
 /// is a problem.
-Attribute* find_position(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
-                         Findings& findings) {
+Slot* find_position(const tinyxml2::XMLElement& element, std::span<Slot> rows, Findings& findings) {
   const tinyxml2::XMLAttribute* given = element.FindAttribute("attribute");
   if (!given) return nullptr;  // reported with the other attributes
   const std::string name(trimmed(given->Value()));
-  Attribute* row = find(rows, name);
+  Slot* row = find(rows, name);
   if (!row || !is_position(*row)) {
     std::vector<std::string_view> positions;
-    for (const Attribute& candidate : rows)
-      if (is_position(candidate)) positions.push_back(candidate.format.name);
+    for (const Slot& candidate : rows)
+      if (is_position(candidate)) positions.push_back(candidate.attribute.name);
     const std::string parent = tag(*element.Parent()->ToElement());
     findings.add_problem(
         given->GetLineNum(),
@@ -84,15 +80,15 @@ std::optional<Path> make_path(const tinyxml2::XMLElement& element, Waypoints way
 
 }  // namespace
 
-void read_path(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
-               const std::string& owner, SceneFile& file) {
+void read_path(const tinyxml2::XMLElement& element, std::span<Slot> rows, const std::string& owner,
+               SceneFile& file) {
   const std::size_t problems = file.findings.problem_count();
   PathText text;
-  Table table = attributes_of(text);
+  Table table = table_of(text);
   read_attributes(element, table, file.findings);
-  Attribute* position = find_position(element, rows, file.findings);
+  Slot* position = find_position(element, rows, file.findings);
   const std::string path_name =
-      fmt::format("{}.{}", owner, position ? position->format.name : std::string_view("path"));
+      fmt::format("{}.{}", owner, position ? position->attribute.name : std::string_view("path"));
   Waypoints waypoints;
   using Element = tinyxml2::XMLElement;
   const Child children[] = {
@@ -107,7 +103,7 @@ void read_path(const tinyxml2::XMLElement& element, std::span<Attribute> rows,
   if (!position) return;
   position->is_sound = position->is_sound && path.has_value();
   if (path)
-    *std::get<PositionChannel*>(position->channel) =
+    *std::get<PositionChannel*>(position->place) =
         PathMotion{std::move(*path), std::move(text.progress)};
   if (!owner.empty()) record(path_name, table, file);
 }

@@ -16,7 +16,6 @@
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/rules.hpp"
 #include "pliant/scene/surface.hpp"
-#include "pliant/scene/tables.hpp"
 
 namespace pliant {
 
@@ -39,7 +38,7 @@ void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& 
 
 Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   Scene scene;
-  Table table = attributes_of(scene);
+  Table table = table_of(scene);
   read_attributes(root, table, file.findings);
   check_frames(scene, table, file.findings);
   file.lines[""] = root.GetLineNum();

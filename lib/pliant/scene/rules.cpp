@@ -17,9 +17,9 @@
 namespace pliant::xml {
 namespace {
 
-bool are_constant(std::span<Attribute> table, std::initializer_list<std::string_view> names) {
+bool are_constant(std::span<Slot> table, std::initializer_list<std::string_view> names) {
   return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
-    const Attribute* row = find(table, name);
+    const Slot* row = find(table, name);
     return row != nullptr && row->is_constant();
   });
 }
@@ -32,15 +32,14 @@ bool is_force_element(std::string_view element) {
 }
 
 /// The largest line of these attributes that are given, but at least `line`.
-int last_line(std::span<Attribute> table, std::initializer_list<std::string_view> names,
-              int line = 0) {
+int last_line(std::span<Slot> table, std::initializer_list<std::string_view> names, int line = 0) {
   for (const std::string_view name : names) line = std::max(line, find(table, name)->line);
   return line;
 }
 
 }  // namespace
 
-void check_frames(const Scene& scene, std::span<Attribute> table, Findings& findings) {
+void check_frames(const Scene& scene, std::span<Slot> table, Findings& findings) {
   if (!are_constant(table, {"start", "end"})) return;
   const std::int64_t frames = std::int64_t{scene.end} - scene.start + 1;
   const int line = find(table, "end")->line;
@@ -54,7 +53,7 @@ void check_frames(const Scene& scene, std::span<Attribute> table, Findings& find
                                            frames, scene.start, scene.end, max_frames));
 }
 
-void check_nodes(const GridSheet& grid, std::span<Attribute> table, int line, Findings& findings) {
+void check_nodes(const GridSheet& grid, std::span<Slot> table, int line, Findings& findings) {
   if (!are_constant(table, {"columns", "rows"})) return;
   const std::int64_t nodes = std::int64_t{grid.columns} * grid.rows;
   if (nodes > max_sheet_vertices)
@@ -63,8 +62,7 @@ void check_nodes(const GridSheet& grid, std::span<Attribute> table, int line, Fi
                                      grid.columns, grid.rows, nodes, max_sheet_vertices));
 }
 
-void check_well_posed(const MaterialChannels& material, std::span<Attribute> table,
-                      Findings& findings) {
+void check_well_posed(const MaterialChannels& material, std::span<Slot> table, Findings& findings) {
   if (!are_constant(table, {"b", "c", "d"})) return;
   const Stiffness stiffness{material.b.at(0)[0], material.c.at(0)[0], material.d.at(0)[0]};
   if (stiffness.is_elliptic()) return;
@@ -76,7 +74,7 @@ void check_well_posed(const MaterialChannels& material, std::span<Attribute> tab
                   stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d));
 }
 
-void check_steps(const SolverSettings& solver, std::span<Attribute> table, double fps, int line,
+void check_steps(const SolverSettings& solver, std::span<Slot> table, double fps, int line,
                  Findings& findings) {
   if (!are_constant(table, {"dt"})) return;
   const double dt = solver.dt.at(0)[0];

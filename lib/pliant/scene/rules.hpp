@@ -15,17 +15,16 @@ namespace pliant::xml {
 // that breaks a rule is marked as not sound.
 
 /// end >= start, and at most 10^6 frames. SCENE FORMAT, scene.
-void check_frames(const Scene& scene, std::span<Attribute> table, Findings& findings);
+void check_frames(const Scene& scene, std::span<Slot> table, Findings& findings);
 
 /// A grid of at most 10^8 vertices.
-void check_nodes(const GridSheet& grid, std::span<Attribute> table, int line, Findings& findings);
+void check_nodes(const GridSheet& grid, std::span<Slot> table, int line, Findings& findings);
 
 /// c > -2 sqrt(b d). SPEC 2.
-void check_well_posed(const MaterialChannels& material, std::span<Attribute> table,
-                      Findings& findings);
+void check_well_posed(const MaterialChannels& material, std::span<Slot> table, Findings& findings);
 
 /// At most 10^5 steps a frame. SPEC 2, 4. `line` is reported if dt is not given.
-void check_steps(const SolverSettings& solver, std::span<Attribute> table, double fps, int line,
+void check_steps(const SolverSettings& solver, std::span<Slot> table, double fps, int line,
                  Findings& findings);
 
 /// A surface, a force or a group that has a name.

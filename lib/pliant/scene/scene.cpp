@@ -1,7 +1,8 @@
 #include "pliant/scene/scene.hpp"
 
 #include <algorithm>
-#include <iterator>
+
+#include "pliant/scene/description.hpp"
 
 namespace pliant {
 namespace {
@@ -17,10 +18,8 @@ int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
 }  // namespace
 
 std::string_view kind_of(const Force& force) {
-  constexpr std::string_view kinds[] = {"point",  "radial", "line",    "uniform",
-                                        "vortex", "noise",  "inertia", "custom"};
-  static_assert(std::size(kinds) == std::variant_size_v<decltype(Force::shape)>);
-  return kinds[force.shape.index()];
+  return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; },
+                    force.shape);
 }
 
 int SceneOrigin::line_of(const std::string& name, const std::string& attribute) const {

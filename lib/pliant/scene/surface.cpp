@@ -7,7 +7,6 @@
 
 #include "pliant/scene/animate.hpp"
 #include "pliant/scene/rules.hpp"
-#include "pliant/scene/tables.hpp"
 
 namespace pliant::xml {
 namespace {
@@ -23,11 +22,11 @@ class SurfaceReader {
   SurfaceReader(const tinyxml2::XMLElement& element, SceneFile& file)
       : element_(element),
         file_(file),
-        own_(attributes_of(surface_)),
-        transform_{attributes_of(surface_.transform)},
-        material_{attributes_of(surface_.material)},
-        tangents_{attributes_of(surface_.tangents)},
-        solver_{attributes_of(surface_.solver)} {}
+        own_(table_of(surface_)),
+        transform_{table_of(surface_.transform)},
+        material_{table_of(surface_.material)},
+        tangents_{table_of(surface_.tangents)},
+        solver_{table_of(surface_.solver)} {}
 
   Surface read(std::optional<double> fps);
 
@@ -105,7 +104,7 @@ bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
 void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   const bool is_first = takes_shape(element);
   GridSheet grid;
-  Table table = attributes_of(grid);
+  Table table = table_of(grid);
   read_attributes(element, table, file_.findings);
   read_children(element, {}, file_.findings);
   check_nodes(grid, table, element.GetLineNum(), file_.findings);
@@ -118,10 +117,11 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
   mesh.root = file_.root;
-  Table table = attributes_of(mesh, file_.folder);
+  Table table = table_of(mesh);
   read_attributes(element, table, file_.findings);
+  if (!mesh.path.empty()) mesh.path = (file_.folder / mesh.path).string();
   read_children(element, {}, file_.findings);
-  if (const Attribute* path = find(table, "file"); path->line != 0 && path->is_sound)
+  if (const Slot* path = find(table, "file"); path->line != 0 && path->is_sound)
     file_.meshes.push_back({surface_.name, mesh.path, path->line});
   if (!is_first) return;
   surface_.shape = mesh;
@@ -144,10 +144,10 @@ void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
 /// An <animate> directly in the surface may name a channel of any of its parts, as all names
 /// differ.
 void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
-  std::vector<Attribute*> rows;
+  std::vector<Slot*> rows;
   for (Table* table :
        {&own_, &transform_.table, &material_.table, &tangents_.table, &solver_.table})
-    for (Attribute& row : *table) rows.push_back(&row);
+    for (Slot& row : *table) rows.push_back(&row);
   read_animate(element, rows, surface_.name, file_.findings);
 }
 

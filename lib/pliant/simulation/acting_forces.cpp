@@ -6,31 +6,24 @@
 #include <utility>
 #include <variant>
 
+#include "pliant/scene/description.hpp"
+
 namespace pliant {
 namespace {
 
 // Whether a force of magnitude 1 changes between frames, on a surface that does not move.
 struct Changes {
-  bool operator()(const PointChannels& point) const {
-    return point.center.is_animated() || point.direction.is_animated();
-  }
-  bool operator()(const RadialChannels& radial) const { return radial.center.is_animated(); }
-  bool operator()(const LineChannels& line) const {
-    return line.from.is_animated() || line.to.is_animated() ||
-           (line.direction && line.direction->is_animated());
-  }
-  bool operator()(const UniformChannels& uniform) const { return uniform.direction.is_animated(); }
-  bool operator()(const VortexChannels& vortex) const {
-    return vortex.center.is_animated() || vortex.axis.is_animated() || vortex.pull.is_animated();
+  template <class Kind>
+  bool operator()(const Kind& kind) const {
+    bool any = false;
+    for_each_channel(kind, [&](const std::string&, const Attribute&, const auto& channel) {
+      any = any || channel.is_animated();
+    });
+    return any;
   }
   bool operator()(const NoiseChannels& noise) const {
-    return noise.center.is_animated() || noise.frequency.is_animated() ||
-           noise.rate.is_animated() || noise.rate.at(0)[0] != 0;
+    return noise.rate.at(0)[0] != 0 || operator()<NoiseChannels>(noise);
   }
-  bool operator()(const InertiaChannels&) const {
-    return false;
-  }  // 0 on a surface that does not
-     // move
   bool operator()(const CustomForce&) const { return true; }
 };
 

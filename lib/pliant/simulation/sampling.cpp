@@ -6,10 +6,22 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/description.hpp"
+
 namespace pliant {
 namespace {
 
 Vector3d to_vector(const Value<3>& value) { return {value[0], value[1], value[2]}; }
+
+// The value of a channel at a frame.
+void sample(const Channel<1>& channel, int frame, double& value) { value = channel.at(frame)[0]; }
+template <class Vector>
+void sample(const Vector& channel, int frame, Vector3d& value) {
+  value = to_vector(channel.at(frame));
+}
+void sample(const std::optional<Channel<3>>& channel, int frame, std::optional<Vector3d>& value) {
+  if (channel) value = to_vector(channel->at(frame));
+}
 
 // A tangent of one number applies to all of x, y, z. SPEC 3.
 Vector3d sample_tangent(const TangentChannel& channel, int frame) {
@@ -90,23 +102,14 @@ struct SampleShape {
     return NoiseClock(scene.start).sum(frame, rate_at) / scene.fps;
   }
 
-  ForceShape operator()(const PointChannels& point) const {
-    return PointForce{to_vector(point.center.at(frame)), to_vector(point.direction.at(frame))};
-  }
-  ForceShape operator()(const RadialChannels& radial) const {
-    return RadialForce{to_vector(radial.center.at(frame))};
-  }
-  ForceShape operator()(const LineChannels& line) const {
-    LineForce sampled{to_vector(line.from.at(frame)), to_vector(line.to.at(frame)), {}};
-    if (line.direction) sampled.direction = to_vector(line.direction->at(frame));
+  template <class Kind>
+  ForceShape operator()(const Kind& kind) const {
+    typename Description<Kind>::Sampled sampled;
+    const auto row = [this](const Attribute&, const auto& channel, auto& value) {
+      sample(channel, frame, value);
+    };
+    describe(row, kind, sampled);
     return sampled;
-  }
-  ForceShape operator()(const UniformChannels& uniform) const {
-    return UniformForce{to_vector(uniform.direction.at(frame))};
-  }
-  ForceShape operator()(const VortexChannels& vortex) const {
-    return VortexForce{to_vector(vortex.center.at(frame)), to_vector(vortex.axis.at(frame)),
-                       vortex.pull.at(frame)[0]};
   }
   ForceShape operator()(const NoiseChannels& noise) const {
     return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <type_traits>
 
 #include "pliant/simulation/engine.hpp"
@@ -106,35 +107,12 @@ class Ingredients {
     add_all(keys, before, after, loop, overshoot);
   }
 
-  void add(const PointForce& force) {
-    const auto& [center, direction] = force;
-    add_all(center, direction);
+  // A force of any kind.
+  template <class Kind>
+  requires requires(const Kind& kind) { kind.values(); }
+  void add(const Kind& kind) {
+    std::apply([this](const auto&... values) { add_all(values...); }, kind.values());
   }
-  void add(const RadialForce& force) {
-    const auto& [center] = force;
-    add(center);
-  }
-  void add(const LineForce& force) {
-    const auto& [from, to, direction] = force;
-    add_all(from, to, direction);
-  }
-  void add(const UniformForce& force) {
-    const auto& [direction] = force;
-    add(direction);
-  }
-  void add(const VortexForce& force) {
-    const auto& [center, axis, pull] = force;
-    add_all(center, axis, pull);
-  }
-  void add(const NoiseForce& force) {
-    const auto& [center, frequency, time, seed] = force;
-    add_all(center, frequency, time, seed);
-  }
-  void add(const InertiaForce& force) {
-    const auto& [linear, origin, offset] = force;
-    add_all(linear, origin, offset);
-  }
-  void add(const FunctionForce&) {}  // identified by the key from its program
 
   void add(const SampledForce& force) {
     const auto& [shape, magnitude, deformation_radius, force_radius, falloff, falloff_curve] =

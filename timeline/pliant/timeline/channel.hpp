@@ -47,6 +47,7 @@ class Switch {
   Switch(Curve<1> curve) : channel_(std::move(curve)) {}  // NOLINT: a curve is a switch
 
   bool at(double frame) const { return channel_.at(frame)[0] != 0; }
+  bool is_animated() const { return channel_.is_animated(); }
   const Channel<1>& channel() const { return channel_; }
 
  private:

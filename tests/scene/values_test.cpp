@@ -1,5 +1,3 @@
-#include "pliant/scene/tables.hpp"
-
 #include <string>
 #include <vector>
 
@@ -28,7 +26,7 @@ std::string point(const std::string& attributes) {
   return scene_with("<point name=\"p\" " + attributes + "/>");
 }
 
-TEST_CASE("each value out of its range is told with the rule", "[scene][tables]") {
+TEST_CASE("each value out of its range is told with the rule", "[scene][values]") {
   check_each({
       {scene_tag("version=\"2\""),
        3,
@@ -108,7 +106,7 @@ TEST_CASE("each value out of its range is told with the rule", "[scene][tables]"
   });
 }
 
-TEST_CASE("values at the edge of their range are read", "[scene][tables]") {
+TEST_CASE("values at the edge of their range are read", "[scene][values]") {
   for (const std::string& text :
        {grid("columns=\"3\" rows=\"3\" width=\"5e-324\""),
         part("material", "density=\"0\" damping=\"0\""),

@@ -1,4 +1,4 @@
-#include "pliant/scene/attribute.hpp"
+#include "pliant/scene/slot.hpp"
 
 #include <optional>
 #include <string>
@@ -11,9 +11,9 @@ namespace {
 
 using pliant::testing::contains_text;
 
-TEST_CASE("a range accepts its ends, or not, and each component counts", "[scene][attribute]") {
+TEST_CASE("a range accepts its ends, or not, and each component counts", "[scene][slot]") {
   const auto accepts = [](Range range, std::vector<double> numbers) {
-    return range.accept(numbers).has_value();
+    return !range.broken_rule(numbers);
   };
   CHECK(accepts(any_number, {-1e308}));
   CHECK(accepts(not_negative, {0}));
@@ -24,13 +24,14 @@ TEST_CASE("a range accepts its ends, or not, and each component counts", "[scene
   CHECK(accepts(not_zero, {-1, 1, 2}));
   CHECK_FALSE(accepts(not_zero, {1, 0, 1}));
   CHECK_FALSE(accepts({.least = 0, .most = 1}, {1.5}));
-  CHECK(positive.accept(std::vector{-1.0}).error() == "must be greater than 0");
-  CHECK(not_zero.accept(std::vector{1.0, 0.0}).error() == "each number must differ from 0");
+  CHECK(positive.broken_rule(std::vector{-1.0}) == "must be greater than 0");
+  CHECK(a_share.broken_rule(std::vector{1.5}) == "must be from 0 to 1");
+  CHECK(not_zero.broken_rule(std::vector{1.0, 0.0}) == "each number must differ from 0");
 }
 
-TEST_CASE("a refused value leaves its place as it was", "[scene][attribute]") {
+TEST_CASE("a refused value leaves its place as it was", "[scene][slot]") {
   double width = 3;
-  const Attribute row = number("width", width, "length", positive);
+  const Slot row = slot({.name = "width", .range = positive}, &width);
   for (const std::string text : {"-1", "0", "x", "", "1 2", "1e999"}) {
     CAPTURE(text);
     CHECK_FALSE(row.read(text));
@@ -40,7 +41,7 @@ TEST_CASE("a refused value leaves its place as it was", "[scene][attribute]") {
   CHECK(width == 2.5);
 }
 
-TEST_CASE("the default of a row is what its place holds", "[scene][attribute]") {
+TEST_CASE("the default of a row is what its place holds", "[scene][slot]") {
   double number_place = 0.01;
   int integer_place = 7;
   bool boolean_place = true;
@@ -48,19 +49,20 @@ TEST_CASE("the default of a row is what its place holds", "[scene][attribute]") 
   std::optional<Channel<3>> optional_place;
   TangentChannel tangent_place = Channel<3>(Value<3>{0, 1, 0});
   Switch switch_place = false;
-  CHECK(number("x", number_place, "s").format.standard == "0.01");
-  CHECK(integer("x", integer_place, "", 0, 9).format.standard == "7");
-  CHECK(boolean("x", boolean_place).format.standard == "true");
-  CHECK(channel("x", vector_place, "").format.standard == "1 2.5 -3");
-  CHECK(channel("x", optional_place, "").format.standard.empty());
-  CHECK(channel("x", tangent_place, "").format.standard == "0 1 0");
-  CHECK(channel("x", switch_place).format.standard == "false");
-  CHECK(required(number("x", number_place, "s")).format.standard.empty());
+  CHECK(slot({}, &number_place).standard == "0.01");
+  CHECK(slot({}, &integer_place).standard == "7");
+  CHECK(slot({}, &boolean_place).standard == "true");
+  CHECK(slot({}, &vector_place).standard == "1 2.5 -3");
+  CHECK(slot({}, &optional_place).standard.empty());
+  CHECK(slot({}, &tangent_place).standard == "0 1 0");
+  CHECK(slot({}, &switch_place).standard == "false");
+  CHECK(format_of(slot({.need = Need::Required}, &number_place)).standard.empty());
+  CHECK(format_of(slot({.absent = "none"}, &optional_place)).standard == "(none)");
 }
 
-TEST_CASE("a tangent takes one number or three", "[scene][attribute]") {
+TEST_CASE("a tangent takes one number or three", "[scene][slot]") {
   TangentChannel place = Channel<1>(0);
-  const Attribute row = channel("su0", place, "length/uv");
+  const Slot row = slot({.name = "su0"}, &place);
   REQUIRE(row.read("0.5"));
   CHECK(std::get<Channel<1>>(place).at(1) == Value<1>{0.5});
   REQUIRE(row.read("0 2 0"));
@@ -71,12 +73,12 @@ TEST_CASE("a tangent takes one number or three", "[scene][attribute]") {
   CHECK_THAT(row.read("0 1 x").error(), contains_text("not a number"));
 }
 
-TEST_CASE("a word of a later version differs from a misspelt one", "[scene][attribute]") {
+TEST_CASE("a word of a later version differs from a misspelt one", "[scene][slot]") {
+  constexpr std::string_view later[] = {"adaptive"};
   Stepping stepping = Stepping::Exact;
-  const Attribute row =
-      choice("stepping", stepping, {{"exact", Stepping::Exact}, {"overshoot", Stepping::Overshoot}},
-             {"adaptive"});
-  CHECK(row.format.standard == "exact");
+  const Slot row =
+      slot({.name = "stepping", .words = stepping_words, .later = later}, choice(stepping));
+  CHECK(row.standard == "exact");
   REQUIRE(row.read(" overshoot "));
   CHECK(stepping == Stepping::Overshoot);
   CHECK(row.read("adaptive").error() ==
@@ -89,9 +91,9 @@ TEST_CASE("a word of a later version differs from a misspelt one", "[scene][attr
   CHECK(stepping == Stepping::Overshoot);
 }
 
-TEST_CASE("a list of names holds each once", "[scene][attribute]") {
+TEST_CASE("a list of names holds each once", "[scene][slot]") {
   std::vector<std::string> targets;
-  const Attribute row = names("targets", targets);
+  const Slot row = slot(targets_attribute, &targets);
   REQUIRE(row.read(" sheet\n body "));
   CHECK(targets == std::vector<std::string>{"sheet", "body"});
   CHECK_THAT(row.read("").error(), contains_text("leave the attribute out"));

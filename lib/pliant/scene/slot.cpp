@@ -1,0 +1,320 @@
+#include "pliant/scene/slot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/nearest.hpp"
+
+namespace pliant::xml {
+namespace {
+
+std::string to_text(std::span<const double> numbers) {
+  return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+/// The type of a value in the tables of docs/scene-format.md.
+struct TypeName {
+  const Attribute& attribute;
+
+  std::string_view operator()(std::monostate) const {
+    if (attribute.syntax == Syntax::Version) return "integer";
+    return attribute.need == Need::Later ? "" : "word";
+  }
+  std::string_view operator()(const double*) const {
+    return attribute.syntax == Syntax::Rate ? "rate" : "number";
+  }
+  std::string_view operator()(const int*) const { return "integer"; }
+  std::string_view operator()(const std::uint64_t*) const { return "integer"; }
+  std::string_view operator()(const bool*) const { return "boolean"; }
+  std::string_view operator()(const Choice&) const { return "word"; }
+  std::string_view operator()(const std::string*) const {
+    if (attribute.syntax == Syntax::Name) return "name";
+    return attribute.syntax == Syntax::Path ? "path" : "text";
+  }
+  std::string_view operator()(const std::vector<std::string>*) const { return "names"; }
+  std::string_view operator()(const Value<3>*) const { return "vector"; }
+  std::string_view operator()(const Channel<1>*) const { return "number"; }
+  std::string_view operator()(const Channel<3>*) const { return "vector"; }
+  std::string_view operator()(const PositionChannel*) const { return "vector"; }
+  std::string_view operator()(const TangentChannel*) const { return "number or vector"; }
+  std::string_view operator()(const Switch*) const { return "boolean"; }
+  template <class T>
+  std::string_view operator()(const std::optional<T>*) const {
+    return (*this)(static_cast<const T*>(nullptr));
+  }
+};
+
+/// The numbers that a value may be, in the tables of docs/scene-format.md.
+struct RangeText {
+  const Attribute& attribute;
+
+  std::string operator()(std::monostate) const {
+    if (attribute.syntax == Syntax::Version) return "1";
+    if (attribute.syntax == Syntax::Position) return "a position of its element";
+    return listed(attribute.words);
+  }
+  std::string operator()(const std::uint64_t*) const {
+    return fmt::format("0 to {}", std::numeric_limits<std::uint64_t>::max());
+  }
+  std::string operator()(const Choice&) const { return listed(attribute.words); }
+  std::string operator()(const std::string*) const {
+    return attribute.syntax == Syntax::Name ? "unique" : "";
+  }
+  template <class T>
+  std::string operator()(const std::optional<T>*) const {
+    return (*this)(static_cast<const T*>(nullptr));
+  }
+  template <class T>
+  std::string operator()(const T*) const {
+    return attribute.range.to_text();
+  }
+};
+
+/// The text of a constant value; empty: none.
+struct ValueText {
+  const Attribute& attribute;
+
+  std::string operator()(std::monostate) const {
+    if (attribute.syntax == Syntax::Version) return "1";
+    return attribute.words.empty() ? "" : std::string(attribute.words.front());
+  }
+  std::string operator()(const double* place) const { return to_text({place, 1}); }
+  std::string operator()(const int* place) const { return std::to_string(*place); }
+  std::string operator()(const std::uint64_t* place) const { return std::to_string(*place); }
+  std::string operator()(const bool* place) const { return *place ? "true" : "false"; }
+  std::string operator()(const Choice& choice) const {
+    return std::string(attribute.words[static_cast<std::size_t>(choice.get(choice.place))]);
+  }
+  std::string operator()(const std::string* place) const { return *place; }
+  std::string operator()(const std::vector<std::string>* place) const {
+    return fmt::format("{}", fmt::join(*place, " "));
+  }
+  std::string operator()(const Value<3>* place) const { return to_text(*place); }
+  std::string operator()(const PositionChannel* place) const {
+    return place->channel() ? (*this)(place->channel()) : std::string();
+  }
+  std::string operator()(const TangentChannel* place) const {
+    return std::visit([this](const auto& channel) { return (*this)(&channel); }, *place);
+  }
+  std::string operator()(const Switch* place) const {
+    if (place->channel().is_animated()) return "";
+    return place->at(0) ? "true" : "false";
+  }
+  template <int D>
+  std::string operator()(const Channel<D>* place) const {
+    return place->is_animated() ? std::string() : to_text(place->at(0));
+  }
+  template <class T>
+  std::string operator()(const std::optional<T>* place) const {
+    return *place ? (*this)(&**place) : std::string();
+  }
+};
+
+Reading<void> complaint(std::string text) { return tl::unexpected(std::move(text)); }
+
+Reading<void> broken(const Range& range, std::span<const double> numbers) {
+  if (auto rule = range.broken_rule(numbers)) return complaint(*std::move(rule));
+  return {};
+}
+
+/// Stores the value of a text in the place, or complains.
+struct ReadValue {
+  const Attribute& attribute;
+  std::string_view text;
+
+  Reading<void> operator()(std::monostate) const {
+    if (attribute.syntax == Syntax::Version) return read_version();
+    if (attribute.words.empty()) return {};
+    const Reading<int> chosen = read_word();
+    return chosen ? Reading<void>() : complaint(chosen.error());
+  }
+  Reading<void> operator()(double* place) const {
+    const Reading<double> number =
+        attribute.syntax == Syntax::Rate ? parse_rate(text) : parse_number(text);
+    if (!number) return complaint(number.error());
+    return store(*number, *place);
+  }
+  Reading<void> operator()(int* place) const {
+    constexpr auto least = std::int64_t{std::numeric_limits<int>::min()};
+    constexpr auto most = std::int64_t{std::numeric_limits<int>::max()};
+    const Range& range = attribute.range;
+    const auto bound = [](double wanted, std::int64_t otherwise) {
+      return std::isfinite(wanted) ? static_cast<std::int64_t>(wanted) : otherwise;
+    };
+    const Reading<std::int64_t> number =
+        parse_integer(text, bound(range.least, least), bound(range.most, most));
+    if (!number) return complaint(number.error());
+    *place = static_cast<int>(*number);
+    return {};
+  }
+  Reading<void> operator()(std::uint64_t* place) const {
+    const Reading<std::uint64_t> number = parse_natural(text);
+    if (!number) return complaint(number.error());
+    *place = *number;
+    return {};
+  }
+  Reading<void> operator()(bool* place) const {
+    const Reading<bool> value = parse_boolean(text);
+    if (!value) return complaint(value.error());
+    *place = *value;
+    return {};
+  }
+  Reading<void> operator()(const Choice& choice) const {
+    const Reading<int> chosen = read_word();
+    if (!chosen) return complaint(chosen.error());
+    choice.set(choice.place, *chosen);
+    return {};
+  }
+  Reading<void> operator()(std::string* place) const {
+    if (attribute.syntax == Syntax::Name && !is_name(text))
+      return complaint("must be a letter or _ followed by letters, digits, _ and -");
+    if (attribute.syntax == Syntax::Path && trimmed(text).empty())
+      return complaint("is empty; the name of a file is required");
+    if (text.empty())
+      return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
+    *place = text;
+    return {};
+  }
+  Reading<void> operator()(std::vector<std::string>* place) const {
+    const std::vector<std::string_view> words = words_of(text);
+    if (words.empty())
+      return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
+    for (auto word = words.begin(); word != words.end(); ++word) {
+      if (!is_name(*word))
+        return complaint(in_quotes(*word) + " is not a name (names are separated by spaces)");
+      if (std::find(words.begin(), word, *word) != word)
+        return complaint(in_quotes(*word) + " is given twice");
+    }
+    place->assign(words.begin(), words.end());
+    return {};
+  }
+  Reading<void> operator()(Value<3>* place) const { return read_numbers(*place); }
+  Reading<void> operator()(Channel<1>* place) const { return read_numbers<1>(*place); }
+  Reading<void> operator()(Channel<3>* place) const { return read_numbers<3>(*place); }
+  Reading<void> operator()(PositionChannel* place) const { return read_numbers<3>(*place); }
+  /// One number for all of x, y, z, or three numbers.
+  Reading<void> operator()(TangentChannel* place) const {
+    const std::size_t count = words_of(text).size();
+    if (count != 1 && count != 3) return complaint("one or three numbers are required");
+    return count == 1 ? read_numbers<1>(*place) : read_numbers<3>(*place);
+  }
+  Reading<void> operator()(Switch* place) const {
+    bool value = false;
+    if (Reading<void> read = (*this)(&value); !read) return read;
+    *place = value;
+    return {};
+  }
+  template <class T>
+  Reading<void> operator()(std::optional<T>* place) const {
+    T value{};
+    if (Reading<void> read = (*this)(&value); !read) return read;
+    *place = std::move(value);
+    return {};
+  }
+
+ private:
+  /// The format has one version so far; any other is a problem, not read as this one.
+  Reading<void> read_version() const {
+    const Reading<std::int64_t> number = parse_integer(text, 1, std::numeric_limits<int>::max());
+    if (!number) return complaint(number.error());
+    if (*number != 1) return complaint(not_supported() + ", which reads version 1");
+    return {};
+  }
+
+  Reading<int> read_word() const {
+    const auto words = attribute.words;
+    const std::string_view chosen = trimmed(text);
+    if (const auto found = std::find(words.begin(), words.end(), chosen); found != words.end())
+      return static_cast<int>(found - words.begin());
+    const auto later = attribute.later;
+    if (std::find(later.begin(), later.end(), chosen) != later.end())
+      return tl::unexpected(not_supported() + "; allowed: " + listed(words));
+    return tl::unexpected("unknown word" + hint(chosen, words));
+  }
+
+  Reading<void> store(double number, double& place) const {
+    if (Reading<void> checked = broken(attribute.range, {&number, 1}); !checked) return checked;
+    place = number;
+    return {};
+  }
+
+  /// D numbers within the range, stored as a `Value<D>` in a place that takes one.
+  template <int D>
+  Reading<void> read_numbers(auto& place) const {
+    Value<D> value{};
+    if (Reading<void> read = parse_numbers(text, value); !read) return read;
+    if (Reading<void> checked = broken(attribute.range, value); !checked) return checked;
+    place = Channel<D>(value);
+    return {};
+  }
+  Reading<void> read_numbers(Value<3>& place) const {
+    Value<3> value{};
+    if (Reading<void> read = parse_numbers(text, value); !read) return read;
+    place = value;
+    return {};
+  }
+};
+
+}  // namespace
+
+bool is_channel(const Place& place) {
+  return std::holds_alternative<Channel<1>*>(place) || std::holds_alternative<Channel<3>*>(place) ||
+         std::holds_alternative<std::optional<Channel<3>>*>(place) ||
+         std::holds_alternative<PositionChannel*>(place) ||
+         std::holds_alternative<TangentChannel*>(place) || std::holds_alternative<Switch*>(place);
+}
+
+Slot slot(const Attribute& attribute, Place place) {
+  return {.attribute = attribute,
+          .type = std::string(std::visit(TypeName{attribute}, place)),
+          .range = std::visit(RangeText{attribute}, place),
+          .standard = std::visit(ValueText{attribute}, place),
+          .read =
+              [attribute, place](std::string_view text) {
+                return std::visit(ReadValue{attribute, text}, place);
+              },
+          .text = [attribute, place] { return std::visit(ValueText{attribute}, place); },
+          .place = place};
+}
+
+Slot custom(const Attribute& attribute, std::string_view type, std::string_view range,
+            std::function<Reading<void>(std::string_view)> read,
+            std::function<std::string()> text) {
+  return {.attribute = attribute,
+          .type = std::string(type),
+          .range = std::string(range),
+          .standard = text(),
+          .read = std::move(read),
+          .text = std::move(text)};
+}
+
+AttributeFormat format_of(const Slot& slot) {
+  const Attribute& attribute = slot.attribute;
+  std::string standard =
+      attribute.absent.empty() ? slot.standard : fmt::format("({})", attribute.absent);
+  if (attribute.need == Need::Required) standard.clear();
+  return {.name = attribute.name,
+          .type = slot.type,
+          .unit = std::string(attribute.unit),
+          .standard = std::move(standard),
+          .range = slot.range,
+          .meaning = std::string(attribute.meaning),
+          .need = attribute.need,
+          .is_keyable = is_channel(slot.place)};
+}
+
+std::string not_supported() { return "is not supported by this version of pliant"; }
+
+Table table_of(Force& force) {
+  SlotMaker maker;
+  describe(maker, force);
+  std::visit([&](auto& kind) { describe(maker, kind); }, force.shape);
+  return maker.take();
+}
+
+}  // namespace pliant::xml
