@@ -9,6 +9,7 @@
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/scene.hpp"
+#include "pliant/scene/write.hpp"
 #include "pliant/simulation/frame_store.hpp"
 #include "pliant/simulation/preview.hpp"
 #include "pliant/simulation/simulation.hpp"

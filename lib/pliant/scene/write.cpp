@@ -1,0 +1,338 @@
+#include "pliant/scene/write.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/force.hpp"
+#include "pliant/scene/key_text.hpp"
+#include "pliant/scene/path.hpp"
+#include "pliant/scene/slot.hpp"
+
+namespace pliant {
+
+using namespace xml;
+
+namespace {
+
+/// Indents by two blanks.
+class Printer : public tinyxml2::XMLPrinter {
+ protected:
+  void PrintSpace(int depth) override {
+    for (int k = 0; k < depth; ++k) Write("  ");
+  }
+};
+
+class SceneWriter {
+ public:
+  explicit SceneWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void write(const Scene& scene);
+
+  std::string text() const { return printer_.CStr(); }
+
+ private:
+  void write(const Surface& surface);
+  void write_shape(const Surface& surface);
+  void write(const Force& force);
+  void write(const Group& group, const std::vector<const Force*>& forces);
+
+  template <class Part>
+  void write_part(const Part& part);
+  // An <animate> or <path> for each channel of the thing that has one.
+  template <class Thing>
+  void write_channels(const Thing& thing);
+  void write_channel(const Attribute& attribute, const Channel<1>& channel);
+  void write_channel(const Attribute& attribute, const Channel<3>& channel);
+  void write_channel(const Attribute& attribute, const Switch& channel);
+  void write_channel(const Attribute& attribute, const std::optional<Channel<3>>& channel);
+  void write_channel(const Attribute& attribute, const TangentChannel& tangent);
+  void write_channel(const Attribute& attribute, const PositionChannel& position);
+  template <class Other>
+  void write_channel(const Attribute&, const Other&) {}  // not a channel
+
+  template <int D>
+  void write_curve(std::string_view element, std::string_view attribute, const Curve<D>& curve,
+                   ValueKind kind);
+  template <int D>
+  void write_key(const Key<D>& key, KeyAxis axis, ValueKind kind);
+  void write_path(std::string_view attribute, const PathMotion& motion);
+  void write_attributes(const Table& table, const Table& standard);
+
+  template <class Write>
+  void element(std::string_view name, const Write& write_content) {
+    const std::string own(name);  // the printer keeps only a pointer to it
+    printer_.OpenElement(own.c_str());
+    write_content();
+    printer_.CloseElement();
+  }
+
+  Printer printer_;
+  std::filesystem::path folder_;
+};
+
+/// The attributes that differ from `standard`, a table of the same rows with the default values,
+/// and those that are required.
+void SceneWriter::write_attributes(const Table& table, const Table& standard) {
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const Attribute& attribute = table[k].attribute;
+    const std::string& text = table[k].standard;
+    const bool is_needed = attribute.need == Need::Required && !text.empty();
+    if (is_needed || text != standard[k].standard)
+      if (!text.empty()) printer_.PushAttribute(std::string(attribute.name).c_str(), text.c_str());
+  }
+}
+
+template <int D>
+KeyText<D> text_of_key(const Key<D>& key) {
+  using Kind = typename Tangent<D>::Kind;
+  KeyText<D> text{.frame = key.frame,
+                  .value = key.value,
+                  .interpolation = key.next,
+                  .amplitude = key.next.amplitude,
+                  .period = key.next.period,
+                  .back = key.next.back,
+                  .left = key.left};
+  if (key.next.kind == Interpolation::Kind::Bezier) text.interpolation.reset();
+  if (key.next.kind == Interpolation::Kind::CubicBezier) text.control = key.next.control;
+  const auto add = [](const Tangent<D>& tangent, auto& own, auto& length, auto& handle) {
+    length = tangent.length;
+    if (tangent.kind == Kind::Handle) {
+      handle = Handle<D>{tangent.handle_frames, tangent.handle_value};
+      length.reset();
+    } else if (tangent.kind != Kind::Auto) {
+      own = tangent;
+    }
+  };
+  add(key.in, text.in, text.in_length, text.in_handle);
+  add(key.out, text.out, text.out_length, text.out_handle);
+  return text;
+}
+
+template <int D>
+void SceneWriter::write_key(const Key<D>& key, KeyAxis axis, ValueKind kind) {
+  KeyText<D> text = text_of_key(key);
+  KeyText<D> standard;
+  element("key",
+          [&] { write_attributes(table_of(text, axis, kind), table_of(standard, axis, kind)); });
+}
+
+template <int D>
+void SceneWriter::write_curve(std::string_view name, std::string_view attribute,
+                              const Curve<D>& curve, ValueKind kind) {
+  const CurveKeys<D>& keys = curve.keys();
+  const KeyAxis axis = name == "falloff" ? KeyAxis::Falloff : KeyAxis::Frame;
+  AnimateText<D> text{.before = keys.before, .after = keys.after, .overshoot = keys.overshoot};
+  AnimateText<D> standard;
+  element(name, [&] {
+    if (axis == KeyAxis::Frame) printer_.PushAttribute("attribute", std::string(attribute).c_str());
+    write_attributes(table_of(text, axis, kind), table_of(standard, axis, kind));
+    for (const Key<D>& key : keys.keys) write_key(key, axis, kind);
+    if (!keys.loop) return;
+    Loop<D> loop = *keys.loop;
+    Loop<D> no_loop;
+    element("loop", [&] { write_attributes(table_of(loop, kind), table_of(no_loop, kind)); });
+  });
+}
+
+void SceneWriter::write_path(std::string_view attribute, const PathMotion& motion) {
+  PathText text{motion.progress, motion.path.is_closed()};
+  PathText standard;
+  element("path", [&] {
+    printer_.PushAttribute("attribute", std::string(attribute).c_str());
+    write_attributes(table_of(text), table_of(standard));
+    for (const Value<3>& place : motion.path.waypoints()) {
+      Waypoint waypoint{place};
+      const Table table = table_of(waypoint);
+      element("waypoint", [&] { write_attributes(table, table); });
+    }
+    write_channels(text);
+  });
+}
+
+template <class Thing>
+void SceneWriter::write_channels(const Thing& thing) {
+  const auto row = [this](const Attribute& attribute, const auto&... member) {
+    (write_channel(attribute, member), ...);
+  };
+  describe(row, thing);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute, const Channel<1>& channel) {
+  if (channel.is_animated())
+    write_curve("animate", attribute.name, channel.curve(), ValueKind::Number);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute, const Channel<3>& channel) {
+  if (channel.is_animated())
+    write_curve("animate", attribute.name, channel.curve(), ValueKind::Vector);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute, const Switch& channel) {
+  if (channel.is_animated())
+    write_curve("animate", attribute.name, channel.channel().curve(), ValueKind::Boolean);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute,
+                                const std::optional<Channel<3>>& channel) {
+  if (channel) write_channel(attribute, *channel);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute, const TangentChannel& tangent) {
+  std::visit([&](const auto& channel) { write_channel(attribute, channel); }, tangent);
+}
+
+void SceneWriter::write_channel(const Attribute& attribute, const PositionChannel& position) {
+  if (position.path()) {
+    write_path(attribute.name, *position.path());
+  } else {
+    write_channel(attribute, *position.channel());
+  }
+}
+
+/// A part of a surface, unless everything in it is the default.
+template <class Part>
+void SceneWriter::write_part(const Part& part) {
+  Part own = part;
+  Part standard;
+  const Table table = table_of(own);
+  const Table defaults = table_of(standard);
+  const bool is_default =
+      std::equal(table.begin(), table.end(), defaults.begin(),
+                 [](const Slot& a, const Slot& b) { return a.standard == b.standard; });
+  if (is_default) return;
+  element(Description<Part>::element, [&] {
+    write_attributes(table, defaults);
+    write_channels(part);
+  });
+}
+
+void SceneWriter::write_shape(const Surface& surface) {
+  if (auto sheet = std::get_if<GridSheet>(&surface.shape)) {
+    GridSheet own = *sheet;
+    GridSheet standard;
+    element("grid", [&] { write_attributes(table_of(own), table_of(standard)); });
+  } else if (auto mesh = std::get_if<MeshFile>(&surface.shape)) {
+    MeshFile own = *mesh;
+    MeshFile standard;
+    if (!folder_.empty())
+      own.path = std::filesystem::path(own.path).lexically_proximate(folder_).string();
+    element("mesh", [&] { write_attributes(table_of(own), table_of(standard)); });
+  }
+}
+
+void SceneWriter::write(const Surface& surface) {
+  Surface own;
+  own.name = surface.name;
+  own.enabled = surface.enabled;
+  Surface standard;
+  element("surface", [&] {
+    write_attributes(table_of(own), table_of(standard));
+    write_shape(surface);
+    write_part(surface.transform);
+    write_part(surface.material);
+    write_part(surface.tangents);
+    write_part(surface.solver);
+  });
+}
+
+void SceneWriter::write(const Force& force) {
+  Force own = force;
+  Force standard = standard_force(force);
+  if (!force.group.empty()) own.deformation_radius = standard.deformation_radius;
+  element(kind_of(force), [&] {
+    write_attributes(table_of(own), table_of(standard));
+    write_channels(own);
+    std::visit([&](const auto& kind) { write_channels(kind); }, own.shape);
+    if (force.falloff_curve) write_curve("falloff", "", *force.falloff_curve, ValueKind::Number);
+  });
+}
+
+void SceneWriter::write(const Group& group, const std::vector<const Force*>& forces) {
+  Group own = group;
+  Group standard;
+  element("group", [&] {
+    write_attributes(table_of(own), table_of(standard));
+    write_channels(group);
+    for (const Force* const force : forces) write(*force);
+  });
+}
+
+void SceneWriter::write(const Scene& scene) {
+  Scene own;
+  own.fps = scene.fps;
+  own.start = scene.start;
+  own.end = scene.end;
+  own.seed = scene.seed;
+  Scene standard;
+  element("scene", [&] {
+    printer_.PushAttribute("version", "1");
+    write_attributes(table_of(own), table_of(standard));
+    for (const Surface& surface : scene.surfaces) write(surface);
+    auto group = scene.groups.begin();
+    for (auto force = scene.forces.begin(); force != scene.forces.end();) {
+      if (force->group.empty()) {
+        write(*force++);
+        continue;
+      }
+      for (; group->name != force->group; ++group) write(*group, {});
+      std::vector<const Force*> members;
+      for (; force != scene.forces.end() && force->group == group->name; ++force)
+        members.push_back(&*force);
+      write(*group++, members);
+    }
+    for (; group != scene.groups.end(); ++group) write(*group, {});
+  });
+}
+
+std::optional<std::string> what_no_file_contains(const Scene& scene) {
+  for (const Surface& surface : scene.surfaces)
+    if (std::holds_alternative<Mesh>(surface.shape))
+      return fmt::format(
+          "surface \"{}\" has a mesh made by a program, which a scene file cannot "
+          "contain; write it to a mesh file",
+          surface.name);
+  for (const Force& force : scene.forces)
+    if (std::holds_alternative<CustomForce>(force.shape))
+      return fmt::format("force \"{}\" is custom, which a scene file cannot contain", force.name);
+  auto group = scene.groups.begin();
+  const std::string* last = nullptr;  // the group of the force before
+  for (const Force& force : scene.forces) {
+    const bool is_next = last == nullptr || *last != force.group;
+    last = force.group.empty() ? nullptr : &force.group;
+    if (last == nullptr || !is_next) continue;
+    group = std::find_if(group, scene.groups.end(),
+                         [&](const Group& each) { return each.name == force.group; });
+    if (group == scene.groups.end())
+      return fmt::format(
+          "force \"{}\" is apart from the other forces of the group \"{}\", or "
+          "before those of an earlier group; in a scene file they are one after "
+          "the other",
+          force.name, force.group);
+    ++group;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> scene_text(const Scene& scene, const std::string& folder) {
+  std::vector<Error> errors = check_scene(scene);
+  if (errors.empty()) errors = check_channels(scene);
+  if (!errors.empty()) return fail(std::move(errors.front()));
+  if (auto problem = what_no_file_contains(scene))
+    return fail(ErrorCode::InvalidInput, *std::move(problem));
+  SceneWriter writer(folder);
+  writer.write(scene);
+  return writer.text();
+}
+
+}  // namespace pliant

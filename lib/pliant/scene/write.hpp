@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// The scene as a scene file: read again, it is the same scene to the bit. Attributes with their
+/// default values are left out. Mesh files are written relative to `folder`; empty: as they are.
+///
+/// Errors: InvalidInput for what breaks a rule of the format, naming it, for what a file cannot
+/// contain, a `Mesh` and a `CustomForce`, and for a group whose forces are not one after the other
+/// in the scene, or come before those of an earlier group.
+Result<std::string> scene_text(const Scene& scene, const std::string& folder = {});
+
+}  // namespace pliant

@@ -1,0 +1,172 @@
+#include "pliant/scene/write.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/description.hpp"
+#include "scene/scene_text.hpp"
+#include "support/scenes.hpp"
+
+namespace pliant::testing {
+namespace {
+
+/// What a scene says, member by member: two scenes that say the same are the same.
+class Says {
+ public:
+  explicit Says(const Scene& scene) {
+    describe(*this, scene);
+    for (const Surface& surface : scene.surfaces) {
+      describe(*this, surface);
+      std::visit([this](const auto& shape) { add(shape); }, surface.shape);
+      describe(*this, surface.transform);
+      describe(*this, surface.material);
+      describe(*this, surface.tangents);
+      describe(*this, surface.solver);
+    }
+    for (const Force& force : scene.forces) {
+      text_ += std::string(kind_of(force)) + " in " + force.group + '\n';
+      describe(*this, force);
+      std::visit([this](const auto& kind) { describe(*this, kind); }, force.shape);
+      if (force.falloff_curve) add(force.falloff_curve->keys());
+    }
+    for (const Group& group : scene.groups) describe(*this, group);
+  }
+
+  void operator()(const Attribute&) {}
+  template <class T>
+  void operator()(const Attribute& attribute, const T& value) {
+    text_ += std::string(attribute.name) + ": ";
+    add(value);
+    text_ += '\n';
+  }
+
+  friend bool operator==(const Says& a, const Says& b) {
+    return a.text_ == b.text_ && a.scalar_ == b.scalar_ && a.vector_ == b.vector_;
+  }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void add(double number) { text_ += fmt::format("{} ", number); }
+  void add(std::uint64_t number) { text_ += fmt::format("{} ", number); }
+  void add(int number) { text_ += fmt::format("{} ", number); }
+  void add(bool value) { text_ += value ? "true " : "false "; }
+  void add(const std::string& text) { text_ += text + ' '; }
+  template <class E>
+  requires std::is_enum_v<E>
+  void add(E value) { add(static_cast<int>(value)); }
+  template <class T>
+  void add(const std::optional<T>& value) {
+    if (value) add(*value);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    for (const T& value : values) add(value);
+  }
+  void add(const Value<1>& value) { add(value[0]); }
+  void add(const Value<3>& value) {
+    for (const double number : value) add(number);
+  }
+  void add(const CurveKeys<1>& keys) { scalar_.push_back(keys); }
+  void add(const CurveKeys<3>& keys) { vector_.push_back(keys); }
+  template <int D>
+  void add(const Channel<D>& channel) {
+    text_ += fmt::format("{}D ", D);
+    if (channel.is_animated()) return add(channel.curve().keys());
+    add(channel.at(0));
+  }
+  void add(const Switch& channel) { add(channel.channel()); }
+  void add(const TangentChannel& tangent) {
+    std::visit([this](const auto& channel) { add(channel); }, tangent);
+  }
+  void add(const PositionChannel& position) {
+    if (position.channel()) return add(*position.channel());
+    add(position.path()->path.waypoints());
+    add(position.path()->path.is_closed());
+    add(position.path()->progress);
+  }
+  void add(const GridSheet& sheet) { describe(*this, sheet); }
+  void add(const MeshFile& mesh) { describe(*this, mesh); }
+  void add(const Mesh&) { FAIL("a scene file has no such mesh"); }
+
+  std::string text_;
+  std::vector<CurveKeys<1>> scalar_;
+  std::vector<CurveKeys<3>> vector_;
+};
+
+void check_round_trip(const Scene& scene, const std::string& folder) {
+  const Result<std::string> text = scene_text(scene, folder);
+  REQUIRE(text);
+  CAPTURE(*text);
+  const Result<Scene> again = parse_scene(*text, "again.xml", folder);
+  if (!again)
+    for (const std::string& line : to_lines(again.error())) UNSCOPED_INFO(line);
+  REQUIRE(again);
+  CHECK(Says(*again).text() == Says(scene).text());
+  CHECK(Says(*again) == Says(scene));
+  CHECK(scene_text(*again, folder).value() == *text);
+}
+
+TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
+  check_round_trip(scene_of(rich_scene), "shots");
+  for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(
+             std::filesystem::path(PLIANT_SOURCE_FOLDER) / folder)) {
+      if (entry.path().extension() != ".xml") continue;
+      CAPTURE(entry.path().string());
+      const auto scene = load_scene(entry.path().string());
+      REQUIRE(scene);
+      check_round_trip(*scene, entry.path().parent_path().string());
+      ++count;
+    }
+    CHECK(count > 3);
+  }
+}
+
+TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
+  Scene meshed = scene({sheet("s")}, {});
+  meshed.surfaces[0].shape = Mesh{};
+  Scene custom = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  custom.forces[0].shape = CustomForce{
+      .unit_force = [](const Vector3d&, const ForceTime&) { return Vector3d(0, 1, 0); }};
+  Scene apart =
+      scene({sheet("s")}, {poke("a", {0, 0, 0}), poke("b", {0, 0, 0}), poke("c", {0, 0, 0})});
+  apart.groups.push_back({.name = "g"});
+  apart.forces[0].group = apart.forces[2].group = "g";
+  Scene wrong = scene({sheet("s")}, {});
+  wrong.fps = -1;
+  for (const auto& [bad, part] :
+       {std::pair{meshed, "mesh made by a program"}, std::pair{custom, "\"f\" is custom"},
+        std::pair{apart, "\"c\" is apart from the other forces"}, std::pair{wrong, "fps is -1"}}) {
+    const auto text = scene_text(bad);
+    REQUIRE_FALSE(text);
+    CHECK(text.error().code == ErrorCode::InvalidInput);
+    CHECK_THAT(text.error().message, contains_text(part));
+  }
+}
+
+TEST_CASE("a new scene in code is written with what differs from the defaults", "[scene][write]") {
+  Scene s;
+  s.start = 1;
+  s.end = 2;
+  s.surfaces.push_back({.name = "sheet", .shape = GridSheet{.columns = 3, .rows = 4}});
+  Force force;
+  force.name = "push";
+  force.shape = InertiaChannels{};
+  force.magnitude = 1;
+  s.forces.push_back(force);
+  CHECK(scene_text(s).value() ==
+        "<scene version=\"1\" start=\"1\" end=\"2\">\n"
+        "  <surface name=\"sheet\">\n"
+        "    <grid columns=\"3\" rows=\"4\"/>\n"
+        "  </surface>\n"
+        "  <inertia name=\"push\"/>\n"
+        "</scene>\n");
+}
+
+}  // namespace
+}  // namespace pliant::testing
