@@ -98,7 +98,7 @@ class Says {
 };
 
 void check_round_trip(const Scene& scene, const std::string& folder) {
-  const Result<std::string> text = scene_text(scene, folder);
+  const Result<std::string> text = to_xml(scene, folder);
   REQUIRE(text);
   CAPTURE(*text);
   const Result<Scene> again = parse_scene(*text, "again.xml", folder);
@@ -107,7 +107,7 @@ void check_round_trip(const Scene& scene, const std::string& folder) {
   REQUIRE(again);
   CHECK(Says(*again).text() == Says(scene).text());
   CHECK(Says(*again) == Says(scene));
-  CHECK(scene_text(*again, folder).value() == *text);
+  CHECK(to_xml(*again, folder).value() == *text);
 }
 
 TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
@@ -142,7 +142,7 @@ TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
   for (const auto& [bad, part] :
        {std::pair{meshed, "mesh made by a program"}, std::pair{custom, "\"f\" is custom"},
         std::pair{apart, "\"c\" is apart from the other forces"}, std::pair{wrong, "fps is -1"}}) {
-    const auto text = scene_text(bad);
+    const auto text = to_xml(bad);
     REQUIRE_FALSE(text);
     CHECK(text.error().code == ErrorCode::InvalidInput);
     CHECK_THAT(text.error().message, contains_text(part));
@@ -159,7 +159,7 @@ TEST_CASE("a new scene in code is written with what differs from the defaults", 
   force.shape = InertiaChannels{};
   force.magnitude = 1;
   s.forces.push_back(force);
-  CHECK(scene_text(s).value() ==
+  CHECK(to_xml(s).value() ==
         "<scene version=\"1\" start=\"1\" end=\"2\">\n"
         "  <surface name=\"sheet\">\n"
         "    <grid columns=\"3\" rows=\"4\"/>\n"

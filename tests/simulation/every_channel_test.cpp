@@ -133,7 +133,7 @@ TEST_CASE("every channel of every kind is read, listed, written, sampled and has
     CHECK_FALSE(find(channels_of(one), path).is_animated());
     CHECK(values_of(find(channels_of(one), path)) != values_of(find(channels_of(other), path)));
 
-    const auto text = scene_text(animated);
+    const auto text = to_xml(animated);
     REQUIRE(text);
     const Scene again = scene_of(*text);
     const std::vector<NamedChannel> listed_again = channels_of(again);

@@ -324,7 +324,7 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
 
 }  // namespace
 
-Result<std::string> scene_text(const Scene& scene, const std::string& folder) {
+Result<std::string> to_xml(const Scene& scene, const std::string& folder) {
   std::vector<Error> errors = check_scene(scene);
   if (errors.empty()) errors = check_channels(scene);
   if (!errors.empty()) return fail(std::move(errors.front()));

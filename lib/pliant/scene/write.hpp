@@ -13,6 +13,6 @@ namespace pliant {
 /// Errors: InvalidInput for what breaks a rule of the format, naming it, for what a file cannot
 /// contain, a `Mesh` and a `CustomForce`, and for a group whose forces are not one after the other
 /// in the scene, or come before those of an earlier group.
-Result<std::string> scene_text(const Scene& scene, const std::string& folder = {});
+Result<std::string> to_xml(const Scene& scene, const std::string& folder = {});
 
 }  // namespace pliant
