@@ -42,11 +42,11 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("too many frames") {
     s.end = 1'000'001;
-    expected = "are too many frames; at most 1000000 are allowed";
+    expected = "1000001 frames from start 1 to end 1000001 are too many; at most 1000000";
   }
   SECTION("far away") {
-    s.start = s.end = std::numeric_limits<int>::max();
-    expected = "start is 2147483647, but must be within";
+    s.end = std::numeric_limits<int>::max();
+    expected = "end is 2147483647, but must be from -1000000000 to 1000000000";
   }
   SECTION("a name") {
     s.surfaces[1].name = "2b";
@@ -54,23 +54,23 @@ TEST_CASE("a scene built in code is checked as a whole", "[scene][check]") {
   }
   SECTION("a name twice") {
     s.forces[0].name = "b";
-    expected = "the name \"b\" is given twice";
+    expected = "<point> name=\"b\": the name is already used";
   }
   SECTION("a target") {
     s.forces[0].targets = {"a", "c"};
-    expected = "targets \"c\", which is not a surface";
+    expected = "f.targets: no surface is named \"c\"";
   }
   SECTION("columns") {
     grid.columns = 2;
-    expected = "columns is 2, but must be at least 3";
+    expected = "a.columns is 2, but must be from 3 to 100000000";
   }
   SECTION("rows") {
     grid.rows = -7;
-    expected = "rows is -7";
+    expected = "a.rows is -7";
   }
   SECTION("vertices") {
     grid.columns = grid.rows = 200'000;
-    expected = "200000 x 200000 vertices";
+    expected = "200000 x 200000 = 40000000000 vertices";
   }
   SECTION("width") {
     grid.width = 0;

@@ -210,7 +210,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
       "5: <solver> integrator=\"exact\"",
       "6: <surface> \"sheet\" has a second <solver>",
       "8: <radial> has no attribute \"falof\"",
-      "8: <radial> targets: no surface is named \"sheat\"",
+      "8: bulge.targets: no surface is named \"sheat\"",
       "9: <point> enabled=\"yes\"",
       "9: <point> name=\"bulge\": the name is already used",
       "11: <key> in=\"fat\"",

@@ -9,7 +9,9 @@ namespace {
 
 TEST_CASE("each rule between values is told where the last of them stands", "[scene][checks]") {
   check_each({
-      {"<scene start=\"5\"\n end=\"4\"/>", 2, {"end=\"4\": must not be before start=\"5\""}},
+      {"<scene start=\"5\"\n end=\"4\"/>",
+       2,
+       {"end is 4, but must not be before start, which is 5"}},
       {"<scene start=\"1\"\n end=\"1000001\"/>", 2, {"1000001 frames", "at most 1000000"}},
       {"<scene start=\"-1000000000\" end=\"1000000000\"/>", 1, {"2000000001 frames"}},
       {scene_with("<surface name=\"s\">\n<grid\n columns=\"10001\"\n rows=\"10000\"/></surface>"),
@@ -17,7 +19,7 @@ TEST_CASE("each rule between values is told where the last of them stands", "[sc
        {"10001 x 10000 = 100010000 vertices", "at most 100000000"}},
       {surface_with("<material b=\"4\"\n c=\"-4\"\n d=\"1\"/>"),
        5,
-       {"c = -4", "greater than -2 sqrt(b d) = -4", "b = 4", "d = 1"}},
+       {"sheet.c is -4", "greater than -2 sqrt(b d) = -4", "b = 4", "d = 1"}},
       {surface_with("<material b=\"2\" c=\"-4\" d=\"2\"/>"), 3, {"-2 sqrt(b d) = -4"}},
       {surface_with("<material b=\"1e-300\" d=\"1e-300\" c=\"-1\"/>"), 3, {"-2 sqrt(b d)"}},
       {surface_with("<solver dt=\"4e-7\"/>"), 3, {"104167 steps in a frame", "at most 100000"}},
@@ -35,13 +37,13 @@ TEST_CASE("each rule between values is told where the last of them stands", "[sc
       {surface_with("").replace(surface_with("").find("</scene>"), 8,
                                 "<point name=\"p\"\n targets=\"shet\"/></scene>"),
        5,
-       {"<point> targets: no surface is named \"shet\"; did you mean \"sheet\"? allowed: sheet"}},
+       {"p.targets: no surface is named \"shet\"; did you mean \"sheet\"? allowed: sheet"}},
       {scene_with("<point name=\"p\" targets=\"sheet\"/>"),
        2,
        {"no surface is named", "allowed: none"}},
       {scene_with("<point name=\"p\"/>\n<line name=\"l\" targets=\"p\"/>"),
        3,
-       {"<line> targets: \"p\" is a <point>, not a surface"}},
+       {"l.targets: \"p\" is a <point>, not a surface"}},
   });
 }
 

@@ -118,7 +118,8 @@ class ChannelChecker {
           is_finite<D>(value) ? rule(value)
                               : fmt::format("is {}, which is not finite", spelled<D>(value));
       if (complaint) {
-        add_error(name, attribute, frame, *complaint);
+        add_error(name, attribute, channel.is_animated(), frame, *complaint,
+                  scene_.origin.line_of(name, std::string(attribute)));
         return false;
       }
     }
@@ -133,10 +134,11 @@ class ChannelChecker {
     for (int frame = scene_.start; frame <= last; ++frame) {
       const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
       if (!stiffness.is_elliptic() || !std::isfinite(stiffness.c)) {
-        return add_error(surface.name, "c", frame,
+        return add_error(surface.name, "c", is_animated, frame,
                          fmt::format("is {}, but must be greater than -2 sqrt(b d) = {} (b = {}, "
-                                     "d = {})",
-                                     stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d));
+                                     "d = {}); otherwise the plate has no stable shape",
+                                     stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d),
+                         scene_.origin.last_line_of(surface.name, {"b", "c", "d"}));
       }
     }
   }
@@ -146,13 +148,13 @@ class ChannelChecker {
     return !is_checked_ || is_checked_(name, attribute);
   }
 
-  void add_error(const std::string& name, std::string_view attribute, int frame,
-                 const std::string& complaint) {
-    errors_.push_back(
-        {.code = ErrorCode::InvalidInput,
-         .message = fmt::format("{}.{} at frame {} {}", name, attribute, frame, complaint),
-         .file = scene_.origin.file,
-         .line = scene_.origin.line_of(name, std::string(attribute))});
+  void add_error(const std::string& name, std::string_view attribute, bool is_animated, int frame,
+                 const std::string& complaint, int line) {
+    const std::string when = is_animated ? fmt::format(" at frame {}", frame) : "";
+    errors_.push_back({.code = ErrorCode::InvalidInput,
+                       .message = fmt::format("{}.{}{} {}", name, attribute, when, complaint),
+                       .file = scene_.origin.file,
+                       .line = line});
   }
 
   const Scene& scene_;

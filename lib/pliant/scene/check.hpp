@@ -13,11 +13,12 @@ namespace pliant {
 /// Whether a name matches [A-Za-z_][A-Za-z0-9_-]*.
 bool is_name(std::string_view text);
 
-/// Checks the rules for a scene as a whole, read or built in code: fps > 0; start <= end, within
-/// `largest_frame`, at most `max_frames` frames; names well formed and unique over surfaces, forces
-/// and groups; targets and groups exist; a custom force has a function; sheets have at least 3 x 3
-/// and at most `max_sheet_vertices` vertices, and positive extents. `Simulation::make` checks the
-/// channels over the frames. Returns all problems, with their lines if known.
+/// Checks the rules for a scene as a whole: every number that is no channel is within its range
+/// (docs/scene-format.md); start <= end, at most `max_frames` frames; names well formed and unique
+/// over surfaces, forces and groups; targets and groups exist; a custom force has a function; a
+/// sheet has at most `max_sheet_vertices` vertices. The reader has done so for a scene from a file.
+/// `Simulation::make` checks the channels over the frames. Returns all problems, in the order of
+/// their lines if known.
 std::vector<Error> check_scene(const Scene& scene);
 
 /// Checks that a mesh file exists, is readable, and is a regular file: a pipe or a device might

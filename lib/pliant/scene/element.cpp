@@ -140,10 +140,8 @@ void record(const std::string& name, std::span<const Slot> table, SceneFile& fil
   }
 }
 
-void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
-                   const std::vector<std::string>& targets, Table& table, SceneFile& file) {
-  if (!targets.empty())
-    file.targets.push_back({element.Name(), targets, find(table, "targets")->line});
+void record_element(const tinyxml2::XMLElement& element, const std::string& name,
+                    std::span<const Slot> table, SceneFile& file) {
   if (name.empty()) return;
   file.lines[name] = element.GetLineNum();
   record(name, table, file);

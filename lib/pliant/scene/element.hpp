@@ -44,9 +44,8 @@ std::string value_problem(const tinyxml2::XMLElement& element, std::string_view 
 /// Records the lines of the attributes of a table, and which attributes have problems.
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file);
 
-/// The same for a force or a group, after it is read; also records its own line and its targets.
-/// Requires: the table has "targets".
-void record_acting(const tinyxml2::XMLElement& element, const std::string& name,
-                   const std::vector<std::string>& targets, Table& table, SceneFile& file);
+/// The same, and the element's own line, unless it has no name.
+void record_element(const tinyxml2::XMLElement& element, const std::string& name,
+                    std::span<const Slot> table, SceneFile& file);
 
 }  // namespace pliant::xml

@@ -29,8 +29,7 @@ void Findings::add_note(int line, std::string message) {
   if (notes_.size() < most_listed) notes_.push_back({line, std::move(message)});
 }
 
-Error Findings::to_error() const {
-  PLIANT_EXPECTS(!problems_.empty());
+std::vector<Error> Findings::problems() const {
   std::vector<Error> problems = problems_;
   std::stable_sort(problems.begin(), problems.end(),
                    [](const Error& a, const Error& b) { return a.line < b.line; });
@@ -43,6 +42,12 @@ Error Findings::to_error() const {
                              .message = "too many problems; reading stopped here",
                              .file = file_,
                              .line = problems.back().line});
+  return distinct;
+}
+
+Error Findings::to_error() const {
+  PLIANT_EXPECTS(!problems_.empty());
+  std::vector<Error> distinct = problems();
   Error first = std::move(distinct.front());
   first.others.assign(std::make_move_iterator(distinct.begin() + 1),
                       std::make_move_iterator(distinct.end()));

@@ -25,8 +25,10 @@ class Findings {
   /// Whether the list of problems is full: further ones would not be listed, so reading may stop.
   bool is_full() const;
 
-  /// All problems as one error: in the order of lines, without duplicates. Requires: there is a
-  /// problem.
+  /// All problems, in the order of lines, without duplicates.
+  std::vector<Error> problems() const;
+
+  /// The same as one error. Requires: there is a problem.
   Error to_error() const;
 
   /// The notes in the order of lines.

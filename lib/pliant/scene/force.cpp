@@ -72,7 +72,7 @@ Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* 
     force.group = group->name;
     check_radius(element, table, file.findings);
   }
-  record_acting(element, force.name, force.targets, table, file);
+  record_element(element, force.name, table, file);
   return force;
 }
 

@@ -25,7 +25,7 @@ Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces
                           forces.push_back(read_force(child, kind, &group, file));
                         }});
   read_children(element, children, file.findings);
-  record_acting(element, group.name, group.targets, table, file);
+  record_element(element, group.name, table, file);
   return group;
 }
 

@@ -1,7 +1,10 @@
 #include "pliant/scene/read.hpp"
 
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -9,6 +12,8 @@
 #include <tinyxml2.h>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/force.hpp"
 #include "pliant/scene/group.hpp"
@@ -36,20 +41,62 @@ void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& 
   }
 }
 
+/// `NAME.attribute` of the channels that are animated.
+std::set<std::string> animated_channels(const Scene& scene) {
+  std::set<std::string> paths;
+  for (const NamedChannel& named : channels_of(scene))
+    if (named.is_animated()) paths.insert(named.path);
+  return paths;
+}
+
+/// Checks sound values. If there is a problem, also what only a run would reject, so that all
+/// problems of a file are reported at once: channels that break their rule at a frame, and mesh
+/// files that cannot be opened.
+void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
+  std::map<std::string_view, int> times;  // times that a name is used
+  for (const Named& one : named) ++times[one.name];
+  const auto is_sound = [&](const std::string& name, std::string_view attribute) {
+    const auto found = times.find(name);
+    const bool is_unique = name.empty() || (found != times.end() && found->second == 1);
+    return is_unique && !file.unsound.contains(fmt::format("{}.{}", name, attribute));
+  };
+  check_whole(scene, named, is_sound, file.findings);
+
+  const bool is_all = file.findings.problem_count() != 0;
+  if (is_sound("", "start") && is_sound("", "end")) {
+    const std::set<std::string> animated = animated_channels(scene);
+    const auto is_constant = [&](const std::string& name, std::string_view attribute) {
+      const auto is_animated = [&](std::string_view of) {
+        return animated.contains(fmt::format("{}.{}", name, of));
+      };
+      if (attribute == "c") return !is_animated("b") && !is_animated("c") && !is_animated("d");
+      return !is_animated(attribute);
+    };
+    const auto is_checked = [&](const std::string& name, std::string_view attribute) {
+      return is_sound(name, attribute) && (attribute != "dt" || is_sound("", "fps")) &&
+             (is_all || is_constant(name, attribute));
+    };
+    for (Error& error : check_channels(scene, is_checked))
+      file.findings.add_problem(error.line, std::move(error.message));
+  }
+  if (file.findings.problem_count() == 0) return;
+  for (const NamedMesh& mesh : file.meshes)
+    if (const auto readable = check_mesh_file(mesh.path); !readable)
+      file.findings.add_problem(
+          mesh.line, unreadable_mesh(readable.error(), mesh.surface, scene.origin).message);
+}
+
 Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   Scene scene;
   Table table = table_of(scene);
   read_attributes(root, table, file.findings);
-  check_frames(scene, table, file.findings);
   file.lines[""] = root.GetLineNum();
   record("", table, file);
 
-  const std::optional<double> fps =
-      find(table, "fps")->is_sound ? std::optional<double>(scene.fps) : std::nullopt;
   using Element = tinyxml2::XMLElement;
   std::vector<Child> children = {
       {"surface",
-       [&](const Element& child) { scene.surfaces.push_back(read_surface(child, fps, file)); }},
+       [&](const Element& child) { scene.surfaces.push_back(read_surface(child, file)); }},
   };
   for (const Force& kind : force_kinds())
     children.push_back({kind_of(kind), [&, kind](const Element& child) {
@@ -62,11 +109,9 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
 
   std::vector<Named> named;
   add_named_children(root, named);
-  check_unique(named, file.findings);
-  check_targets(scene, file.targets, named, file.findings);
   for (const auto& [part, line] : file.lines) scene.origin.lines.push_back({part, line});
+  check(scene, named, file);
   note_idle_targets(scene, file.findings);
-  if (file.findings.problem_count() != 0) check_further(scene, named, file);
   return scene;
 }
 

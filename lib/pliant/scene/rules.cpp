@@ -2,126 +2,192 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "pliant/plate/plate.hpp"
-#include "pliant/plate/time_steps.hpp"
-#include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
+#include "pliant/scene/description.hpp"
 #include "pliant/scene/force.hpp"
 #include "pliant/scene/nearest.hpp"
+#include "pliant/scene/text.hpp"
 
 namespace pliant::xml {
 namespace {
 
-bool are_constant(std::span<Slot> table, std::initializer_list<std::string_view> names) {
-  return std::all_of(names.begin(), names.end(), [&](std::string_view name) {
-    const Slot* row = find(table, name);
-    return row != nullptr && row->is_constant();
-  });
+/// `sheet.width`; of the scene itself: `fps`.
+std::string path_of(const std::string& name, std::string_view attribute) {
+  return fmt::format("{}{}{}", name, name.empty() ? "" : ".", attribute);
 }
 
 bool is_force_element(std::string_view element) {
   const std::vector<Force> kinds = force_kinds();
-  return element == "group" || std::any_of(kinds.begin(), kinds.end(), [&](const Force& kind) {
-           return kind_of(kind) == element;
-         });
+  return element == Description<Group>::element ||
+         std::any_of(kinds.begin(), kinds.end(),
+                     [&](const Force& kind) { return kind_of(kind) == element; });
 }
 
-/// The largest line of these attributes that are given, but at least `line`.
-int last_line(std::span<Slot> table, std::initializer_list<std::string_view> names, int line = 0) {
-  for (const std::string_view name : names) line = std::max(line, find(table, name)->line);
-  return line;
-}
+class WholeChecker {
+ public:
+  WholeChecker(const Scene& scene, std::span<const Named> named, const ChannelFilter& is_sound,
+               Findings& findings)
+      : scene_(scene), named_(named), is_sound_(is_sound), findings_(findings) {}
+
+  void check() {
+    for (const Group& group : scene_.groups) groups_.insert(group.name);
+    check_ranges("", scene_);
+    check_frames();
+    check_names();
+    for (const Surface& surface : scene_.surfaces) check(surface);
+    for (const Force& force : scene_.forces) check(force);
+    check_targets();
+  }
+
+ private:
+  /// Numbers that are no channels.
+  template <class Thing>
+  void check_ranges(const std::string& name, const Thing& thing) {
+    describe([&](const Attribute& attribute,
+                 const auto&... member) { (check_range(name, attribute, member), ...); },
+             thing);
+  }
+
+  template <class T>
+  void check_range(const std::string& name, const Attribute& attribute, const T& member) {
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, int>) {
+      const double number = member;
+      auto rule = attribute.range.broken_rule({&number, 1});
+      if (!rule && !std::isfinite(number)) rule = "must be finite";
+      if (!rule && attribute.syntax == Syntax::Rate && !std::isfinite(1 / number))
+        rule = "must have a finite inverse";
+      if (rule)
+        complain(name, attribute.name,
+                 fmt::format("{} is {}, but {}", path_of(name, attribute.name), member, *rule));
+    }
+  }
+  template <class T>
+  void check_range(const std::string& name, const Attribute& attribute,
+                   const std::optional<T>& member) {
+    if (member) check_range(name, attribute, *member);
+  }
+
+  void check_frames() {
+    if (!is_sound("", "start") || !is_sound("", "end")) return;
+    for (const double frame : {double(scene_.start), double(scene_.end)})
+      if (frame_range.broken_rule({&frame, 1})) return;
+    const std::int64_t frames = std::int64_t{scene_.end} - scene_.start + 1;
+    if (frames < 1)
+      complain("", "end",
+               fmt::format("end is {}, but must not be before start, which is {}", scene_.end,
+                           scene_.start));
+    else if (frames > max_frames)
+      complain("", "end",
+               fmt::format("{} frames from start {} to end {} are too many; at most {} are allowed",
+                           frames, scene_.start, scene_.end, max_frames));
+  }
+
+  void check(const Surface& surface) {
+    check_ranges(surface.name, surface.solver);
+    if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape))
+      check_ranges(surface.name, *mesh);
+    const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
+    if (!sheet) return;
+    check_ranges(surface.name, *sheet);
+    const std::int64_t vertices = std::int64_t{sheet->columns} * sheet->rows;
+    if (is_sound(surface.name, "columns") && is_sound(surface.name, "rows") &&
+        vertices > max_sheet_vertices)
+      findings_.add_problem(
+          scene_.origin.last_line_of(surface.name, {"columns", "rows"}),
+          fmt::format("surface \"{}\" has {} x {} = {} vertices; at most {} are allowed",
+                      surface.name, sheet->columns, sheet->rows, vertices, max_sheet_vertices));
+  }
+
+  void check(const Force& force) {
+    if (!force.group.empty() && !groups_.contains(force.group))
+      complain(
+          force.name, "group",
+          fmt::format("force \"{}\" is in \"{}\", which is not a group", force.name, force.group));
+    const auto* const custom = std::get_if<CustomForce>(&force.shape);
+    if (custom && !custom->unit_force)
+      complain(force.name, "unit_force",
+               fmt::format("force \"{}\" is custom, but has no unit_force function", force.name));
+  }
+
+  void check_names() {
+    std::map<std::string_view, int> first_lines;
+    for (const auto& [element, name, line] : named_) {
+      if (!is_name(name)) {
+        findings_.add_problem(line, fmt::format("the name {} must be a letter or _ followed by "
+                                                "letters, digits, _ and -",
+                                                in_quotes(name)));
+        continue;
+      }
+      const auto [first, is_new] = first_lines.emplace(name, line);
+      if (is_new) continue;
+      const std::string place = first->second != 0 ? fmt::format(" at line {}", first->second) : "";
+      findings_.add_problem(
+          line, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces and groups "
+                            "must have different names",
+                            element, in_quotes(name), place));
+    }
+  }
+
+  void check_targets() {
+    std::set<std::string_view> names;
+    std::vector<std::string_view> surfaces;  // each once, in the order of the scene
+    for (const Surface& surface : scene_.surfaces)
+      if (names.insert(surface.name).second) surfaces.push_back(surface.name);
+    if (names.contains("")) return;  // a target may mean a surface with an unreadable name
+    std::map<std::string_view, std::string_view> elements;
+    for (const Named& one : named_) elements.emplace(one.name, one.element);
+
+    const auto check = [&](const auto& acting) {
+      for (const std::string& target : acting.targets) {
+        if (findings_.is_full()) return;
+        if (names.contains(target)) continue;
+        const auto found = elements.find(target);
+        const bool is_named = found != elements.end();
+        const bool is_force = is_named && is_force_element(found->second);
+        if (is_named && !is_force) continue;
+        complain(acting.name, "targets",
+                 fmt::format("{}.targets: {}{}", acting.name,
+                             is_force ? fmt::format("{} is a <{}>, not a surface",
+                                                    in_quotes(target), found->second)
+                                      : fmt::format("no surface is named {}", in_quotes(target)),
+                             hint(target, surfaces)));
+      }
+    };
+    for (const Force& force : scene_.forces) check(force);
+    for (const Group& group : scene_.groups) check(group);
+  }
+
+  bool is_sound(const std::string& name, std::string_view attribute) const {
+    return !is_sound_ || is_sound_(name, attribute);
+  }
+
+  void complain(const std::string& name, std::string_view attribute, std::string message) {
+    findings_.add_problem(scene_.origin.line_of(name, std::string(attribute)), std::move(message));
+  }
+
+  const Scene& scene_;
+  std::span<const Named> named_;
+  const ChannelFilter& is_sound_;
+  Findings& findings_;
+  std::set<std::string_view> groups_;
+};
 
 }  // namespace
 
-void check_frames(const Scene& scene, std::span<Slot> table, Findings& findings) {
-  if (!are_constant(table, {"start", "end"})) return;
-  const std::int64_t frames = std::int64_t{scene.end} - scene.start + 1;
-  const int line = find(table, "end")->line;
-  find(table, "end")->is_sound = frames >= 1 && frames <= max_frames;
-  if (frames < 1)
-    findings.add_problem(line, fmt::format("<scene> end=\"{}\": must not be before start=\"{}\"",
-                                           scene.end, scene.start));
-  else if (frames > max_frames)
-    findings.add_problem(line, fmt::format("<scene> has {} frames from {} to {}; at most {} are "
-                                           "allowed",
-                                           frames, scene.start, scene.end, max_frames));
-}
-
-void check_nodes(const GridSheet& grid, std::span<Slot> table, int line, Findings& findings) {
-  if (!are_constant(table, {"columns", "rows"})) return;
-  const std::int64_t nodes = std::int64_t{grid.columns} * grid.rows;
-  if (nodes > max_sheet_vertices)
-    findings.add_problem(last_line(table, {"columns", "rows"}, line),
-                         fmt::format("<grid> has {} x {} = {} vertices; at most {} are allowed",
-                                     grid.columns, grid.rows, nodes, max_sheet_vertices));
-}
-
-void check_well_posed(const MaterialChannels& material, std::span<Slot> table, Findings& findings) {
-  if (!are_constant(table, {"b", "c", "d"})) return;
-  const Stiffness stiffness{material.b.at(0)[0], material.c.at(0)[0], material.d.at(0)[0]};
-  if (stiffness.is_elliptic()) return;
-  find(table, "c")->is_sound = false;
-  findings.add_problem(
-      last_line(table, {"b", "c", "d"}),
-      fmt::format("<material> c = {}: must be greater than -2 sqrt(b d) = {}, "
-                  "with b = {} and d = {}; otherwise the plate has no stable shape",
-                  stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d));
-}
-
-void check_steps(const SolverSettings& solver, std::span<Slot> table, double fps, int line,
+void check_whole(const Scene& scene, std::span<const Named> named, const ChannelFilter& is_sound,
                  Findings& findings) {
-  if (!are_constant(table, {"dt"})) return;
-  const double dt = solver.dt.at(0)[0];
-  if (const auto checked = check_time_step(1 / fps, dt); !checked) {
-    find(table, "dt")->is_sound = false;
-    findings.add_problem(last_line(table, {"dt"}, line), "<solver> dt " + checked.error().message);
-  }
-}
-
-void check_unique(std::span<const Named> named, Findings& findings) {
-  std::map<std::string_view, int> first_lines;
-  for (const Named& one : named) {
-    const auto [first, is_new] = first_lines.emplace(one.name, one.line);
-    if (!is_new)
-      findings.add_problem(one.line,
-                           fmt::format("<{}> name={}: the name is already used at line {}; "
-                                       "surfaces, forces and groups must have different names",
-                                       one.element, in_quotes(one.name), first->second));
-  }
-}
-
-void check_targets(const Scene& scene, std::span<const Targets> targets,
-                   std::span<const Named> named, Findings& findings) {
-  std::map<std::string_view, std::string_view> elements;
-  for (const Named& one : named) elements.emplace(one.name, one.element);
-  std::set<std::string_view> names;
-  std::vector<std::string_view> surfaces;  // each once, in the order of the file
-  for (const Surface& surface : scene.surfaces)
-    if (names.insert(surface.name).second) surfaces.push_back(surface.name);
-  if (names.contains("")) return;  // a target may mean a surface with an unreadable name
-
-  for (const Targets& listed : targets)
-    for (const std::string& target : listed.surfaces) {
-      if (findings.is_full()) return;
-      if (names.contains(target)) continue;
-      const auto found = elements.find(target);
-      const bool is_named = found != elements.end();
-      const bool is_force = is_named && is_force_element(found->second);
-      if (is_named && !is_force) continue;
-      findings.add_problem(
-          listed.line,
-          fmt::format("<{}> targets: {}{}", listed.element,
-                      is_force ? fmt::format("{} is a <{}>, not a surface", in_quotes(target),
-                                             found->second)
-                               : fmt::format("no surface is named {}", in_quotes(target)),
-                      hint(target, surfaces)));
-    }
+  WholeChecker(scene, named, is_sound, findings).check();
 }
 
 void note_idle_targets(const Scene& scene, Findings& findings) {
@@ -138,32 +204,6 @@ void note_idle_targets(const Scene& scene, Findings& findings) {
             fmt::format(
                 "{}.targets: {} is not a target of the group {}: the force has no effect there",
                 force.name, in_quotes(target), in_quotes(force.group)));
-  }
-}
-
-void check_further(const Scene& scene, std::span<const Named> named, SceneFile& file) {
-  std::map<std::string_view, int> times;  // times that a name is used
-  for (const Named& one : named) ++times[one.name];
-  const auto is_sound = [&](const std::string& name, std::string_view attribute) {
-    const auto found = times.find(name);
-    return found != times.end() && found->second == 1 &&
-           !file.unsound.contains(fmt::format("{}.{}", name, attribute));
-  };
-  const auto is_plain = [&](std::string_view attribute) {
-    return !file.unsound.contains(fmt::format(".{}", attribute));
-  };
-  if (is_plain("start") && is_plain("end")) {
-    const auto is_checked = [&](const std::string& name, std::string_view attribute) {
-      return is_sound(name, attribute) && (attribute != "dt" || is_plain("fps"));
-    };
-    for (Error& error : check_channels(scene, is_checked)) {
-      file.findings.add_problem(error.line, std::move(error.message));
-    }
-  }
-  for (const NamedMesh& mesh : file.meshes) {
-    if (const auto readable = check_mesh_file(mesh.path); !readable)
-      file.findings.add_problem(
-          mesh.line, unreadable_mesh(readable.error(), mesh.surface, scene.origin).message);
   }
 }
 

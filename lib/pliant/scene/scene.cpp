@@ -27,6 +27,13 @@ int SceneOrigin::line_of(const std::string& name, const std::string& attribute) 
   return find_line(lines, name);
 }
 
+int SceneOrigin::last_line_of(const std::string& name,
+                              const std::vector<std::string>& attributes) const {
+  int line = 0;
+  for (const std::string& attribute : attributes) line = std::max(line, line_of(name, attribute));
+  return line;
+}
+
 bool SceneOrigin::gives(const std::string& name, const std::string& attribute) const {
   return find_line(lines, name + '.' + attribute) != 0;
 }

@@ -197,6 +197,9 @@ struct SceneOrigin {
   /// The line of `NAME.attribute`, otherwise of `NAME`, otherwise 0.
   int line_of(const std::string& name, const std::string& attribute = {}) const;
 
+  /// The last of the lines of these attributes.
+  int last_line_of(const std::string& name, const std::vector<std::string>& attributes) const;
+
   /// Whether the file gives the attribute.
   bool gives(const std::string& name, const std::string& attribute) const;
 };

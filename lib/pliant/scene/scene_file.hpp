@@ -12,13 +12,6 @@
 
 namespace pliant::xml {
 
-/// The surfaces that a force or group names; checked once all surfaces are known.
-struct Targets {
-  std::string element;  ///< name of the element: `point`
-  std::vector<std::string> surfaces;
-  int line = 0;
-};
-
 /// A mesh file that a surface names.
 struct NamedMesh {
   std::string surface;  ///< empty: its name could not be read
@@ -32,7 +25,6 @@ struct SceneFile {
   std::filesystem::path root;    ///< contains the files that meshes refer to
   Findings findings;
   std::map<std::string, int> lines = {};  ///< see SceneLine
-  std::vector<Targets> targets = {};
   std::vector<NamedMesh> meshes = {};
   /// `NAME.attribute` of those with a problem: their values are not those of the author.
   std::set<std::string, std::less<>> unsound = {};

@@ -6,7 +6,6 @@
 #include <tinyxml2.h>
 
 #include "pliant/scene/animate.hpp"
-#include "pliant/scene/rules.hpp"
 
 namespace pliant::xml {
 namespace {
@@ -28,7 +27,7 @@ class SurfaceReader {
         tangents_{table_of(surface_.tangents)},
         solver_{table_of(surface_.solver)} {}
 
-  Surface read(std::optional<double> fps);
+  Surface read();
 
  private:
   void read_grid(const tinyxml2::XMLElement& element);
@@ -49,7 +48,7 @@ class SurfaceReader {
   int shape_line_ = 0;
 };
 
-Surface SurfaceReader::read(std::optional<double> fps) {
+Surface SurfaceReader::read() {
   read_attributes(element_, own_, file_.findings);
   using Element = tinyxml2::XMLElement;
   const Child children[] = {
@@ -69,14 +68,8 @@ Surface SurfaceReader::read(std::optional<double> fps) {
         element_.GetLineNum(),
         fmt::format("{} has no shape: one <grid> or <mesh> is required", title()));
 
-  check_well_posed(surface_.material, material_.table, file_.findings);
-  if (fps)
-    check_steps(surface_.solver, solver_.table, *fps,
-                solver_.line != 0 ? solver_.line : element_.GetLineNum(), file_.findings);
-
+  record_element(element_, surface_.name, own_, file_);
   if (!surface_.name.empty()) {
-    file_.lines[surface_.name] = element_.GetLineNum();
-    record(surface_.name, own_, file_);
     for (const Part* part : {&transform_, &material_, &tangents_, &solver_})
       record(surface_.name, part->table, file_);
   }
@@ -107,7 +100,6 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   Table table = table_of(grid);
   read_attributes(element, table, file_.findings);
   read_children(element, {}, file_.findings);
-  check_nodes(grid, table, element.GetLineNum(), file_.findings);
   if (!is_first) return;
   surface_.shape = grid;
   if (!surface_.name.empty()) record(surface_.name, table, file_);
@@ -153,9 +145,8 @@ void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
 
 }  // namespace
 
-Surface read_surface(const tinyxml2::XMLElement& element, std::optional<double> fps,
-                     SceneFile& file) {
-  return SurfaceReader(element, file).read(fps);
+Surface read_surface(const tinyxml2::XMLElement& element, SceneFile& file) {
+  return SurfaceReader(element, file).read();
 }
 
 }  // namespace pliant::xml
