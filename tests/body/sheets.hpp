@@ -45,6 +45,13 @@ inline BodyInputs inputs_of(std::vector<SampledForce> forces) {
   return in;
 }
 
+/// Steps a body; a copy of its report.
+inline Result<StepReport> step(Body& body, const BodyInputs& inputs,
+                               const StopRequest& should_stop = {}) {
+  if (auto stepped = body.step(inputs, should_stop); !stepped) return fail(stepped.error());
+  return body.last_step();
+}
+
 inline double peak_of(const Body& body) {
   return (body.state().positions - body.rest()).rowwise().norm().maxCoeff();
 }

@@ -98,24 +98,24 @@ Field Body::measured_nodes(const Transform& transform) const {
 
 Result<StepReport> Body::look(const BodyInputs& inputs) const {
   BodyWorkspace work;
-  return plan(inputs, work, {}, nullptr);
+  if (auto planned = plan(inputs, work, nullptr); !planned) return fail(planned.error());
+  return std::move(work.report);
 }
 
-// Writes into `report`, an earlier one of this body or an empty one.
-Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, StepReport report,
-                              Profile* profile) const {
+// Writes the report of the workspace, all but the solve.
+Result<void> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, Profile* profile) const {
   const StageTimer timer(profile, Stage::Selection);
+  StepReport& report = work.report;
   work.tiles.update(grid_, {measured(), inputs.transform});
   if (!work.tiles.are_finite()) {
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
   report.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
-  // With recovering nodes, the regions were not those of the forces.
-  const bool had_others = report.recovering > 0;
-  if (had_others) report.selection = {};
   const bool are_same =
-      reselect(report.selection, work.tiles, inputs.forces, settings_.combine, inputs.selectors);
-  if (had_others || !are_same) report.patches = patches_of(report.selection);
+      reselect(work.selection, work.tiles, inputs.forces, settings_.combine, inputs.selectors);
+  report.selection = work.selection;
+  // With recovering nodes, the patches were not those of the forces.
+  if (report.recovering > 0 || !are_same) report.patches = patches_of(report.selection);
   report.lost.clear();
   if (settings_.measure == Measure::Current) {
     report.lost = lost_forces(inputs, report.selection, work, std::move(report.lost));
@@ -138,7 +138,7 @@ Result<StepReport> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, Ste
     report.pushing.push_back(pushes(grid_, work.tiles.nodes(), inputs.forces[k],
                                     report.selection.forces[k].force, report.patches_of_force(k)));
   }
-  return report;
+  return {};
 }
 
 // The forces that lost their nodes. Selects on the rest mesh only for forces with an empty box.
@@ -158,25 +158,26 @@ std::vector<int> Body::lost_forces(const BodyInputs& inputs, const Selection& se
   return lost;
 }
 
-Result<StepReport> Body::step(const BodyInputs& inputs, const StopRequest& should_stop,
-                              StepReport reuse, Profile* profile) {
-  if (inputs.forces.empty() && !recovers()) return StepReport{};
-  auto report = plan(inputs, work_, std::move(reuse), profile);
-  if (!report) return report;
-  if (!report->is_solved) {
-    settle(report->settling);
-    return report;
+Result<void> Body::step(const BodyInputs& inputs, const StopRequest& should_stop,
+                        Profile* profile) {
+  if (inputs.forces.empty() && !recovers()) {
+    work_.selection = {};
+    work_.report = {};
+    return {};
+  }
+  if (auto planned = plan(inputs, work_, profile); !planned) return planned;
+  const StepReport& report = work_.report;
+  if (!report.is_solved) {
+    settle(report.settling);
+    return {};
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
   StageTimer beginning(profile, Stage::StateOut);
-  begin_next(*report);
+  begin_next(report);
   beginning.stop();
-  if (auto solved = solve(inputs, *report, should_stop, profile); !solved) {
-    return fail(solved.error());
-  }
+  if (auto solved = solve(inputs, should_stop, profile); !solved) return solved;
   const StageTimer ending(profile, Stage::StateOut);
-  if (auto taken = take(); !taken) return fail(taken.error());
-  return report;
+  return take();
 }
 
 void Body::settle(const std::vector<int>& nodes) {
@@ -218,8 +219,9 @@ void Body::keep_solvers(const StepReport& report) {
   solvers_.keep_only(outlines);
 }
 
-Result<void> Body::solve(const BodyInputs& inputs, const StepReport& report,
-                         const StopRequest& should_stop, Profile* profile) {
+Result<void> Body::solve(const BodyInputs& inputs, const StopRequest& should_stop,
+                         Profile* profile) {
+  const StepReport& report = work_.report;
   keep_solvers(report);
   const bool from_rest = settings_.reference == Reference::Rest;
   // Nodes that settle are put at rest before the solve.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "pliant/body/settings.hpp"
@@ -13,7 +12,6 @@
 #include "pliant/forces/force.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/solver_cache.hpp"
-#include "pliant/region/region.hpp"
 
 namespace pliant {
 
@@ -30,24 +28,6 @@ struct BodyInputs {
   /// For each force the index of the force whose deformation box it uses, which determines the
   /// island it acts in; empty: each uses its own.
   std::vector<int> selectors = {};
-};
-
-/// The selection, solve and warnings of a frame.
-struct StepReport {
-  Selection selection;  ///< the forces' selection, in the order of the inputs, and its regions
-  std::vector<std::vector<Patch>> patches;  ///< of each region; empty: it is too small to solve
-  bool is_solved = false;                   ///< whether there is any unknown
-  TimeSteps steps;                          ///< of the solve
-  std::vector<int> lost;  ///< forces that select nodes on the rest mesh, but none now
-  std::vector<bool>
-      pushing;         ///< of each force: whether it moves any node; in the order of the inputs
-  int recovering = 0;  ///< nodes that are solved because they are not back at rest
-  std::vector<int> settling;  ///< nodes that are put at rest before the solve, ascending
-
-  int unknown_count() const;  ///< nodes that move, of all patches
-
-  /// The patches that force k of the inputs acts in.
-  std::span<const Patch> patches_of_force(std::size_t k) const;
 };
 
 /// One elastic surface as a grid of nodes: its state, and one frame's step. Thesis 5.3; SPEC 6.
@@ -70,11 +50,13 @@ class Body {
   /// node or the new state is not finite; Interrupted if `should_stop` returns true; those of the
   /// solver. The state is then unchanged.
   ///
-  /// The report reuses the memory of `reuse`, a report of an earlier step of this body or an empty
-  /// one. With it, nothing is allocated while the regions stay the same, plates are solved in sine
-  /// space and no node recovers. `profile` receives the times; null: no profiling.
-  Result<StepReport> step(const BodyInputs& inputs, const StopRequest& should_stop = {},
-                          StepReport reuse = {}, Profile* profile = nullptr);
+  /// Nothing is allocated while the regions stay the same, plates are solved in sine space and no
+  /// node recovers. `profile` receives the times; null: no profiling.
+  Result<void> step(const BodyInputs& inputs, const StopRequest& should_stop = {},
+                    Profile* profile = nullptr);
+
+  /// The report of the last step; empty before the first.
+  const StepReport& last_step() const { return work_.report; }
 
   const Grid& grid() const { return grid_; }
   const Field& rest() const { return rest_; }  ///< #nodes x 3, object space [length]
@@ -93,15 +75,13 @@ class Body {
   const Field& measured() const {
     return settings_.measure == Measure::Rest ? rest_ : state_.positions;
   }
-  Result<StepReport> plan(const BodyInputs& inputs, BodyWorkspace& work, StepReport report,
-                          Profile* profile) const;
+  Result<void> plan(const BodyInputs& inputs, BodyWorkspace& work, Profile* profile) const;
   std::vector<int> lost_forces(const BodyInputs& inputs, const Selection& selection,
                                BodyWorkspace& work, std::vector<int> lost) const;
   void settle(const std::vector<int>& nodes);
   void begin_next(const StepReport& report);
   void keep_solvers(const StepReport& report);
-  Result<void> solve(const BodyInputs& inputs, const StepReport& report,
-                     const StopRequest& should_stop, Profile* profile);
+  Result<void> solve(const BodyInputs& inputs, const StopRequest& should_stop, Profile* profile);
   Result<void> take();
   void mark_unsettled();
   bool recovers() const { return settings_.release == Release::Recover; }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pliant/body/step_report.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_cache.hpp"
 #include "pliant/region/region.hpp"
@@ -20,6 +21,8 @@ struct BodyWorkspace {
     PlateState plate;
   };
 
+  Selection selection;   ///< of the forces alone, at the last frame
+  StepReport report;     ///< of the last frame
   NodeTiles tiles;       ///< of the nodes that forces measure
   NodeTiles rest_tiles;  ///< of the nodes at rest, if needed
   std::vector<std::uint8_t> marks;

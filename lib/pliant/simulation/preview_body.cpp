@@ -98,12 +98,11 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
       is_at_rest_ && std::all_of(inputs.forces.begin(), inputs.forces.end(),
                                  [](const SampledForce& force) { return force.magnitude == 0; });
   if (is_at_rest_) return 0.0;
-  auto report = body(is_plain_).step(inputs, should_stop_, std::move(report_));
-  report_ = {};
+  const auto stepped = body(is_plain_).step(inputs, should_stop_);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
-  if (!report) return fail(report.error());
-  report_ = *std::move(report);
-  return least_cost() + static_cast<double>(report_.unknown_count()) * report_.steps.count;
+  if (!stepped) return fail(stepped.error());
+  const StepReport& report = body(is_plain_).last_step();
+  return least_cost() + static_cast<double>(report.unknown_count()) * report.steps.count;
 }
 
 // The displacements of a box's nodes, row by row; object space.

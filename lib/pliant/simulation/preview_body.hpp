@@ -81,7 +81,6 @@ class PreviewBody {
   const Body* current_ = nullptr;
   bool is_plain_ = true;     // whether the animation is of the plain body
   bool is_at_rest_ = false;  // nothing has moved yet
-  StepReport report_;
   std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
 };
 

@@ -236,7 +236,7 @@ Result<void> Simulation::Run::step() {
     if (std::string fault = stepped.inputs.faults->first(); !fault.empty()) {
       return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame_));
     }
-    if (!stepped.report) return fail(located(stepped.report.error(), surface, frame_));
+    if (!stepped.outcome) return fail(located(stepped.outcome.error(), surface, frame_));
     add_facts(warnings_, surface.name, frame_, stepped.inputs, stepped.facts);
     (stepped.is_read ? is_read : is_solved) = true;
   }
@@ -248,8 +248,8 @@ Result<void> Simulation::Run::step() {
 void Simulation::Run::step_surfaces() {
   threads_.for_each(bodies_.size(), [this](std::size_t k) { step_surface(k); });
   const auto lacks_memory = [](const Stepped& stepped) {
-    return stepped.is_stepped && !stepped.report &&
-           stepped.report.error().code == ErrorCode::OutOfMemory;
+    return stepped.is_stepped && !stepped.outcome &&
+           stepped.outcome.error().code == ErrorCode::OutOfMemory;
   };
   // Drop kept frames to make room for the next one.
   if (std::any_of(stepped_.begin(), stepped_.end(), lacks_memory) && cache_.give_way()) {
@@ -281,11 +281,10 @@ void Simulation::Run::step_surface(std::size_t index) {
 
 void Simulation::Run::solve_surface(std::size_t index) {
   Stepped& stepped = stepped_[index];
-  StepReport former = stepped.report ? std::exchange(*stepped.report, {}) : StepReport{};
-  stepped.report =
-      bodies_[index].step(stepped.inputs.body, should_stop_, std::move(former), profile_of(index));
-  if (!stepped.report) return;
-  stepped.facts = facts_of(stepped.inputs, *stepped.report, scene_.surfaces[index].solver.combine,
+  Body& body = bodies_[index];
+  stepped.outcome = body.step(stepped.inputs.body, should_stop_, profile_of(index));
+  if (!stepped.outcome) return;
+  stepped.facts = facts_of(stepped.inputs, body.last_step(), scene_.surfaces[index].solver.combine,
                            std::move(stepped.facts));
 }
 

@@ -51,7 +51,7 @@ class Simulation::Run {
     bool is_stepped = false;  // in the present frame
     bool is_read = false;     // read from the store, not solved
     SurfaceInputs inputs;
-    Result<StepReport> report;  // of the last solved frame, or its error
+    Result<void> outcome;  // of the last frame that was solved or read
     StepFacts facts;
   };
 

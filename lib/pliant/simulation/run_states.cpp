@@ -50,7 +50,7 @@ bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   Stepped& stepped = stepped_[index];
   if (should_stop_ && should_stop_()) {
-    stepped.report = fail(ErrorCode::Interrupted, "interrupted");
+    stepped.outcome = fail(ErrorCode::Interrupted, "interrupted");
     return true;
   }
   auto stored = read_stored(*store_, key, bodies_[index].rest(), has_marks(index));
@@ -58,7 +58,7 @@ bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
   bodies_[index].restore(std::move(stored->state));
   stepped.facts = std::move(stored->facts);
   stepped.is_read = true;
-  if (!stepped.report) stepped.report = StepReport{};
+  stepped.outcome = {};
   return true;
 }
 
@@ -66,7 +66,7 @@ bool Simulation::Run::read_surface(std::size_t index, const Hash& key) {
 void Simulation::Run::write_surface(std::size_t index, const Hash& key) {
   const StageTimer timer(profile_of(index), Stage::Checkpoints);
   const Stepped& stepped = stepped_[index];
-  if (!stepped.report || !stepped.inputs.faults->first().empty()) return;
+  if (!stepped.outcome || !stepped.inputs.faults->first().empty()) return;
   const Body& body = bodies_[index];
   store_->write(key, to_bytes(key, body.state(), stepped.facts, body.rest()));
 }
