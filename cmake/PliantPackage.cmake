@@ -6,8 +6,7 @@ install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.xml")
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj")
-install(FILES tests/consumer/main.cpp DESTINATION "${CMAKE_INSTALL_DOCDIR}/tests/consumer")
+        FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj" PATTERN "*.[ch]pp" PATTERN "CMakeLists.txt")
 
 # The licence of the binary: its terms depend on the libraries that it is linked with.
 set(pliant_licence_of_binary "License: Apache-2.0")
