@@ -5,16 +5,11 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/scene.hpp"
+#include "viewer/frame_range.hpp"
 
 namespace pliant::cli {
 
-/// A range of frames, both ends included.
-struct FrameRange {
-  int first = 0;
-  int last = 0;
-
-  int count() const { return last - first + 1; }
-};
+using viewer::FrameRange;
 
 /// Parses A:B or one frame, within the scene's frames; null: all frames. Errors: InvalidInput,
 /// naming --frames.

@@ -6,9 +6,9 @@
 #include <utility>
 #include <variant>
 
-#include "force_values.hpp"
 #include "json.hpp"
 #include "pliant/forces/force.hpp"
+#include "viewer/force_values.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -22,9 +22,10 @@ Json force_json(const ForceReport& report, const Force* force, int frame) {
                {"deformationRadius", sampled->deformation_radius},
                {"forceRadius", sampled->force_radius}};
   if (force) {
-    for_each_value(*force, [&](std::string_view attribute, const ValueAt& value_at) {
-      json[std::string(attribute)] = value_at(frame);
-    });
+    viewer::for_each_value(*force,
+                           [&](std::string_view attribute, const viewer::ValueAt& value_at) {
+                             json[std::string(attribute)] = value_at(frame);
+                           });
   } else {
     json["center"] = to_json(std::get<PointForce>(sampled->shape).center);
   }

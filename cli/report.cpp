@@ -6,17 +6,6 @@
 
 namespace pliant::cli {
 
-int line_of(const Warning& warning, const SceneOrigin& origin) {
-  if (!warning.force.empty()) return origin.line_of(warning.force);
-  if (warning.kind == Warning::Kind::NeverStarts) {
-    return origin.line_of(warning.surface, "startFrame");
-  }
-  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
-    if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
-  }
-  return origin.line_of(warning.surface);
-}
-
 void print(std::FILE* stream, std::string_view text) {
   std::string lines;
   while (!text.empty()) {

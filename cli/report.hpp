@@ -34,9 +34,6 @@ int report(const Error& error);
 /// Prints the notes of a scene: remarks on valid content.
 void print_notes(const Scene& scene);
 
-/// The line of a warning's cause: the force, or the tangents or start frame of its surface.
-int line_of(const Warning& warning, const SceneOrigin& origin);
-
 /// Prints the warnings of a run, each with its line.
 void print_warnings(const Simulation& simulation);
 

@@ -19,7 +19,7 @@ constexpr const char* name = "standard input";
 // One byte more than `parse_scene` accepts, to detect a scene that is too large.
 constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
 
-tl::unexpected<Error> interrupted() {
+tl::unexpected<Error> interruption() {
   return fail(ErrorCode::Interrupted, "interrupted before the first frame");
 }
 
@@ -33,7 +33,7 @@ Result<std::string> read_standard_input() {
       text.append(chunk, 0, static_cast<std::size_t>(count));
       continue;
     }
-    if (was_interrupted()) return interrupted();
+    if (was_interrupted()) return interruption();
     if (errno != EINTR) {
       return fail(ErrorCode::Unreadable, std::string("cannot read it: ") + std::strerror(errno),
                   name);
@@ -64,7 +64,8 @@ Result<Scene> read_scene(const std::string& scene, const Root& root) {
   if (!folder) return fail(folder.error());
   if (!is_standard_input(scene)) {
     auto loaded = load_scene(scene, *folder);
-    if (!loaded && was_interrupted()) return interrupted();  // interrupted while waiting for a pipe
+    if (!loaded && was_interrupted())
+      return interruption();  // interrupted while waiting for a pipe
     return loaded;
   }
   if (isatty(STDIN_FILENO) != 0) {

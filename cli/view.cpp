@@ -16,10 +16,10 @@
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "view_movie.hpp"
-#include "view_page.hpp"
 #include "view_picture.hpp"
 #include "view_scene.hpp"
 #include "view_serve.hpp"
+#include "viewer/page.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -63,7 +63,7 @@ int page_view(const ViewOptions& options, std::string_view page) {
   }
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return report(with_kept(baked.error(), "no page was written"));
-  const std::string made = page_with(page, title_of(baked->scene), baked->bake.packed);
+  const std::string made = viewer::page_with(page, title_of(baked->scene), baked->bake.packed);
   if (auto written = write_page(out, made); !written) return report(written.error());
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -138,7 +138,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
 int run_view(const ViewOptions& options) {
   catch_interrupts();
   if (auto places = check_places(options); !places) return report(places.error());
-  const auto page = page_template();
+  const auto page = viewer::page_template();
   if (!page) return report(page.error());
   if (options.port) return serve_view(options, *page);
   if (options.png) return picture_view(options, *page);

@@ -24,7 +24,7 @@ namespace {
 // The properties of a movie that are known before making it.
 struct Plan {
   MovieFormat format = MovieFormat::Mp4;
-  PictureSize size;
+  viewer::PictureSize size;
   FrameRate rate;
 };
 

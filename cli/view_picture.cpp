@@ -29,7 +29,7 @@
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "view_scene.hpp"
-#include "view_server.hpp"
+#include "viewer/server.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -146,8 +146,8 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
 // The order for a picture: a table of frames, each with its number below and one legend for all, or
 // a single frame. The page executes each `number` once, so it does not draw the next picture before
 // it is ordered.
-PictureOrder order_of(int number, const std::vector<int>& frames, PictureSize size,
-                      const std::string& look) {
+viewer::PictureOrder order_of(int number, const std::vector<int>& frames, viewer::PictureSize size,
+                              const std::string& look) {
   constexpr int most_columns = 4;
   const int count = static_cast<int>(frames.size());
   const int label = count > 1 ? 28 : 0;
@@ -192,14 +192,14 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 }  // namespace
 
 // WxH in pixels, at most the size of a canvas.
-Result<PictureSize> parse_size(const std::string& text) {
+Result<viewer::PictureSize> parse_size(const std::string& text) {
   constexpr int most = 8192;
   const std::size_t cross = text.find('x');
   const auto width = to_integer(text.substr(0, cross));
   const auto height =
       cross == std::string::npos ? std::nullopt : to_integer(text.substr(cross + 1));
   if (width && height && std::min(*width, *height) >= 16 && std::max(*width, *height) <= most) {
-    return PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
+    return viewer::PictureSize{static_cast<int>(*width), static_cast<int>(*height)};
   }
   return fail(ErrorCode::InvalidInput,
               fmt::format("--size {}: must be WxH, from 16x16 to {}x{}", text, most, most));
@@ -225,7 +225,7 @@ ScratchFolder::~ScratchFolder() {
 }
 
 struct PictureTaker::State {
-  ViewServer server;
+  viewer::ViewServer server;
   ScratchFolder folder;
   std::optional<Browser> browser = {};  // from the first order on; last, so that it ends before the
                                         // members it uses
@@ -237,7 +237,7 @@ PictureTaker::PictureTaker(PictureTaker&&) noexcept = default;
 PictureTaker::~PictureTaker() = default;
 
 Result<PictureTaker> PictureTaker::start(std::string_view page, std::string packed) {
-  auto server = ViewServer::start(std::string(page), 0);
+  auto server = viewer::ViewServer::start(std::string(page), 0);
   if (!server) return fail(server.error());
   server->publish(std::move(packed));
   auto folder = ScratchFolder::make();
@@ -245,7 +245,7 @@ Result<PictureTaker> PictureTaker::start(std::string_view page, std::string pack
   return PictureTaker(std::make_unique<State>(State{*std::move(server), *std::move(folder)}));
 }
 
-void PictureTaker::order(const std::vector<int>& frames, PictureSize size,
+void PictureTaker::order(const std::vector<int>& frames, viewer::PictureSize size,
                          const std::string& look) {
   state_->server.order_picture(order_of(++state_->orders, frames, size, look));
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
-#include "png_check.hpp"
 #include "view.hpp"
+#include "viewer/png_check.hpp"
 
 namespace pliant::cli {
 
@@ -17,7 +17,7 @@ namespace pliant::cli {
 int picture_view(const ViewOptions& options, std::string_view page);
 
 /// Parses WxH, at most the size of a canvas. Errors: InvalidInput, naming --size.
-Result<PictureSize> parse_size(const std::string& text);
+Result<viewer::PictureSize> parse_size(const std::string& text);
 
 /// Checks that there is a browser. Errors: Unwritable if not; `option` is the option that needs
 /// one.
@@ -50,7 +50,7 @@ class PictureTaker {
   ~PictureTaker();
 
   /// Requests a picture of one frame, or a sheet of several; `look` in the syntax of --look.
-  void order(const std::vector<int>& frames, PictureSize size, const std::string& look);
+  void order(const std::vector<int>& frames, viewer::PictureSize size, const std::string& look);
   /// Waits for the requested picture, a PNG file. Errors: Unwritable if the browser ended or needs
   /// too long; Interrupted.
   Result<std::string> take();

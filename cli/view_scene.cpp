@@ -12,8 +12,8 @@
 namespace pliant::cli {
 namespace {
 
-void print_weight(const ViewBake& bake) {
-  if (bake.position_bytes <= heavy_positions) return;
+void print_weight(const viewer::ViewBake& bake) {
+  if (bake.position_bytes <= viewer::heavy_positions) return;
   print(stderr, fmt::format("pliant: note: the page unpacks to {} of positions and may be slow to "
                             "open; choose fewer frames with --frames A:B\n",
                             bytes_text(bake.position_bytes)));
@@ -38,8 +38,8 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   if (!simulation) return fail(simulation.error());
   auto baked = [&] {
     Progress progress(frames->last - simulation->scene().start + 1, options.is_quiet);
-    return view_bake(*simulation, *frames, {run.max_memory, should_stop},
-                     [&] { progress.advance(); });
+    return viewer::view_bake(*simulation, *frames, {run.max_memory, should_stop},
+                             [&] { progress.advance(); });
   }();
   print_warnings(*simulation);
   if (!baked) return fail(baked.error());

@@ -5,7 +5,7 @@
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/frame_store.hpp"
 #include "view.hpp"
-#include "view_bake.hpp"
+#include "viewer/bake.hpp"
 
 namespace pliant::cli {
 
@@ -13,7 +13,7 @@ namespace pliant::cli {
 struct BakedScene {
   Scene scene;
   FrameRange frames;
-  ViewBake bake;
+  viewer::ViewBake bake;
   FrameCounts counts;  ///< frames solved and frames read from the store
 };
 

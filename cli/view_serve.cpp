@@ -21,7 +21,7 @@
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "view_scene.hpp"
-#include "view_server.hpp"
+#include "viewer/server.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -102,7 +102,7 @@ std::size_t store_bytes(const ResourceOptions& resources) {
 }
 
 // Bakes the scene in its present state. Returns the watch over its files.
-std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
+std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer& server,
                                  MemoryFrameStore& store) {
   // Watch the file before reading it, so that no save is missed.
   auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
@@ -136,7 +136,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, ViewServer& server,
 }  // namespace
 
 int serve_view(const ViewOptions& options, std::string_view page) {
-  auto server = ViewServer::start(std::string(page), *options.port);
+  auto server = viewer::ViewServer::start(std::string(page), *options.port);
   if (!server) return report(server.error());
   print(stdout, server->address() + '\n');
   if (std::ferror(stdout) != 0)

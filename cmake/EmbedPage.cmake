@@ -13,11 +13,11 @@ if(NOT bytes)
 endif()
 file(WRITE "${OUT}" "#include <span>
 
-namespace pliant::cli {
+namespace pliant::viewer {
 
 ${array}
 extern const std::span<const unsigned char> embedded_page;
 const std::span<const unsigned char> embedded_page{${span}};
 
-}  // namespace pliant::cli
+}  // namespace pliant::viewer
 ")

@@ -8,7 +8,7 @@ endif()
 
 if(NOT EXISTS "${root}/share/pliant/viewer.html")
   message(FATAL_ERROR "pliant: no package without the viewer's page. This build does not have it, "
-                      "because npm's packages for cli/viewer were not installed: run "
+                      "because npm's packages for viewer/page were not installed: run "
                       "script/bootstrap, then build again")
 endif()
 if(NOT CPACK_GENERATOR STREQUAL "DEB")

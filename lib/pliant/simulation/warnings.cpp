@@ -67,4 +67,15 @@ std::string Warning::message() const {
   return {};
 }
 
+int line_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.force.empty()) return origin.line_of(warning.force);
+  if (warning.kind == Warning::Kind::NeverStarts) {
+    return origin.line_of(warning.surface, "startFrame");
+  }
+  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
+    if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
+  }
+  return origin.line_of(warning.surface);
+}
+
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/scene/scene.hpp"
 #include "pliant/simulation/frame_ranges.hpp"
 
 namespace pliant {
@@ -29,5 +30,8 @@ struct Warning {
   /// One line for an author, frames included.
   std::string message() const;
 };
+
+/// The line of a warning's cause: the force, or the tangents or start frame of its surface.
+int line_of(const Warning& warning, const SceneOrigin& origin);
 
 }  // namespace pliant

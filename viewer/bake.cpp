@@ -1,0 +1,314 @@
+#include "viewer/bake.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/mesh/triangulate.hpp"
+#include "viewer/bytes.hpp"
+#include "viewer/channels.hpp"
+#include "viewer/forces.hpp"
+#include "viewer/json.hpp"
+#include "viewer/motion.hpp"
+
+namespace pliant::viewer {
+namespace {
+
+// The arrays after the head. The head gives the offset and length of each.
+class Arrays {
+ public:
+  // Little-endian numbers of four bytes, or bytes. Each array begins at an offset that is a
+  // multiple of four.
+  template <class Number>
+  Json add(std::span<const Number> numbers) {
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + numbers.size_bytes());
+    if (!numbers.empty()) std::memcpy(bytes_.data() + begin, numbers.data(), numbers.size_bytes());
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    return {{"begin", begin}, {"count", numbers.size()}};
+  }
+  template <class Number>
+  Json add(const std::vector<Number>& numbers) {
+    return add(std::span<const Number>(numbers));
+  }
+  Json add(const std::string& bytes) { return add(std::span<const char>(bytes)); }
+
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+std::vector<std::uint32_t> triangle_vertices(const Mesh& mesh) {
+  std::vector<std::uint32_t> vertices;
+  for (const std::array<int, 3>& triangle : triangulate(mesh)) {
+    for (const int corner : triangle) {
+      vertices.push_back(static_cast<std::uint32_t>(mesh.corner_vertices[corner]));
+    }
+  }
+  return vertices;
+}
+
+// Both ends of each edge of the faces, each edge once.
+std::vector<std::uint32_t> edge_vertices(const Mesh& mesh) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  std::size_t first = 0;
+  for (const int size : mesh.face_sizes) {
+    for (int k = 0; k < size; ++k) {
+      const auto [low, high] = std::minmax(mesh.corner_vertices[first + k],
+                                           mesh.corner_vertices[first + (k + 1) % size]);
+      edges.emplace_back(low, high);
+    }
+    first += size;
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<std::uint32_t> vertices;
+  for (const auto& [low, high] : edges) vertices.insert(vertices.end(), {low, high});
+  return vertices;
+}
+
+// (u,v) of each vertex, from its first corner; 0 if it has none.
+std::vector<float> vertex_uvs(const Mesh& mesh) {
+  std::vector<float> uvs(2 * static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (std::size_t corner = mesh.corner_vertices.size(); corner-- > 0;) {
+    const int uv = mesh.corner_uvs[corner];
+    if (uv < 0) continue;
+    for (std::size_t k = 0; k < 2; ++k) {
+      uvs[2 * static_cast<std::size_t>(mesh.corner_vertices[corner]) + k] =
+          static_cast<float>(mesh.uvs[uv][k]);
+    }
+  }
+  return uvs;
+}
+
+// Vertices in the order of their nodes, so that neighbours in a row of the grid are next to each
+// other.
+std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
+  std::vector<int> order(vertex_nodes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return vertex_nodes[a] < vertex_nodes[b]; });
+  return order;
+}
+
+Json transform_json(const Transform& transform) {
+  Json numbers = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) numbers.push_back(transform.linear(row, column));
+    numbers.push_back(transform.translation[row]);
+  }
+  return numbers;
+}
+
+// One surface during the run.
+class SurfaceView {
+ public:
+  SurfaceView(const RestShape& shape, const Surface& surface, double fps)
+      : shape_(shape),
+        surface_(surface),
+        fps_(fps),
+        motion_(shape.mesh.positions, node_order(shape.mapping.vertex_nodes)) {}
+
+  Result<void> add(const SurfaceFrame& frame, int number) {
+    transforms_.push_back(transform_json(frame.transform()));
+    peak_displacement_ = std::max(peak_displacement_, frame.peak_displacement());
+    Field positions = frame.positions();
+    low_ = low_.cwiseMin(positions.colwise().minCoeff().transpose());
+    high_ = high_.cwiseMax(positions.colwise().maxCoeff().transpose());
+    if (before_.size() > 0) {
+      const double moved = (positions - before_).rowwise().norm().maxCoeff();
+      peak_speed_ = std::max(peak_speed_, moved * fps_);
+    }
+    before_ = std::move(positions);
+    return motion_.add(frame.object_positions(), number);
+  }
+
+  SurfaceMarks& marks() { return marks_; }
+  double peak_displacement() const { return peak_displacement_; }
+
+  Json finish(Arrays& arrays) const {
+    const Mesh& mesh = shape_.mesh;
+    const Vector3d low = mesh.positions.colwise().minCoeff();
+    const Vector3d high = mesh.positions.colwise().maxCoeff();
+    const Vector3d origin = 0.5 * low + 0.5 * high;
+    const PackedMotion motion = motion_.pack();
+    // Half a step, plus the rounding of the rest position to float.
+    const double error = 0.5 * motion.step + (high - low).maxCoeff() * 0x1p-25;
+    return {{"name", shape_.name},
+            {"enabled", surface_.enabled},
+            {"vertices", mesh.vertex_count()},
+            {"columns", shape_.mapping.grid.columns},
+            {"rows", shape_.mapping.grid.rows},
+            {"origin", to_json(origin)},
+            {"low", to_json(low_)},
+            {"high", to_json(high_)},
+            {"peakDisplacement", peak_displacement_},
+            {"peakSpeed", peak_speed_},
+            {"step", motion.step},
+            {"error", error},
+            {"transforms", same_or_all()},
+            {"rest", arrays.add(relative_rest(origin))},
+            {"uvs", arrays.add(vertex_uvs(mesh))},
+            {"nodes", arrays.add(std::span<const int>(shape_.mapping.vertex_nodes))},
+            {"triangles", arrays.add(triangle_vertices(mesh))},
+            {"edges", arrays.add(edge_vertices(mesh))},
+            {"predictors", arrays.add(motion.predictors)},
+            {"lowBytes", arrays.add(motion.low)},
+            {"highBytes", arrays.add(motion.high)},
+            {"marks", marks_.changes()}};
+  }
+
+ private:
+  std::vector<float> relative_rest(const Vector3d& origin) const {
+    std::vector<float> numbers;
+    for (Eigen::Index row = 0; row < shape_.mesh.positions.rows(); ++row) {
+      for (int k = 0; k < 3; ++k) {
+        numbers.push_back(static_cast<float>(shape_.mesh.positions(row, k) - origin[k]));
+      }
+    }
+    return numbers;
+  }
+
+  Json same_or_all() const {
+    const bool is_still =
+        std::all_of(transforms_.begin(), transforms_.end(),
+                    [&](const Json& transform) { return transform == transforms_.front(); });
+    return is_still ? Json::array({transforms_.front()}) : Json(transforms_);
+  }
+
+  const RestShape& shape_;
+  const Surface& surface_;
+  double fps_;
+  MotionPacker motion_;
+  std::vector<Json> transforms_;
+  SurfaceMarks marks_;
+  double peak_displacement_ = 0;
+  double peak_speed_ = 0;  // from the displacement since the frame before [length/s]
+  Vector3d low_ = Vector3d::Constant(std::numeric_limits<double>::infinity());  // over all frames
+  Vector3d high_ = -low_;
+  Field before_;  // world
+};
+
+Json messages_of(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  Json messages = Json::array();
+  for (const SceneNote& note : scene.notes) {
+    messages.push_back({{"kind", "note"}, {"line", note.line}, {"text", note.message}});
+  }
+  for (const Warning& warning : simulation.warnings()) {
+    messages.push_back({{"kind", "warning"},
+                        {"line", line_of(warning, scene.origin)},
+                        {"text", warning.message()}});
+  }
+  return messages;
+}
+
+// Concatenates the length of the head, the head and the arrays.
+std::string joined(const Json& head, const std::string& arrays) {
+  // An author's text may contain bytes that are not UTF-8.
+  std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<std::uint32_t>(text.size());
+  std::string bytes(sizeof(length), '\0');
+  std::memcpy(bytes.data(), &length, sizeof(length));
+  return bytes + text + arrays;
+}
+
+Result<void> check_memory(const Simulation& simulation, const FrameRange& frames,
+                          std::size_t max_memory) {
+  std::size_t vertex_count = 0;
+  for (const RestShape& shape : simulation.rest_shapes()) vertex_count += shape.mesh.vertex_count();
+  // In addition to the packer's memory: the packed stream and its text in the page.
+  const double bytes = static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
+                       static_cast<double>(MotionPacker::bytes_a_vertex + 14);
+  const double free = static_cast<double>(max_memory) -
+                      static_cast<double>(std::min(max_memory, simulation.surface_memory()));
+  if (bytes <= free) return {};
+  return fail(ErrorCode::OutOfMemory,
+              fmt::format("a page of {} frames of {} vertices needs {}, more than the {} left of "
+                          "--max-memory; choose fewer frames with --frames A:B",
+                          frames.count(), vertex_count, bytes_text(static_cast<std::size_t>(bytes)),
+                          bytes_text(static_cast<std::size_t>(free))));
+}
+
+using ForceNumbers = std::map<std::string, std::size_t, std::less<>>;
+
+// Runs every frame up to the last, and adds those in `frames` to the surfaces.
+Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const ViewLimits& limits,
+                        std::vector<SurfaceView>& surfaces, const ForceNumbers& force_numbers,
+                        const std::function<void()>& advance) {
+  const Scene& scene = simulation.scene();
+  for (int number = scene.start; number <= frames.last; ++number) {
+    if (limits.should_stop && limits.should_stop())
+      return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
+    const auto frame = simulation.at(number);
+    if (!frame) return fail(frame.error());
+    if (number >= frames.first) {
+      const auto report = simulation.report(number);
+      if (!report) return fail(report.error());
+      for (std::size_t k = 0; k < surfaces.size(); ++k) {
+        if (auto added = surfaces[k].add(frame->surfaces()[k], number); !added) {
+          return fail(added.error());
+        }
+        surfaces[k].marks().add(number, report->surfaces[k], force_numbers);
+      }
+    }
+    advance();
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
+                           const ViewLimits& limits, const std::function<void()>& advance) {
+  if (auto fits = check_memory(simulation, frames, limits.max_memory); !fits) {
+    return fail(fits.error());
+  }
+  const Scene& scene = simulation.scene();
+  Json forces = view_forces(scene, frames);
+  ForceNumbers force_numbers;
+  for (std::size_t k = 0; k < forces.size(); ++k) force_numbers[forces[k]["name"]] = k;
+  std::vector<SurfaceView> surfaces;
+  for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
+    surfaces.emplace_back(simulation.rest_shapes()[k], scene.surfaces[k], scene.fps);
+  }
+
+  if (auto run = run_frames(simulation, frames, limits, surfaces, force_numbers, advance); !run) {
+    return fail(run.error());
+  }
+  ViewBake bake;
+  Arrays arrays;
+  Json shown = Json::array();
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    shown.push_back(surfaces[k].finish(arrays));
+    bake.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
+    bake.peak_displacement = std::max(bake.peak_displacement, surfaces[k].peak_displacement());
+  }
+  bake.position_bytes = std::size_t{6} * static_cast<std::size_t>(bake.vertex_count) *
+                        static_cast<std::size_t>(frames.count());
+  const Json head = {{"version", 1},
+                     {"scene", scene.origin.file},
+                     {"fps", scene.fps},
+                     {"first", frames.first},
+                     {"last", frames.last},
+                     {"surfaces", shown},
+                     {"forces", forces},
+                     {"channels", view_channels(scene, frames)},
+                     {"messages", messages_of(simulation)}};
+  auto packed = deflated(joined(head, arrays.take()));
+  if (!packed) return fail(packed.error());
+  bake.packed = *std::move(packed);
+  return bake;
+}
+
+}  // namespace pliant::viewer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "pliant/simulation/simulation.hpp"
+#include "viewer/frame_range.hpp"
+
+namespace pliant::viewer {
+
+/// The data of a page.
+struct ViewBake {
+  std::string packed;  ///< a raw deflate stream; docs/viewer.md describes its content [bytes]
+  int vertex_count = 0;
+  double peak_displacement = 0;    ///< world [length]
+  std::size_t position_bytes = 0;  ///< of the frames once unpacked [bytes]
+};
+
+/// Limits of a run for a page.
+struct ViewLimits {
+  std::size_t max_memory = 0;  ///< of the simulation and the frames together [bytes]
+  StopRequest should_stop = {};
+};
+
+/// Runs the simulation from the scene's start, and packs `frames` for a page. `advance` is called
+/// after each frame. Errors: those of the simulation; OutOfMemory, before the run, if the frames
+/// need more memory than allowed; Interrupted.
+Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
+                           const ViewLimits& limits, const std::function<void()>& advance);
+
+/// Above this size a page may start slowly or fail in a browser. [bytes of positions]
+inline constexpr std::size_t heavy_positions = 200'000'000;
+
+}  // namespace pliant::viewer

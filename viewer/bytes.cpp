@@ -1,0 +1,68 @@
+#include "viewer/bytes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include <zlib.h>
+
+namespace pliant::viewer {
+namespace {
+
+// Number of bytes to pass to zlib at once: its counters have fewer bits.
+uInt portion(std::size_t bytes) {
+  constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
+  return static_cast<uInt>(std::min(bytes, most));
+}
+
+}  // namespace
+
+Result<std::string> deflated(std::string_view bytes) {
+  const auto no_memory = [] {
+    return fail(ErrorCode::OutOfMemory, "the packed frames of the page do not fit in memory");
+  };
+  z_stream stream = {};
+  constexpr int raw_window = -15;  // no header, no checksum
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, raw_window, 9, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    return no_memory();
+  }
+  std::string packed;
+  std::array<char, std::size_t{1} << 16> chunk;
+  int status = Z_OK;
+  while (status == Z_OK) {
+    const uInt given = portion(bytes.size());
+    // zlib only reads the input, but its struct is not const.
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = given;
+    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    stream.avail_out = static_cast<uInt>(chunk.size());
+    status = deflate(&stream, given == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    bytes.remove_prefix(given - stream.avail_in);
+    packed.append(chunk.data(), chunk.size() - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  if (status != Z_STREAM_END) return no_memory();
+  return packed;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::string_view three = bytes.substr(k, 3);
+    std::uint32_t bits = 0;
+    for (std::size_t byte = 0; byte < 3; ++byte) {
+      bits = bits << 8 | (byte < three.size() ? static_cast<unsigned char>(three[byte]) : 0U);
+    }
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+      text.push_back(digit <= three.size() ? digits[bits >> (18 - 6 * digit) & 63] : '=');
+    }
+  }
+  return text;
+}
+
+}  // namespace pliant::viewer

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "pliant/core/result.hpp"
+
+namespace pliant::viewer {
+
+/// A raw deflate stream (RFC 1951) of the bytes. Errors: OutOfMemory.
+Result<std::string> deflated(std::string_view bytes);
+
+/// Base 64 with padding (RFC 4648).
+std::string base64(std::string_view bytes);
+
+}  // namespace pliant::viewer

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "pliant/scene/scene.hpp"
+#include "viewer/frame_range.hpp"
+#include "viewer/json.hpp"
+
+namespace pliant::viewer {
+
+/// The animated channels of a scene for the page's curve panel: keys, handles, and the curve as
+/// points, over `frames`.
+Json view_channels(const Scene& scene, const FrameRange& frames);
+
+}  // namespace pliant::viewer

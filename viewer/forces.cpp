@@ -1,0 +1,93 @@
+#include "viewer/forces.hpp"
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "viewer/force_values.hpp"
+
+namespace pliant::viewer {
+namespace {
+
+// The value at each frame, or a single value if all are equal.
+Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
+  Json values = Json::array();
+  bool is_constant = true;
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    values.push_back(value_at(frame));
+    is_constant = is_constant && values.back() == values.front();
+  }
+  if (is_constant) return Json::array({values.front()});
+  return values;
+}
+
+Json track(const Channel<1>& channel, const FrameRange& frames) {
+  return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
+}
+const Group* group_of(const Scene& scene, const Force& force) {
+  for (const Group& group : scene.groups) {
+    if (group.name == force.group) return &group;
+  }
+  return nullptr;
+}
+
+Json force_json(const Force& force, const Group* group, const FrameRange& frames) {
+  Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
+  if (group != nullptr) json["group"] = group->name;
+  json["enabled"] = track(frames, [&](int frame) {
+    return Json(force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame)));
+  });
+  json["magnitude"] = track(force.magnitude, frames);
+  if (group == nullptr) json["deformationRadius"] = track(force.deformation_radius, frames);
+  json["forceRadius"] = track(force.force_radius, frames);
+  for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
+    json[std::string(name)] = track(frames, value_at);
+  });
+  return json;
+}
+
+Json group_json(const Group& group, const FrameRange& frames) {
+  return {{"name", group.name},
+          {"kind", "group"},
+          {"targets", group.targets},
+          {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
+          {"deformationRadius", track(group.deformation_radius, frames)},
+          {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
+}
+
+Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
+
+}  // namespace
+
+Json view_forces(const Scene& scene, const FrameRange& frames) {
+  Json forces = Json::array();
+  for (const Force& force : scene.forces) {
+    forces.push_back(force_json(force, group_of(scene, force), frames));
+  }
+  for (const Group& group : scene.groups) forces.push_back(group_json(group, frames));
+  return forces;
+}
+
+void SurfaceMarks::add(int frame, const SurfaceReport& report,
+                       const std::map<std::string, std::size_t, std::less<>>& force_numbers) {
+  Json regions = Json::array(), boxes = Json::array();
+  for (std::size_t k = 0; k < report.regions.size(); ++k) {
+    Json parts = Json::array();
+    for (const Box& part : report.regions[k].parts) parts.push_back(corners(part));
+    regions.push_back({{"solved", bool(report.region_is_solved[k])}, {"parts", parts}});
+  }
+  for (const ForceReport& force : report.forces) {
+    if (force.selection.force.is_empty() || force.kind == "group") continue;
+    const auto& push = force.push.sum;
+    boxes.push_back({{"force", force_numbers.find(force.name)->second},
+                     {"box", corners(force.selection.force)}});
+    if (force.kind == "inertia") boxes.back()["push"] = {push.x(), push.y(), push.z()};
+  }
+  Json marks = {{"regions", regions}, {"forces", boxes}};
+  if (marks == last_) return;
+  last_ = marks;
+  marks["frame"] = frame;
+  changes_.push_back(std::move(marks));
+}
+
+}  // namespace pliant::viewer

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pliant/scene/scene.hpp"
+#include "pliant/simulation/frame_report.hpp"
+#include "viewer/frame_range.hpp"
+#include "viewer/json.hpp"
+
+namespace pliant::viewer {
+
+/// The forces and groups of a scene as a page draws them: their places and radii at each frame,
+/// from their channels. Thesis 5.2.2.
+///
+/// An array with one object for each, forces first. A parameter is an array with a value for each
+/// frame, or with a single value if it is constant.
+Json view_forces(const Scene& scene, const FrameRange& frames);
+
+/// The regions and the boxes of forces that a page draws on one surface, stored only at frames
+/// where they change.
+class SurfaceMarks {
+ public:
+  /// `force_numbers`: the index of each name in the result of `view_forces`.
+  void add(int frame, const SurfaceReport& report,
+           const std::map<std::string, std::size_t, std::less<>>& force_numbers);
+
+  /// An array of objects, each with the first `frame` for which it is valid.
+  const Json& changes() const { return changes_; }
+
+ private:
+  Json changes_ = Json::array();
+  Json last_;
+};
+
+}  // namespace pliant::viewer

@@ -1,0 +1,187 @@
+#include "viewer/server.hpp"
+
+#include <cstdint>
+#include <mutex>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "viewer/gate.hpp"
+#include "viewer/http_server.hpp"
+#include "viewer/page.hpp"
+#include "viewer/secret_token.hpp"
+
+namespace pliant::viewer {
+namespace {
+
+using Text = std::shared_ptr<const std::string>;
+
+// A server-sent event.
+std::string event_text(std::string_view name, std::string_view data) {
+  return fmt::format("event: {}\ndata: {}\n\n", name, data);
+}
+
+}  // namespace
+
+struct ViewServer::State {
+  std::string policy;
+  Text page;
+  ViewGate gate;
+
+  std::mutex mutex;  // guards the members up to `picture`
+  Text packed = std::make_shared<const std::string>();
+  int bake_number = 0;            // of `packed`; 0: none yet
+  std::string event = {};         // the last one
+  std::int64_t event_number = 0;  // counts them
+  std::optional<PictureOrder> order = {};
+  bool has_picture = false;  // one has arrived, valid or not
+  std::optional<Result<std::string>> picture = {};
+
+  HttpServer server;  // last, so that its thread ends before the members it uses
+
+  State(std::string text, ViewGate rules, HttpServer http)
+      : policy(policy_of(text)),
+        page(std::make_shared<const std::string>(std::move(text))),
+        gate(std::move(rules)),
+        server(std::move(http)) {}
+
+  // Requires: the mutex is held.
+  std::string baked_text() const { return event_text("baked", std::to_string(bake_number)); }
+
+  // Requires: the mutex is held.
+  void set_event(std::string text) {
+    event = std::move(text);
+    ++event_number;
+  }
+
+  void tell(std::string text) {
+    {
+      const std::lock_guard lock(mutex);
+      set_event(std::move(text));
+    }
+    server.notify();
+  }
+
+  // Only the last event since `seen`, however many there were. A new page gets the last bake first.
+  Text next_event(std::int64_t& seen) {
+    const std::lock_guard lock(mutex);
+    if (seen == event_number) return nullptr;
+    std::string text;
+    if (seen < 0 && bake_number > 0 && event != baked_text()) text = baked_text();
+    text += event;
+    seen = event_number;
+    return text.empty() ? nullptr : std::make_shared<const std::string>(std::move(text));
+  }
+
+  HttpVerdict judge(const HttpHead& head) {
+    const auto judged = gate.judge(head);
+    if (const auto* refusal = std::get_if<Refusal>(&judged)) return {.status = refusal->status};
+    const auto route = std::get<ViewRoute>(judged);
+    const std::lock_guard lock(mutex);
+    switch (route) {
+      case ViewRoute::Page:
+        return {};
+      case ViewRoute::Events:
+        return {.is_stream = true};
+      case ViewRoute::Bake:
+        return {.status = bake_number > 0 ? 200 : 404};
+      case ViewRoute::PicturePage:
+      case ViewRoute::Job:
+        return {.status = order ? 200 : 404};
+      case ViewRoute::Picture:
+        if (!order) return {.status = 404};
+        if (has_picture) return {.status = 409};
+        return {.most_body = longest_png(order->size)};
+    }
+    return {.status = 404};
+  }
+
+  // Requires: `judge` accepted the head.
+  HttpAnswer answer(const HttpHead& head, std::string body) {
+    const auto judged = gate.judge(head);
+    const auto route = std::get<ViewRoute>(judged);
+    const std::lock_guard lock(mutex);
+    switch (route) {
+      case ViewRoute::Page:
+      case ViewRoute::PicturePage:
+        return {.type = "text/html; charset=utf-8", .body = page, .policy = policy};
+      case ViewRoute::Events:
+        return {.type = "text/event-stream"};
+      case ViewRoute::Bake:
+        return {.type = "application/octet-stream", .body = packed};
+      case ViewRoute::Job:
+        return {.type = "application/json",
+                .body = std::make_shared<const std::string>(order->job)};
+      case ViewRoute::Picture:
+        return take(std::move(body));
+    }
+    return {.status = 404};
+  }
+
+  // Requires: the mutex is held.
+  HttpAnswer take(std::string body) {
+    if (std::exchange(has_picture, true)) return {.status = 409};  // another client was faster
+    if (auto checked = check_png(body, order->size); !checked) {
+      picture = fail(checked.error());
+      return {.status = 400};
+    }
+    picture = std::move(body);
+    return {};
+  }
+};
+
+ViewServer::ViewServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ViewServer::ViewServer(ViewServer&&) noexcept = default;
+ViewServer::~ViewServer() = default;
+
+Result<ViewServer> ViewServer::start(std::string page, int port) {
+  auto token = make_token();
+  if (!token) return fail(token.error());
+  auto server = HttpServer::listen(port);
+  if (!server) return fail(server.error());
+  ViewGate gate(*std::move(token), server->port());
+  auto state = std::make_unique<State>(std::move(page), std::move(gate), *std::move(server));
+  State& its = *state;
+  its.server.serve(
+      {.judge = [&its](const HttpHead& head) { return its.judge(head); },
+       .answer = [&its](const HttpHead& head,
+                        std::string body) { return its.answer(head, std::move(body)); },
+       .next_event = [&its](std::int64_t& seen) { return its.next_event(seen); }});
+  return ViewServer(std::move(state));
+}
+
+std::string ViewServer::address() const { return state_->gate.address(); }
+
+void ViewServer::publish(std::string packed) {
+  auto shared = std::make_shared<const std::string>(std::move(packed));
+  {
+    // Both under one lock: a page that connects in between would be notified of this bake twice.
+    const std::lock_guard lock(state_->mutex);
+    state_->packed = std::move(shared);
+    ++state_->bake_number;
+    state_->set_event(state_->baked_text());
+  }
+  state_->server.notify();
+}
+
+void ViewServer::tell_working() { state_->tell(event_text("working", "")); }
+
+void ViewServer::tell_failure(std::string messages) {
+  state_->tell(event_text("failed", messages));
+}
+
+void ViewServer::order_picture(PictureOrder order) {
+  const std::lock_guard lock(state_->mutex);
+  state_->order = std::move(order);
+  state_->has_picture = false;
+  state_->picture.reset();
+}
+
+std::optional<Result<std::string>> ViewServer::take_picture() {
+  const std::lock_guard lock(state_->mutex);
+  return std::exchange(state_->picture, std::nullopt);
+}
+
+}  // namespace pliant::viewer

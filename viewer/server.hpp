@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "pliant/core/result.hpp"
+#include "viewer/png_check.hpp"
+
+namespace pliant::viewer {
+
+/// An order for the page at `address()`take.
+struct PictureOrder {
+  std::string job;   ///< a JSON object
+  PictureSize size;  ///< of the picture that the page must send
+};
+
+/// Serves the viewer's page to browsers of this machine, and notifies it of changes to the scene.
+/// Requests without the address's token, from another page, or by a name other than this machine's
+/// own are refused; see `ViewGate`.
+class ViewServer {
+ public:
+  /// Accepts requests from now on. `port` 0: any free port. Errors: Unwritable if the port is in
+  /// use.
+  static Result<ViewServer> start(std::string page, int port);
+
+  ViewServer(ViewServer&&) noexcept;
+  ViewServer& operator=(ViewServer&&) = delete;
+  ~ViewServer();  ///< ends all connections
+
+  /// The address of the page, with the token that all its requests need and a slash at its end.
+  std::string address() const;
+
+  /// Makes all pages, including open ones, show this bake (see `ViewBake::packed`).
+  void publish(std::string packed);
+  /// Notifies pages that a new bake has begun.
+  void tell_working();
+  /// Notifies pages that the new bake failed; open pages keep the previous one. `messages`: a JSON
+  /// array of {kind, file, line, text}.
+  void tell_failure(std::string messages);
+
+  /// The page at `address()`take requests the job, and sends one picture back. A new order replaces
+  /// the last.
+  void order_picture(PictureOrder order);
+  /// Removes and returns the picture, a PNG file; null if it has not arrived. Errors: InvalidInput
+  /// if it is not the picture ordered (see `check_png`).
+  std::optional<Result<std::string>> take_picture();
+
+ private:
+  struct State;
+  explicit ViewServer(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pliant::viewer
