@@ -22,7 +22,7 @@ using Catch::Matchers::StartsWith;
 namespace {
 
 // Two surfaces under a force that moves and rests; the second one has a start frame of its own.
-constexpr std::string_view scene_text = R"(<scene version="1" start="1" end="10">
+constexpr std::string_view scene_xml = R"(<scene version="1" start="1" end="10">
   <surface name="sheet"><grid columns="13" rows="11" width="12" depth="10"/></surface>
   <surface name="other">
     <grid columns="9" rows="10" width="8" depth="9"/>
@@ -126,7 +126,7 @@ class GlobalLocale {
 
 TEST_CASE("what was recorded is verified, with states and without", "[replay]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   const auto log = folder.file("run.replay");
   const int states_every = GENERATE(0, 1, 4);
   record(scene, log, {.states_every = states_every});
@@ -143,7 +143,7 @@ TEST_CASE("what was recorded is verified, with states and without", "[replay]") 
 
 TEST_CASE("a log has the states it was asked for", "[replay]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   record(scene, folder.file("run.replay"), {.states_every = 4});
   auto log = ReplayLogReader::open(folder.file("run.replay")).value();
   auto simulation = Simulation::make(load_scene(scene).value()).value();
@@ -164,7 +164,7 @@ TEST_CASE("a log has the states it was asked for", "[replay]") {
 
 TEST_CASE("a log has the same bytes whatever runs it", "[replay][threads]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   const std::string expected = record(scene, folder.file("run.replay"), {.states_every = 3});
   SECTION("threads") {
     for (const int threads : {2, 3, 8}) {
@@ -186,14 +186,14 @@ TEST_CASE("a log has the same bytes whatever runs it", "[replay][threads]") {
   }
   SECTION("folder") {
     const ScratchFolder other;
-    const auto moved = other.write("scene.xml", scene_text);
+    const auto moved = other.write("scene.xml", scene_xml);
     CHECK((record(moved, other.file("run.replay"), {.states_every = 3}) == expected));
   }
 }
 
 TEST_CASE("a log goes no further than it is asked to", "[replay]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   const auto log = folder.file("run.replay");
   record(scene, log, {.last_frame = 4});
   CHECK(verify_replay(log)->frame_count == 4);
@@ -207,7 +207,7 @@ TEST_CASE("a log goes no further than it is asked to", "[replay]") {
 
 TEST_CASE("the first difference is named to the node and its size", "[replay]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   const auto log = folder.file("run.replay");
   const auto faulty = folder.file("faulty.replay");
   record(scene, log, {.states_every = 1});
@@ -255,7 +255,7 @@ TEST_CASE("the first difference is named to the node and its size", "[replay]") 
 TEST_CASE("the sign of a zero is a difference", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  record(folder.write("scene.xml", scene_text), log, {.states_every = 1});
+  record(folder.write("scene.xml", scene_xml), log, {.states_every = 1});
   rewrite(log, folder.file("faulty.replay"),
           [](const ReplayHeader&, std::vector<ReplayFrame>& frames) {
             double& number = frames[1].states[0].velocities(3, 2);
@@ -271,9 +271,9 @@ TEST_CASE("keeping going names every difference in order, by any number of threa
           "[replay][threads]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   record(scene, log, {.states_every = 2});
-  folder.write("scene.xml", replaced(scene_text, "magnitude=\"3000\"", "magnitude=\"3001\""));
+  folder.write("scene.xml", replaced(scene_xml, "magnitude=\"3000\"", "magnitude=\"3001\""));
   const auto alone = verify_replay(log, {}, {.keeps_going = true});
   REQUIRE(alone);
   CHECK_THAT(said(alone).front(),
@@ -296,9 +296,9 @@ TEST_CASE("keeping going names every difference in order, by any number of threa
 TEST_CASE("a scene that was edited is told apart, whether it matters or not", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  record(folder.write("scene.xml", scene_text), log);
+  record(folder.write("scene.xml", scene_xml), log);
   const auto edited = [&](std::string_view from, std::string_view to) {
-    folder.write("scene.xml", replaced(scene_text, from, to));
+    folder.write("scene.xml", replaced(scene_xml, from, to));
     return verify_replay(log);
   };
   const auto same = edited("</scene>", "<!-- done -->\n</scene>");
@@ -328,7 +328,7 @@ TEST_CASE("a scene that was edited is told apart, whether it matters or not", "[
 TEST_CASE("without its scene a log is verified by the text in it", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   record(scene, log);
   std::filesystem::remove(scene);
   const auto verdict = verify_replay(log);
@@ -372,7 +372,7 @@ TEST_CASE("another version and another solver are told apart", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
   const auto other = folder.file("other.replay");
-  record(folder.write("scene.xml", scene_text), log);
+  record(folder.write("scene.xml", scene_xml), log);
   rewrite(log, other, [](ReplayHeader& header, const auto&) { header.version = "0.0.7"; });
   CHECK_THAT(said(verify_replay(other)).front(),
              StartsWith("the versions of pliant differ: 0.0.7 and "));
@@ -387,7 +387,7 @@ TEST_CASE("another version and another solver are told apart", "[replay]") {
 TEST_CASE("a log is verified by the solver that recorded it", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  record(folder.write("scene.xml", scene_text), log,
+  record(folder.write("scene.xml", scene_xml), log,
          {.simulation = {.solver = SolverChoice::Eigen}});
   CHECK(verify_replay(log)->holds());
   CHECK(ReplayLogReader::open(log)->header().solver == "eigen");
@@ -396,7 +396,7 @@ TEST_CASE("a log is verified by the solver that recorded it", "[replay]") {
 TEST_CASE("comparing logs finds where either was damaged", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  const std::string sound = record(folder.write("scene.xml", scene_text), log);
+  const std::string sound = record(folder.write("scene.xml", scene_xml), log);
   const auto cut = folder.write("cut.replay", sound.substr(0, sound.rfind("{\"frames\"")));
   for (const auto& verdict :
        {compare_replays(log, cut), compare_replays(cut, log), verify_replay(cut)}) {
@@ -423,7 +423,7 @@ TEST_CASE("a log takes the place of no file that it is made from", "[replay]") {
 
 TEST_CASE("a recording that is stopped leaves nothing", "[replay]") {
   const ScratchFolder folder;
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   int steps_left = 100;
   const auto stopped =
       record_replay(scene, folder.file("run.replay"),
@@ -436,9 +436,9 @@ TEST_CASE("a recording that is stopped leaves nothing", "[replay]") {
 TEST_CASE("what a program's tests are told is all that is wrong", "[replay]") {
   const ScratchFolder folder;
   const auto log = folder.file("run.replay");
-  const auto scene = folder.write("scene.xml", scene_text);
+  const auto scene = folder.write("scene.xml", scene_xml);
   record(scene, log);
-  folder.write("scene.xml", replaced(scene_text, "magnitude=\"3000\"", "magnitude=\"3001\""));
+  folder.write("scene.xml", replaced(scene_xml, "magnitude=\"3000\"", "magnitude=\"3001\""));
   const std::string told = expect_replay(scene, log);
   CHECK_THAT(told, StartsWith("the scene scene.xml was edited; the first change is in line "
                               "7\nframe 2: surface \"sheet\": positions differ; their peak"));
