@@ -51,13 +51,6 @@ struct Options {
   bool is_least = false;
 };
 
-// The median of many times, or the minimum.
-double typical(std::vector<double> times, bool is_least) {
-  const auto middle = times.begin() + static_cast<long>(is_least ? 0 : times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
-}
-
 Force force(std::string name, decltype(Force::shape) shape, double magnitude,
             double deformation_radius, double force_radius, Falloff falloff) {
   Force force;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shared by the benchmarks: a clock, and numbers from the command line.
+// Shared by the benchmarks: a clock, medians, and numbers from the command line.
 
 #include <algorithm>
 #include <charconv>
@@ -15,6 +15,13 @@ double seconds(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// The median of many times, or the minimum.
+inline double typical(std::vector<double> times, bool is_least) {
+  const auto middle = times.begin() + static_cast<long>(is_least ? 0 : times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
 }
 
 /// Whether the whole text is a number.
