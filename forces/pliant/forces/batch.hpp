@@ -23,7 +23,7 @@ struct Batch {
 
 /// One number for each position of a batch.
 struct BatchNumbers {
-  alignas(64) double of[batch_size] = {};
+  alignas(64) double of[batch_size];
 };
 
 /// `distance` at each position. [length]

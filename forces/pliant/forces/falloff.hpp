@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 namespace pliant {
 
 /// How a force decreases with s = distance / force radius. SPEC 7.
@@ -12,5 +14,9 @@ enum class Falloff {
 
 /// The factor at s [1]. Requires: s >= 0.
 double falloff(Falloff kind, double s);
+
+/// Replaces every distance by magnitude x the factor at distance / radius. Requires: distances >=
+/// 0, radius > 0.
+void fade(Falloff kind, double magnitude, double radius, std::span<double> distances);
 
 }  // namespace pliant

@@ -1,81 +1,231 @@
 #include "pliant/forces/force.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 
+#include "pliant/forces/batch.hpp"
 #include "pliant/forces/noise.hpp"
 #include "pliant/forces/vectors.hpp"
 
 namespace pliant {
+
+// Each kind of force has a kernel, made by `kernel(force)`: it holds what all positions share, and
+// computes the rest for one position, or in a loop over many, with the same bits.
+//   distance(p), unit_force(p)  as in force.hpp
+//   least_distance(low, high)   as in batch.hpp
 namespace {
 
-Vector3d closest_point(const LineForce& line, const Vector3d& p) {
-  const Vector3d along = line.to - line.from;
-  const double squared_length = dot(along, along);
-  if (squared_length == 0) return line.from;
-  const double t = std::clamp(dot(p - line.from, along) / squared_length, 0.0, 1.0);
-  return line.from + t * along;
-}
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-// The vector from the closest point of the vortex's axis to p; from its centre if the axis is zero.
-Vector3d from_axis(const VortexForce& vortex, const Vector3d& p) {
-  const Vector3d offset = p - vortex.center;
-  const Vector3d axis = normalised(vortex.axis);
-  return offset - dot(offset, axis) * axis;
+// Rounding is monotone: for a component p >= low > c, the computed p - c is not below the computed
+// low - c, and the same is true for squares, sums and the root. So the distance computed from the
+// smallest differences is a bound without an extra tolerance.
+double gap_to_box(double low, double high, double from, double to) {
+  if (low > to) return low - to;
+  return high < from ? from - high : 0;
 }
 
 // On a segment or an axis there is no outward direction. The closest point is rounded, so "on"
 // means within a few ulps of the coordinates from which it was computed; the direction of the
 // remaining vector would be noise.
-bool is_rounding(const Vector3d& outward, double extent) {
-  return largest_component(outward) <= 8 * std::numeric_limits<double>::epsilon() * extent;
+bool is_rounding(const Triple& outward, double extent) {
+  return largest_component(outward) <= 8 * epsilon * extent;
+}
+
+// The distances of kinds that act around a point.
+struct AroundCenter {
+  Triple center;
+
+  double distance(const Triple& p) const { return length(p - center); }
+  double least_distance(const Triple& low, const Triple& high) const {
+    return length(by_component(gap_to_box, low, high, center, center));
+  }
+};
+
+// The distances of kinds that act everywhere.
+struct Everywhere {
+  double distance(const Triple&) const { return 0; }
+  double least_distance(const Triple&, const Triple&) const { return 0; }
+};
+
+// The same force at every position that it selects.
+template <class Distances>
+struct Directed : Distances {
+  Triple unit;
+
+  Triple unit_force(const Triple&) const { return unit; }
+};
+
+inline Directed<AroundCenter> kernel(const PointForce& force) {
+  return {{force.center}, normalised(force.direction)};
+}
+
+inline Directed<Everywhere> kernel(const UniformForce& force) {
+  return {{}, normalised(force.direction)};
+}
+
+struct RadialKernel : AroundCenter {
+  Triple unit_force(const Triple& p) const { return normalised(p - center); }
+};
+inline RadialKernel kernel(const RadialForce& force) { return {{force.center}}; }
+
+// The distances of both kinds of line.
+struct AroundSegment {
+  Triple from, to;
+  Triple along = to - from;
+  double squared_length = dot(along, along);
+
+  Triple closest_point(const Triple& p) const {
+    if (squared_length == 0) return from;
+    return from + std::clamp(dot(p - from, along) / squared_length, 0.0, 1.0) * along;
+  }
+  double distance(const Triple& p) const { return length(p - closest_point(p)); }
+  // To the bounding box of the segment, which contains the closest point except for its rounding:
+  // three operations on numbers no larger than |from| + |to|.
+  double least_distance(const Triple& low, const Triple& high) const {
+    const auto gap = [](double least, double most, double a, double b) {
+      const double rounding =
+          8 * epsilon * (std::abs(a) + std::abs(b)) + std::numeric_limits<double>::min();
+      return gap_to_box(least, most, std::min(a, b) - rounding, std::max(a, b) + rounding);
+    };
+    const double bound = length(by_component(gap, low, high, from, to));
+    return bound >= 0 ? bound : 0;
+  }
+};
+
+struct OutwardLineKernel : AroundSegment {
+  Triple unit_force(const Triple& p) const {
+    const Triple outward = p - closest_point(p);
+    const double extent =
+        std::max({largest_component(p), largest_component(from), largest_component(to)});
+    return is_rounding(outward, extent) ? Triple{} : normalised(outward);
+  }
+};
+
+struct VortexKernel {
+  Triple center;
+  Triple axis;  // a unit vector, or 0
+  double pull;
+
+  // From the closest point of the axis to p; from the centre if the axis is 0.
+  Triple outward(const Triple& p) const {
+    const Triple offset = p - center;
+    return offset - dot(offset, axis) * axis;
+  }
+  double distance(const Triple& p) const { return length(outward(p)); }
+  Triple unit_force(const Triple& p) const {
+    if (largest_component(axis) == 0) return {};
+    const Triple from_axis = outward(p);
+    const double extent = std::max(largest_component(p), largest_component(center));
+    if (is_rounding(from_axis, extent)) return {};
+    const Triple out = normalised(from_axis);
+    return normalised(cross(axis, out)) - pull * out;
+  }
+  // A distance changes no faster than the position: the distance of the middle minus half the
+  // diagonal. Each computed distance is off by less than 16 roundings of the offset from the
+  // centre, and by the squares of components below 1e-150, which underflow.
+  double least_distance(const Triple& low, const Triple& high) const {
+    const Triple middle = low + 0.5 * (high - low);
+    const auto larger = [](double a, double b) { return std::max(a, b); };
+    const double reach = length(by_component(larger, high - middle, middle - low));
+    const double offset = length(middle - center) + reach;
+    const double bound = distance(middle) - reach - 64 * epsilon * offset - 1e-150;
+    return bound >= 0 ? bound : 0;
+  }
+};
+inline VortexKernel kernel(const VortexForce& force) {
+  return {force.center, normalised(force.axis), force.pull};
+}
+
+struct NoiseKernel : AroundCenter {
+  const NoiseForce& force;
+
+  Triple unit_force(const Triple& p) const {
+    return smooth_noise(force.seed, force.frequency * (p - center), force.time);
+  }
+};
+inline NoiseKernel kernel(const NoiseForce& force) { return {{force.center}, force}; }
+
+struct InertiaKernel : Everywhere {
+  const InertiaForce& force;
+
+  Triple unit_force(const Triple& p) const {
+    const Triple q = p - force.origin;
+    const auto row = [&](int k) { return dot(Vector3d(force.linear.row(k)), q); };
+    return force.offset + Triple(row(0), row(1), row(2));
+  }
+};
+inline InertiaKernel kernel(const InertiaForce& force) { return {{}, force}; }
+
+struct FunctionKernel {
+  const FunctionForce& force;
+
+  double distance(const Triple& p) const { return force.distance(p); }
+  Triple unit_force(const Triple& p) const { return force.unit_force(p); }
+  double least_distance(const Triple&, const Triple&) const { return 0; }
+};
+inline FunctionKernel kernel(const FunctionForce& force) { return {force}; }
+
+// The result of `use`, called with the kernel of a force.
+template <class Force, class Use>
+auto with_kernel(const Force& force, const Use& use) {
+  return use(kernel(force));
+}
+template <class Use>
+auto with_kernel(const LineForce& line, const Use& use) {
+  const AroundSegment around{line.from, line.to};
+  if (!line.direction) return use(OutwardLineKernel{around});
+  return use(Directed<AroundSegment>{around, normalised(*line.direction)});
+}
+template <class Use>
+auto with_kernel(const ForceShape& shape, const Use& use) {
+  return std::visit([&](const auto& force) { return with_kernel(force, use); }, shape);
+}
+
+template <class Force>
+double distance_of(const Force& force, const Vector3d& p) {
+  return with_kernel(force, [&](const auto& kind) { return kind.distance(p); });
+}
+
+template <class Force>
+Vector3d unit_force_of(const Force& force, const Vector3d& p) {
+  return with_kernel(force, [&](const auto& kind) { return kind.unit_force(p); });
+}
+
+template <class Kernel>
+BatchNumbers distances_from(const Kernel& kind, const Batch& points) {
+  BatchNumbers numbers;
+  for (int k = 0; k < points.count; ++k) numbers.of[k] = kind.distance(points.at(k));
+  return numbers;
+}
+
+// Replaces every distance by magnitude x falloff.
+void fade(const SampledForce& force, std::span<double> distances) {
+  const double magnitude = force.magnitude, radius = force.force_radius;
+  if (!force.falloff_curve) return fade(force.falloff, magnitude, radius, distances);
+  for (double& each : distances) {
+    each = magnitude * force.falloff_curve->value(std::min(each / radius, 1.0))[0];
+  }
 }
 
 }  // namespace
 
-double PointForce::distance(const Vector3d& p) const { return length(p - center); }
-Vector3d PointForce::unit_force(const Vector3d&) const { return normalised(direction); }
-
-double RadialForce::distance(const Vector3d& p) const { return length(p - center); }
-Vector3d RadialForce::unit_force(const Vector3d& p) const { return normalised(p - center); }
-
-double LineForce::distance(const Vector3d& p) const { return length(p - closest_point(*this, p)); }
-Vector3d LineForce::unit_force(const Vector3d& p) const {
-  if (direction) return normalised(*direction);
-  const Vector3d outward = p - closest_point(*this, p);
-  const double extent =
-      std::max({largest_component(p), largest_component(from), largest_component(to)});
-  return is_rounding(outward, extent) ? Vector3d::Zero() : normalised(outward);
-}
-
-double UniformForce::distance(const Vector3d&) const { return 0; }
-Vector3d UniformForce::unit_force(const Vector3d&) const { return normalised(direction); }
-
-double VortexForce::distance(const Vector3d& p) const { return length(from_axis(*this, p)); }
-Vector3d VortexForce::unit_force(const Vector3d& p) const {
-  if (largest_component(axis) == 0) return Vector3d::Zero();
-  const Vector3d outward = from_axis(*this, p);
-  if (is_rounding(outward, std::max(largest_component(p), largest_component(center)))) {
-    return Vector3d::Zero();
-  }
-  const Vector3d out = normalised(outward);
-  return normalised(cross(normalised(axis), out)) - pull * out;
-}
-
-double NoiseForce::distance(const Vector3d& p) const { return length(p - center); }
-Vector3d NoiseForce::unit_force(const Vector3d& p) const {
-  return smooth_noise(seed, frequency * (p - center), time);
-}
-
-double InertiaForce::distance(const Vector3d&) const { return 0; }
-Vector3d InertiaForce::unit_force(const Vector3d& p) const {
-  const Vector3d q = p - origin;
-  Vector3d force = offset;
-  for (int row = 0; row < 3; ++row) {
-    force[row] += linear(row, 0) * q.x() + linear(row, 1) * q.y() + linear(row, 2) * q.z();
-  }
-  return force;
-}
+double PointForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d PointForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double RadialForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d RadialForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double LineForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d LineForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double UniformForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d UniformForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double VortexForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d VortexForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double NoiseForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d NoiseForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double InertiaForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d InertiaForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 
 SampledForce region_sphere(const Vector3d& center, double deformation_radius) {
   return {.shape = PointForce{center, Vector3d::Zero()},
@@ -84,19 +234,40 @@ SampledForce region_sphere(const Vector3d& center, double deformation_radius) {
           .force_radius = 0};
 }
 
-double distance(const ForceShape& shape, const Vector3d& p) {
-  return std::visit([&](const auto& force) { return force.distance(p); }, shape);
-}
+double distance(const ForceShape& shape, const Vector3d& p) { return distance_of(shape, p); }
 
-Vector3d unit_force(const ForceShape& shape, const Vector3d& p) {
-  return std::visit([&](const auto& force) { return Vector3d(force.unit_force(p)); }, shape);
-}
+Vector3d unit_force(const ForceShape& shape, const Vector3d& p) { return unit_force_of(shape, p); }
 
 Vector3d force_at(const SampledForce& force, const Vector3d& p) {
-  const double s = distance(force.shape, p) / force.force_radius;
-  const double fade = force.falloff_curve ? force.falloff_curve->value(std::min(s, 1.0))[0]
-                                          : falloff(force.falloff, s);
-  return force.magnitude * fade * unit_force(force.shape, p);
+  return with_kernel(force.shape, [&](const auto& kind) {
+    double strength = kind.distance(p);
+    fade(force, {&strength, 1});
+    return strength * kind.unit_force(p);
+  });
+}
+
+BatchNumbers distances(const ForceShape& shape, const Batch& points) {
+  return with_kernel(shape, [&](const auto& kind) { return distances_from(kind, points); });
+}
+
+void add_forces(const SampledForce& force, const Batch& points, int first, Batch& sums) {
+  with_kernel(force.shape, [&](const auto& kind) {
+    BatchNumbers strength = distances_from(kind, points);
+    fade(force, {strength.of, static_cast<std::size_t>(points.count)});
+    double* const x = sums.x + first;
+    double* const y = sums.y + first;
+    double* const z = sums.z + first;
+    for (int k = 0; k < points.count; ++k) {
+      const Triple unit = kind.unit_force(points.at(k));
+      x[k] += strength.of[k] * unit.x;
+      y[k] += strength.of[k] * unit.y;
+      z[k] += strength.of[k] * unit.z;
+    }
+  });
+}
+
+double least_distance(const ForceShape& shape, const Vector3d& low, const Vector3d& high) {
+  return with_kernel(shape, [&](const auto& kind) { return kind.least_distance(low, high); });
 }
 
 }  // namespace pliant
