@@ -57,12 +57,12 @@ endfunction()
 
 # pliant_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
 # makes the library pliant_NAME, alias pliant::NAME. Paths are relative to the room's own folder,
-# which is <include root>/pliant/NAME.
+# which is <include root>/pliant/NAME, with a slash for an underscore.
 function(pliant_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE")
   set(target pliant_${name})
-  cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH include_root)
-  cmake_path(GET include_root PARENT_PATH include_root)
+  string(REPLACE "_" "/" folder "${name}")
+  string(REGEX REPLACE "/pliant/${folder}$" "" include_root "${CMAKE_CURRENT_SOURCE_DIR}")
   add_library(${target})
   add_library(pliant::${name} ALIAS ${target})
   target_sources(${target}

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include <pliant/timeline/edit.hpp>
-#include <pliant/timeline/simplify.hpp>
+#include <pliant/timeline/edit/edit.hpp>
+#include <pliant/timeline/edit/simplify.hpp>
 
 namespace {
 

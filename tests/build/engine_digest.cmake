@@ -59,6 +59,28 @@ foreach(change "FLAGS=-ffp-contract=off|-O3|-Wall|-Werror|Release"
   endif()
 endforeach()
 
+# Editing curves computes no state: a change of it keeps the digest, and nothing else may use it.
+file(COPY "${SOURCE}/timeline/pliant/timeline" DESTINATION "${WORK}")
+digest_of(before "ROOMS=${WORK}/timeline")
+file(APPEND "${WORK}/timeline/edit/edit.cpp" "// a comment\n")
+digest_of(after "ROOMS=${WORK}/timeline")
+if(NOT after STREQUAL before)
+  message(SEND_ERROR "another edit/edit.cpp gives another digest")
+endif()
+file(APPEND "${WORK}/timeline/curve.cpp" "// a comment\n")
+digest_of(after "ROOMS=${WORK}/timeline")
+if(after STREQUAL before)
+  message(SEND_ERROR "another curve.cpp gives the same digest")
+endif()
+file(GLOB_RECURSE sources "${SOURCE}/lib/*.[ch]pp" "${SOURCE}/forces/*.[ch]pp" "${SOURCE}/timeline/*.[ch]pp")
+list(FILTER sources EXCLUDE REGEX "/timeline/edit/")
+foreach(source IN LISTS sources)
+  file(STRINGS "${source}" includes REGEX "#include \"pliant/timeline/edit/")
+  if(includes)
+    message(SEND_ERROR "${source} uses the editing of curves, which is not part of the digest")
+  endif()
+endforeach()
+
 # Flags without the one that every build has are rejected.
 execute_process(COMMAND "${CMAKE_COMMAND}" -DFLAGS=-O3 "-DOUT=${WORK}/refused.hpp"
   -P "${SOURCE}/cmake/EngineDigest.cmake" RESULT_VARIABLE result ERROR_QUIET)
@@ -68,6 +90,9 @@ endif()
 
 # The project passes all arguments.
 file(READ "${SOURCE}/lib/pliant/simulation/CMakeLists.txt" text)
+if(text MATCHES "timeline/edit")
+  message(SEND_ERROR "the digest contains the editing of curves")
+endif()
 foreach(word "CMAKE_CXX_COMPILER_ID} \${CMAKE_CXX_COMPILER_VERSION}" "CMAKE_CXX_FLAGS" "CHOLMOD_LIBRARY"
              "Sleef_LIBRARY" "Eigen3_VERSION" "-DCOMPILER=" "-DFLAGS=" "-DVERSIONS=")
   string(FIND "${text}" "${word}" place)

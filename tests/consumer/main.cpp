@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <pliant/pliant.hpp>
+#include <pliant/timeline/edit/edit.hpp>
 
 int main() {
   pliant::Surface sheet;
@@ -13,6 +14,7 @@ int main() {
 
   auto swell =
       pliant::Curve<1>::make({.keys = {{.frame = 1, .value = {0}}, {.frame = 6, .value = {4000}}}});
+  if (swell) swell = pliant::insert_key(*swell, 3);
   if (!swell) return 1;
   pliant::Force poke;
   poke.name = "poke";

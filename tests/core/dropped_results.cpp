@@ -3,7 +3,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/text.hpp"
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
 #include "pliant/timeline/path.hpp"
 
 namespace {

@@ -39,6 +39,7 @@ include/pliant/io/writer.hpp
 include/pliant/pliant.hpp
 include/pliant/replay/expect_replay.hpp
 include/pliant/timeline/curve.hpp
+include/pliant/timeline/edit/edit.hpp
 lib/cmake/pliant/FindSleef.cmake
 lib/cmake/pliant/FindxxHash.cmake
 lib/cmake/pliant/PliantReplayTest.cmake
@@ -53,6 +54,7 @@ lib/libpliant_plate.a
 lib/libpliant_replay.a
 lib/libpliant_simulation.a
 lib/libpliant_timeline.a
+lib/libpliant_timeline_edit.a
 share/bash-completion/completions/pliant
 share/doc/pliant/CHANGELOG.md
 share/doc/pliant/LICENSE

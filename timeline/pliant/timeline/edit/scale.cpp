@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
 #include "pliant/timeline/number_text.hpp"
-#include "pliant/timeline/preserve.hpp"
 
 namespace pliant {
 

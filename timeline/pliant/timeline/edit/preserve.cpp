@@ -1,4 +1,4 @@
-#include "pliant/timeline/preserve.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
 
 #include <algorithm>
 #include <cmath>

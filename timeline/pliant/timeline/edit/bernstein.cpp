@@ -1,4 +1,4 @@
-#include "pliant/timeline/bernstein.hpp"
+#include "pliant/timeline/edit/bernstein.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
 
 #include <cmath>
 #include <initializer_list>
@@ -8,8 +8,8 @@
 
 #include "pliant/timeline/compile.hpp"
 #include "pliant/timeline/course.hpp"
+#include "pliant/timeline/edit/split.hpp"
 #include "pliant/timeline/number_text.hpp"
-#include "pliant/timeline/split.hpp"
 
 namespace pliant {
 

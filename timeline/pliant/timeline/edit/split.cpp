@@ -1,4 +1,4 @@
-#include "pliant/timeline/split.hpp"
+#include "pliant/timeline/edit/split.hpp"
 
 #include <algorithm>
 #include <cmath>

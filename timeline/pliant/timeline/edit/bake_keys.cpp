@@ -1,4 +1,4 @@
-#include "pliant/timeline/bake_keys.hpp"
+#include "pliant/timeline/edit/bake_keys.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "pliant/timeline/course.hpp"
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
 #include "pliant/timeline/loop.hpp"
 #include "pliant/timeline/number_text.hpp"
-#include "pliant/timeline/preserve.hpp"
 
 namespace pliant {
 

@@ -1,11 +1,11 @@
-#include "pliant/timeline/simplify.hpp"
+#include "pliant/timeline/edit/simplify.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "pliant/timeline/bake_keys.hpp"
+#include "pliant/timeline/edit/bake_keys.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"

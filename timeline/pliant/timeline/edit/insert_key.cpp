@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "pliant/timeline/compile.hpp"
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
+#include "pliant/timeline/edit/split.hpp"
 #include "pliant/timeline/number_text.hpp"
-#include "pliant/timeline/preserve.hpp"
-#include "pliant/timeline/split.hpp"
 
 namespace pliant {
 

@@ -1,4 +1,4 @@
-#include "pliant/timeline/edit.hpp"
+#include "pliant/timeline/edit/edit.hpp"
 
 #include <algorithm>
 #include <cmath>

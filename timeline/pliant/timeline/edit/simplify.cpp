@@ -1,4 +1,4 @@
-#include "pliant/timeline/simplify.hpp"
+#include "pliant/timeline/edit/simplify.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/timeline/bernstein.hpp"
 #include "pliant/timeline/compile.hpp"
+#include "pliant/timeline/edit/bernstein.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
+#include "pliant/timeline/edit/split.hpp"
 #include "pliant/timeline/number_text.hpp"
-#include "pliant/timeline/preserve.hpp"
-#include "pliant/timeline/split.hpp"
 
 namespace pliant {
 

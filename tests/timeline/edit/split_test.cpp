@@ -1,4 +1,4 @@
-#include "pliant/timeline/split.hpp"
+#include "pliant/timeline/edit/split.hpp"
 
 #include "pliant/timeline/compile.hpp"
 #include "support/catch.hpp"
