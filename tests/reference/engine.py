@@ -293,7 +293,7 @@ def has_direction(force):
 
 
 def mixed(bits):
-    """Eq. (14) of docs/model.md, for an array of unsigned 64-bit integers."""
+    """Eq. (18) of docs/model.md, for an array of unsigned 64-bit integers."""
     bits = bits + np.uint64(0x9e3779b97f4a7c15)
     bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xbf58476d1ce4e5b9)
     bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94d049bb133111eb)
@@ -301,7 +301,7 @@ def mixed(bits):
 
 
 def noise(seed, places):
-    """Eq. (15) and (16) of docs/model.md; `places` are ... x 4, in cells of x, y, z and time."""
+    """Eq. (19) and (20) of docs/model.md; `places` are ... x 4, in cells of x, y, z and time."""
     cell = np.floor(places)
     f = places - cell
     weight = f**3 * (6 * f**2 - 15 * f + 10)
