@@ -160,7 +160,7 @@ void SceneWriter::write_path(std::string_view attribute, const PathMotion& motio
 
 template <class Thing>
 void SceneWriter::write_channels(const Thing& thing) {
-  const auto row = [this](const Attribute& attribute, const auto&... member) {
+  const auto row = [&](const Attribute& attribute, const auto&... member) {
     (write_channel(attribute, member), ...);
   };
   describe(row, thing);

@@ -111,7 +111,7 @@ class Ingredients {
   template <class Kind>
   requires requires(const Kind& kind) { kind.values(); }
   void add(const Kind& kind) {
-    std::apply([this](const auto&... values) { add_all(values...); }, kind.values());
+    std::apply([&](const auto&... values) { add_all(values...); }, kind.values());
   }
 
   void add(const SampledForce& force) {
