@@ -22,11 +22,14 @@ TEST_CASE("a frame rate is the fraction that its author wrote", "[cli][movie]") 
 }
 
 TEST_CASE("a quotient that a fraction gives is that fraction's", "[cli][movie]") {
-  const int frames = GENERATE(take(50, random(1, 2000)));
   const int seconds = 997;
-  const auto rate = frame_rate(static_cast<double>(frames) / seconds);
-  REQUIRE(rate);
-  CHECK(static_cast<double>(rate->frames) / rate->seconds == static_cast<double>(frames) / seconds);
+  for (int frames = 10; frames <= 2000; ++frames) {  // fewer are below the least rate
+    CAPTURE(frames);
+    const auto rate = frame_rate(static_cast<double>(frames) / seconds);
+    REQUIRE(rate);
+    CHECK(static_cast<double>(rate->frames) / rate->seconds ==
+          static_cast<double>(frames) / seconds);
+  }
 }
 
 TEST_CASE("what is no such fraction is within a millionth of one", "[cli][movie]") {
