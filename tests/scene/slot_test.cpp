@@ -49,13 +49,13 @@ TEST_CASE("the default of a row is what its place holds", "[scene][slot]") {
   std::optional<Channel<3>> optional_place;
   TangentChannel tangent_place = Channel<3>(Value<3>{0, 1, 0});
   Switch switch_place = false;
-  CHECK(slot({}, &number_place).standard == "0.01");
-  CHECK(slot({}, &integer_place).standard == "7");
-  CHECK(slot({}, &boolean_place).standard == "true");
-  CHECK(slot({}, &vector_place).standard == "1 2.5 -3");
-  CHECK(slot({}, &optional_place).standard.empty());
-  CHECK(slot({}, &tangent_place).standard == "0 1 0");
-  CHECK(slot({}, &switch_place).standard == "false");
+  CHECK(slot({}, &number_place).text == "0.01");
+  CHECK(slot({}, &integer_place).text == "7");
+  CHECK(slot({}, &boolean_place).text == "true");
+  CHECK(slot({}, &vector_place).text == "1 2.5 -3");
+  CHECK(slot({}, &optional_place).text.empty());
+  CHECK(slot({}, &tangent_place).text == "0 1 0");
+  CHECK(slot({}, &switch_place).text == "false");
   CHECK(format_of(slot({.need = Need::Required}, &number_place)).standard.empty());
   CHECK(format_of(slot({.absent = "none"}, &optional_place)).standard == "(none)");
 }
@@ -78,7 +78,7 @@ TEST_CASE("a word of a later version differs from a misspelt one", "[scene][slot
   Stepping stepping = Stepping::Exact;
   const Slot row =
       slot({.name = "stepping", .words = stepping_words, .later = later}, choice(stepping));
-  CHECK(row.standard == "exact");
+  CHECK(row.text == "exact");
   REQUIRE(row.read(" overshoot "));
   CHECK(stepping == Stepping::Overshoot);
   CHECK(row.read("adaptive").error() ==

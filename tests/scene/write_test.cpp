@@ -149,6 +149,22 @@ TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
   }
 }
 
+TEST_CASE("what an interpolation does not read is not written", "[scene][write]") {
+  Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  s.forces[0].magnitude =
+      Curve<1>::make(
+          {.keys = {{.frame = 1,
+                     .value = {0},
+                     .next = {.kind = Interpolation::Kind::Linear, .amplitude = 2, .back = 3}},
+                    {.frame = 5, .value = {1}}}})
+          .value();
+  const auto text = to_xml(s);
+  REQUIRE(text);
+  const auto again = parse_scene(*text, "again.xml", "");
+  REQUIRE(again);
+  CHECK(again->forces[0].magnitude.at(2) == s.forces[0].magnitude.at(2));
+}
+
 TEST_CASE("a new scene in code is written with what differs from the defaults", "[scene][write]") {
   Scene s;
   s.start = 1;

@@ -214,7 +214,7 @@ Slot written(const Attribute& attribute, T& place, std::string_view type, std::s
         place = *read;
         return {};
       },
-      [&place, write] { return std::string(write(place)); });
+      std::string(write(place)));
 }
 
 /// An absent value has no text.
@@ -404,8 +404,7 @@ Table table_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
     table = {
         custom(
             {.name = "attribute", .meaning = "the channel", .need = Need::Required}, "word",
-            "a channel of its element", [](std::string_view) { return Reading<void>(); },
-            [] { return std::string(); }),
+            "a channel of its element", [](std::string_view) { return Reading<void>(); }, ""),
         of.slot_of({.name = "before", .meaning = "values before the first key"}, animate.before),
         of.slot_of({.name = "after", .meaning = "values after the last key"}, animate.after),
     };

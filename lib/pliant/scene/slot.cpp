@@ -273,30 +273,27 @@ Slot slot(const Attribute& attribute, Place place) {
   return {.attribute = attribute,
           .type = std::string(std::visit(TypeName{attribute}, place)),
           .range = std::visit(RangeText{attribute}, place),
-          .standard = std::visit(ValueText{attribute}, place),
+          .text = std::visit(ValueText{attribute}, place),
           .read =
               [attribute, place](std::string_view text) {
                 return std::visit(ReadValue{attribute, text}, place);
               },
-          .text = [attribute, place] { return std::visit(ValueText{attribute}, place); },
           .place = place};
 }
 
 Slot custom(const Attribute& attribute, std::string_view type, std::string_view range,
-            std::function<Reading<void>(std::string_view)> read,
-            std::function<std::string()> text) {
+            std::function<Reading<void>(std::string_view)> read, std::string text) {
   return {.attribute = attribute,
           .type = std::string(type),
           .range = std::string(range),
-          .standard = text(),
-          .read = std::move(read),
-          .text = std::move(text)};
+          .text = std::move(text),
+          .read = std::move(read)};
 }
 
 AttributeFormat format_of(const Slot& slot) {
   const Attribute& attribute = slot.attribute;
   std::string standard =
-      attribute.absent.empty() ? slot.standard : fmt::format("({})", attribute.absent);
+      attribute.absent.empty() ? slot.text : fmt::format("({})", attribute.absent);
   if (attribute.need == Need::Required) standard.clear();
   return {.name = attribute.name,
           .type = slot.type,

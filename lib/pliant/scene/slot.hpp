@@ -45,11 +45,12 @@ bool is_channel(const Place& place);
 /// file gave it.
 struct Slot {
   Attribute attribute;
-  std::string type;      ///< "number", "vector", "word", …
-  std::string range;     ///< empty: anything of the type
-  std::string standard;  ///< the default as a file would give it; empty: none
+  std::string type;   ///< "number", "vector", "word", …
+  std::string range;  ///< empty: anything of the type
+  /// The value when the slot was made, as a file gives it: before reading, the default. Empty:
+  /// none, or animated.
+  std::string text;
   std::function<Reading<void>(std::string_view)> read;  ///< stores the value, or complains
-  std::function<std::string()> text;  ///< the value as a file gives it; empty: none, or animated
   Place place = {};
 
   int line = 0;              ///< line where it is given or animated, 0: absent
@@ -67,9 +68,9 @@ using Table = std::vector<Slot>;
 /// is there is the default.
 Slot slot(const Attribute& attribute, Place place = {});
 
-/// A slot with a syntax of its own; the value that `text` gives now is the default.
+/// A slot with a syntax of its own.
 Slot custom(const Attribute& attribute, std::string_view type, std::string_view range,
-            std::function<Reading<void>(std::string_view)> read, std::function<std::string()> text);
+            std::function<Reading<void>(std::string_view)> read, std::string text);
 
 /// The row of the tables in docs/scene-format.md.
 AttributeFormat format_of(const Slot& slot);

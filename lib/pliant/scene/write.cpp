@@ -84,9 +84,9 @@ class SceneWriter {
 void SceneWriter::write_attributes(const Table& table, const Table& standard) {
   for (std::size_t k = 0; k < table.size(); ++k) {
     const Attribute& attribute = table[k].attribute;
-    const std::string& text = table[k].standard;
+    const std::string& text = table[k].text;
     const bool is_needed = attribute.need == Need::Required && !text.empty();
-    if (is_needed || text != standard[k].standard)
+    if (is_needed || text != standard[k].text)
       if (!text.empty()) printer_.PushAttribute(std::string(attribute.name).c_str(), text.c_str());
   }
 }
@@ -94,14 +94,15 @@ void SceneWriter::write_attributes(const Table& table, const Table& standard) {
 template <int D>
 KeyText<D> text_of_key(const Key<D>& key) {
   using Kind = typename Tangent<D>::Kind;
-  KeyText<D> text{.frame = key.frame,
-                  .value = key.value,
-                  .interpolation = key.next,
-                  .amplitude = key.next.amplitude,
-                  .period = key.next.period,
-                  .back = key.next.back,
-                  .left = key.left};
+  KeyText<D> text{
+      .frame = key.frame, .value = key.value, .interpolation = key.next, .left = key.left};
   if (key.next.kind == Interpolation::Kind::Bezier) text.interpolation.reset();
+  if (key.next.kind == Interpolation::Kind::Easing && key.next.ease == Ease::Elastic) {
+    text.amplitude = key.next.amplitude;
+    text.period = key.next.period;
+  }
+  if (key.next.kind == Interpolation::Kind::Easing && key.next.ease == Ease::Back)
+    text.back = key.next.back;
   if (key.next.kind == Interpolation::Kind::CubicBezier) text.control = key.next.control;
   const auto add = [](const Tangent<D>& tangent, auto& own, auto& length, auto& handle) {
     length = tangent.length;
@@ -205,9 +206,8 @@ void SceneWriter::write_part(const Part& part) {
   Part standard;
   const Table table = table_of(own);
   const Table defaults = table_of(standard);
-  const bool is_default =
-      std::equal(table.begin(), table.end(), defaults.begin(),
-                 [](const Slot& a, const Slot& b) { return a.standard == b.standard; });
+  const bool is_default = std::equal(table.begin(), table.end(), defaults.begin(),
+                                     [](const Slot& a, const Slot& b) { return a.text == b.text; });
   if (is_default) return;
   element(Description<Part>::element, [&] {
     write_attributes(table, defaults);
