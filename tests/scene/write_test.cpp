@@ -137,11 +137,17 @@ TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
       scene({sheet("s")}, {poke("a", {0, 0, 0}), poke("b", {0, 0, 0}), poke("c", {0, 0, 0})});
   apart.groups.push_back({.name = "g"});
   apart.forces[0].group = apart.forces[2].group = "g";
+  Scene steep = scene({sheet("s")}, {poke("f", {0, 0, 0})});
+  steep.forces[0].falloff_curve =
+      Curve<1>::make({.keys = {{.frame = 0.5, .value = {1}}, {.frame = 1, .value = {0}}},
+                      .before = {.kind = Extrapolation<1>::Kind::Linear}})
+          .value();
   Scene wrong = scene({sheet("s")}, {});
   wrong.fps = -1;
   for (const auto& [bad, part] :
        {std::pair{meshed, "mesh made by a program"}, std::pair{custom, "\"f\" is custom"},
-        std::pair{apart, "\"c\" is apart from the other forces"}, std::pair{wrong, "fps is -1"}}) {
+        std::pair{apart, "\"c\" is apart from the other forces"},
+        std::pair{steep, "the falloff curve of \"f\" has"}, std::pair{wrong, "fps is -1"}}) {
     const auto text = to_xml(bad);
     REQUIRE_FALSE(text);
     CHECK(text.error().code == ErrorCode::InvalidInput);

@@ -293,6 +293,12 @@ void SceneWriter::write(const Scene& scene) {
   });
 }
 
+/// A <falloff> has keys from 0 to 1, and their end values outside them.
+bool is_plain_falloff(const CurveKeys<1>& keys) {
+  return keys.keys.front().frame >= 0 && keys.keys.back().frame <= 1 && !keys.loop &&
+         keys.before == Extrapolation<1>{} && keys.after == Extrapolation<1>{};
+}
+
 std::optional<std::string> what_no_file_contains(const Scene& scene) {
   for (const Surface& surface : scene.surfaces)
     if (std::holds_alternative<Mesh>(surface.shape))
@@ -300,9 +306,15 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
           "surface \"{}\" has a mesh made by a program, which a scene file cannot "
           "contain; write it to a mesh file",
           surface.name);
-  for (const Force& force : scene.forces)
+  for (const Force& force : scene.forces) {
     if (std::holds_alternative<CustomForce>(force.shape))
       return fmt::format("force \"{}\" is custom, which a scene file cannot contain", force.name);
+    if (force.falloff_curve && !is_plain_falloff(force.falloff_curve->keys()))
+      return fmt::format(
+          "the falloff curve of \"{}\" has keys outside 0 to 1, a loop or an "
+          "extrapolation, which a scene file cannot contain",
+          force.name);
+  }
   auto group = scene.groups.begin();
   const std::string* last = nullptr;  // the group of the force before
   for (const Force& force : scene.forces) {

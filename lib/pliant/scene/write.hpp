@@ -11,8 +11,8 @@ namespace pliant {
 /// default values are left out. Mesh files are written relative to `folder`; empty: as they are.
 ///
 /// Errors: InvalidInput for what breaks a rule of the format, naming it, for what a file cannot
-/// contain, a `Mesh` and a `CustomForce`, and for a group whose forces are not one after the other
-/// in the scene, or come before those of an earlier group.
+/// contain, a `Mesh`, a `CustomForce` and a falloff curve that is not a <falloff>, and for a group
+/// whose forces are not one after the other in the scene, or come before those of an earlier group.
 Result<std::string> to_xml(const Scene& scene, const std::string& folder = {});
 
 }  // namespace pliant
