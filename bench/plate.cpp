@@ -64,7 +64,7 @@ struct DirectCost {
 };
 
 DirectCost cost_of(LinearSolver& solver, const PlateProblem& problem, const PlateState& state) {
-  PlateSystem system{problem.grid, problem.stiffness, shift_of(problem.dynamics)};
+  PlateSystem system{problem.outline, problem.stiffness, shift_of(problem.dynamics)};
   if (!solver.factor(system)) return {};  // computes the fill-reducing order, which is kept
   system.stiffness.c += 1e-6;
   DirectCost cost;

@@ -64,7 +64,7 @@ PlateProblem problem_on(int side, const std::vector<Box>& boxes) {
       load.row(grid.node(i, j)).array() += 1000 * std::max(0.0, 1 - distance);
     }
   }
-  return {grid, {1, 2, 1}, {40, 20}, {}, std::move(load), patch.interior};
+  return {{grid, patch.interior}, {1, 2, 1}, {40, 20}, {}, std::move(load)};
 }
 
 struct Times {
@@ -75,7 +75,7 @@ struct Times {
 template <class Make>
 Times measure(PlateProblem problem, int repetitions, const Make& make) {
   const TimeSteps frame{steps, 1.0 / 24 / steps};
-  const Field zero = Field::Zero(problem.grid.node_count(), 3);
+  const Field zero = Field::Zero(problem.outline.grid().node_count(), 3);
   PlateState state{zero, zero};
   long asked = 0;
   std::unique_ptr<PlateSolver> solver;
@@ -113,9 +113,9 @@ void measure(const char* shape, int side, const std::vector<Box>& boxes) {
       measure(problem, is_small ? 5 : 1, [&] { return make_plate_solver(choice); });
   fmt::print(
       "| {} | {} | {} | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.1f} | {} | {} |\n",
-      side, shape, unknown_count(problem.grid, problem.interior), ours.first,
-      direct.first / ours.first, ours.fresh, direct.fresh / ours.fresh, ours.kept,
-      direct.kept / ours.kept, ours.rounds, bytes_text(ours.memory), bytes_text(direct.memory));
+      side, shape, unknown_count(problem.outline), ours.first, direct.first / ours.first,
+      ours.fresh, direct.fresh / ours.fresh, ours.kept, direct.kept / ours.kept, ours.rounds,
+      bytes_text(ours.memory), bytes_text(direct.memory));
   std::fflush(stdout);
 }
 

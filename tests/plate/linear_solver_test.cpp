@@ -57,7 +57,7 @@ TEST_CASE("solvers keep what they can", "[plate][solver]") {
   system.stiffness.c = 1;  // other coefficients: the same pattern
   REQUIRE(solver->factor(system));
   CHECK(counts() == std::array{1l, 2l, 2l});
-  system.grid = unit_grid(7, 9);  // as many unknowns, another pattern
+  system.outline = unit_grid(7, 9);  // as many unknowns, another pattern
   REQUIRE(solver->factor(system));
   CHECK(counts() == std::array{2l, 3l, 2l});
 
@@ -76,12 +76,12 @@ TEST_CASE("solvers refuse a matrix that is not positive definite", "[plate][solv
   REQUIRE_FALSE(factored);
   CHECK(factored.error().code == ErrorCode::SolverFailed);
   CHECK_THAT(factored.error().message,
-             Catch::Matchers::Contains(std::to_string(unknown_count(bad.grid)) + " unknowns") &&
+             Catch::Matchers::Contains(std::to_string(unknown_count(bad.outline)) + " unknowns") &&
                  Catch::Matchers::Contains("pivot"));
   // After a failure the solver works for the next system.
-  const PlateSystem good{bad.grid, {1, 2, 1}, 1};
+  const PlateSystem good{bad.outline, {1, 2, 1}, 1};
   REQUIRE(solver->factor(good));
-  const Field f = Field::Ones(unknown_count(good.grid), 3);
+  const Field f = Field::Ones(unknown_count(good.outline), 3);
   CHECK(solver->solve(f).value().allFinite());
 }
 

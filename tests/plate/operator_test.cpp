@@ -38,7 +38,7 @@ TEST_CASE("the operator is positive definite down to c near -2 sqrt(bd)", "[plat
 TEST_CASE("the one unknown of a 3 x 3 region has (8b + 4c + 8d)/h^4", "[plate][operator]") {
   const double h = 0.25;
   const Stiffness s{1.25, 2.5, 3.75};
-  const SparseMatrix matrix = assemble_upper({{3, 3, h, h}, s, 0});
+  const SparseMatrix matrix = assemble_upper({Grid{3, 3, h, h}, s, 0});
   REQUIRE(matrix.rows() == 1);
   CHECK(matrix.coeff(0, 0) == (8 * s.b + 4 * s.c + 8 * s.d) / (h * h * h * h));
 }

@@ -14,7 +14,7 @@ namespace {
 using namespace pliant;
 
 bool is_free_of_allocations(const char* name, PlateSolver& solver, PlateProblem problem) {
-  const Field zero = Field::Zero(problem.grid.node_count(), 3);
+  const Field zero = Field::Zero(problem.outline.grid().node_count(), 3);
   PlateState state{zero, zero};
   const auto frame = [&] {
     auto next = solver.advance(problem, {20, 0.001}, std::move(state), [] { return false; });
@@ -54,7 +54,7 @@ int main() {
       is_free_of_allocations("rectangle", *spectral, {grid, {1, 2, 1}, {40, 20}, {}, load});
   const auto schwarz = make_schwarz_plate_solver(nullptr, &threads);
   is_good = is_free_of_allocations("union", *schwarz,
-                                   {grid, {1, 2, 1}, {40, 20}, {}, load, three_quarters(grid)}) &&
+                                   {{grid, three_quarters(grid)}, {1, 2, 1}, {40, 20}, {}, load}) &&
             is_good;
   return is_good ? 0 : 1;
 }

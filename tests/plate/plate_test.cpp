@@ -3,10 +3,8 @@
 #include <cmath>
 
 #include "support/catch.hpp"
-#include "support/plates.hpp"
 
 using namespace pliant;
-using pliant::testing::unit_grid;
 
 TEST_CASE("a stiffness is elliptic just above c = -2 sqrt(bd)", "[plate]") {
   const double b = GENERATE(1.0, 3e-200, 4e200), d = GENERATE(1.0, 5e-200, 2e200);
@@ -25,23 +23,4 @@ TEST_CASE("a stiffness at the very bound is not elliptic", "[plate]") {
   const double b = GENERATE(2.0, 3.0, 5.0, 7.0, 0.1);
   CHECK_FALSE(Stiffness{b, -2 * b, b}.is_elliptic());
   CHECK(Stiffness{b, std::nextafter(-2 * b, 0), b}.is_elliptic());
-}
-
-TEST_CASE("interior rows go back to where they came from", "[plate]") {
-  const Grid grid = unit_grid(6, 4);
-  const Field nodes = Field::Random(grid.node_count(), 3);
-  const Field interior = interior_of(grid, nodes);
-  REQUIRE(interior.rows() == 8);
-  for (int j = 1; j < 3; ++j) {
-    for (int i = 1; i < 5; ++i) {
-      CHECK(interior.row((j - 1) * 4 + i - 1) == nodes.row(grid.node(i, j)));
-    }
-  }
-  CHECK(with_interior(grid, nodes, interior) == nodes);
-  const Field changed = with_interior(grid, nodes, Field::Zero(8, 3));
-  CHECK(interior_of(grid, changed).isZero(0));
-  for (int i = 0; i < 6; ++i) {
-    CHECK(changed.row(grid.node(i, 0)) == nodes.row(grid.node(i, 0)));
-    CHECK(changed.row(grid.node(i, 3)) == nodes.row(grid.node(i, 3)));
-  }
 }

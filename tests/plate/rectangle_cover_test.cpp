@@ -60,7 +60,7 @@ TEST_CASE("outlines of few boxes are covered by few overlapping rectangles", "[p
   for (const int side : {41, 64, 100}) {
     for (const UnionPlate& plate : union_plates(side)) {
       CAPTURE(side, plate.name);
-      const auto cover = cover_by_rectangles(plate.grid, plate.interior);
+      const auto cover = cover_by_rectangles(plate.outline());
       CHECK(cover.size() == expected.at(plate.name));
       check_cover(plate, cover);
     }
@@ -69,7 +69,7 @@ TEST_CASE("outlines of few boxes are covered by few overlapping rectangles", "[p
 
 TEST_CASE("boxes that only touch are joined by a rectangle across", "[plate][cover]") {
   const UnionPlate plate = union_plate("touching", 41, {{0, 20, 0, 26}, {20, 40, 13, 40}});
-  const auto cover = cover_by_rectangles(plate.grid, plate.interior);
+  const auto cover = cover_by_rectangles(plate.outline());
   check_cover(plate, cover);
   CHECK(std::count(cover.begin(), cover.end(), Box{1, 39, 14, 25}) == 1);
 }
@@ -89,9 +89,9 @@ TEST_CASE("a cover of random boxes is one, or there is none", "[plate][cover]") 
     const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
     if (patch.is_rectangle()) continue;
     const UnionPlate plate{"random", {patch.box.columns(), patch.box.rows(), 1, 1}, patch.interior};
-    const auto cover = cover_by_rectangles(plate.grid, plate.interior);
+    const auto cover = cover_by_rectangles(plate.outline());
     const UnionPlate other = transposed(plate);
-    CHECK(cover_by_rectangles(other.grid, other.interior).empty() == cover.empty());
+    CHECK(cover_by_rectangles(other.outline()).empty() == cover.empty());
     CHECK(cover.size() <= std::size_t{max_cover_rectangles});
     if (cover.empty()) continue;
     check_cover(plate, cover);
@@ -104,7 +104,7 @@ TEST_CASE("ragged outlines are not covered", "[plate][cover]") {
   std::vector<Box> stairs;
   for (int k = 0; k < 20; ++k) stairs.push_back({0, 4 + 2 * k, 0, 44 - 2 * k});
   const UnionPlate plate = union_plate("stairs", 45, stairs);
-  CHECK(cover_by_rectangles(plate.grid, plate.interior).empty());
+  CHECK(cover_by_rectangles(plate.outline()).empty());
 
   UnionPlate ragged = pliant::testing::ell(81);
   std::mt19937 random(3);
@@ -114,5 +114,5 @@ TEST_CASE("ragged outlines are not covered", "[plate][cover]") {
       ragged.interior[ragged.grid.node(i, j)] = 0;
     }
   }
-  CHECK(cover_by_rectangles(ragged.grid, ragged.interior).empty());
+  CHECK(cover_by_rectangles(ragged.outline()).empty());
 }

@@ -50,17 +50,18 @@ TEST_CASE("the rim's part of a load is that of the stencil on any outline", "[pl
     for (const auto& [name, grid, interior] : pliant::testing::union_plates(side)) {
       CAPTURE(name, side);
       const Stiffness stiffness{1.5, 0.75, 3};
+      const Outline outline(grid, interior);
       const EdgeTangents tangents = four_tangents();
       const Field w = Field::Random(grid.node_count(), 3);
       const Field load = Field::Random(grid.node_count(), 3);
       Field changed = load;
-      subtract_rim(grid, interior, stiffness, tangents, w, changed);
+      subtract_rim(outline, stiffness, tangents, w, changed);
 
-      const Field zero = Field::Zero(unknown_count(grid, interior), 3);
-      const Field rim = with_interior(grid, interior, w, zero);
-      const Field expected = interior_of(grid, interior, load) -
-                             apply_stencil(grid, interior, stiffness, tangents, rim);
-      CHECK(interior_of(grid, interior, changed) == expected);
+      const Field zero = Field::Zero(unknown_count(outline), 3);
+      const Field rim = with_interior(outline, w, zero);
+      const Field expected =
+          interior_of(outline, load) - apply_stencil(outline, stiffness, tangents, rim);
+      CHECK(interior_of(outline, changed) == expected);
     }
   }
 }

@@ -28,14 +28,14 @@ ConstNodesView load_view(const UnionPlate& plate, const Field& field) {
 }
 
 Result<void> prepare(SchwarzPlate& schwarz, const PlateSystem& system) {
-  return schwarz.prepare(system.grid, system.interior, system.stiffness, system.shift);
+  return schwarz.prepare(system.outline, system.stiffness, system.shift);
 }
 
 // The solution for a load on all nodes, from a guess of 0.
 Field solved(SchwarzPlate& schwarz, const UnionPlate& plate, const Field& load) {
   Field solution = Field::Zero(plate.grid.node_count(), 3);
   REQUIRE(schwarz.solve(load_view(plate, load), view(plate, solution)));
-  return interior_of(plate.grid, plate.interior, solution);
+  return interior_of(plate.outline(), solution);
 }
 
 // By a factorisation, exact to the last digits: refined with residuals in extended precision.
@@ -54,9 +54,8 @@ PlateProblem problem_on(const UnionPlate& plate, const Stiffness& stiffness,
   tangents.su1 = Vector3d(0, 1, 3);
   tangents.sv0 = Vector3d(-1, 0.25, 2);
   tangents.sv1 = Vector3d(2, 1, -1);
-  return {
-      plate.grid,    stiffness, dynamics, tangents, 100 * Field::Random(plate.grid.node_count(), 3),
-      plate.interior};
+  return {plate.outline(), stiffness, dynamics, tangents,
+          100 * Field::Random(plate.grid.node_count(), 3)};
 }
 
 }  // namespace
@@ -64,7 +63,7 @@ PlateProblem problem_on(const UnionPlate& plate, const Stiffness& stiffness,
 TEST_CASE("rectangles together are as exact as a refined factor", "[plate][schwarz]") {
   const UnionPlate plate = GENERATE(from_range(union_plates(34)));
   const Field load = Field::Random(plate.grid.node_count(), 3);
-  const Field f = interior_of(plate.grid, plate.interior, load);
+  const Field f = interior_of(plate.outline(), load);
   SchwarzPlate schwarz(nullptr);
   for (const Stiffness& stiffness :
        {Stiffness{1, 2, 1}, Stiffness{1, 0, 1}, Stiffness{1, 20, 1}, Stiffness{100, 2, 1},
@@ -72,7 +71,7 @@ TEST_CASE("rectangles together are as exact as a refined factor", "[plate][schwa
         Stiffness{4, -11.9, 9}}) {
     for (const double shift : {0.0, 1e-3, 1e5, 1e14}) {
       CAPTURE(plate.name, stiffness.b, stiffness.c, stiffness.d, shift);
-      const PlateSystem system{plate.grid, stiffness, shift, plate.interior};
+      const PlateSystem system{plate.outline(), stiffness, shift};
       REQUIRE(prepare(schwarz, system));
       const Field solution = solved(schwarz, plate, load);
       const Field exact = refined(system, f);
@@ -121,18 +120,18 @@ TEST_CASE("a round over the rectangles is symmetric and positive definite", "[pl
   for (const double shift : {0.0, 1e6}) {
     CAPTURE(plate.name, shift);
     SchwarzPlate schwarz(nullptr);
-    REQUIRE(prepare(schwarz, {plate.grid, stiffness, shift, plate.interior}));
+    REQUIRE(prepare(schwarz, {plate.outline(), stiffness, shift}));
     const auto round = [&](const Field& load) {
       Field result = Field::Zero(plate.grid.node_count(), 3);
       schwarz.precondition(load_view(plate, load), view(plate, result));
-      return interior_of(plate.grid, plate.interior, result);
+      return interior_of(plate.outline(), result);
     };
     for (int trial = 0; trial < 5; ++trial) {
       const Field x = Field::Random(plate.grid.node_count(), 3);
       const Field y = Field::Random(plate.grid.node_count(), 3);
       const Field bx = round(x), by = round(y);
-      const Field x_in = interior_of(plate.grid, plate.interior, x);
-      const Field y_in = interior_of(plate.grid, plate.interior, y);
+      const Field x_in = interior_of(plate.outline(), x);
+      const Field y_in = interior_of(plate.outline(), y);
       for (int k = 0; k < 3; ++k) {
         const double xby = x_in.col(k).dot(by.col(k)), ybx = y_in.col(k).dot(bx.col(k));
         const double xbx = x_in.col(k).dot(bx.col(k)), yby = y_in.col(k).dot(by.col(k));
@@ -152,7 +151,7 @@ TEST_CASE("the rounds do not grow with the plate", "[plate][schwarz]") {
       const UnionPlate& plate = *std::find_if(plates.begin(), plates.end(),
                                               [&](const UnionPlate& p) { return p.name == name; });
       SchwarzPlate schwarz(nullptr);
-      REQUIRE(prepare(schwarz, {plate.grid, {1, 2, 1}, 0, plate.interior}));
+      REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
       solved(schwarz, plate, Field::Ones(plate.grid.node_count(), 3));
       CAPTURE(name, side);
       CHECK(schwarz.rounds() >= 2);
@@ -230,7 +229,7 @@ TEST_CASE("a union stops when asked to, between rounds too", "[plate][schwarz]")
 TEST_CASE("what few rounds do not solve is said, and factored", "[plate][schwarz]") {
   const UnionPlate plate = ell(30);
   SchwarzPlate schwarz(nullptr, nullptr, 2);
-  REQUIRE(prepare(schwarz, {plate.grid, {1, 2, 1}, 0, plate.interior}));
+  REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
   const Field load = Field::Random(plate.grid.node_count(), 3);
   Field solution = Field::Zero(plate.grid.node_count(), 3);
   const auto failed = schwarz.solve(load_view(plate, load), view(plate, solution));
@@ -252,7 +251,7 @@ TEST_CASE("what few rounds do not solve is said, and factored", "[plate][schwarz
 TEST_CASE("numbers that are none end the rounds", "[plate][schwarz]") {
   const UnionPlate plate = ell(30);
   SchwarzPlate schwarz(nullptr);
-  REQUIRE(prepare(schwarz, {plate.grid, {1, 2, 1}, 0, plate.interior}));
+  REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
   Field load = Field::Ones(plate.grid.node_count(), 3);
   load(plate.grid.node(3, 4), 1) = std::numeric_limits<double>::infinity();
   Field solution = Field::Zero(plate.grid.node_count(), 3);
@@ -262,7 +261,7 @@ TEST_CASE("numbers that are none end the rounds", "[plate][schwarz]") {
   load.setZero();
   solution.setOnes();
   REQUIRE(schwarz.solve(load_view(plate, load), view(plate, solution)));
-  CHECK(interior_of(plate.grid, plate.interior, solution).isZero(0));
+  CHECK(interior_of(plate.outline(), solution).isZero(0));
 }
 
 TEST_CASE("rectangles keep within the memory they may have", "[plate][schwarz]") {
@@ -299,7 +298,7 @@ TEST_CASE("large unions go to rectangles by themselves", "[plate][schwarz][solve
     const auto displacement = [&](std::unique_ptr<PlateSolver> solver) {
       return solver->advance(problem, {1, 0.01}, state).value().displacement;
     };
-    const bool is_large = worth_iterating(unknown_count(plate.grid, plate.interior), {1, 2, 1});
+    const bool is_large = worth_iterating(unknown_count(plate.outline()), {1, 2, 1});
     CHECK(is_large == (side == 461));
     const Field expected = displacement(is_large ? make_schwarz_plate_solver(nullptr, nullptr)
                                                  : make_plate_solver(direct == SolverKind::Cholmod

@@ -9,14 +9,14 @@ using pliant::testing::unit_grid;
 TEST_CASE("each outline keeps its solver while it is among those of the frame",
           "[plate][solver_cache]") {
   SolverCache cache(SolverChoice::Eigen);
-  const SolverCache::Outline large{13, 9}, small{5, 5};
-  const auto solve = [&](const SolverCache::Outline& outline) {
-    const Grid grid = unit_grid(outline.columns, outline.rows);
-    const Field zero = Field::Zero(grid.node_count(), 3);
-    const PlateProblem problem{grid, {1, 2, 1}, {}, {}, Field::Ones(grid.node_count(), 3)};
+  const Outline large = unit_grid(13, 9), small = unit_grid(5, 5);
+  const auto solve = [&](const Outline& outline) {
+    const Field zero = Field::Zero(outline.grid().node_count(), 3);
+    const Field ones = Field::Ones(outline.grid().node_count(), 3);
+    const PlateProblem problem{outline, {1, 2, 1}, {}, {}, ones};
     return cache.solver_of(outline).advance(problem, {1, 0.1}, {zero, zero})->displacement;
   };
-  const std::vector<SolverCache::Outline> both{large, small, small};
+  const std::vector<Outline> both{large, small, small};
   Field first;
   for (int frame = 0; frame < 5; ++frame) {
     cache.keep_only(both);
@@ -37,9 +37,9 @@ TEST_CASE("each outline keeps its solver while it is among those of the frame",
 TEST_CASE("solvers that are let go give their memory back", "[plate][solver_cache]") {
   MemoryBudget budget(1'000'000);
   SolverCache cache(SolverChoice::Auto, &budget);
-  const SolverCache::Outline outline{21, 21};
+  const Outline outline = unit_grid(21, 21);
   const Field zero = Field::Zero(21 * 21, 3);
-  const PlateProblem problem{unit_grid(21, 21), {1, 2, 1}, {}, {}, zero};
+  const PlateProblem problem{outline, {1, 2, 1}, {}, {}, zero};
   REQUIRE(cache.solver_of(outline).advance(problem, {1, 0.1}, {zero, zero}));
   CHECK(budget.available() < 900'000);
   cache.keep_only({});

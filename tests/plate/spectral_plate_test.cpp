@@ -15,7 +15,7 @@ namespace {
 
 // ||A||, or a little more: the largest eigenvalue of the simply supported plate plus the edges.
 double operator_norm(const PlateSystem& system) {
-  const Grid& grid = system.grid;
+  const Grid& grid = system.outline.grid();
   const Stiffness& stiffness = system.stiffness;
   const double shift = system.shift;
   const double u = 4 / (grid.hu * grid.hu);
@@ -62,8 +62,8 @@ void check_errors(const Grid& grid, const Stiffness& stiffness, double shift) {
 // Compares with a factored matrix, by backward error.
 void check_beside_direct(const PlateSystem& system) {
   const auto& [b, c, d] = system.stiffness;
-  CAPTURE(system.grid.columns, system.grid.rows, b, c, d, system.shift);
-  const Field f = Field::Random(unknown_count(system), 3);
+  CAPTURE(system.outline.grid().columns, system.outline.grid().rows, b, c, d, system.shift);
+  const Field f = Field::Random(unknown_count(system.outline), 3);
   const double error = check_errors(system, f);
   const auto direct = make_solver(available_solvers().front());
   REQUIRE(direct->factor(system));

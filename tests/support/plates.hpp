@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "pliant/plate/operator.hpp"
+#include "pliant/plate/outline.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/stencil.hpp"
 
@@ -32,13 +33,14 @@ inline PlateState random_state(const Grid& grid) {
 
 /// The system's matrix, column by column from the stencil, independent of the assembly.
 inline Eigen::MatrixXd dense_operator(const PlateSystem& system) {
-  const int n = unknown_count(system.grid);
+  const int n = unknown_count(system.outline);
   Eigen::MatrixXd dense(n, n);
   for (int column = 0; column < n; ++column) {
     Field unit = Field::Zero(n, 3);
     unit(column, 0) = 1;
-    const Field nodes = with_interior(system.grid, Field::Zero(system.grid.node_count(), 3), unit);
-    dense.col(column) = apply_stencil(system.grid, system.stiffness, {}, nodes).col(0);
+    const Field nodes =
+        with_interior(system.outline, Field::Zero(system.outline.grid().node_count(), 3), unit);
+    dense.col(column) = apply_stencil(system.outline, system.stiffness, {}, nodes).col(0);
     dense(column, column) += system.shift;
   }
   return dense;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/plate/operator.hpp"
+#include "pliant/plate/outline.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace pliant::testing {
@@ -13,6 +13,8 @@ struct UnionPlate {
   std::string name;
   Grid grid;
   InteriorMask interior;
+
+  Outline outline() const { return {grid, interior}; }
 };
 
 /// The first patch of boxes on a square of `side` nodes over [0,1] x [0,1].

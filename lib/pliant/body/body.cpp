@@ -50,9 +50,9 @@ Box lone_rectangle(const StepReport& report) {
   return lone ? lone->box : Box{};
 }
 
-bool is_outline_of(const SolverCache::Outline& outline, const Patch& patch) {
-  return outline.columns == patch.box.columns() && outline.rows == patch.box.rows() &&
-         outline.interior == patch.interior;
+bool is_outline_of(const Outline& outline, const Patch& patch) {
+  return outline.grid().columns == patch.box.columns() && outline.grid().rows == patch.box.rows() &&
+         outline.mask() == patch.interior;
 }
 
 }  // namespace
@@ -212,7 +212,8 @@ void Body::keep_solvers(const StepReport& report) {
   outlines.clear();
   for (const auto& some : report.patches) {
     for (const Patch& patch : some) {
-      outlines.push_back({patch.box.columns(), patch.box.rows(), patch.interior});
+      const Grid grid{patch.box.columns(), patch.box.rows(), grid_.hu, grid_.hv};
+      outlines.emplace_back(grid, patch.interior);
     }
   }
   work_.solves.resize(count);
@@ -238,11 +239,10 @@ Result<void> Body::solve(const BodyInputs& inputs, const StopRequest& should_sto
       const Box& box = patch.box;
       one.patch = &patch;
       one.settling_length = length;
-      problem.grid = {box.columns(), box.rows(), grid_.hu, grid_.hv};
+      problem.outline = work_.outlines[place];
       problem.stiffness = inputs.stiffness;
       problem.dynamics = inputs.dynamics;
       problem.tangents = tangents_of(patch, region, inputs.tangents);
-      problem.interior = patch.interior;
       problem.profile = profile;
       {
         const StageTimer timer(profile, Stage::Load);

@@ -26,9 +26,9 @@ struct BodyWorkspace {
   NodeTiles tiles;       ///< of the nodes that forces measure
   NodeTiles rest_tiles;  ///< of the nodes at rest, if needed
   std::vector<std::uint8_t> marks;
-  std::vector<SolverCache::Outline> outlines;  ///< of the solvers that exist, one for each patch
-  std::vector<PatchSolve> solves;              ///< one for each patch, in the order of the regions
-  Field next_positions;                        ///< the next state, until it is complete
+  std::vector<Outline> outlines;   ///< of the solvers that exist, one for each patch
+  std::vector<PatchSolve> solves;  ///< one for each patch, in the order of the regions
+  Field next_positions;            ///< the next state, until it is complete
   Field next_velocities;
 };
 

@@ -2,35 +2,31 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
-#include "pliant/plate/domain.hpp"
+#include "pliant/plate/rim_load.hpp"
 
 namespace pliant {
 
 Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProblem& problem,
                                           const TimeSteps& steps, PlateState state,
                                           const StopRequest& should_stop) {
-  const Grid& grid = problem.grid;
-  const InteriorMask& mask = problem.interior;
+  const Outline& outline = problem.outline;
   PLIANT_EXPECTS(is_on_nodes(problem, state));
 
   const double dt = steps.length;
   const double inertia = problem.dynamics.density / dt;            // factor of v
   const double shift = (inertia + problem.dynamics.damping) / dt;  // factor of w
   StageTimer set_up(problem.profile, Stage::SetUp);
-  if (auto factored = solver.factor({grid, problem.stiffness, shift, mask}); !factored) {
+  if (auto factored = solver.factor({outline, problem.stiffness, shift}); !factored) {
     return fail(factored.error());
   }
   set_up.stop();
   const StageTimer solve(problem.profile, Stage::Solve);
 
-  // The contribution of the rim and the tangents is L of the field that equals w on the rim and is
-  // 0 inside; it is known, so it becomes part of the load.
-  Field w = interior_of(grid, mask, state.displacement);
-  Field v = interior_of(grid, mask, state.velocity);
-  const Field zero = Field::Zero(w.rows(), 3);
-  const Field rim = with_interior(grid, mask, state.displacement, zero);
-  const Field known = interior_of(grid, mask, problem.load) -
-                      apply_stencil(grid, mask, problem.stiffness, problem.tangents, rim);
+  Field w = interior_of(outline, state.displacement);
+  Field v = interior_of(outline, state.velocity);
+  Field load = problem.load;
+  subtract_rim(outline, problem.stiffness, problem.tangents, state.displacement, load);
+  const Field known = interior_of(outline, load);
 
   for (int step = 0; step < steps.count; ++step) {
     if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
@@ -40,8 +36,8 @@ Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProbl
     w = *std::move(next);
   }
 
-  state.displacement = with_interior(grid, mask, std::move(state.displacement), w);
-  state.velocity = with_interior(grid, mask, Field::Zero(grid.node_count(), 3), v);
+  state.displacement = with_interior(outline, std::move(state.displacement), w);
+  state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), v);
   return state;
 }
 

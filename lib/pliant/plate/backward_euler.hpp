@@ -4,6 +4,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/outline.hpp"
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/time_steps.hpp"
 
@@ -11,14 +12,11 @@ namespace pliant {
 
 /// One plate over one interval: everything that stays the same while its steps run. SPEC 4.
 struct PlateProblem {
-  Grid grid;  ///< the solved rectangle, rim included; at least 3 x 3
+  Outline outline;  ///< of at least 3 x 3 nodes
   Stiffness stiffness;
   Dynamics dynamics;
   EdgeTangents tangents;
   Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
-
-  /// Which nodes are interior if the plate is not a rectangle; empty: all but the outermost.
-  InteriorMask interior = {};
 
   /// Receives the time spent in set-up and solve; null: no profiling. Must outlive the call.
   Profile* profile = nullptr;
@@ -26,7 +24,7 @@ struct PlateProblem {
 
 /// Whether the problem's load and the state have a row for each node.
 inline bool is_on_nodes(const PlateProblem& problem, const PlateState& state) {
-  const int nodes = problem.grid.node_count();
+  const int nodes = problem.outline.grid().node_count();
   return problem.load.rows() == nodes && state.displacement.rows() == nodes &&
          state.velocity.rows() == nodes;
 }

@@ -24,9 +24,9 @@ class DirectSolver final : public LinearSolver {
 
   Result<void> factor(const PlateSystem& system) override try {
     if (factored_ == system) return {};
-    const bool same_pattern = factored_ && have_same_pattern(*factored_, system);
+    const bool same_pattern = factored_ && have_same_nodes(factored_->outline, system.outline);
     factored_.reset();
-    const long size = unknown_count(system);
+    const long size = unknown_count(system.outline);
     if (!same_pattern) {
       // Free the old factor first, to make room for the new one.
       factorization_ = std::make_unique<Factorization>();
@@ -45,11 +45,11 @@ class DirectSolver final : public LinearSolver {
     refinement_passes_ = passes_for(estimate_condition(system));
     return {};
   } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
-    return fail(no_memory_for_factor(unknown_count(system)));
+    return fail(no_memory_for_factor(unknown_count(system.outline)));
   }
 
   Result<Field> solve(const Field& right_hand_sides) override try {
-    PLIANT_EXPECTS(factored_ && right_hand_sides.rows() == unknown_count(*factored_));
+    PLIANT_EXPECTS(factored_ && right_hand_sides.rows() == unknown_count(factored_->outline));
     ++counts_.solves;
     auto solution = factorization_->solve(right_hand_sides);
     for (int pass = 0; solution && pass < refinement_passes_; ++pass) {

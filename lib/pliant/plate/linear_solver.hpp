@@ -24,7 +24,7 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
 
   /// Prepares for `system`. Reuse: does nothing if it equals the last one; the symbolic work is
-  /// kept while the numbers of columns and rows and the mask are the same. Reuse never changes a
+  /// kept while the outline has the same nodes. Reuse never changes a
   /// result's bits. Errors: SolverFailed, with size and pivot, if the matrix is not positive
   /// definite or not finite; OutOfMemory if the factor does not fit in the budget, which is checked
   /// before it is computed, or in memory.

@@ -2,8 +2,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "pliant/core/grid.hpp"
-#include "pliant/plate/domain.hpp"
+#include "pliant/plate/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {
@@ -12,30 +11,17 @@ namespace pliant {
 /// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
 /// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
 struct PlateSystem {
-  Grid grid;            ///< the rectangle, rim included; at least 3 x 3
+  Outline outline;      ///< of at least 3 x 3 nodes
   Stiffness stiffness;  ///< elliptic
   double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
-
-  /// Which nodes are unknowns if the plate is not a rectangle; empty: all but the outermost.
-  InteriorMask interior = {};
 
   friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
 };
 
-inline int unknown_count(const PlateSystem& system) {
-  return unknown_count(system.grid, system.interior);
-}
-
-/// Whether two systems have matrices of the same pattern.
-inline bool have_same_pattern(const PlateSystem& a, const PlateSystem& b) {
-  return a.grid.columns == b.grid.columns && a.grid.rows == b.grid.rows && a.interior == b.interior;
-}
-
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The upper triangle of the system's matrix (#unknowns x #unknowns), by columns, rows ascending.
-/// Its pattern depends only on the numbers of columns and rows and on the mask: entries that happen
-/// to be 0 are kept.
+/// Its pattern depends only on the outline's nodes: entries that happen to be 0 are kept.
 SparseMatrix assemble_upper(const PlateSystem& system);
 
 /// f - (shift I + L) w (#unknowns x 3), with coefficients and sums in extended precision (64 bits

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "pliant/core/expects.hpp"
-
 namespace pliant {
 
 double Stiffness::least_c() const {
@@ -14,30 +12,5 @@ double Stiffness::least_c() const {
 }
 
 bool Stiffness::is_elliptic() const { return b > 0 && d > 0 && c > least_c(); }
-
-Field interior_of(const Grid& grid, const Field& nodes) {
-  PLIANT_EXPECTS(nodes.rows() == grid.node_count());
-  const int width = grid.columns - 2;
-  Field interior(unknown_count(grid), 3);
-  for (int component = 0; component < 3; ++component) {
-    for (int j = 1; j + 1 < grid.rows; ++j) {
-      interior.col(component).segment((j - 1) * width, width) =
-          nodes.col(component).segment(grid.node(1, j), width);
-    }
-  }
-  return interior;
-}
-
-Field with_interior(const Grid& grid, Field nodes, const Field& interior) {
-  PLIANT_EXPECTS(nodes.rows() == grid.node_count() && interior.rows() == unknown_count(grid));
-  const int width = grid.columns - 2;
-  for (int component = 0; component < 3; ++component) {
-    for (int j = 1; j + 1 < grid.rows; ++j) {
-      nodes.col(component).segment(grid.node(1, j), width) =
-          interior.col(component).segment((j - 1) * width, width);
-    }
-  }
-  return nodes;
-}
 
 }  // namespace pliant

@@ -1,16 +1,16 @@
 #pragma once
 
 #include "pliant/core/field.hpp"
-#include "pliant/core/grid.hpp"
 
 namespace pliant {
 
-// The plate equation on one rectangle of nodes: thesis 4.2, eq. 8; SPEC 2 to 4; docs/model.md.
+// The plate equation on one patch of nodes: thesis 4.2, eq. 8; SPEC 2 to 4; docs/model.md.
 //
 //   b w_uuuu + c w_uuvv + d w_vvvv + rho w_tt + eta w_t = F                                     (1)
 //
 // w is the displacement (or the position itself, SPEC 2), one column for each of x, y, z. Here a
-// `Grid` is the solved rectangle: its outermost nodes are the rim, the others the unknowns.
+// `Grid` is the smallest one around a patch and its rim, and an `Outline` says which of its nodes
+// are the unknowns.
 
 /// b, c and d of (1): along u, mixed, along v. [1]
 struct Stiffness {
@@ -44,19 +44,10 @@ struct EdgeTangents {
   bool are_zero() const { return su0.isZero(0) && su1.isZero(0) && sv0.isZero(0) && sv1.isZero(0); }
 };
 
-/// Displacement and velocity on all nodes of the rectangle, rim included.
+/// Displacement and velocity on all nodes of the outline's grid, rim included.
 struct PlateState {
   Field displacement;  ///< #nodes x 3, row = grid.node(i, j) [length]
   Field velocity;      ///< #nodes x 3 [length/s]
 };
-
-/// Number of unknowns: the interior nodes. Row k = (j - 1)(columns - 2) + (i - 1) is node (i,j).
-inline int unknown_count(const Grid& grid) { return (grid.columns - 2) * (grid.rows - 2); }
-
-/// The interior rows of a field on all nodes (#nodes x 3 -> #unknowns x 3).
-Field interior_of(const Grid& grid, const Field& nodes);
-
-/// Writes interior rows back: `nodes` with its interior replaced and its rim unchanged.
-Field with_interior(const Grid& grid, Field nodes, const Field& interior);
 
 }  // namespace pliant

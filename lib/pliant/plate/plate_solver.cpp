@@ -60,23 +60,22 @@ class AutomaticPlateSolver final : public PlateSolver {
   enum class Way { Spectral, Schwarz, Direct };
 
   Way way_of(const PlateProblem& problem) {
-    if (problem.interior.empty()) {
+    const Outline& outline = problem.outline;
+    if (outline.is_rectangle()) {
       const bool is_worth_it =
-          prefers_spectral_ || worth_transforming(problem.grid, problem.stiffness);
+          prefers_spectral_ || worth_transforming(outline.grid(), problem.stiffness);
       return is_worth_it ? Way::Spectral : Way::Direct;
     }
     const bool is_worth_it =
-        worth_iterating(unknown_count(problem.grid, problem.interior), problem.stiffness) &&
-        is_covered(problem.grid, problem.interior);
+        worth_iterating(outline.unknown_count(), problem.stiffness) && is_covered(outline);
     return is_worth_it ? Way::Schwarz : Way::Direct;
   }
 
   // Caches the answer for the last outline.
-  bool is_covered(const Grid& grid, const InteriorMask& interior) {
-    if (interior != asked_for_ || grid.columns != columns_asked_for_) {
-      asked_for_ = interior;
-      columns_asked_for_ = grid.columns;
-      is_covered_ = !cover_by_rectangles(grid, interior).empty();
+  bool is_covered(const Outline& outline) {
+    if (!have_same_nodes(outline, asked_for_)) {
+      asked_for_ = outline;
+      is_covered_ = !cover_by_rectangles(outline).empty();
     }
     return is_covered_;
   }
@@ -99,8 +98,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   int most_lanes_;
   std::unique_ptr<PlateSolver> solver_;
   Way way_ = Way::Direct;
-  InteriorMask asked_for_;
-  int columns_asked_for_ = 0;
+  Outline asked_for_;
   bool is_covered_ = false;
   SolverCounts past_counts_;  // of the solvers that were destroyed
 };

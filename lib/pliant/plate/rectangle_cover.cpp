@@ -138,9 +138,9 @@ long area(const Box& box) { return long{box.columns()} * box.rows(); }
 
 }  // namespace
 
-std::vector<Box> cover_by_rectangles(const Grid& grid, const InteriorMask& interior) {
-  PLIANT_EXPECTS(interior.size() == static_cast<std::size_t>(grid.node_count()));
-  const Bands bands = bands_of(grid, interior);
+std::vector<Box> cover_by_rectangles(const Outline& outline) {
+  PLIANT_EXPECTS(!outline.is_rectangle());
+  const Bands bands = bands_of(outline.grid(), outline.mask());
   if (bands.columns.empty()) return {};
   std::vector<Box> cover = maximal_rectangles(bands);
   if (cover.size() > max_candidates) return {};
@@ -170,7 +170,7 @@ std::vector<Box> cover_by_rectangles(const Grid& grid, const InteriorMask& inter
     work += area(box);
   }
   const bool is_good = cover.size() <= std::size_t{max_cover_rectangles} &&
-                       work <= max_work * unknown_count(grid, interior);
+                       work <= max_work * outline.unknown_count();
   return is_good ? cover : std::vector<Box>{};
 }
 

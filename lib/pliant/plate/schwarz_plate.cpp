@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/domain_operator.hpp"
 #include "pliant/plate/rectangle_cover.hpp"
 #include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/stencil.hpp"
 
 namespace pliant {
 namespace {
@@ -46,15 +46,15 @@ std::size_t move_independent_back(std::vector<Box>& cover) {
   return back.size();
 }
 
-// (shift + L) p without the rim's part. Eq. (4) and (5).
+StencilWeights weights_of(const PlateSystem& system) {
+  return {system.outline.grid(), system.stiffness, system.shift};
+}
+
+// (shift + L) p without what ghosts add.
 void apply_to_run(const StencilWeights& weights, const double* p, long M, long count,
                   double* product) {
   for (long k = 0; k < count; ++k) {
-    const double* const at = p + k;
-    product[k] = weights.centre * at[0] + weights.beside_u * (at[-1] + at[1]) +
-                 weights.beside_v * (at[-M] + at[M]) +
-                 weights.corner * ((at[-M - 1] + at[-M + 1]) + (at[M - 1] + at[M + 1])) +
-                 weights.two_u * (at[-2] + at[2]) + weights.two_v * (at[-2 * M] + at[2 * M]);
+    product[k] = weights.apply([&](long di, long dj) { return p[k + di + dj * M]; });
   }
 }
 
@@ -64,7 +64,7 @@ void apply_to_run(const StencilWeights& weights, const double* p, long M, long c
 template <class Work>
 void SchwarzPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
-  if (threads_ && system_.grid.node_count() > worth_a_thread) {
+  if (threads_ && system_.outline.grid().node_count() > worth_a_thread) {
     threads_->for_each(count, std::ref(work));
   } else {
     for (std::size_t k = 0; k < count; ++k) work(k);
@@ -90,20 +90,19 @@ void SchwarzPlate::let_go() {
   (void)memory_.try_resize(0);  // less memory is always available
 }
 
-Result<void> SchwarzPlate::prepare(const Grid& grid, const InteriorMask& interior,
-                                   const Stiffness& stiffness, double shift) try {
-  const bool same_outline = !parts_.empty() && grid.columns == system_.grid.columns &&
-                            grid.rows == system_.grid.rows && interior == system_.interior;
-  if (is_prepared_ && same_outline && grid == system_.grid && stiffness == system_.stiffness &&
-      shift == system_.shift) {
+Result<void> SchwarzPlate::prepare(const Outline& outline, const Stiffness& stiffness,
+                                   double shift) try {
+  const bool are_same_nodes = !parts_.empty() && have_same_nodes(outline, system_.outline);
+  const Grid& grid = outline.grid();
+  if (is_prepared_ && are_same_nodes && grid == system_.outline.grid() &&
+      stiffness == system_.stiffness && shift == system_.shift) {
     return {};
   }
   is_prepared_ = false;
-  system_.grid = grid;
+  system_.outline = outline;
   system_.stiffness = stiffness;
   system_.shift = shift;
-  if (!same_outline) {
-    system_.interior = interior;
+  if (!are_same_nodes) {
     if (auto laid_out = lay_out(); !laid_out) return laid_out;
   }
   ++counts_.factorizations;
@@ -122,16 +121,16 @@ Result<void> SchwarzPlate::prepare(const Grid& grid, const InteriorMask& interio
   return {};
 } catch (const std::bad_alloc&) {
   let_go();
-  return fail(no_memory_to_solve(unknown_count(grid, interior), "does not fit in memory"));
+  return fail(no_memory_to_solve(outline.unknown_count(), "does not fit in memory"));
 }
 
 Result<void> SchwarzPlate::lay_out() {
-  const Grid& grid = system_.grid;
-  std::vector<Box> cover = cover_by_rectangles(grid, system_.interior);
+  const Grid& grid = system_.outline.grid();
+  std::vector<Box> cover = cover_by_rectangles(system_.outline);
   PLIANT_EXPECTS(!cover.empty());
   once_ = move_independent_back(cover);
   let_go();
-  rows_ = DomainRows(grid, system_.interior);
+  rows_ = RowBlocks(system_.outline);
 
   std::size_t largest = 0;
   std::size_t sides = 0;
@@ -146,11 +145,11 @@ Result<void> SchwarzPlate::lay_out() {
       (std::size_t(grid.node_count()) + 2 * above + 511) / 512 * 512 + 3 * unit;
   const std::size_t patch = (largest + 511) / 512 * 512 + 3 * unit;
   const std::size_t count = 18 * field + 3 * patch + 3 * rows_.block_count();
-  constexpr std::size_t bytes_along_side = 2 * sizeof(DomainRows::Edge) + 10 * sizeof(long);
-  const std::size_t bytes =
-      count * sizeof(double) + rows_.memory() + sides * bytes_along_side + system_.interior.size();
+  constexpr std::size_t bytes_along_side = 2 * sizeof(RowBlocks::Edge) + 10 * sizeof(long);
+  const std::size_t bytes = count * sizeof(double) + rows_.memory() + sides * bytes_along_side +
+                            system_.outline.mask().size();
   if (!memory_.try_resize(bytes)) {
-    return fail(no_memory_to_solve(unknown_count(system_), memory_.complaint(bytes)));
+    return fail(no_memory_to_solve(system_.outline.unknown_count(), memory_.complaint(bytes)));
   }
   numbers_ = NumberBlock(count);
   std::fill_n(numbers_.begin(), count, 0.0);
@@ -189,8 +188,8 @@ void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
 }
 
 SchwarzPlate::Part SchwarzPlate::part_of(const Box& box) const {
-  const Grid& grid = system_.grid;
-  const auto is_interior = [&](int i, int j) { return system_.interior[grid.node(i, j)] != 0; };
+  const Outline& outline = system_.outline;
+  const Grid& grid = outline.grid();
   Part part{box, nullptr, {}, {}};
   for (int j = box.j0; j <= box.j1; ++j) {
     const bool is_end = j == box.j0 || j == box.j1;
@@ -198,9 +197,9 @@ SchwarzPlate::Part SchwarzPlate::part_of(const Box& box) const {
       // In other rows, only the two nodes at the ends.
       if (!is_end && i == box.i0 + 1 && box.i1 > i) i = box.i1;
       const int along_u =
-          (i == box.i0 && is_interior(i - 1, j)) + (i == box.i1 && is_interior(i + 1, j));
+          (i == box.i0 && outline.holds(i - 1, j)) + (i == box.i1 && outline.holds(i + 1, j));
       const int along_v =
-          (j == box.j0 && is_interior(i, j - 1)) + (j == box.j1 && is_interior(i, j + 1));
+          (j == box.j0 && outline.holds(i, j - 1)) + (j == box.j1 && outline.holds(i, j + 1));
       if (along_u + along_v > 0) part.facing.push_back({grid.node(i, j), along_u, along_v});
     }
   }
@@ -208,7 +207,7 @@ SchwarzPlate::Part SchwarzPlate::part_of(const Box& box) const {
     for (int i = std::max(1, box.i0 - 2); i <= std::min(grid.columns - 2, box.i1 + 2); ++i) {
       if (box.contains(i, j)) {
         i = box.i1;
-      } else if (is_interior(i, j)) {
+      } else if (outline.holds(i, j)) {
         part.around.push_back(grid.node(i, j));
       }
     }
@@ -224,11 +223,9 @@ std::size_t SchwarzPlate::memory() const {
 
 // r = f - (shift + L) x in extended precision: eq. (4), (5) and (13).
 void SchwarzPlate::find_residual() {
-  using Real = ExtendedStencil::Real;
-  const ExtendedStencil stencil(system_);
-  const Real two_u = stencil.two_u();
-  const Real two_v = stencil.two_v();
-  const long M = system_.grid.columns;
+  using Real = long double;
+  const Stencil<Real> stencil(system_.outline.grid(), system_.stiffness);
+  const long M = system_.outline.grid().columns;
   for_each_block([&](int component, std::size_t block) {
     const double* const x = solution_.of[component];
     const double* const f = load_.of[component];
@@ -238,9 +235,10 @@ void SchwarzPlate::find_residual() {
     for (const auto& [first, count] : rows_.runs(block)) {
       for (long node = first; node < first + count; ++node) {
         const double* const p = x + node;
-        Real product = stencil.at(p, Real{p[-2]}, Real{p[2]}, Real{p[-2 * M]}, Real{p[2 * M]});
+        Real product =
+            stencil.apply(system_.shift, [&](long di, long dj) { return Real{p[di + dj * M]}; });
         if (edge != last_edge && edge->node == node) {
-          product += (two_u * edge->along_u + two_v * edge->along_v) * p[0];
+          product += (stencil.b * edge->along_u + stencil.d * edge->along_v) * p[0];
           ++edge;
         }
         r[node] = static_cast<double>(f[node] - product);
@@ -251,8 +249,8 @@ void SchwarzPlate::find_residual() {
 
 // q = (shift + L) p.
 void SchwarzPlate::apply_operator() {
-  const StencilWeights weights(system_);
-  const long M = system_.grid.columns;
+  const StencilWeights weights = weights_of(system_);
+  const long M = system_.outline.grid().columns;
   for_each_block([&](int component, std::size_t block) {
     const double* const p = direction_.of[component];
     double* const q = product_.of[component];
@@ -260,7 +258,7 @@ void SchwarzPlate::apply_operator() {
       apply_to_run(weights, p + first, M, count, q + first);
     }
     for (const auto& [node, along_u, along_v] : rows_.edges(block)) {
-      q[node] += (weights.two_u * along_u + weights.two_v * along_v) * p[node];
+      q[node] += weights.ghosts(along_u, along_v) * p[node];
     }
   });
 }
@@ -275,7 +273,7 @@ void SchwarzPlate::apply_rounds() {
   });
   for (int component = 0; component < 3; ++component) {
     if (is_active_[component]) continue;
-    std::fill_n(product_.of[component], system_.grid.node_count(), 0.0);
+    std::fill_n(product_.of[component], system_.outline.grid().node_count(), 0.0);
   }
   const std::size_t count = parts_.size();
   for (std::size_t k = 0; k < count; ++k) visit(parts_[k], k + 1 == count && once_ == count);
@@ -283,7 +281,7 @@ void SchwarzPlate::apply_rounds() {
 }
 
 void SchwarzPlate::visit(const Part& part, bool is_last) {
-  const long M = system_.grid.columns;
+  const long M = system_.outline.grid().columns;
   const long first = part.box.j0 * M + part.box.i0;
   const long width = part.box.columns();
   const ConstNodesView left{product_.of[0] + first, M, product_.of[1] - product_.of[0]};
@@ -297,7 +295,7 @@ void SchwarzPlate::visit(const Part& part, bool is_last) {
 // Adds a rectangle's part y to z and subtracts A y from the rest. On the rectangle, the rest is
 // then only the excess of the clamped sides over A, eq. (35); around it, the stencil's values.
 void SchwarzPlate::take_correction(const Part& part, int component, bool is_last) {
-  const long M = system_.grid.columns;
+  const long M = system_.outline.grid().columns;
   const Box& box = part.box;
   const long width = box.columns();
   const double* const y = patch_.of[component];
@@ -310,23 +308,18 @@ void SchwarzPlate::take_correction(const Part& part, int component, bool is_last
     if (!is_last) std::fill_n(left + first, width, 0.0);
   }
   if (is_last) return;
-  const StencilWeights weights(system_);
+  const StencilWeights weights = weights_of(system_);
   const auto at = [&](long i, long j) {
     const bool is_here = box.i0 <= i && i <= box.i1 && box.j0 <= j && j <= box.j1;
     return is_here ? y[(j - box.j0) * width + (i - box.i0)] : 0;
   };
   for (const auto& [node, along_u, along_v] : part.facing) {
-    left[node] += (weights.two_u * along_u + weights.two_v * along_v) * at(node % M, node / M);
+    left[node] += weights.ghosts(along_u, along_v) * at(node % M, node / M);
   }
   for (const long node : part.around) {
     const long i = node % M;
     const long j = node / M;
-    left[node] -= weights.beside_u * (at(i - 1, j) + at(i + 1, j)) +
-                  weights.beside_v * (at(i, j - 1) + at(i, j + 1)) +
-                  weights.corner * ((at(i - 1, j - 1) + at(i + 1, j - 1)) +
-                                    (at(i - 1, j + 1) + at(i + 1, j + 1))) +
-                  weights.two_u * (at(i - 2, j) + at(i + 2, j)) +
-                  weights.two_v * (at(i, j - 2) + at(i, j + 2));
+    left[node] -= weights.apply([&](int di, int dj) { return at(i + di, j + dj); });
   }
 }
 
@@ -382,7 +375,7 @@ Result<void> SchwarzPlate::correct(const StopRequest& should_stop) {
     return fail(ErrorCode::SolverFailed,
                 fmt::format("the plate of {} unknowns is not solved after {} rounds over its {} "
                             "rectangles",
-                            unknown_count(system_), max_rounds_, parts_.size()));
+                            system_.outline.unknown_count(), max_rounds_, parts_.size()));
   }
   ++rounds_;
   apply_rounds();
@@ -405,7 +398,7 @@ Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should
   }
   while (true) {
     if (!retire(energy, change, target))
-      return fail(not_positive_definite(unknown_count(system_), 0));
+      return fail(not_positive_definite(system_.outline.unknown_count(), 0));
     if (!is_any_active()) return {};
     turn_direction(turn);
     apply_operator();
@@ -413,7 +406,8 @@ Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should
     dot(direction_, product_, curvature);
     for (int k = 0; k < 3; ++k) {
       if (!is_active_[k]) continue;
-      if (!(curvature[k] > 0)) return fail(not_positive_definite(unknown_count(system_), 0));
+      if (!(curvature[k] > 0))
+        return fail(not_positive_definite(system_.outline.unknown_count(), 0));
       step[k] = energy[k] / curvature[k];
       back[k] = -step[k];
     }
@@ -465,7 +459,7 @@ bool SchwarzPlate::settle_if_free(int component) {
       if (!std::all_of(f, f + count, [](double number) { return number == 0; })) return false;
     }
   }
-  std::fill_n(solution_.of[component], system_.grid.node_count(), 0.0);
+  std::fill_n(solution_.of[component], system_.outline.grid().node_count(), 0.0);
   return true;
 }
 

@@ -8,10 +8,11 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/plate/domain_rows.hpp"
 #include "pliant/plate/linear_solver.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/operator.hpp"
+#include "pliant/plate/outline.hpp"
+#include "pliant/plate/row_blocks.hpp"
 #include "pliant/plate/spectral_plate.hpp"
 
 namespace pliant {
@@ -36,8 +37,7 @@ class SchwarzPlate {
   /// Prepares for a system. Reuse of the last one never changes a result's bits. Requires:
   /// `cover_by_rectangles` finds a cover. Errors: SolverFailed if the matrix is not positive
   /// definite or not finite; OutOfMemory.
-  Result<void> prepare(const Grid& grid, const InteriorMask& interior, const Stiffness& stiffness,
-                       double shift);
+  Result<void> prepare(const Outline& outline, const Stiffness& stiffness, double shift);
 
   /// Solves for three right-hand sides from a guess. Fields are on all nodes, row by row without
   /// gaps, and `first` is node (0,0); only interior nodes are read and written. Requires: prepared.
@@ -67,8 +67,8 @@ class SchwarzPlate {
   struct Part {
     Box box;  // of interior nodes
     SpectralPlate* plate = nullptr;
-    std::vector<DomainRows::Edge> facing;  // nodes of `box` beside interior nodes outside it
-    std::vector<long> around;              // interior nodes outside `box` that the stencil reaches
+    std::vector<RowBlocks::Edge> facing;  // nodes of `box` beside interior nodes outside it
+    std::vector<long> around;             // interior nodes outside `box` that the stencil reaches
   };
   // A field on all nodes, surrounded by rows of zeros; 0 at nodes that are not interior.
   struct NodeField {
@@ -113,7 +113,7 @@ class SchwarzPlate {
   PlateSystem system_;
   bool is_prepared_ = false;
   double trusted_gain_ = 0;  // how far a residual may fall before it is recomputed
-  DomainRows rows_;
+  RowBlocks rows_;
   std::vector<std::unique_ptr<SpectralPlate>> plates_;  // one for each size of rectangle
   std::vector<Part> parts_;
   std::size_t once_ = 0;  // number of parts, at the end, that a round visits once

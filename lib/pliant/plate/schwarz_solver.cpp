@@ -21,21 +21,21 @@ class SchwarzPlateSolver final : public PlateSolver {
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
-    const Grid& grid = problem.grid;
+    const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
     if (!plate_)
       plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_,
                                               kernels_of_width(most_lanes_));
-    auto done = plate_->prepare(grid, problem.interior, problem.stiffness, shift);
+    auto done = plate_->prepare(problem.outline, problem.stiffness, shift);
     int step = 0;
     if (done) {
       done = load_.take(problem);
       if (!done) return fail(done.error());
-      subtract_rim(grid, problem.interior, problem.stiffness, problem.tangents, state.displacement,
+      subtract_rim(problem.outline, problem.stiffness, problem.tangents, state.displacement,
                    load_.nodes());
-      clear_rim(problem.interior, state.velocity);
+      clear_rim(problem.outline, state.velocity);
     }
     const auto view = [&](Field& field) {
       return NodesView{field.data(), grid.columns, grid.node_count()};
@@ -51,8 +51,7 @@ class SchwarzPlateSolver final : public PlateSolver {
     return finish_directly(problem, {steps.count - step, steps.length}, std::move(state),
                            should_stop);
   } catch (const std::bad_alloc&) {
-    return fail(no_memory_to_solve(unknown_count(problem.grid, problem.interior),
-                                   "does not fit in memory"));
+    return fail(no_memory_to_solve(problem.outline.unknown_count(), "does not fit in memory"));
   }
 
   SolverCounts counts() const override {
@@ -71,12 +70,6 @@ class SchwarzPlateSolver final : public PlateSolver {
     auto result = advance_backward_euler(*direct, problem, steps, std::move(state), should_stop);
     past_counts_ = past_counts_ + direct->counts();
     return result;
-  }
-
-  static void clear_rim(const InteriorMask& interior, Field& velocity) {
-    for (std::size_t node = 0; node < interior.size(); ++node) {
-      if (!interior[node]) velocity.row(static_cast<Eigen::Index>(node)).setZero();
-    }
   }
 
   MemoryBudget* budget_;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pliant/plate/outline.hpp"
 #include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
@@ -12,15 +13,6 @@ namespace pliant {
 /// that a plate does not evict the data kept for another. The cache never changes a result.
 class SolverCache {
  public:
-  /// The key of a solver; two plates of the same outline share one.
-  struct Outline {
-    int columns = 0;
-    int rows = 0;
-    InteriorMask interior = {};
-
-    friend bool operator==(const Outline&, const Outline&) = default;
-  };
-
   /// For solvers made by `make_plate_solver` with these arguments.
   explicit SolverCache(SolverChoice choice = SolverChoice::Auto, MemoryBudget* budget = nullptr,
                        ThreadPool* threads = nullptr, int most_lanes = widest_lanes)

@@ -9,6 +9,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/stencil.hpp"
 
 namespace pliant {
 namespace {
@@ -180,16 +181,17 @@ void SpectralPlate::fill_modes() {
 }
 
 Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
-  PLIANT_EXPECTS(system.interior.empty());
+  PLIANT_EXPECTS(system.outline.is_rectangle());
   if (prepared_ == system) return {};
-  PLIANT_EXPECTS(system.grid.columns >= 3 && system.grid.rows >= 3);
+  const Grid& grid = system.outline.grid();
+  PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   prepared_.reset();
-  if (auto laid_out = lay_out(system.grid.columns, system.grid.rows); !laid_out) return laid_out;
+  if (auto laid_out = lay_out(grid.columns, grid.rows); !laid_out) return laid_out;
   ++counts_.factorizations;
 
-  const auto quarter = [](double h) { return h * h * h * h; };
-  const double edge_u = 4 * (system.stiffness.b / quarter(system.grid.hu));
-  const double edge_v = 4 * (system.stiffness.d / quarter(system.grid.hv));
+  const Stencil<double> stencil(grid, system.stiffness);
+  const double edge_u = 4 * stencil.b;
+  const double edge_v = 4 * stencil.d;
   const double beta = is_along_u_ ? edge_u : edge_v;
   const double delta = is_along_u_ ? edge_v : edge_u;
   int failed[4];
@@ -205,19 +207,19 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
                                      parity.inverse, parity.panels);
   });
   for (const int pivot : failed) {
-    if (pivot >= 0) return fail(not_positive_definite(unknown_count(system.grid), pivot));
+    if (pivot >= 0) return fail(not_positive_definite(unknown_count(system.outline), pivot));
   }
   prepared_ = system;
   return {};
 } catch (const std::bad_alloc&) {
-  return fail(no_memory_to_solve(unknown_count(system.grid), "does not fit in memory"));
+  return fail(no_memory_to_solve(unknown_count(system.outline), "does not fit in memory"));
 }
 
 // 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Returns whether all are
 // positive.
 bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const Parity& parity = parities_[k];
-  const Grid& grid = system.grid;
+  const Grid& grid = system.outline.grid();
   const Stiffness& stiffness = system.stiffness;
   const double shift = system.shift;
   const double h_along = is_along_u_ ? grid.hu : grid.hv;

@@ -24,9 +24,9 @@ class SpectralLinearSolver final : public LinearSolver {
   }
 
   Result<Field> solve(const Field& right_hand_sides) override {
-    PLIANT_EXPECTS(system_ && right_hand_sides.rows() == unknown_count(system_->grid));
+    PLIANT_EXPECTS(system_ && right_hand_sides.rows() == unknown_count(system_->outline));
     Field solution(right_hand_sides.rows(), 3);
-    const long width = system_->grid.columns - 2;
+    const long width = system_->outline.grid().columns - 2;
     plate_.solve({right_hand_sides.data(), width, right_hand_sides.rows()},
                  {solution.data(), width, solution.rows()});
     return solution;
@@ -48,18 +48,19 @@ class SpectralPlateSolver final : public PlateSolver {
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
-    const Grid& grid = problem.grid;
+    const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.density / steps.length;
     const double shift = (inertia + problem.dynamics.damping) / steps.length;
     StageTimer set_up(problem.profile, Stage::SetUp);
-    if (auto prepared = plate_.prepare({grid, problem.stiffness, shift}); !prepared) {
+    if (auto prepared = plate_.prepare({problem.outline, problem.stiffness, shift}); !prepared) {
       return fail(prepared.error());
     }
     set_up.stop();
     const StageTimer solve(problem.profile, Stage::Solve);
     if (auto taken = load_.take(problem); !taken) return fail(taken.error());
-    subtract_rim(grid, problem.stiffness, problem.tangents, state.displacement, load_.nodes());
+    subtract_rim(problem.outline, problem.stiffness, problem.tangents, state.displacement,
+                 load_.nodes());
 
     const long first = grid.node(1, 1);
     const long count = grid.node_count();
@@ -68,27 +69,16 @@ class SpectralPlateSolver final : public PlateSolver {
                        {state.displacement.data() + first, grid.columns, count},
                        {state.velocity.data() + first, grid.columns, count}, should_stop);
     if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
-    clear_rim(grid, state.velocity);
+    clear_rim(problem.outline, state.velocity);
     return state;
   } catch (const std::bad_alloc&) {
-    return fail(no_memory_to_solve(unknown_count(problem.grid), "does not fit in memory"));
+    return fail(no_memory_to_solve(problem.outline.unknown_count(), "does not fit in memory"));
   }
 
   SolverCounts counts() const override { return plate_.counts(); }
   std::size_t memory() const override { return plate_.memory() + load_.memory(); }
 
  private:
-  static void clear_rim(const Grid& grid, Field& velocity) {
-    for (int component = 0; component < 3; ++component) {
-      auto column = velocity.col(component);
-      column.head(grid.columns).setZero();
-      column.tail(grid.columns).setZero();
-      for (int j = 1; j + 1 < grid.rows; ++j) {
-        column[grid.node(0, j)] = column[grid.node(grid.columns - 1, j)] = 0;
-      }
-    }
-  }
-
   SpectralPlate plate_;
   LoadCopy load_;
 };

@@ -1,20 +1,134 @@
 #pragma once
 
+#include <cstddef>
+
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
+#include "pliant/plate/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {
 
-/// b/hu^4, c/(hu^2 hv^2) and d/hv^4: the stiffness including the divisors of the differences along
-/// u and v. docs/model.md, eq. (4) and (5).
-Stiffness scaled_stiffness(const Grid& grid, const Stiffness& stiffness);
+/// L w = b w_uuuu + c w_uuvv + d w_vvvv by second-order central differences on 13 nodes, with
+/// coefficients and sums in numbers of type `Real`. The only place where the differences are
+/// written. Thesis 4.3; SPEC 4; docs/model.md, eq. (4) and (5).
+template <class Real>
+struct Stencil {
+  Stencil(const Grid& grid, const Stiffness& stiffness) {
+    const Real hu = grid.hu;
+    const Real hv = grid.hv;
+    b = stiffness.b / (hu * hu * hu * hu);
+    c = stiffness.c / (hu * hu * hv * hv);
+    d = stiffness.d / (hv * hv * hv * hv);
+  }
 
-/// L w = b w_uuuu + c w_uuvv + d w_vvvv at the interior nodes (#unknowns x 3) of a field w on all
-/// nodes (#nodes x 3), by second-order central differences on the 13-point stencil. The ghost nodes
-/// outside the rim represent the tangents. Thesis 4.3; SPEC 4; docs/model.md, eq. (4) to (7).
-/// Requires: at least 3 x 3 nodes.
-Field apply_stencil(const Grid& grid, const Stiffness& stiffness, const EdgeTangents& tangents,
-                    const Field& w);
+  /// L w at a node. at(di, dj) is w at the node that many columns and rows away, or at its ghost.
+  template <class At>
+  Real apply(const At& at) const {
+    const Differences x = differences(at);
+    return b * x.uuuu + c * x.uuvv + d * x.vvvv;
+  }
+
+  /// shift w + L w.
+  template <class At>
+  Real apply(double shift, const At& at) const {
+    const Differences x = differences(at);
+    return shift * at(0, 0) + b * x.uuuu + c * x.uuvv + d * x.vvvv;
+  }
+
+  Real b, c, d;  ///< the stiffness including the divisors: b/hu^4, c/(hu^2 hv^2), d/hv^4
+
+ private:
+  struct Differences {
+    Real uuuu, uuvv, vvvv;
+  };
+
+  template <class At>
+  static Differences differences(const At& at) {
+    const Real here = at(0, 0);
+    const Real below = at(0, -1), above = at(0, 1);
+    const Real beside_u = at(-1, 0) + at(1, 0);
+    const Real beside_v = below + above;
+    const Real corners = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1);
+    // Eq. (4): (1 -4 6 -4 1) along each direction. Eq. (5): (1 -2 1) x (1 -2 1) mixed.
+    return {(at(-2, 0) + at(2, 0)) - 4 * beside_u + 6 * here,
+            corners - 2 * (beside_u + below + above) + 4 * here,
+            (at(0, -2) + at(0, 2)) - 4 * beside_v + 6 * here};
+  }
+};
+
+/// The stencil of shift + L gathered by neighbour, without what the rim adds: eq. (4), (5), (7).
+struct StencilWeights {
+  StencilWeights(const Grid& grid, const Stiffness& stiffness, double shift) {
+    const Stencil<double> stencil(grid, stiffness);
+    two_u = stencil.b;
+    corner = stencil.c;
+    two_v = stencil.d;
+    centre = shift + 6 * two_u + 4 * corner + 6 * two_v;
+    beside_u = -4 * two_u - 2 * corner;
+    beside_v = -2 * corner - 4 * two_v;
+  }
+
+  /// shift w + L w at a node; at(di, dj) as for `Stencil`, but 0 at ghosts.
+  template <class At>
+  double apply(const At& at) const {
+    return centre * at(0, 0) + beside_u * (at(-1, 0) + at(1, 0)) +
+           beside_v * (at(0, -1) + at(0, 1)) +
+           corner * ((at(-1, -1) + at(1, -1)) + (at(-1, 1) + at(1, 1))) +
+           two_u * (at(-2, 0) + at(2, 0)) + two_v * (at(0, -2) + at(0, 2));
+  }
+
+  /// What ghosts add to the centre: how many mirror the node along u and along v.
+  double ghosts(int along_u, int along_v) const { return two_u * along_u + two_v * along_v; }
+
+  double centre, beside_u, beside_v;
+  double corner;  ///< of the four diagonal neighbours
+  double two_u;   ///< of those two steps away; a rim beside the node adds it to the centre
+  double two_v;
+};
+
+/// w around interior node (i,j), as `Stencil` takes it: `value(i, j)` of nodes, `ghost(i, j)`
+/// outside the grid, and otherwise beyond the rim node (i,j) itself, mirrored, even if another node
+/// of the grid is there. docs/model.md, eq. (12).
+template <class Value, class Ghost>
+auto around(const Outline& outline, int i, int j, const Value& value, const Ghost& ghost) {
+  return [&outline, i, j, &value, &ghost](int di, int dj) {
+    const bool is_far = di * di + dj * dj == 4;
+    if (!is_far || outline.holds(i + di / 2, j + dj / 2)) return value(i + di, j + dj);
+    const Grid& grid = outline.grid();
+    const bool is_inside =
+        i + di >= 0 && i + di < grid.columns && j + dj >= 0 && j + dj < grid.rows;
+    return is_inside ? value(i, j) : ghost(i + di, j + dj, value(i, j));
+  };
+}
+
+/// The ghosts outside a grid of one component of w: eq. (6), the node they mirror plus the slope
+/// times two spacings.
+class EdgeGhosts {
+ public:
+  EdgeGhosts(const Grid& grid, const EdgeTangents& tangents, int component)
+      : columns_(grid.columns),
+        u0_(-2 * grid.hu * tangents.su0[component]),
+        u1_(2 * grid.hu * tangents.su1[component]),
+        v0_(-2 * grid.hv * tangents.sv0[component]),
+        v1_(2 * grid.hv * tangents.sv1[component]) {}
+
+  double operator()(int i, int j, double mirrored) const {
+    if (i < 0) return mirrored + u0_;
+    if (i >= columns_) return mirrored + u1_;
+    return mirrored + (j < 0 ? v0_ : v1_);
+  }
+
+ private:
+  int columns_;
+  double u0_, u1_, v0_, v1_;
+};
+
+/// L w at the interior nodes (#unknowns x 3) of a field w on all nodes (#nodes x 3). Ghosts mirror
+/// the nodes beside the rim; tangents are those of rim nodes on the grid's outermost rows and
+/// columns, and at all other rim nodes the slope is 0. SPEC 4, 5; docs/model.md, eq. (4) to (7),
+/// (12). Requires: at least 3 x 3 nodes.
+Field apply_stencil(const Outline& outline, const Stiffness& stiffness,
+                    const EdgeTangents& tangents, const Field& w);
 
 }  // namespace pliant

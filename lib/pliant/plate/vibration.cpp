@@ -15,7 +15,7 @@ namespace {
 // Shapes that satisfy the clamped rim: a bump, and the bump made odd along u and along v. For any
 // symmetry of the slowest vibration, one of them has a component along it.
 Field starting_shapes(const PlateSystem& system) {
-  const Grid& grid = system.grid;
+  const Grid& grid = system.outline.grid();
   Field shapes(grid.node_count(), 3);
   for (int j = 0; j < grid.rows; ++j) {
     const double y = static_cast<double>(j) / (grid.rows - 1);
@@ -26,11 +26,11 @@ Field starting_shapes(const PlateSystem& system) {
       shapes.row(grid.node(i, j)) << bump, bump * (x - 0.49), bump * (y - 0.51);
     }
   }
-  return interior_of(grid, system.interior, shapes);
+  return interior_of(system.outline, shapes);
 }
 
 Result<void> make_ready(LinearSolver& solver, const PlateSystem& system) {
-  PLIANT_EXPECTS(system.shift == 0 && unknown_count(system) >= 1);
+  PLIANT_EXPECTS(system.shift == 0 && unknown_count(system.outline) >= 1);
   return solver.factor(system);
 }
 
@@ -71,7 +71,7 @@ Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& syst
 Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const PlateSystem& system,
                                                const Eigen::VectorXd& shape, Eigen::Index node,
                                                const StopRequest& should_stop) {
-  PLIANT_EXPECTS(shape.size() == unknown_count(system) && shape(node) != 0);
+  PLIANT_EXPECTS(shape.size() == unknown_count(system.outline) && shape(node) != 0);
   if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
   // Q^T inverse(L) Q = T is tridiagonal; the first column of Q is the shape's direction. Each new

@@ -12,7 +12,7 @@ namespace pliant {
 enum class Combine {
   Box,      ///< one box around everything: the thesis
   Islands,  ///< boxes that share a node merge into their common box; each is solved separately
-  Union,    ///< the cells of all boxes together are one domain, of any outline
+  Union,    ///< the cells of all boxes together are one region, of any outline
 };
 
 /// The cells of its parts, which are solved together. A node is interior if all its four cells are

@@ -163,21 +163,18 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
     moved = &patch;
   }
   const Box& box = moved->box;
-  const PlateSystem system{{box.columns(), box.rows(), mapping_.grid.hu, mapping_.grid.hv},
-                           inputs.stiffness,
-                           0,
-                           moved->interior};
+  const Grid grid{box.columns(), box.rows(), mapping_.grid.hu, mapping_.grid.hv};
+  const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
   if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
 
   // The same choice of solver as a run makes for such a region.
-  const bool is_spectral =
-      moved->is_rectangle() && worth_transforming(system.grid, system.stiffness);
+  const bool is_spectral = moved->is_rectangle() && worth_transforming(grid, system.stiffness);
   const auto solver =
       make_solver(is_spectral ? SolverKind::Spectral : available_solvers().front(), &memory_);
   const auto lambda = smallest_eigenvalue(*solver, system, should_stop_);
   if (!lambda) return fail(lambda.error());
   std::vector<ExcitedMode> modes = {{*lambda, 1}};
-  const Field ways = interior_of(system.grid, system.interior, displacements(box));
+  const Field ways = interior_of(system.outline, displacements(box));
   Eigen::Index node = 0;
   const Field world = vectors_to_world(inputs.transform, ways);
   const double size = std::sqrt(world.rowwise().squaredNorm().maxCoeff(&node));

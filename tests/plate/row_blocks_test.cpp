@@ -1,4 +1,4 @@
-#include "pliant/plate/domain_rows.hpp"
+#include "pliant/plate/row_blocks.hpp"
 
 #include "support/catch.hpp"
 #include "support/unions.hpp"
@@ -8,7 +8,7 @@ using namespace pliant;
 TEST_CASE("runs of rows hold each interior node once, in order", "[plate][schwarz]") {
   for (const auto& [name, grid, interior] : pliant::testing::union_plates(40)) {
     CAPTURE(name);
-    const DomainRows rows(grid, interior);
+    const RowBlocks rows(Outline(grid, interior));
     InteriorMask seen(interior.size(), 0);
     std::vector<int> rims(interior.size(), 0);
     long last = -1;

@@ -4,15 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "pliant/core/grid.hpp"
-#include "pliant/plate/domain.hpp"
+#include "pliant/plate/outline.hpp"
 
 namespace pliant {
 
-/// The interior nodes of a mask as runs along u, and those beside the rim, in blocks of rows. The
-/// blocks depend on the mask only: results computed block by block, including sums, are
-/// bit-identical for any number of threads. Internal to plate.
-class DomainRows {
+/// The runs of an outline, and its nodes beside the rim, in blocks of rows. The blocks depend on
+/// the outline only: results computed block by block, including sums, are bit-identical for any
+/// number of threads. Internal to plate.
+class RowBlocks {
  public:
   struct Run {
     long first;  ///< node
@@ -24,8 +23,8 @@ class DomainRows {
     int along_u, along_v;
   };
 
-  DomainRows() = default;
-  DomainRows(const Grid& grid, const InteriorMask& interior);
+  RowBlocks() = default;
+  explicit RowBlocks(const Outline& outline);
 
   std::size_t block_count() const { return blocks_.size(); }
   std::span<const Run> runs(std::size_t block) const {

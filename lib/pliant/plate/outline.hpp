@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/grid.hpp"
+
+namespace pliant {
+
+/// 1 for each interior node of a grid and 0 for the others (#nodes, row = grid.node(i, j)).
+using InteriorMask = std::vector<std::uint8_t>;
+
+/// The shape of a patch: which nodes of a grid are interior. The others are its rim, or belong to
+/// no patch. Unknowns are the interior nodes, numbered row by row. In each row they form runs: in a
+/// rectangle, one from the second node to the last but one; in any other outline, those of a mask.
+/// SPEC 5; docs/model.md, eq. (12) to (14).
+///
+/// Everything that depends on the shape asks the outline: which nodes are unknowns, and which are
+/// next to the rim. An outline that is periodic in u or v would answer here that it has no rim at
+/// those ends.
+class Outline {
+ public:
+  /// Neighbouring interior nodes, (i0,j) to (i1,j), with no interior node before or after them.
+  struct Run {
+    int j, i0, i1;
+
+    int count() const { return i1 - i0 + 1; }
+  };
+
+  Outline() = default;
+
+  /// The rectangle: all nodes but the outermost are interior. Not explicit, since most plates are
+  /// rectangles.
+  Outline(const Grid& grid);  // NOLINT
+
+  /// Any other outline; an empty mask is the rectangle again. Requires: interior nodes have all
+  /// eight neighbours in the grid. If two nodes that are two steps apart along u or v are interior,
+  /// so is the one between them, as for every outline that follows cells.
+  Outline(const Grid& grid, InteriorMask mask);
+
+  const Grid& grid() const { return grid_; }
+  bool is_rectangle() const { return mask_.empty(); }
+  const InteriorMask& mask() const { return mask_; }  ///< empty for a rectangle
+  int unknown_count() const { return unknowns_; }
+
+  /// Whether node (i,j) is interior. Requires: it is a node of the grid.
+  bool holds(int i, int j) const {
+    if (!is_rectangle()) return mask_[static_cast<std::size_t>(grid_.node(i, j))] != 0;
+    return i > 0 && i < grid_.columns - 1 && j > 0 && j < grid_.rows - 1;
+  }
+
+  /// Calls f(run) for all runs, row by row.
+  template <class F>
+  void for_each_run(const F& f) const {
+    for (int j = 1; j < grid_.rows - 1; ++j) {
+      if (is_rectangle()) {
+        if (grid_.columns >= 3) f(Run{j, 1, grid_.columns - 2});
+        continue;
+      }
+      const auto row = mask_.begin() + grid_.node(0, j), end = row + grid_.columns;
+      for (auto first = row, last = row; first != end; first = last) {
+        first = std::find(first, end, std::uint8_t{1});
+        last = std::find(first, end, std::uint8_t{0});
+        if (first == end) break;
+        f(Run{j, static_cast<int>(first - row), static_cast<int>(last - row) - 1});
+      }
+    }
+  }
+
+  /// Calls f(i, j) for the interior nodes beside which the stencil may reach the rim; the values
+  /// around all others are those of interior nodes. Row by row.
+  template <class F>
+  void for_each_near_rim(const F& f) const {
+    for_each_run([&](const Run& run) {
+      const auto& [j, i0, i1] = run;
+      const bool is_deep = run.count() > 4 && holds_all({j - 1, i0 + 1, i1 - 1}) &&
+                           holds_all({j + 1, i0 + 1, i1 - 1}) &&
+                           holds_all({j - 2, i0 + 2, i1 - 2}) && holds_all({j + 2, i0 + 2, i1 - 2});
+      for (int i = i0; i <= i1; ++i) {
+        if (is_deep && i == i0 + 2) i = i1 - 1;  // only the two nodes at each end
+        f(i, j);
+      }
+    });
+  }
+
+  friend bool operator==(const Outline&, const Outline&) = default;
+
+ private:
+  bool holds_all(const Run& nodes) const;
+
+  Grid grid_;
+  InteriorMask mask_;  // empty: a rectangle
+  int unknowns_ = 0;
+};
+
+inline int unknown_count(const Outline& outline) { return outline.unknown_count(); }
+
+/// Whether two outlines differ in their spacings at most, so that their matrices have one pattern.
+bool have_same_nodes(const Outline& a, const Outline& b);
+
+/// The interior rows of a field on all nodes (#nodes x 3 -> #unknowns x 3).
+Field interior_of(const Outline& outline, const Field& nodes);
+
+/// Writes interior rows back: `nodes` with its interior replaced, all other rows unchanged.
+Field with_interior(const Outline& outline, Field nodes, const Field& unknowns);
+
+/// Sets the rows of all nodes that are not interior to 0.
+void clear_rim(const Outline& outline, Field& nodes);
+
+}  // namespace pliant
