@@ -60,8 +60,6 @@ Field residual(const PlateSystem& system, const Field& w, const Field& f) {
 
   Field result(f.rows(), 3);
   std::vector<Real> nodes(static_cast<std::size_t>(grid.node_count()));  // the rim remains 0
-  const auto value = [&](int i, int j) { return nodes[grid.node(i, j)]; };
-  const auto ghost = [](int, int, Real mirrored) { return mirrored; };
   for (int component = 0; component < 3; ++component) {
     int row = 0;
     outline.for_each_run([&](const Outline::Run& run) {
@@ -70,7 +68,12 @@ Field residual(const PlateSystem& system, const Field& w, const Field& f) {
     row = 0;
     outline.for_each_run([&](const Outline::Run& run) {
       for (int i = run.i0; i <= run.i1; ++i, ++row) {
-        const Real product = stencil.apply(system.shift, around(outline, i, run.j, value, ghost));
+        const Real* const p = &nodes[grid.node(i, run.j)];
+        const auto near = [&](int di, int dj) { return p[grid.node(di, dj)]; };
+        const auto far = [&](int di, int dj) {
+          return is_ghost(outline, i, run.j, di, dj) ? p[0] : near(di, dj);
+        };
+        const Real product = stencil.apply(system.shift, near, far);
         result(row, component) = static_cast<double>(f(row, component) - product);
       }
     });

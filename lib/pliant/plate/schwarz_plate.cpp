@@ -235,8 +235,8 @@ void SchwarzPlate::find_residual() {
     for (const auto& [first, count] : rows_.runs(block)) {
       for (long node = first; node < first + count; ++node) {
         const double* const p = x + node;
-        Real product =
-            stencil.apply(system_.shift, [&](long di, long dj) { return Real{p[di + dj * M]}; });
+        const auto at = [&](long di, long dj) { return Real{p[di + dj * M]}; };
+        Real product = stencil.apply(system_.shift, at, at);
         if (edge != last_edge && edge->node == node) {
           product += (stencil.b * edge->along_u + stencil.d * edge->along_v) * p[0];
           ++edge;

@@ -11,12 +11,17 @@ Field apply_stencil(const Outline& outline, const Stiffness& stiffness,
   const Stencil<double> stencil(grid, stiffness);
   Field result(outline.unknown_count(), 3);
   for (int component = 0; component < 3; ++component) {
-    const EdgeGhosts ghost(grid, tangents, component);
-    const auto value = [&](int i, int j) { return w(grid.node(i, j), component); };
+    const EdgeGhosts ghosts(grid, tangents, component);
     int row = 0;
     outline.for_each_run([&](const Outline::Run& run) {
+      const int j = run.j;
       for (int i = run.i0; i <= run.i1; ++i) {
-        result(row++, component) = stencil.apply(around(outline, i, run.j, value, ghost));
+        const double* const p = w.col(component).data() + grid.node(i, j);
+        const auto near = [&](int di, int dj) { return p[grid.node(di, dj)]; };
+        const auto far = [&](int di, int dj) {
+          return is_ghost(outline, i, j, di, dj) ? p[0] + ghosts.at(i + di, j + dj) : near(di, dj);
+        };
+        result(row++, component) = stencil.apply(near, far);
       }
     });
   }

@@ -22,18 +22,19 @@ struct Stencil {
     d = stiffness.d / (hv * hv * hv * hv);
   }
 
-  /// L w at a node. at(di, dj) is w at the node that many columns and rows away, or at its ghost.
-  template <class At>
-  Real apply(const At& at) const {
-    const Differences x = differences(at);
+  /// L w at a node. near(di, dj) is w at the node itself and its eight neighbours, that many
+  /// columns and rows away; far(di, dj) at the four nodes two steps away, or at their ghosts.
+  template <class Near, class Far>
+  Real apply(const Near& near, const Far& far) const {
+    const Differences x = differences(near, far);
     return b * x.uuuu + c * x.uuvv + d * x.vvvv;
   }
 
   /// shift w + L w.
-  template <class At>
-  Real apply(double shift, const At& at) const {
-    const Differences x = differences(at);
-    return shift * at(0, 0) + b * x.uuuu + c * x.uuvv + d * x.vvvv;
+  template <class Near, class Far>
+  Real apply(double shift, const Near& near, const Far& far) const {
+    const Differences x = differences(near, far);
+    return shift * near(0, 0) + b * x.uuuu + c * x.uuvv + d * x.vvvv;
   }
 
   Real b, c, d;  ///< the stiffness including the divisors: b/hu^4, c/(hu^2 hv^2), d/hv^4
@@ -43,17 +44,17 @@ struct Stencil {
     Real uuuu, uuvv, vvvv;
   };
 
-  template <class At>
-  static Differences differences(const At& at) {
-    const Real here = at(0, 0);
-    const Real below = at(0, -1), above = at(0, 1);
-    const Real beside_u = at(-1, 0) + at(1, 0);
+  template <class Near, class Far>
+  static Differences differences(const Near& near, const Far& far) {
+    const Real here = near(0, 0);
+    const Real below = near(0, -1), above = near(0, 1);
+    const Real beside_u = near(-1, 0) + near(1, 0);
     const Real beside_v = below + above;
-    const Real corners = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1);
+    const Real corners = near(-1, -1) + near(1, -1) + near(-1, 1) + near(1, 1);
     // Eq. (4): (1 -4 6 -4 1) along each direction. Eq. (5): (1 -2 1) x (1 -2 1) mixed.
-    return {(at(-2, 0) + at(2, 0)) - 4 * beside_u + 6 * here,
+    return {(far(-2, 0) + far(2, 0)) - 4 * beside_u + 6 * here,
             corners - 2 * (beside_u + below + above) + 4 * here,
-            (at(0, -2) + at(0, 2)) - 4 * beside_v + 6 * here};
+            (far(0, -2) + far(0, 2)) - 4 * beside_v + 6 * here};
   }
 };
 
@@ -69,7 +70,7 @@ struct StencilWeights {
     beside_v = -2 * corner - 4 * two_v;
   }
 
-  /// shift w + L w at a node; at(di, dj) as for `Stencil`, but 0 at ghosts.
+  /// shift w + L w at a node. at(di, dj) is w that many columns and rows away, 0 at ghosts.
   template <class At>
   double apply(const At& at) const {
     return centre * at(0, 0) + beside_u * (at(-1, 0) + at(1, 0)) +
@@ -87,40 +88,35 @@ struct StencilWeights {
   double two_v;
 };
 
-/// w around interior node (i,j), as `Stencil` takes it: `value(i, j)` of nodes, `ghost(i, j)`
-/// outside the grid, and otherwise beyond the rim node (i,j) itself, mirrored, even if another node
-/// of the grid is there. docs/model.md, eq. (12).
-template <class Value, class Ghost>
-auto around(const Outline& outline, int i, int j, const Value& value, const Ghost& ghost) {
-  return [&outline, i, j, &value, &ghost](int di, int dj) {
-    const bool is_far = di * di + dj * dj == 4;
-    if (!is_far || outline.holds(i + di / 2, j + dj / 2)) return value(i + di, j + dj);
-    const Grid& grid = outline.grid();
-    const bool is_inside =
-        i + di >= 0 && i + di < grid.columns && j + dj >= 0 && j + dj < grid.rows;
-    return is_inside ? value(i, j) : ghost(i + di, j + dj, value(i, j));
-  };
+/// Whether the node two steps away from interior node (i,j) is a ghost: the one between is rim. It
+/// is then (i,j) itself, mirrored, even if another node of the grid is there, and outside the grid
+/// has the term of `EdgeGhosts` too. docs/model.md, eq. (12).
+inline bool is_ghost(const Outline& outline, int i, int j, int di, int dj) {
+  return !outline.holds(i + di / 2, j + dj / 2);
 }
 
-/// The ghosts outside a grid of one component of w: eq. (6), the node they mirror plus the slope
-/// times two spacings.
+/// What the tangents add to ghosts outside a grid, in one component: the slope times two spacings.
+/// docs/model.md, eq. (6).
 class EdgeGhosts {
  public:
   EdgeGhosts(const Grid& grid, const EdgeTangents& tangents, int component)
       : columns_(grid.columns),
+        rows_(grid.rows),
         u0_(-2 * grid.hu * tangents.su0[component]),
         u1_(2 * grid.hu * tangents.su1[component]),
         v0_(-2 * grid.hv * tangents.sv0[component]),
         v1_(2 * grid.hv * tangents.sv1[component]) {}
 
-  double operator()(int i, int j, double mirrored) const {
-    if (i < 0) return mirrored + u0_;
-    if (i >= columns_) return mirrored + u1_;
-    return mirrored + (j < 0 ? v0_ : v1_);
+  /// At column i and row j; 0 inside the grid.
+  double at(int i, int j) const {
+    if (i < 0) return u0_;
+    if (i >= columns_) return u1_;
+    if (j < 0) return v0_;
+    return j >= rows_ ? v1_ : 0;
   }
 
  private:
-  int columns_;
+  int columns_, rows_;
   double u0_, u1_, v0_, v1_;
 };
 
