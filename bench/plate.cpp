@@ -55,28 +55,24 @@ double median(std::vector<double> numbers) {
   return *middle;
 }
 
-double shift_of(const Dynamics& d) { return (d.density / dt + d.damping) / dt; }
-
 // A frame of sparse factors. [s]
 struct DirectCost {
   double factor = 0;
   double step = 0;
 };
 
-DirectCost cost_of(LinearSolver& solver, const PlateProblem& problem, const PlateState& state) {
-  PlateSystem system{problem.outline, problem.stiffness, shift_of(problem.dynamics)};
-  if (!solver.factor(system)) return {};  // computes the fill-reducing order, which is kept
+DirectCost cost_of(PlateSolver& solver, const PlateProblem& problem, const PlateState& state) {
+  PlateSystem system{problem.outline, problem.stiffness, problem.dynamics.shift(dt)};
+  if (!solver.prepare(system)) return {};  // computes the fill-reducing order, which is kept
   system.stiffness.c += 1e-6;
   DirectCost cost;
-  cost.factor = seconds([&] { (void)solver.factor(system); });
+  cost.factor = seconds([&] { (void)solver.prepare(system); });
   PlateProblem factored = problem;
   factored.stiffness = system.stiffness;
   constexpr int count = 2;
   std::vector<double> times;
   for (int round = 0; round < 3; ++round) {
-    times.push_back(seconds([&] {
-      (void)advance_backward_euler(solver, factored, {count, dt}, state);
-    }));
+    times.push_back(seconds([&] { (void)solver.advance(factored, {count, dt}, state); }));
   }
   cost.step = median(times) / count;
   return cost;
@@ -109,7 +105,7 @@ Row measure(int columns, int rows, const Options& options, ThreadPool& threads) 
       now = solver->advance(problem, {count, dt}, std::move(now)).value();
     };
     SpectralPlate set_up(nullptr, &threads);
-    PlateSystem system{grid, problem.stiffness, shift_of(dynamics)};
+    PlateSystem system{grid, problem.stiffness, dynamics.shift(dt)};
     (void)set_up.prepare(system);
     std::vector<double> a(static_cast<std::size_t>(5 * nodes), 0.0), b(a.size(), 1.0),
         c(a.size(), 2.0);
@@ -148,10 +144,10 @@ Row measure(int columns, int rows, const Options& options, ThreadPool& threads) 
   }
 #endif
   if (4 * nodes <= direct + 4L * options.direct_side && is_available(SolverChoice::Cholmod)) {
-    row.simplicial = cost_of(*make_solver(SolverKind::Cholmod), problem, state);
+    row.simplicial = cost_of(*make_plate_solver(SolverChoice::Cholmod), problem, state);
   }
   if (4 * nodes <= direct + 4L * options.direct_side) {
-    row.eigen = cost_of(*make_solver(SolverKind::Eigen), problem, state);
+    row.eigen = cost_of(*make_plate_solver(SolverChoice::Eigen), problem, state);
   }
   return row;
 }

@@ -4,13 +4,14 @@
 
 #include <cholmod.h>
 
-#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/operator.hpp"
+#include "pliant/plate/plate_solver.hpp"
 
 namespace pliant::bench {
 
 /// CHOLMOD's supernodal Cholesky with the system's BLAS, for comparison only: its bits depend on
 /// the BLAS, and its licence is the GPL.
-class SupernodalSolver final : public LinearSolver {
+class SupernodalSolver final : public PlateSolver {
  public:
   SupernodalSolver() {
     cholmod_start(&common_);
@@ -26,7 +27,7 @@ class SupernodalSolver final : public LinearSolver {
     cholmod_finish(&common_);
   }
 
-  Result<void> factor(const PlateSystem& system) override {
+  Result<void> prepare(const PlateSystem& system) override {
     if (factored_ == system) return {};
     const SparseMatrix matrix = assemble_upper(system);
     cholmod_sparse view = {};

@@ -105,8 +105,8 @@ Times measure(PlateProblem problem, int repetitions, const Make& make) {
 void measure(const char* shape, int side, const std::vector<Box>& boxes) {
   const PlateProblem problem = problem_on(side, boxes);
   const bool is_small = side < 300;
-  const Times ours = measure(problem, is_small ? 5 : 3,
-                             [] { return make_schwarz_plate_solver(nullptr, nullptr); });
+  const Times ours =
+      measure(problem, is_small ? 5 : 3, [] { return make_schwarz_solver(nullptr, nullptr); });
   const SolverChoice choice =
       is_available(SolverChoice::Cholmod) ? SolverChoice::Cholmod : SolverChoice::Eigen;
   const Times direct =

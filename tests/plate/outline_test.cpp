@@ -118,9 +118,9 @@ std::pair<Grid, InteriorMask> random_union(std::mt19937& random) {
 }  // namespace
 
 // The solvers for any outline.
-std::vector<SolverKind> direct_solvers() {
-  std::vector<SolverKind> kinds = available_solvers();
-  std::erase(kinds, SolverKind::Spectral);
+std::vector<SolverChoice> direct_solvers() {
+  std::vector<SolverChoice> kinds = available_solvers();
+  std::erase(kinds, SolverChoice::Spectral);
   return kinds;
 }
 
@@ -257,22 +257,22 @@ TEST_CASE("rim values enter as the slow reading says", "[plate][union]") {
 
 TEST_CASE("solvers agree with dense Cholesky on unions and keep what they can",
           "[plate][union][solver]") {
-  const auto solver = make_solver(GENERATE(from_range(direct_solvers())));
+  const auto solver = make_plate_solver(GENERATE(from_range(direct_solvers())));
   const Grid grid = unit_grid(15, 13);
   PlateSystem system{{grid, ell(grid)}, {1, 2, 1}, 7};
   const Eigen::MatrixXd dense = SlowPlate(system, ell(grid)).dense();
   const Field f = Field::Random(dense.rows(), 3);
-  REQUIRE(solver->factor(system));
+  REQUIRE(solver->prepare(system));
   const Field w = solver->solve(f).value();
   CHECK((dense * w - f).norm() <= 1e-13 * (dense.norm() * w.norm() + f.norm()));
-  REQUIRE(solver->factor(system));
+  REQUIRE(solver->prepare(system));
   CHECK(solver->counts().factorizations == 1);
   system.shift = 8;
-  REQUIRE(solver->factor(system));
+  REQUIRE(solver->prepare(system));
   CHECK(solver->counts().analyses == 1);
-  REQUIRE(solver->factor({grid, {1, 2, 1}, 8}));  // as large, but not an L
+  REQUIRE(solver->prepare({grid, {1, 2, 1}, 8}));  // as large, but not an L
   CHECK(solver->counts().analyses == 2);
-  REQUIRE(solver->factor({{grid, ell(grid)}, {1, 2, 1}, 7}));
+  REQUIRE(solver->prepare({{grid, ell(grid)}, {1, 2, 1}, 7}));
   CHECK(solver->solve(f).value() == w);
 }
 
@@ -311,7 +311,7 @@ TEST_CASE("an L-shape converges with order 2", "[plate][union]") {
              s.d * derivative(u, 0) * derivative(v, 4);
     });
     const Outline outline(grid, ell(grid));
-    const auto solver = make_solver();
+    const auto solver = make_plate_solver(available_solvers().front());
     const PlateProblem problem{outline, s, {0, 0}, {}, load};
     const PlateState start{Field::Zero(grid.node_count(), 3), Field::Zero(grid.node_count(), 3)};
     const auto solved = advance_backward_euler(*solver, problem, {1, 1}, start).value();

@@ -52,7 +52,7 @@ int main() {
   const auto spectral = make_plate_solver(SolverChoice::Auto, nullptr, &threads);
   bool is_good =
       is_free_of_allocations("rectangle", *spectral, {grid, {1, 2, 1}, {40, 20}, {}, load});
-  const auto schwarz = make_schwarz_plate_solver(nullptr, &threads);
+  const auto schwarz = make_schwarz_solver(nullptr, &threads);
   is_good = is_free_of_allocations("union", *schwarz,
                                    {{grid, three_quarters(grid)}, {1, 2, 1}, {40, 20}, {}, load}) &&
             is_good;

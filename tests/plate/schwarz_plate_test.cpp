@@ -40,8 +40,8 @@ Field solved(SchwarzPlate& schwarz, const UnionPlate& plate, const Field& load) 
 
 // By a factorisation, exact to the last digits: refined with residuals in extended precision.
 Field refined(const PlateSystem& system, const Field& f) {
-  const auto solver = make_solver();
-  REQUIRE(solver->factor(system));
+  const auto solver = make_plate_solver(available_solvers().front());
+  REQUIRE(solver->prepare(system));
   Field w = solver->solve(f).value();
   for (int pass = 0; pass < 4; ++pass) w += solver->solve(residual(system, w, f)).value();
   return w;
@@ -91,7 +91,7 @@ TEST_CASE("steps over rectangles are those of a factored matrix", "[plate][schwa
     for (const double dt : {1e-6, 1e-3, 1e3}) {
       const PlateProblem problem = problem_on(plate, stiffness, dynamics);
       const PlateState state = random_state(plate.grid);
-      const auto schwarz = make_schwarz_plate_solver(nullptr, nullptr);
+      const auto schwarz = make_schwarz_solver(nullptr, nullptr);
       const auto direct = make_plate_solver(SolverChoice::Eigen);
       for (const int count : {1, 2, 9}) {
         CAPTURE(plate.name, dynamics.density, dynamics.damping, dt, count);
@@ -165,7 +165,7 @@ TEST_CASE("no bit of a union depends on threads or on what was kept", "[plate][s
   const PlateProblem problem = problem_on(plate, {1.5, 1, 2}, {40, 20});
   const PlateState state = random_state(plate.grid);
   const TimeSteps steps{3, 1e-3};
-  const auto plain = make_schwarz_plate_solver(nullptr, nullptr);
+  const auto plain = make_schwarz_solver(nullptr, nullptr);
   const PlateState expected = plain->advance(problem, steps, state).value();
   const auto check = [&](PlateSolver& solver) {
     const PlateState next = solver.advance(problem, steps, state).value();
@@ -174,7 +174,7 @@ TEST_CASE("no bit of a union depends on threads or on what was kept", "[plate][s
   };
   for (const int count : {2, 3, 8}) {
     ThreadPool threads(count);
-    check(*make_schwarz_plate_solver(nullptr, &threads));
+    check(*make_schwarz_solver(nullptr, &threads));
   }
   // Other coefficients, another outline and a system on which it fails, in between.
   PlateProblem other = problem;
@@ -194,7 +194,7 @@ TEST_CASE("components are solved as if each were alone", "[plate][schwarz]") {
   PlateProblem problem = problem_on(plate, {1, 2, 1}, {40, 20});
   problem.tangents = {};
   const PlateState state = random_state(plate.grid);
-  const auto solver = make_schwarz_plate_solver(nullptr, nullptr);
+  const auto solver = make_schwarz_solver(nullptr, nullptr);
   const PlateState all = solver->advance(problem, {3, 1e-3}, state).value();
   for (int k = 0; k < 3; ++k) {
     PlateProblem alone = problem;
@@ -214,7 +214,7 @@ TEST_CASE("components are solved as if each were alone", "[plate][schwarz]") {
 TEST_CASE("a union stops when asked to, between rounds too", "[plate][schwarz]") {
   const UnionPlate plate = ell(20);
   const PlateProblem problem = problem_on(plate, {}, {});
-  const auto solver = make_schwarz_plate_solver(nullptr, nullptr);
+  const auto solver = make_schwarz_solver(nullptr, nullptr);
   const PlateState state = random_state(plate.grid);
   for (const int after : {1, 2, 7}) {
     int asked = 0;
@@ -239,13 +239,41 @@ TEST_CASE("what few rounds do not solve is said, and factored", "[plate][schwarz
 
   const PlateProblem problem = problem_on(plate, {1, 2, 1}, {40, 20});
   const PlateState state = random_state(plate.grid);
-  const auto impatient = make_schwarz_plate_solver(nullptr, nullptr, widest_lanes, 2);
+  const auto impatient = make_schwarz_solver(nullptr, nullptr, widest_lanes, 2);
   const PlateState fallen_back = impatient->advance(problem, {3, 1e-3}, state).value();
-  const auto direct = make_solver();
+  const auto direct = make_plate_solver(available_solvers().front());
   const PlateState expected = advance_backward_euler(*direct, problem, {3, 1e-3}, state).value();
   CHECK(fallen_back.displacement == expected.displacement);
   CHECK(fallen_back.velocity == expected.velocity);
   CHECK(impatient->counts().factorizations == 2);
+}
+
+TEST_CASE("rectangles solve a system as factors do", "[plate][schwarz][solver]") {
+  const UnionPlate plate = ell(30);
+  PlateSystem system{plate.outline(), {1, 2, 1}, 3};
+  const Field f = Field::Random(unknown_count(system.outline), 3);
+  const Field exact = refined(system, f);
+  const auto solver = make_schwarz_solver(nullptr, nullptr);
+  REQUIRE(solver->prepare(system));
+  const Field w = solver->solve(f).value();
+  CHECK((w - exact).norm() <= 1e-14 * exact.norm());
+  CHECK(solver->counts().solves == 1);
+  // Nor does a frame in between change a bit.
+  REQUIRE(solver->advance(problem_on(plate, {1, 1, 1}, {}), {2, 0.1}, random_state(plate.grid)));
+  REQUIRE(solver->prepare(system));
+  CHECK(solver->solve(f).value() == w);
+
+  // Too few rounds, and a matrix that is not positive definite: as the factors.
+  const auto impatient = make_schwarz_solver(nullptr, nullptr, widest_lanes, 2);
+  const auto direct = make_plate_solver(available_solvers().front());
+  REQUIRE(direct->prepare(system));
+  REQUIRE(impatient->prepare(system));
+  for (int k = 0; k < 2; ++k) CHECK(impatient->solve(f).value() == direct->solve(f).value());
+  CHECK(impatient->counts().factorizations == 2);
+  system.stiffness.c = -40;
+  const auto failed = impatient->prepare(system), expected = direct->prepare(system);
+  REQUIRE_FALSE(failed);
+  CHECK(failed.error().message == expected.error().message);
 }
 
 TEST_CASE("numbers that are none end the rounds", "[plate][schwarz]") {
@@ -270,14 +298,13 @@ TEST_CASE("rectangles keep within the memory they may have", "[plate][schwarz]")
   const PlateState state = random_state(plate.grid);
   for (const std::size_t bytes : {std::size_t{1} << 20, std::size_t{3} << 20}) {
     MemoryBudget small(bytes);
-    const auto refused =
-        make_schwarz_plate_solver(&small, nullptr)->advance(problem, {1, 1}, state);
+    const auto refused = make_schwarz_solver(&small, nullptr)->advance(problem, {1, 1}, state);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().code == ErrorCode::OutOfMemory);
     CHECK(small.available() == small.total());
   }
   MemoryBudget enough(std::size_t{64} << 20);
-  const auto solver = make_schwarz_plate_solver(&enough, nullptr);
+  const auto solver = make_schwarz_solver(&enough, nullptr);
   REQUIRE(solver->advance(problem, {1, 1}, state));
   CHECK(enough.total() - enough.available() == solver->memory());
   CHECK(solver->memory() <=
@@ -290,7 +317,7 @@ TEST_CASE("large unions go to rectangles by themselves", "[plate][schwarz][solve
   CHECK(worth_iterating(1'000'000, {1, -1.9, 1}));
   CHECK_FALSE(worth_iterating(1'000'000, {1, -1.99, 1}));
 
-  const SolverKind direct = available_solvers().front();
+  const SolverChoice direct = available_solvers().front();
   for (const int side : {101, 461}) {
     const UnionPlate plate = ell(side);
     const PlateProblem problem = problem_on(plate, {}, {});
@@ -300,10 +327,8 @@ TEST_CASE("large unions go to rectangles by themselves", "[plate][schwarz][solve
     };
     const bool is_large = worth_iterating(unknown_count(plate.outline()), {1, 2, 1});
     CHECK(is_large == (side == 461));
-    const Field expected = displacement(is_large ? make_schwarz_plate_solver(nullptr, nullptr)
-                                                 : make_plate_solver(direct == SolverKind::Cholmod
-                                                                         ? SolverChoice::Cholmod
-                                                                         : SolverChoice::Eigen));
+    const Field expected =
+        displacement(is_large ? make_schwarz_solver(nullptr, nullptr) : make_plate_solver(direct));
     for (const SolverChoice choice : {SolverChoice::Auto, SolverChoice::Spectral})
       CHECK(displacement(make_plate_solver(choice)) == expected);
   }

@@ -41,8 +41,8 @@ constexpr double shifts[] = {0, 1e-3, 1e5, 1e14};
 // Compares with a solution that is exact to the last digits: refined with residuals in extended
 // precision. Returns the backward error.
 double check_errors(const PlateSystem& system, const Field& f) {
-  const auto solver = make_solver(SolverKind::Spectral);
-  REQUIRE(solver->factor(system));
+  const auto solver = make_plate_solver(SolverChoice::Spectral);
+  REQUIRE(solver->prepare(system));
   const Field w = solver->solve(f).value();
   Field exact = w;
   for (int pass = 0; pass < 3; ++pass) {
@@ -65,8 +65,8 @@ void check_beside_direct(const PlateSystem& system) {
   CAPTURE(system.outline.grid().columns, system.outline.grid().rows, b, c, d, system.shift);
   const Field f = Field::Random(unknown_count(system.outline), 3);
   const double error = check_errors(system, f);
-  const auto direct = make_solver(available_solvers().front());
-  REQUIRE(direct->factor(system));
+  const auto direct = make_plate_solver(available_solvers().front());
+  REQUIRE(direct->prepare(system));
   const double direct_error = backward_error(system, direct->solve(f).value(), f);
   CHECK(error <= 20 * loss(system.stiffness) * std::max(direct_error, 1.1e-16));
 }

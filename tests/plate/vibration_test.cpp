@@ -14,8 +14,8 @@ using namespace pliant::testing;
 namespace {
 
 double smallest(const Grid& grid, const Stiffness& stiffness,
-                SolverKind kind = available_solvers().front()) {
-  const auto solver = make_solver(kind);
+                SolverChoice kind = available_solvers().front()) {
+  const auto solver = make_plate_solver(kind);
   return smallest_eigenvalue(*solver, {grid, stiffness, 0}).value();
 }
 
@@ -44,7 +44,7 @@ TEST_CASE("the smallest eigenvalue is that of the full matrix", "[plate][vibrati
 TEST_CASE("the clamped square vibrates at 35.985, with an error of second order",
           "[plate][vibration]") {
   // SPEC 11: omega of the unit square with rho = 1 is the root of the eigenvalue.
-  const SolverKind kind = GENERATE(from_range(available_solvers()));
+  const SolverChoice kind = GENERATE(from_range(available_solvers()));
   const auto error = [&](int count) {
     const double h = 1.0 / (count - 1);
     return std::abs(std::sqrt(smallest({count, count, h, h}, {}, kind)) - 35.985);
@@ -77,13 +77,13 @@ TEST_CASE("a plate of another outline vibrates as its full matrix says", "[plate
   const double expected =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>())
           .eigenvalues()(0);
-  const auto solver = make_solver();
+  const auto solver = make_plate_solver(available_solvers().front());
   CHECK_THAT(smallest_eigenvalue(*solver, system).value(), WithinRel(expected, 1e-6));
 }
 
 TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate][vibration]") {
-  const SolverKind kind = GENERATE(from_range(available_solvers()));
-  const auto solver = make_solver(kind);
+  const SolverChoice kind = GENERATE(from_range(available_solvers()));
+  const auto solver = make_plate_solver(kind);
   for (const Grid& grid : {Grid{15, 12, 0.07, 0.1}, Grid{4, 3, 1, 1}, Grid{3, 3, 1, 1}}) {
     const PlateSystem system{grid, {1, 2, 2}, 0};
     const Eigen::MatrixXd matrix = assemble_upper(system);
@@ -121,7 +121,7 @@ TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[pl
     const double x = static_cast<double>(k % 19 + 1) / 20, y = static_cast<double>(k / 19 + 1) / 20;
     shape(k) = x * (1 - x) * y * (1 - y) * (x - 0.5);
   }
-  const auto solver = make_solver();
+  const auto solver = make_plate_solver(available_solvers().front());
   const PlateSystem system{grid, {}, 0};
   const auto modes = excited_modes(*solver, system, shape, 3).value();
   const double first = smallest_eigenvalue(*solver, system).value();

@@ -6,17 +6,17 @@
 
 namespace pliant {
 
-Result<PlateState> advance_backward_euler(LinearSolver& solver, const PlateProblem& problem,
+Result<PlateState> advance_backward_euler(PlateSolver& solver, const PlateProblem& problem,
                                           const TimeSteps& steps, PlateState state,
                                           const StopRequest& should_stop) {
   const Outline& outline = problem.outline;
   PLIANT_EXPECTS(is_on_nodes(problem, state));
 
   const double dt = steps.length;
-  const double inertia = problem.dynamics.density / dt;            // factor of v
-  const double shift = (inertia + problem.dynamics.damping) / dt;  // factor of w
+  const double inertia = problem.dynamics.inertia(dt);
+  const double shift = problem.dynamics.shift(dt);
   StageTimer set_up(problem.profile, Stage::SetUp);
-  if (auto factored = solver.factor({outline, problem.stiffness, shift}); !factored) {
+  if (auto factored = solver.prepare({outline, problem.stiffness, shift}); !factored) {
     return fail(factored.error());
   }
   set_up.stop();

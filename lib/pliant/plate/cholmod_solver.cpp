@@ -110,7 +110,7 @@ class CholmodFactorization {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_cholmod_solver(MemoryBudget* budget) {
+std::unique_ptr<PlateSolver> make_cholmod_solver(MemoryBudget* budget) {
   return std::make_unique<DirectSolver<CholmodFactorization>>(budget);
 }
 

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/linear_solver.hpp"
-#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/operator.hpp"
+#include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/solver_errors.hpp"
 
 namespace pliant {
 
@@ -18,11 +19,11 @@ namespace pliant {
 /// factorize(const SparseMatrix&)` for a matrix of the same pattern, and `Result<Field> solve(const
 /// Field&)`; the matrices are upper triangles.
 template <class Factorization>
-class DirectSolver final : public LinearSolver {
+class DirectSolver final : public PlateSolver {
  public:
   explicit DirectSolver(MemoryBudget* budget) : memory_(budget) {}
 
-  Result<void> factor(const PlateSystem& system) override try {
+  Result<void> prepare(const PlateSystem& system) override try {
     if (factored_ == system) return {};
     const bool same_pattern = factored_ && have_same_nodes(factored_->outline, system.outline);
     factored_.reset();

@@ -43,7 +43,7 @@ class EigenFactorization {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_eigen_solver(MemoryBudget* budget) {
+std::unique_ptr<PlateSolver> make_eigen_solver(MemoryBudget* budget) {
   return std::make_unique<DirectSolver<EigenFactorization>>(budget);
 }
 

@@ -4,7 +4,7 @@
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/plate/backward_euler.hpp"
+#include "pliant/plate/plate_problem.hpp"
 
 namespace pliant {
 

@@ -2,21 +2,9 @@
 
 #include <Eigen/SparseCore>
 
-#include "pliant/plate/outline.hpp"
-#include "pliant/plate/plate.hpp"
+#include "pliant/plate/plate_problem.hpp"
 
 namespace pliant {
-
-/// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped plate,
-/// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
-/// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
-struct PlateSystem {
-  Outline outline;      ///< of at least 3 x 3 nodes
-  Stiffness stiffness;  ///< elliptic
-  double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
-
-  friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
-};
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 

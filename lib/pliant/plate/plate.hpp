@@ -31,6 +31,11 @@ struct Stiffness {
 struct Dynamics {
   double density = 1;  ///< rho >= 0
   double damping = 1;  ///< eta >= 0
+
+  /// The factors of v and w in a step of backward Euler, docs/model.md, eq. (8): rho/dt and
+  /// rho/dt^2 + eta/dt. Requires: dt > 0.
+  double inertia(double dt) const { return density / dt; }
+  double shift(double dt) const { return (inertia(dt) + damping) / dt; }
 };
 
 /// Slopes prescribed on the rim: dw/du on the edges of smallest and largest u, dw/dv on those of

@@ -4,28 +4,12 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/backward_euler.hpp"
 #include "pliant/plate/rectangle_cover.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
 namespace pliant {
 namespace {
-
-// Steps with a factored matrix.
-class DirectPlateSolver final : public PlateSolver {
- public:
-  explicit DirectPlateSolver(std::unique_ptr<LinearSolver> solver) : solver_(std::move(solver)) {}
-
-  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
-                             const StopRequest& should_stop) override {
-    return advance_backward_euler(*solver_, problem, steps, std::move(state), should_stop);
-  }
-
-  SolverCounts counts() const override { return solver_->counts(); }
-  std::size_t memory() const override { return solver_->memory(); }
-
- private:
-  std::unique_ptr<LinearSolver> solver_;
-};
 
 // Creates the solver that suits each problem, and destroys the previous one if it was of another
 // kind.
@@ -38,16 +22,19 @@ class AutomaticPlateSolver final : public PlateSolver {
         threads_(threads),
         most_lanes_(most_lanes) {}
 
+  Result<void> prepare(const PlateSystem& system) override {
+    return suited(system.outline, system.stiffness).prepare(system);
+  }
+
+  Result<Field> solve(const Field& right_hand_sides) override {
+    PLIANT_EXPECTS(solver_ != nullptr);
+    return solver_->solve(right_hand_sides);
+  }
+
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override {
-    const Way way = way_of(problem);
-    if (!solver_ || way != way_) {
-      past_counts_ = counts();
-      solver_.reset();
-      way_ = way;
-      solver_ = make(way);
-    }
-    return solver_->advance(problem, steps, std::move(state), should_stop);
+    return suited(problem.outline, problem.stiffness)
+        .advance(problem, steps, std::move(state), should_stop);
   }
 
   SolverCounts counts() const override {
@@ -59,15 +46,24 @@ class AutomaticPlateSolver final : public PlateSolver {
  private:
   enum class Way { Spectral, Schwarz, Direct };
 
-  Way way_of(const PlateProblem& problem) {
-    const Outline& outline = problem.outline;
+  PlateSolver& suited(const Outline& outline, const Stiffness& stiffness) {
+    const Way way = way_of(outline, stiffness);
+    if (!solver_ || way != way_) {
+      past_counts_ = counts();
+      solver_.reset();
+      way_ = way;
+      solver_ = make(way);
+    }
+    return *solver_;
+  }
+
+  Way way_of(const Outline& outline, const Stiffness& stiffness) {
     if (outline.is_rectangle()) {
-      const bool is_worth_it =
-          prefers_spectral_ || worth_transforming(outline.grid(), problem.stiffness);
+      const bool is_worth_it = prefers_spectral_ || worth_transforming(outline.grid(), stiffness);
       return is_worth_it ? Way::Spectral : Way::Direct;
     }
     const bool is_worth_it =
-        worth_iterating(outline.unknown_count(), problem.stiffness) && is_covered(outline);
+        worth_iterating(outline.unknown_count(), stiffness) && is_covered(outline);
     return is_worth_it ? Way::Schwarz : Way::Direct;
   }
 
@@ -83,12 +79,11 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::unique_ptr<PlateSolver> make(Way way) const {
     switch (way) {
       case Way::Spectral:
-        return make_spectral_plate_solver(budget_, threads_, most_lanes_);
+        return make_spectral_solver(budget_, threads_, most_lanes_);
       case Way::Schwarz:
-        return make_schwarz_plate_solver(budget_, threads_, most_lanes_);
+        return make_schwarz_solver(budget_, threads_, most_lanes_);
       default:
-        return std::make_unique<DirectPlateSolver>(
-            make_solver(available_solvers().front(), budget_));
+        return make_sparse_solver(available_solvers().front(), budget_);
     }
   }
 
@@ -103,24 +98,11 @@ class AutomaticPlateSolver final : public PlateSolver {
   SolverCounts past_counts_;  // of the solvers that were destroyed
 };
 
-SolverKind kind_of(SolverChoice choice) {
-  return choice == SolverChoice::Cholmod ? SolverKind::Cholmod : SolverKind::Eigen;
-}
-
 }  // namespace
 
-std::optional<SolverChoice> solver_choice(std::string_view name) {
-  if (name == "auto") return SolverChoice::Auto;
-  if (name == "spectral") return SolverChoice::Spectral;
-  if (name == "cholmod") return SolverChoice::Cholmod;
-  if (name == "eigen") return SolverChoice::Eigen;
-  return {};
-}
-
-bool is_available(SolverChoice choice) {
-  const auto kinds = available_solvers();
-  return choice != SolverChoice::Cholmod ||
-         std::find(kinds.begin(), kinds.end(), SolverKind::Cholmod) != kinds.end();
+Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeSteps& steps,
+                                        PlateState state, const StopRequest& should_stop) {
+  return advance_backward_euler(*this, problem, steps, std::move(state), should_stop);
 }
 
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
@@ -151,7 +133,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, MemoryBudget
     return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, budget, threads,
                                                   most_lanes);
   }
-  return std::make_unique<DirectPlateSolver>(make_solver(kind_of(choice), budget));
+  return make_sparse_solver(choice, budget);
 }
 
 }  // namespace pliant

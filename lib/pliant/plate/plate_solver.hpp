@@ -7,15 +7,14 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/plate/backward_euler.hpp"
-#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
+#include "pliant/plate/time_steps.hpp"
 
 namespace pliant {
 
-/// Moves plates in time: the interface between a body and its solver. It covers a whole interval,
-/// so that an implementation may keep the state in a form of its own for all steps. All
-/// implementations solve the same equations, (8) of docs/model.md, and give the same errors; their
+/// Solves plates: the interface between all that needs a solution and all that compute one. Every
+/// implementation gives the same errors, keeps the same tolerance and passes the same tests;
 /// results may differ in the last digits. Not thread-safe; give each body its own.
 class PlateSolver {
  public:
@@ -24,11 +23,22 @@ class PlateSolver {
   PlateSolver& operator=(const PlateSolver&) = delete;
   virtual ~PlateSolver() = default;
 
-  /// Advances a plate as `advance_backward_euler` does. Reuse: values that depend on the system
-  /// only are kept until it changes; this never changes a result's bits. Errors: those of
-  /// `LinearSolver`; Interrupted.
+  /// Prepares for `system`. Reuse: does nothing if it equals the last one; what depends on the
+  /// outline's nodes only is kept while those are the same. Reuse never changes a result's bits.
+  /// Errors: SolverFailed, with size and pivot, if the matrix is not positive definite or not
+  /// finite; OutOfMemory if the working memory, or a factor, does not fit in the budget, which is
+  /// checked before it is computed, or in memory.
+  virtual Result<void> prepare(const PlateSystem& system) = 0;
+
+  /// Solves for three right-hand sides (#unknowns x 3). Requires: `prepare` succeeded, and
+  /// `advance` was not called since. Errors: OutOfMemory.
+  virtual Result<Field> solve(const Field& right_hand_sides) = 0;
+
+  /// Advances a plate over an interval as `advance_backward_euler` does, which is what happens
+  /// unless an implementation overrides it, to keep the state in a form of its own for all steps.
+  /// Reuse and errors: those of `prepare`; Interrupted.
   virtual Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
-                                     PlateState state, const StopRequest& should_stop = {}) = 0;
+                                     PlateState state, const StopRequest& should_stop = {});
 
   virtual SolverCounts counts() const = 0;
 

@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/operator.hpp"
 #include "pliant/plate/rectangle_cover.hpp"
-#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/stencil.hpp"
 
 namespace pliant {

@@ -8,11 +8,11 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/plate/linear_solver.hpp"
 #include "pliant/plate/number_block.hpp"
-#include "pliant/plate/operator.hpp"
 #include "pliant/plate/outline.hpp"
+#include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/row_blocks.hpp"
+#include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/spectral_plate.hpp"
 
 namespace pliant {

@@ -5,30 +5,53 @@
 #include "pliant/plate/load_copy.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/schwarz_plate.hpp"
+#include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
 namespace pliant {
 namespace {
 
-class SchwarzPlateSolver final : public PlateSolver {
+class SchwarzSolver final : public PlateSolver {
  public:
-  SchwarzPlateSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes, int max_rounds)
+  SchwarzSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes, int max_rounds)
       : budget_(budget),
         threads_(threads),
         most_lanes_(most_lanes),
         max_rounds_(max_rounds),
         load_(budget) {}
 
+  Result<void> prepare(const PlateSystem& system) override {
+    system_ = system;
+    let_factor_go();
+    auto ready = prepare_plate(system.outline, system.stiffness, system.shift);
+    const bool has_failed = !ready && ready.error().code == ErrorCode::SolverFailed;
+    return has_failed ? factor() : ready;
+  }
+
+  Result<Field> solve(const Field& right_hand_sides) override try {
+    if (!factor_) {
+      const Outline& outline = system_.outline;
+      const long M = outline.grid().columns, count = outline.grid().node_count();
+      Field solution = Field::Zero(count, 3);
+      const Field load = with_interior(outline, solution, right_hand_sides);
+      const auto done = plate_->solve({load.data(), M, count}, {solution.data(), M, count});
+      if (done) return interior_of(outline, solution);
+      if (done.error().code != ErrorCode::SolverFailed) return fail(done.error());
+      if (auto factored = factor(); !factored) return fail(factored.error());
+    }
+    return factor_->solve(right_hand_sides);
+  } catch (const std::bad_alloc&) {
+    return fail(no_memory_to_solve(right_hand_sides.rows(), "does not fit in memory"));
+  }
+
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
-    const double inertia = problem.dynamics.density / steps.length;
-    const double shift = (inertia + problem.dynamics.damping) / steps.length;
-    if (!plate_)
-      plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_,
-                                              kernels_of_width(most_lanes_));
-    auto done = plate_->prepare(problem.outline, problem.stiffness, shift);
+    const double inertia = problem.dynamics.inertia(steps.length);
+    const double shift = problem.dynamics.shift(steps.length);
+    let_factor_go();
+    auto done = prepare_plate(problem.outline, problem.stiffness, shift);
     int step = 0;
     if (done) {
       done = load_.take(problem);
@@ -55,20 +78,49 @@ class SchwarzPlateSolver final : public PlateSolver {
   }
 
   SolverCounts counts() const override {
-    return plate_ ? past_counts_ + plate_->counts() : past_counts_;
+    SolverCounts sum = past_counts_;
+    if (plate_) sum = sum + plate_->counts();
+    if (factor_) sum = sum + factor_->counts();
+    return sum;
   }
-  std::size_t memory() const override { return load_.memory() + (plate_ ? plate_->memory() : 0); }
+  std::size_t memory() const override {
+    return load_.memory() + (plate_ ? plate_->memory() : 0) + (factor_ ? factor_->memory() : 0);
+  }
 
  private:
-  // The rounds do not suffice: factors the matrix for the remaining steps. Nothing of it is kept,
-  // so that the next frame's result depends on that frame alone.
+  Result<void> prepare_plate(const Outline& outline, const Stiffness& stiffness, double shift) {
+    if (!plate_) {
+      plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_,
+                                              kernels_of_width(most_lanes_));
+    }
+    return plate_->prepare(outline, stiffness, shift);
+  }
+
+  void let_plate_go() {
+    if (plate_) past_counts_ = past_counts_ + plate_->counts();
+    plate_.reset();
+  }
+
+  void let_factor_go() {
+    if (factor_) past_counts_ = past_counts_ + factor_->counts();
+    factor_.reset();
+  }
+
+  // The rounds do not suffice: factors the matrix of the prepared system.
+  Result<void> factor() {
+    let_plate_go();
+    factor_ = make_sparse_solver(available_solvers().front(), budget_);
+    return factor_->prepare(system_);
+  }
+
+  // The same for the remaining steps. Nothing of it is kept, so that the next frame's result
+  // depends on that frame alone.
   Result<PlateState> finish_directly(const PlateProblem& problem, const TimeSteps& steps,
                                      PlateState state, const StopRequest& should_stop) {
-    past_counts_ = counts();
-    plate_.reset();
-    const auto direct = make_solver(available_solvers().front(), budget_);
-    auto result = advance_backward_euler(*direct, problem, steps, std::move(state), should_stop);
-    past_counts_ = past_counts_ + direct->counts();
+    let_plate_go();
+    factor_ = make_sparse_solver(available_solvers().front(), budget_);
+    auto result = factor_->advance(problem, steps, std::move(state), should_stop);
+    let_factor_go();
     return result;
   }
 
@@ -77,15 +129,17 @@ class SchwarzPlateSolver final : public PlateSolver {
   int most_lanes_;
   int max_rounds_;
   std::unique_ptr<SchwarzPlate> plate_;
-  SolverCounts past_counts_;  // of the solvers that were destroyed
+  PlateSystem system_;                   // the last one of `prepare`
+  std::unique_ptr<PlateSolver> factor_;  // of `system_`, if rounds do not suffice
+  SolverCounts past_counts_;             // of the solvers that were destroyed
   LoadCopy load_;
 };
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_schwarz_plate_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                       int most_lanes, int max_rounds) {
-  return std::make_unique<SchwarzPlateSolver>(budget, threads, most_lanes, max_rounds);
+std::unique_ptr<PlateSolver> make_schwarz_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                 int most_lanes, int max_rounds) {
+  return std::make_unique<SchwarzSolver>(budget, threads, most_lanes, max_rounds);
 }
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace pliant {
 
@@ -10,15 +11,22 @@ namespace pliant {
 enum class SolverChoice {
   Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
   Spectral,  ///< sine transforms for all rectangles; other outlines as with `Auto`
-  Cholmod,   ///< only with PLIANT_WITH_CHOLMOD
-  Eigen,
+  Cholmod,   ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
+  Eigen,     ///< SimplicialLDLT, AMD order
 };
 
-/// The choice of that name: auto, spectral, cholmod, eigen. nullopt for other names.
-std::optional<SolverChoice> solver_choice(std::string_view name);
+/// The choices that solve all rectangles in one way, as far as this build supports them. The first
+/// one is that of the factors with `Auto`.
+std::vector<SolverChoice> available_solvers();
 
 /// Whether this build supports it.
 bool is_available(SolverChoice choice);
+
+/// auto, spectral, cholmod, eigen.
+std::string_view name_of(SolverChoice choice);
+
+/// The choice of that name; nullopt for other names.
+std::optional<SolverChoice> solver_choice(std::string_view name);
 
 /// As wide as the vectors of the machine.
 inline constexpr int widest_lanes = std::numeric_limits<int>::max();

@@ -8,7 +8,7 @@
 #include <new>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/stencil.hpp"
 
 namespace pliant {

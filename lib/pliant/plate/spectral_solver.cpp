@@ -1,59 +1,45 @@
-#include <optional>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/load_copy.hpp"
 #include "pliant/plate/rim_load.hpp"
+#include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "pliant/plate/spectral_plate.hpp"
 
 namespace pliant {
 namespace {
 
-// Solves one right-hand side after the other, each with its own transform to sine space and back.
-class SpectralLinearSolver final : public LinearSolver {
+class SpectralSolver final : public PlateSolver {
  public:
-  explicit SpectralLinearSolver(MemoryBudget* budget) : plate_(budget) {}
+  SpectralSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
+      : plate_(budget, threads, kernels_of_width(most_lanes)), load_(budget) {}
 
-  Result<void> factor(const PlateSystem& system) override {
-    auto prepared = plate_.prepare(system);
-    system_.reset();
-    if (prepared) system_ = system;
-    return prepared;
+  Result<void> prepare(const PlateSystem& system) override {
+    grid_ = system.outline.grid();
+    return plate_.prepare(system);
   }
 
+  // With a transform to sine space and back.
   Result<Field> solve(const Field& right_hand_sides) override {
-    PLIANT_EXPECTS(system_ && right_hand_sides.rows() == unknown_count(system_->outline));
+    PLIANT_EXPECTS(right_hand_sides.rows() == unknown_count(grid_));
     Field solution(right_hand_sides.rows(), 3);
-    const long width = system_->outline.grid().columns - 2;
+    const long width = grid_.columns - 2;
     plate_.solve({right_hand_sides.data(), width, right_hand_sides.rows()},
                  {solution.data(), width, solution.rows()});
     return solution;
   }
 
-  SolverCounts counts() const override { return plate_.counts(); }
-  std::size_t memory() const override { return plate_.memory(); }
-
- private:
-  SpectralPlate plate_;
-  std::optional<PlateSystem> system_;
-};
-
-// Keeps the state in sine space for all steps of an interval.
-class SpectralPlateSolver final : public PlateSolver {
- public:
-  SpectralPlateSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
-      : plate_(budget, threads, kernels_of_width(most_lanes)), load_(budget) {}
-
+  // Keeps the state in sine space for all steps.
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
                              const StopRequest& should_stop) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
-    const double inertia = problem.dynamics.density / steps.length;
-    const double shift = (inertia + problem.dynamics.damping) / steps.length;
+    const double inertia = problem.dynamics.inertia(steps.length);
+    const double shift = problem.dynamics.shift(steps.length);
     StageTimer set_up(problem.profile, Stage::SetUp);
-    if (auto prepared = plate_.prepare({problem.outline, problem.stiffness, shift}); !prepared) {
+    if (auto prepared = prepare({problem.outline, problem.stiffness, shift}); !prepared) {
       return fail(prepared.error());
     }
     set_up.stop();
@@ -81,17 +67,14 @@ class SpectralPlateSolver final : public PlateSolver {
  private:
   SpectralPlate plate_;
   LoadCopy load_;
+  Grid grid_;  // of the last system
 };
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_spectral_solver(MemoryBudget* budget) {
-  return std::make_unique<SpectralLinearSolver>(budget);
-}
-
-std::unique_ptr<PlateSolver> make_spectral_plate_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                        int most_lanes) {
-  return std::make_unique<SpectralPlateSolver>(budget, threads, most_lanes);
+std::unique_ptr<PlateSolver> make_spectral_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                  int most_lanes) {
+  return std::make_unique<SpectralSolver>(budget, threads, most_lanes);
 }
 
 }  // namespace pliant

@@ -29,14 +29,14 @@ Field starting_shapes(const PlateSystem& system) {
   return interior_of(system.outline, shapes);
 }
 
-Result<void> make_ready(LinearSolver& solver, const PlateSystem& system) {
+Result<void> make_ready(PlateSolver& solver, const PlateSystem& system) {
   PLIANT_EXPECTS(system.shift == 0 && unknown_count(system.outline) >= 1);
-  return solver.factor(system);
+  return solver.prepare(system);
 }
 
 }  // namespace
 
-Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& system,
+Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system,
                                    const StopRequest& should_stop) {
   if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
@@ -68,7 +68,7 @@ Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& syst
   return lambda;
 }
 
-Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const PlateSystem& system,
+Result<std::vector<ExcitedMode>> excited_modes(PlateSolver& solver, const PlateSystem& system,
                                                const Eigen::VectorXd& shape, Eigen::Index node,
                                                const StopRequest& should_stop) {
   PLIANT_EXPECTS(shape.size() == unknown_count(system.outline) && shape(node) != 0);

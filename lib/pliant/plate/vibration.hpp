@@ -4,8 +4,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/plate/linear_solver.hpp"
-#include "pliant/plate/plate.hpp"
+#include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
 
@@ -15,7 +14,7 @@ namespace pliant {
 /// 1e-4 if many are close together, as for a sliver. `should_stop` is called before every pass.
 /// Requires: system.shift is 0; at least one unknown. Errors: those of the solver; Interrupted if
 /// `should_stop` returns true.
-Result<double> smallest_eigenvalue(LinearSolver& solver, const PlateSystem& system,
+Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system,
                                    const StopRequest& should_stop = {});
 
 /// A vibration of a plate that is released, as seen at one of its nodes.
@@ -29,7 +28,7 @@ struct ExcitedMode {
 /// are exact and the fast ones are combined into a few groups; docs/model.md, eq. (41), (42).
 /// Source: Wilson, Yuan, Dickens, Dynamic analysis by direct superposition of Ritz vectors (1982).
 /// Requires: as above, and shape(node) is not 0. Errors: as above. Cost: at most 24 solves.
-Result<std::vector<ExcitedMode>> excited_modes(LinearSolver& solver, const PlateSystem& system,
+Result<std::vector<ExcitedMode>> excited_modes(PlateSolver& solver, const PlateSystem& system,
                                                const Eigen::VectorXd& shape, Eigen::Index node,
                                                const StopRequest& should_stop = {});
 

@@ -10,7 +10,7 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/io/output_place.hpp"
-#include "pliant/plate/linear_solver.hpp"
+#include "pliant/plate/solver_choice.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 
@@ -28,13 +28,6 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
       .lexically_normal()
       .lexically_proximate(base.lexically_normal())
       .generic_string();
-}
-
-std::string name_of(SolverChoice solver) {
-  for (const std::string_view name : {"auto", "spectral", "cholmod", "eigen"}) {
-    if (solver_choice(name) == solver) return std::string(name);
-  }
-  return {};
 }
 
 // Relative to the scene's folder; relative to its canonical path if the file is given by one.

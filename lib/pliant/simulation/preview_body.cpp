@@ -167,10 +167,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
   const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
   if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
 
-  // The same choice of solver as a run makes for such a region.
-  const bool is_spectral = moved->is_rectangle() && worth_transforming(grid, system.stiffness);
-  const auto solver =
-      make_solver(is_spectral ? SolverKind::Spectral : available_solvers().front(), &memory_);
+  const auto solver = make_plate_solver(SolverChoice::Auto, &memory_);
   const auto lambda = smallest_eigenvalue(*solver, system, should_stop_);
   if (!lambda) return fail(lambda.error());
   std::vector<ExcitedMode> modes = {{*lambda, 1}};

@@ -151,7 +151,7 @@ Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
   ingredients.add(settings);
   ingredients.add(solver);
   // The available solvers decide which sparse solver a choice means.
-  for (const SolverKind kind : available_solvers()) ingredients.add(name_of(kind));
+  for (const SolverChoice kind : available_solvers()) ingredients.add(name_of(kind));
   return ingredients.hash();
 }
 

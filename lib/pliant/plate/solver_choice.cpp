@@ -1,0 +1,53 @@
+#include "pliant/plate/solver_choice.hpp"
+
+#include <algorithm>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/solver_factories.hpp"
+
+namespace pliant {
+
+std::vector<SolverChoice> available_solvers() {
+#ifdef PLIANT_WITH_CHOLMOD
+  return {SolverChoice::Cholmod, SolverChoice::Eigen, SolverChoice::Spectral};
+#else
+  return {SolverChoice::Eigen, SolverChoice::Spectral};
+#endif
+}
+
+bool is_available(SolverChoice choice) {
+  const auto available = available_solvers();
+  return choice == SolverChoice::Auto ||
+         std::find(available.begin(), available.end(), choice) != available.end();
+}
+
+std::string_view name_of(SolverChoice choice) {
+  switch (choice) {
+    case SolverChoice::Auto:
+      return "auto";
+    case SolverChoice::Spectral:
+      return "spectral";
+    case SolverChoice::Cholmod:
+      return "cholmod";
+    default:
+      return "eigen";
+  }
+}
+
+std::optional<SolverChoice> solver_choice(std::string_view name) {
+  for (const SolverChoice choice :
+       {SolverChoice::Auto, SolverChoice::Spectral, SolverChoice::Cholmod, SolverChoice::Eigen}) {
+    if (name_of(choice) == name) return choice;
+  }
+  return {};
+}
+
+std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice, MemoryBudget* budget) {
+#ifdef PLIANT_WITH_CHOLMOD
+  if (choice == SolverChoice::Cholmod) return make_cholmod_solver(budget);
+#endif
+  PLIANT_EXPECTS(choice == SolverChoice::Eigen);
+  return make_eigen_solver(budget);
+}
+
+}  // namespace pliant
