@@ -29,7 +29,7 @@
 
 #include "measuring.hpp"
 #include "pliant/plate/plate_solver.hpp"
-#include "pliant/plate/spectral_plate.hpp"
+#include "pliant/plate/spectral/spectral_plate.hpp"
 #ifdef PLIANT_BENCH_SUPERNODAL
 #include "supernodal.hpp"
 #endif

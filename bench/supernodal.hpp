@@ -4,8 +4,8 @@
 
 #include <cholmod.h>
 
-#include "pliant/plate/operator.hpp"
 #include "pliant/plate/plate_solver.hpp"
+#include "pliant/plate/sparse/operator.hpp"
 
 namespace pliant::bench {
 

@@ -21,7 +21,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/plate/spectral_kernels.hpp"
+#include "pliant/plate/spectral/spectral_kernels.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/replay.hpp"
 #include "pliant/scene/read.hpp"

@@ -4,9 +4,9 @@
 
 #include <Eigen/Dense>
 
-#include "pliant/plate/operator.hpp"
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
+#include "pliant/plate/sparse/operator.hpp"
 #include "pliant/plate/stencil.hpp"
 
 namespace pliant::testing {

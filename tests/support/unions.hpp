@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace pliant::testing {

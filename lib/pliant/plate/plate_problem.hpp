@@ -2,7 +2,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/profile.hpp"
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {

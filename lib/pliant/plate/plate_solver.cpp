@@ -5,7 +5,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/backward_euler.hpp"
-#include "pliant/plate/rectangle_cover.hpp"
+#include "pliant/plate/overlap/rectangle_cover.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
 namespace pliant {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {

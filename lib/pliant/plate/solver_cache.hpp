@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {

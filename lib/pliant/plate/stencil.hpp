@@ -4,7 +4,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
-#include "pliant/plate/outline.hpp"
+#include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <memory>
+
+#include <cholmod.h>
+
+#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/sparse/direct_solver.hpp"
+
+namespace pliant {
+namespace {
+
+/// CHOLMOD's workspace and settings, and everything allocated with them.
+class CholmodFactorization {
+ public:
+  CholmodFactorization() {
+    cholmod_start(&common_);
+    // Simplicial LDL^T in one order: no BLAS (whose kernels change with the CPU), no METIS (which
+    // uses the process-wide rand), no choice by trial. Bit-identical everywhere. SPEC 10.
+    common_.supernodal = CHOLMOD_SIMPLICIAL;
+    common_.final_ll = 0;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_AMD;
+    common_.postorder = 1;
+    common_.print = 0;
+    common_.try_catch = 1;
+  }
+  CholmodFactorization(const CholmodFactorization&) = delete;
+  CholmodFactorization& operator=(const CholmodFactorization&) = delete;
+  ~CholmodFactorization() {
+    cholmod_free_factor(&factor_, &common_);
+    for (cholmod_dense* dense : {solution_, workspace_y_, workspace_e_}) {
+      cholmod_free_dense(&dense, &common_);
+    }
+    cholmod_finish(&common_);
+  }
+
+  Result<void> analyze(const SparseMatrix& matrix) {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_sparse view = view_of(matrix);
+    factor_ = cholmod_analyze(&view, &common_);
+    return check(matrix.rows());
+  }
+
+  // Entries of the factor of the analysed matrix.
+  std::size_t factor_entries() const { return static_cast<std::size_t>(common_.lnz); }
+
+  Result<void> factorize(const SparseMatrix& matrix) {
+    cholmod_sparse view = view_of(matrix);
+    cholmod_factorize(&view, factor_, &common_);
+    if (auto checked = check(matrix.rows()); !checked) return checked;
+    // CHOLMOD factors an indefinite matrix as LDL^T without an error; D, the first entry of each
+    // column of the factor, shows whether the matrix was definite. !(d > 0) is true for NaN too.
+    const auto* starts = static_cast<const int*>(factor_->p);
+    const auto* entries = static_cast<const double*>(factor_->x);
+    for (int column = 0; column < matrix.rows(); ++column) {
+      if (!(entries[starts[column]] > 0)) return fail(not_positive_definite(matrix.rows(), column));
+    }
+    return {};
+  }
+
+  Result<Field> solve(const Field& right_hand_sides) {
+    cholmod_dense view = {};
+    view.nrow = view.d = static_cast<std::size_t>(right_hand_sides.rows());
+    view.ncol = static_cast<std::size_t>(right_hand_sides.cols());
+    view.nzmax = view.nrow * view.ncol;
+    view.x = const_cast<double*>(right_hand_sides.data());  // NOLINT: CHOLMOD does not write to it
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    // solve2 reuses its solution and workspaces from call to call.
+    cholmod_solve2(CHOLMOD_A, factor_, &view, nullptr, &solution_, nullptr, &workspace_y_,
+                   &workspace_e_, &common_);
+    if (auto checked = check(right_hand_sides.rows()); !checked) return fail(checked.error());
+    return Field(Eigen::Map<const Field>(static_cast<const double*>(solution_->x),
+                                         right_hand_sides.rows(), 3));
+  }
+
+ private:
+  // The matrix as CHOLMOD sees it, without a copy.
+  static cholmod_sparse view_of(const SparseMatrix& matrix) {
+    cholmod_sparse view = {};
+    view.nrow = static_cast<std::size_t>(matrix.rows());
+    view.ncol = static_cast<std::size_t>(matrix.cols());
+    view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
+    view.p = const_cast<int*>(matrix.outerIndexPtr());  // NOLINT: CHOLMOD does not write to
+    view.i = const_cast<int*>(matrix.innerIndexPtr());  // NOLINT: the matrix it analyses
+    view.x = const_cast<double*>(matrix.valuePtr());    // NOLINT: or factors
+    view.stype = 1;                                     // symmetric, the upper triangle is stored
+    view.itype = CHOLMOD_INT;
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    view.sorted = 1;
+    view.packed = 1;
+    return view;
+  }
+
+  Result<void> check(long size) const {
+    if (common_.status == CHOLMOD_OK || common_.status == CHOLMOD_DSMALL) return {};
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) {
+      return fail(no_memory_for_factor(size));
+    }
+    return fail(not_positive_definite(size, factor_ ? static_cast<long>(factor_->minor) : 0));
+  }
+
+  cholmod_common common_ = {};
+  cholmod_factor* factor_ = nullptr;
+  cholmod_dense* solution_ = nullptr;
+  cholmod_dense* workspace_y_ = nullptr;
+  cholmod_dense* workspace_e_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<PlateSolver> make_cholmod_solver(MemoryBudget* budget) {
+  return std::make_unique<DirectSolver<CholmodFactorization>>(budget);
+}
+
+}  // namespace pliant

@@ -1,0 +1,450 @@
+#include "pliant/plate/spectral/spectral_plate.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <new>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/stencil.hpp"
+
+namespace pliant {
+namespace {
+
+int filled_up(int count) { return (count + row_unit - 1) / row_unit * row_unit; }
+
+// Rows at a distance of a multiple of 4096 bytes compete for the same cache sets.
+int pitch_of(int columns) { return columns % 512 == 0 ? columns + row_unit : columns; }
+
+int modes_of(int parity, int length) {
+  return parity == 0 ? odd_modes(length) : even_modes(length);
+}
+
+}  // namespace
+
+// Allocates parts of one block, each on its own cache line; with a null block it only counts.
+class SpectralPlate::Carver {
+ public:
+  explicit Carver(double* block) : block_(block) {}
+
+  double* take(std::size_t count) {
+    const std::size_t begin = used_;
+    // Adds an odd number of lines to whole pages, so that arrays that are read together do not
+    // compete for the same cache sets.
+    constexpr std::size_t unit = NumberBlock::line / sizeof(double);
+    used_ += (count + unit - 1) / unit * unit;
+    if (count >= 512) used_ += (512 - used_ % 512) % 512 + unit * (1 + 2 * (arrays_++ % 29));
+    return block_ ? block_ + begin : nullptr;
+  }
+
+  std::size_t used() const { return used_; }
+
+ private:
+  double* block_;
+  std::size_t used_ = 0;
+  std::size_t arrays_ = 0;
+};
+
+SpectralPlate::SpectralPlate(MemoryBudget* budget, ThreadPool* threads,
+                             const SpectralKernels& kernels)
+    : kernels_(kernels), threads_(threads), memory_(budget) {}
+
+// Runs tasks that write different numbers. On a small plate they are not worth a thread.
+template <class Work>
+void SpectralPlate::for_each(std::size_t count, const Work& work) {
+  constexpr long worth_a_thread = 10'000;  // nodes
+  if (threads_ && long{columns_} * rows_ > worth_a_thread) {
+    threads_->for_each(count, std::ref(work));
+  } else {
+    for (std::size_t k = 0; k < count; ++k) work(k);
+  }
+}
+
+void SpectralPlate::carve(Carver& carver) {
+  const auto take = [&](long count) { return carver.take(static_cast<std::size_t>(count)); };
+  const int lengths[2] = {plans_[0].length(), plans_[1].length()};
+  for (int direction = 0; direction < 2; ++direction) {
+    for (int parity = 0; parity < 2; ++parity) {
+      const int count = filled_up(modes_of(parity, lengths[direction]));
+      modes_[direction].eigenvalue[parity] = take(count);
+      modes_[direction].scale[parity] = take(count);
+      modes_[direction].unscale[parity] = take(count);
+      modes_[direction].weight[parity] = take(count);
+    }
+    modes_[direction].in = take(lengths[direction]);
+    modes_[direction].out = take(lengths[direction]);
+  }
+  transform_.across_in = modes_[0].in;
+  transform_.across_out = modes_[0].out;
+  transform_.along_in = modes_[1].in;
+  transform_.along_out = modes_[1].out;
+  transform_.even_column = filled_up(odd_modes(lengths[0]));
+  const int width = transform_.even_column + filled_up(even_modes(lengths[0]));
+  transform_.between_pitch = pitch_of(width);
+
+  const std::size_t tasks = threads_ ? static_cast<std::size_t>(threads_->thread_count()) : 1;
+  work_size_ = 0;
+  for (const SinePlan& plan : plans_) {
+    const SineView view = plan.view();
+    const long size = sine_work(view) * kernels_.lanes + sine_points(view) * group_columns;
+    work_size_ = std::max(work_size_, static_cast<std::size_t>(size));
+  }
+  work_size_ = (work_size_ + 511) / 512 * 512 + row_unit;
+  work_ = carver.take(tasks * work_size_);
+  for (double*& between : between_) {
+    between = take(long{lengths[1] - 1} * transform_.between_pitch);
+  }
+  for (int k = 0; k < 4; ++k) {
+    Parity& parity = parities_[k];
+    parity.rows = modes_of(k / 2, lengths[1]);
+    parity.columns = filled_up(modes_of(k % 2, lengths[0]));
+    parity.pitch = pitch_of(parity.columns);
+    parity.inverse_pitch = parity.pitch;
+    transform_.pitch[k % 2] = parity.pitch;
+    const long size = long{parity.rows} * parity.pitch;
+    parity.reciprocal = take(size);
+    parity.row_pivot = take(parity.rows);
+    parity.inverse = take(long{parity.columns} * parity.inverse_pitch);
+    parity.panels = take(panel_size(parity.rows, parity.columns));
+    for (int component = 0; component < 3; ++component) {
+      parity.displacement[component] = take(size);
+      parity.pending[component] = take(size);
+      parity.load[component] = take(size);
+      parity.sums[component] = take(parity.rows + row_unit + 3L * parity.columns);
+    }
+  }
+}
+
+Result<void> SpectralPlate::lay_out(int columns, int rows) {
+  if (columns == columns_ && rows == rows_) return {};
+  columns_ = rows_ = 0;
+  const long size = long{columns - 2} * (rows - 2);
+  is_along_u_ = columns >= rows;
+  const int across = std::min(columns, rows) - 1;
+  const int along = std::max(columns, rows) - 1;
+  const std::size_t tables = SinePlan::most_size(across) + SinePlan::most_size(along);
+  // Tables first: the size of the rest depends on them, and they are small.
+  if (const std::size_t bytes = (tables + numbers_.count()) * sizeof(double);
+      !memory_.try_resize(bytes)) {
+    return fail(no_memory_to_solve(size, memory_.complaint(bytes)));
+  }
+  if (plans_[0].length() != across) plans_[0] = SinePlan(across);
+  if (plans_[1].length() != along) plans_[1] = SinePlan(along);
+  transform_.across = plans_[0].view();
+  transform_.along = plans_[1].view();
+
+  Carver count(nullptr);
+  carve(count);
+  if (count.used() > numbers_.count()) {
+    numbers_ = NumberBlock();
+    const std::size_t bytes = (tables + count.used()) * sizeof(double);
+    if (!memory_.try_resize(bytes)) {
+      const Error error = no_memory_to_solve(size, memory_.complaint(bytes));
+      (void)memory_.try_resize(tables * sizeof(double));  // less memory is always available
+      return fail(error);
+    }
+    numbers_ = NumberBlock(count.used());
+  }
+  // The padding of rows remains 0 from here on.
+  std::fill_n(numbers_.begin(), count.used(), 0.0);
+  Carver carver(numbers_.begin());
+  carve(carver);
+  columns_ = columns;
+  rows_ = rows;
+  ++counts_.analyses;
+
+  fill_modes();
+  return {};
+}
+
+void SpectralPlate::fill_modes() {
+  for (int direction = 0; direction < 2; ++direction) {
+    const int length = plans_[direction].length();
+    const Modes& modes = modes_[direction];
+    for (int mode = 1; mode < length; ++mode) {
+      const int parity = (mode + 1) % 2;
+      const int place = (mode - 1) / 2;
+      const double sine = turn_point(mode, 2L * length).sine;
+      const double half = turn_point(mode, 4L * length).sine;
+      const double p = std::sqrt(2.0 / length) * sine;
+      modes.eigenvalue[parity][place] = 4 * half * half;
+      modes.scale[parity][place] = p;
+      modes.unscale[parity][place] = 1 / p;
+      modes.weight[parity][place] = p * p;
+      modes.in[mode - 1] = 1 / sine;
+      modes.out[mode - 1] = sine * (2.0 / length);
+    }
+  }
+}
+
+Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
+  PLIANT_EXPECTS(system.outline.is_rectangle());
+  if (prepared_ == system) return {};
+  const Grid& grid = system.outline.grid();
+  PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
+  prepared_.reset();
+  if (auto laid_out = lay_out(grid.columns, grid.rows); !laid_out) return laid_out;
+  ++counts_.factorizations;
+
+  const Stencil<double> stencil(grid, system.stiffness);
+  const double edge_u = 4 * stencil.b;
+  const double edge_v = 4 * stencil.d;
+  const double beta = is_along_u_ ? edge_u : edge_v;
+  const double delta = is_along_u_ ? edge_v : edge_u;
+  int failed[4];
+  for_each(4, [&](std::size_t k) {
+    Parity& parity = parities_[k];
+    failed[k] = -1;
+    if (parity.rows == 0 || parity.columns == 0) return;
+    if (!fill_diagonal(system, static_cast<int>(k))) {
+      failed[k] = 0;
+      return;
+    }
+    failed[k] = kernels_.invert_edge(view_of(static_cast<int>(k)), beta, delta, parity.row_pivot,
+                                     parity.inverse, parity.panels);
+  });
+  for (const int pivot : failed) {
+    if (pivot >= 0) return fail(not_positive_definite(unknown_count(system.outline), pivot));
+  }
+  prepared_ = system;
+  return {};
+} catch (const std::bad_alloc&) {
+  return fail(no_memory_to_solve(unknown_count(system.outline), "does not fit in memory"));
+}
+
+// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Returns whether all are
+// positive.
+bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
+  const Parity& parity = parities_[k];
+  const Grid& grid = system.outline.grid();
+  const Stiffness& stiffness = system.stiffness;
+  const double shift = system.shift;
+  const double h_along = is_along_u_ ? grid.hu : grid.hv;
+  const double h_across = is_along_u_ ? grid.hv : grid.hu;
+  const double b = is_along_u_ ? stiffness.b : stiffness.d;
+  const double d = is_along_u_ ? stiffness.d : stiffness.b;
+  // With c < 0 the mixed term is subtracted from the squares. With s and t the roots of the squares
+  //   s^2 + t^2 + (c/sqrt(bd)) s t = (s - t)^2 + (c + 2 sqrt(bd))/sqrt(bd) s t,
+  // which has no cancellation.
+  const bool takes_away = stiffness.c < 0;
+  const double root = -stiffness.least_c() / 2;
+  const double mixed = (takes_away ? stiffness.c - stiffness.least_c() : stiffness.c) / root;
+  const double scale_s = std::sqrt(b) / (h_along * h_along);
+  const double scale_t = std::sqrt(d) / (h_across * h_across);
+  const double* const along = modes_[1].eigenvalue[k / 2];
+  const double* const across = modes_[0].eigenvalue[k % 2];
+  const int count = modes_of(k % 2, plans_[0].length());
+  bool is_positive = true;
+  for (int row = 0; row < parity.rows; ++row) {
+    double* const out = parity.reciprocal + long{row} * parity.pitch;
+    const double s = scale_s * along[row];
+    for (int l = 0; l < count; ++l) {
+      const double t = scale_t * across[l];
+      const double squares = takes_away ? (s - t) * (s - t) : s * s + t * t;
+      const double diagonal = squares + mixed * (s * t) + shift;
+      is_positive =
+          is_positive && diagonal > 0 && diagonal < std::numeric_limits<double>::infinity();
+      out[l] = 1 / diagonal;
+    }
+  }
+  return is_positive;
+}
+
+ParityView SpectralPlate::view_of(int k) const {
+  const Parity& parity = parities_[k];
+  return {parity.rows,       parity.columns,          parity.pitch,
+          parity.reciprocal, modes_[1].weight[k / 2], modes_[0].weight[k % 2],
+          parity.row_pivot,  modes_[0].scale[k % 2],  modes_[0].unscale[k % 2],
+          parity.inverse,    parity.inverse_pitch};
+}
+
+ComponentView SpectralPlate::component_of(int k, int component) const {
+  const Parity& parity = parities_[k];
+  double* const columns = parity.sums[component] + filled_up(parity.rows);
+  return {parity.displacement[component],
+          parity.pending[component],
+          parity.load[component],
+          parity.sums[component],
+          columns,
+          columns + parity.columns};
+}
+
+void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3]) {
+  TransformView view = transform_;
+  view.across_stride = is_along_u_ ? field.row_stride : 1;
+  view.along_stride = is_along_u_ ? 1 : field.row_stride;
+  const auto tasks = chunk_count();
+  for_each(tasks, [&](std::size_t task) {
+    const auto [first, last] = chunk(task, plans_[1].length() - 1);
+    for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
+      kernels_.in_across(view, field.first + component * field.component_stride, first, last,
+                         between_[component], work_ + task * work_size_);
+    }
+  });
+  for_each(tasks, [&](std::size_t task) {
+    const auto [first, last] = chunk(task, between_width());
+    for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
+      CoefficientsView coefficients;
+      for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*to)[component];
+      kernels_.in_along(view, between_[component], first, last, coefficients,
+                        work_ + task * work_size_);
+    }
+  });
+}
+
+void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field) {
+  TransformView view = transform_;
+  view.across_stride = is_along_u_ ? field.row_stride : 1;
+  view.along_stride = is_along_u_ ? 1 : field.row_stride;
+  const auto tasks = chunk_count();
+  for_each(tasks, [&](std::size_t task) {
+    const auto [first, last] = chunk(task, between_width());
+    for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
+      CoefficientsView coefficients;
+      for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*from)[component];
+      kernels_.out_along(view, coefficients, first, last, between_[component],
+                         work_ + task * work_size_);
+    }
+  });
+  for_each(tasks, [&](std::size_t task) {
+    const auto [first, last] = chunk(task, plans_[1].length() - 1);
+    for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
+      kernels_.out_across(view, between_[component], first, last,
+                          field.first + component * field.component_stride,
+                          work_ + task * work_size_);
+    }
+  });
+}
+
+// Forces along one axis leave two components of a displacement at 0; those need no work.
+void SpectralPlate::find_still(const ConstNodesView& load, const ConstNodesView& displacement,
+                               const ConstNodesView& velocity) {
+  for (int component = 0; component < 3; ++component) {
+    is_still_[component] = is_zero(displacement, component) && is_zero(velocity, component) &&
+                           is_zero(load, component);
+  }
+}
+
+bool SpectralPlate::is_zero(const ConstNodesView& field, int component) const {
+  for (int j = 0; j < rows_ - 2; ++j) {
+    const double* const row =
+        field.first + component * field.component_stride + j * field.row_stride;
+    if (!std::all_of(row, row + columns_ - 2, [](double number) { return number == 0; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void SpectralPlate::clear(const NodesView& field, int component) const {
+  for (int j = 0; j < rows_ - 2; ++j) {
+    std::fill_n(field.first + component * field.component_stride + j * field.row_stride,
+                columns_ - 2, 0.0);
+  }
+}
+
+// Independent parts of a step: one component of one pair of parities, unless it is 0.
+SpectralPlate::Parts SpectralPlate::moving_parts() const {
+  Parts parts;
+  for (int k = 0; k < 4; ++k) {
+    if (parities_[k].rows == 0 || parities_[k].columns == 0) continue;
+    for (int component = 0; component < 3; ++component) {
+      if (!is_still_[component]) parts.part[parts.count++] = {k, component};
+    }
+  }
+  return parts;
+}
+
+// The number of parts in which a field is transformed. Columns are independent, so no bit depends
+// on it.
+std::size_t SpectralPlate::chunk_count() const {
+  return threads_ ? static_cast<std::size_t>(threads_->thread_count()) : 1;
+}
+
+SpectralPlate::Range SpectralPlate::chunk(std::size_t task, int count) const {
+  const std::size_t units = static_cast<std::size_t>(filled_up(count)) / row_unit;
+  const auto begin = [&](std::size_t k) {
+    return std::min(count, static_cast<int>(units * k / chunk_count()) * row_unit);
+  };
+  return {begin(task), begin(task + 1)};
+}
+
+int SpectralPlate::between_width() const {
+  return transform_.even_column + filled_up(even_modes(plans_[0].length()));
+}
+
+void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution) {
+  PLIANT_EXPECTS(prepared_.has_value());
+  ++counts_.solves;
+  for (int component = 0; component < 3; ++component) {
+    is_still_[component] = is_zero(load, component);
+    if (is_still_[component]) clear(solution, component);
+  }
+  to_sines(load, &Parity::load);
+  const Parts parts = moving_parts();
+  for_each(parts.count, [&](std::size_t task) {
+    const auto [k, index] = parts.part[task];
+    const ParityView parity = view_of(k);
+    const ComponentView component = component_of(k, index);
+    const long size = long{parity.rows} * parity.pitch;
+    std::fill_n(component.displacement, size, 0.0);
+    std::fill_n(component.pending, size, 0.0);
+    kernels_.start(parity, component, 0, 0);
+    kernels_.last_step(parity, component, 0);
+  });
+  from_sines(&Parity::displacement, solution);
+}
+
+bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
+                            const NodesView& displacement, const NodesView& velocity,
+                            const StopRequest& should_stop) {
+  PLIANT_EXPECTS(prepared_.has_value());
+  const auto view = [](const NodesView& nodes) {
+    return ConstNodesView{nodes.first, nodes.row_stride, nodes.component_stride};
+  };
+  find_still(load, view(displacement), view(velocity));
+  to_sines(load, &Parity::load);
+  to_sines(view(displacement), &Parity::displacement);
+  to_sines(view(velocity), &Parity::pending);
+
+  // Eq. (28): shift w' + inertia v' with v' = (w' - w)/dt.
+  const double shift = prepared_->shift;
+  const double keep = inertia / steps.length;
+  const StepFactors factors{shift + keep, keep};
+  std::atomic<bool> is_stopped = false;
+  const Parts parts = moving_parts();
+  for_each(parts.count, [&](std::size_t task) {
+    const auto [k, index] = parts.part[task];
+    const ParityView parity = view_of(k);
+    const ComponentView component = component_of(k, index);
+    kernels_.start(parity, component, shift, inertia);
+    for (int step = 1; step <= steps.count; ++step) {
+      if (is_stopped) return;
+      // The parts call `should_stop` in turn, so that it is called once per step.
+      const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
+      if (asks && should_stop && should_stop()) {
+        is_stopped = true;
+        return;
+      }
+      if (step < steps.count) {
+        kernels_.step(parity, component, factors);
+      } else {
+        kernels_.last_step(parity, component, 1 / steps.length);
+      }
+    }
+  });
+  if (is_stopped) return false;
+  counts_.solves += steps.count;
+  from_sines(&Parity::displacement, displacement);
+  from_sines(&Parity::pending, velocity);
+  return true;
+}
+
+}  // namespace pliant

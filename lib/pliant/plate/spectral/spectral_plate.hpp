@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/number_block.hpp"
+#include "pliant/plate/plate_problem.hpp"
+#include "pliant/plate/solver_choice.hpp"
+#include "pliant/plate/spectral/sine_plan.hpp"
+#include "pliant/plate/spectral/spectral_kernels.hpp"
+#include "pliant/plate/time_steps.hpp"
+
+namespace pliant {
+
+/// A field on the nodes of a rectangle, or on its interior nodes: a pointer to the first interior
+/// node of the first component, and the strides to the next ones.
+struct NodesView {
+  double* first = nullptr;
+  long row_stride = 0;
+  long component_stride = 0;
+};
+struct ConstNodesView {
+  const double* first = nullptr;
+  long row_stride = 0;
+  long component_stride = 0;
+};
+
+/// A clamped plate in sine space, where its operator is a diagonal and four small dense matrices.
+/// Stores the tables and the factors for one system and the state of three components. Solves in
+/// O(nodes log side), steps in O(nodes). docs/model.md, "In sine space". Internal to plate.
+class SpectralPlate {
+ public:
+  /// Reserves memory from `budget` and works on `threads`, which must both outlive it; null: no
+  /// limit, one thread. The bits depend on neither, nor on `kernels`.
+  explicit SpectralPlate(MemoryBudget* budget, ThreadPool* threads = nullptr,
+                         const SpectralKernels& kernels = *runnable_kernels(0));
+
+  /// Prepares for a system. Reuse of the last one never changes a result's bits. Errors:
+  /// SolverFailed if the matrix is not positive definite or not finite; OutOfMemory.
+  Result<void> prepare(const PlateSystem& system);
+
+  /// Solves for three right-hand sides on the interior nodes. Requires: prepared.
+  void solve(const ConstNodesView& load, const NodesView& solution);
+
+  /// Steps of backward Euler on the interior nodes with the prepared shift; the load excludes the
+  /// rim's part. Requires: prepared; inertia = rho/dt. Returns false if `should_stop` returns true;
+  /// displacement and velocity are then unchanged.
+  bool advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
+               const NodesView& displacement, const NodesView& velocity,
+               const StopRequest& should_stop);
+
+  const SolverCounts& counts() const { return counts_; }
+  std::size_t memory() const { return memory_.bytes(); }
+
+ private:
+  // Storage of one pair of parities. Rows are the modes along, columns those across.
+  struct Parity {
+    int rows = 0;
+    int columns = 0;  // padded
+    int pitch = 0;
+    int inverse_pitch = 0;
+    double* reciprocal = nullptr;
+    double* row_pivot = nullptr;
+    double* inverse = nullptr;
+    double* panels = nullptr;  // workspace of the factorisation
+    double* load[3] = {};
+    double* displacement[3] = {};
+    double* pending[3] = {};
+    double* sums[3] = {};  // of rows, of columns, and the edge
+  };
+
+  // The modes of one direction.
+  struct Modes {
+    double* eigenvalue[2] = {};  // of -(1 -2 1), by parity
+    double* scale[2] = {};       // p_k, by parity
+    double* unscale[2] = {};     // 1/p_k, by parity
+    double* weight[2] = {};      // p_k^2, by parity
+    double* in = nullptr;        // factor in the forward transform, by mode
+    double* out = nullptr;       // and in the inverse transform
+  };
+
+  class Carver;
+
+  struct Range {
+    int first, last;
+  };
+  struct Part {
+    int parity, component;
+  };
+  struct Parts {
+    std::size_t count = 0;
+    Part part[12] = {};
+  };
+
+  Result<void> lay_out(int columns, int rows);
+  void carve(Carver& carver);
+  void fill_modes();
+  bool fill_diagonal(const PlateSystem& system, int parity);
+  ParityView view_of(int parity) const;
+  ComponentView component_of(int parity, int component) const;
+  void find_still(const ConstNodesView& load, const ConstNodesView& displacement,
+                  const ConstNodesView& velocity);
+  bool is_zero(const ConstNodesView& field, int component) const;
+  void clear(const NodesView& field, int component) const;
+  Parts moving_parts() const;
+  std::size_t chunk_count() const;
+  Range chunk(std::size_t task, int count) const;
+  int between_width() const;
+  void to_sines(const ConstNodesView& field, double* (Parity::*to)[3]);
+  void from_sines(double* (Parity::*from)[3], const NodesView& field);
+  template <class Work>
+  void for_each(std::size_t count, const Work& work);
+
+  const SpectralKernels& kernels_;
+  ThreadPool* threads_;
+  MemoryShare memory_;
+  SolverCounts counts_;
+  std::optional<PlateSystem> prepared_;
+
+  int columns_ = 0;  // of the grid of the current layout
+  int rows_ = 0;
+  bool is_along_u_ = true;  // the longer direction is u
+  SinePlan plans_[2];       // across, along
+  NumberBlock numbers_;
+  TransformView transform_;
+  Modes modes_[2];  // across, along
+  Parity parities_[4];
+  double* between_[3] = {};
+  bool is_still_[3] = {};  // components where all is 0, and remains 0
+  double* work_ = nullptr;
+  std::size_t work_size_ = 0;  // of one task
+};
+
+}  // namespace pliant

@@ -1,0 +1,80 @@
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/load_copy.hpp"
+#include "pliant/plate/rim_load.hpp"
+#include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/spectral/spectral_plate.hpp"
+
+namespace pliant {
+namespace {
+
+class SpectralSolver final : public PlateSolver {
+ public:
+  SpectralSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
+      : plate_(budget, threads, kernels_of_width(most_lanes)), load_(budget) {}
+
+  Result<void> prepare(const PlateSystem& system) override {
+    grid_ = system.outline.grid();
+    return plate_.prepare(system);
+  }
+
+  // With a transform to sine space and back.
+  Result<Field> solve(const Field& right_hand_sides) override {
+    PLIANT_EXPECTS(right_hand_sides.rows() == unknown_count(grid_));
+    Field solution(right_hand_sides.rows(), 3);
+    const long width = grid_.columns - 2;
+    plate_.solve({right_hand_sides.data(), width, right_hand_sides.rows()},
+                 {solution.data(), width, solution.rows()});
+    return solution;
+  }
+
+  // Keeps the state in sine space for all steps.
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
+                             const StopRequest& should_stop) override try {
+    const Grid& grid = problem.outline.grid();
+    PLIANT_EXPECTS(is_on_nodes(problem, state));
+    const double inertia = problem.dynamics.inertia(steps.length);
+    const double shift = problem.dynamics.shift(steps.length);
+    StageTimer set_up(problem.profile, Stage::SetUp);
+    if (auto prepared = prepare({problem.outline, problem.stiffness, shift}); !prepared) {
+      return fail(prepared.error());
+    }
+    set_up.stop();
+    const StageTimer solve(problem.profile, Stage::Solve);
+    if (auto taken = load_.take(problem); !taken) return fail(taken.error());
+    subtract_rim(problem.outline, problem.stiffness, problem.tangents, state.displacement,
+                 load_.nodes());
+
+    const long first = grid.node(1, 1);
+    const long count = grid.node_count();
+    const bool is_done =
+        plate_.advance({load_.nodes().data() + first, grid.columns, count}, inertia, steps,
+                       {state.displacement.data() + first, grid.columns, count},
+                       {state.velocity.data() + first, grid.columns, count}, should_stop);
+    if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
+    clear_rim(problem.outline, state.velocity);
+    return state;
+  } catch (const std::bad_alloc&) {
+    return fail(no_memory_to_solve(problem.outline.unknown_count(), "does not fit in memory"));
+  }
+
+  SolverCounts counts() const override { return plate_.counts(); }
+  std::size_t memory() const override { return plate_.memory() + load_.memory(); }
+
+ private:
+  SpectralPlate plate_;
+  LoadCopy load_;
+  Grid grid_;  // of the last system
+};
+
+}  // namespace
+
+std::unique_ptr<PlateSolver> make_spectral_solver(MemoryBudget* budget, ThreadPool* threads,
+                                                  int most_lanes) {
+  return std::make_unique<SpectralSolver>(budget, threads, most_lanes);
+}
+
+}  // namespace pliant

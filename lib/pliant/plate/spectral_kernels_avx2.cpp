@@ -1,8 +1,0 @@
-#include "pliant/plate/spectral_kernels.hpp"
-
-#define PLIANT_LANES 4
-#define PLIANT_KERNELS avx2
-#define PLIANT_KERNELS_NAME "avx2"
-#include "pliant/plate/sine_transform_body.hpp"
-#include "pliant/plate/spectral_fields_body.hpp"
-#include "pliant/plate/spectral_kernels_body.hpp"

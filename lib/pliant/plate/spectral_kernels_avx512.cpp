@@ -1,8 +1,0 @@
-#include "pliant/plate/spectral_kernels.hpp"
-
-#define PLIANT_LANES 8
-#define PLIANT_KERNELS avx512
-#define PLIANT_KERNELS_NAME "avx512"
-#include "pliant/plate/sine_transform_body.hpp"
-#include "pliant/plate/spectral_fields_body.hpp"
-#include "pliant/plate/spectral_kernels_body.hpp"

@@ -1,8 +1,0 @@
-#include "pliant/plate/spectral_kernels.hpp"
-
-#define PLIANT_LANES 2
-#define PLIANT_KERNELS baseline
-#define PLIANT_KERNELS_NAME "baseline"
-#include "pliant/plate/sine_transform_body.hpp"
-#include "pliant/plate/spectral_fields_body.hpp"
-#include "pliant/plate/spectral_kernels_body.hpp"
