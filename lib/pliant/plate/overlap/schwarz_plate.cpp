@@ -144,8 +144,8 @@ Result<void> SchwarzPlate::lay_out() {
   const std::size_t above = (std::size_t(grid.columns) + 2 + unit - 1) / unit * unit;
   const std::size_t field =
       (std::size_t(grid.node_count()) + 2 * above + 511) / 512 * 512 + 3 * unit;
-  const std::size_t patch = (largest + 511) / 512 * 512 + 3 * unit;
-  const std::size_t count = 18 * field + 3 * patch + 3 * rows_.block_count();
+  const std::size_t part_field = (largest + 511) / 512 * 512 + 3 * unit;
+  const std::size_t count = 18 * field + 3 * part_field + 3 * rows_.block_count();
   constexpr std::size_t bytes_along_side = 2 * sizeof(RowBlocks::Edge) + 10 * sizeof(long);
   const std::size_t bytes = count * sizeof(double) + rows_.memory() + sides * bytes_along_side +
                             system_.outline.mask().size();
@@ -161,9 +161,9 @@ Result<void> SchwarzPlate::lay_out() {
       next += field;
     }
   }
-  for (double*& component : patch_.of) {
+  for (double*& component : part_correction_.of) {
     component = next;
-    next += patch;
+    next += part_field;
   }
   block_sums_ = next;
   make_parts(cover);
@@ -286,8 +286,9 @@ void SchwarzPlate::visit(const Part& part, bool is_last) {
   const long first = part.box.j0 * M + part.box.i0;
   const long width = part.box.columns();
   const ConstNodesView left{product_.of[0] + first, M, product_.of[1] - product_.of[0]};
-  const NodesView patch{patch_.of[0], width, patch_.of[1] - patch_.of[0]};
-  part.plate->solve(left, patch);
+  const NodesView corrected{part_correction_.of[0], width,
+                            part_correction_.of[1] - part_correction_.of[0]};
+  part.plate->solve(left, corrected);
   for_each(3, [&](std::size_t component) {
     if (is_active_[component]) take_correction(part, static_cast<int>(component), is_last);
   });
@@ -299,7 +300,7 @@ void SchwarzPlate::take_correction(const Part& part, int component, bool is_last
   const long M = system_.outline.grid().columns;
   const Box& box = part.box;
   const long width = box.columns();
-  const double* const y = patch_.of[component];
+  const double* const y = part_correction_.of[component];
   double* const z = correction_.of[component];
   double* const left = product_.of[component];
   for (int j = box.j0; j <= box.j1; ++j) {

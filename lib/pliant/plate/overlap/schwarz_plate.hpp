@@ -119,8 +119,8 @@ class SchwarzPlate {
   std::size_t once_ = 0;  // number of parts, at the end, that a round visits once
   NumberBlock numbers_;
   NodeField load_, solution_, residual_, correction_, direction_;
-  NodeField product_;  // operator times direction; during a round, the rest of a residual
-  NodeField patch_;    // the correction of one rectangle, row after row
+  NodeField product_;          // operator times direction; during a round, the rest of a residual
+  NodeField part_correction_;  // of one rectangle, row after row
   double* block_sums_ = nullptr;
   bool is_active_[3] = {};  // components that are not solved yet
 };
