@@ -33,12 +33,12 @@ void add_cache(CLI::App& command, CacheOptions& options) {
       ->needs(folder);
 }
 
-Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options) {
+Result<std::unique_ptr<FolderStateStore>> open_cache(const CacheOptions& options) {
   if (!options.folder) return nullptr;
   if (options.folder->empty())
     return fail(ErrorCode::InvalidInput, "--cache: the name of the folder is empty");
   auto store =
-      FolderFrameStore::open(*options.folder, static_cast<std::size_t>(options.gigabytes * 1e9));
+      FolderStateStore::open(*options.folder, static_cast<std::size_t>(options.gigabytes * 1e9));
   if (store) return store;
   if (store.error().code != ErrorCode::Unwritable) {
     return fail(store.error().code,
@@ -48,7 +48,7 @@ Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options
   return nullptr;
 }
 
-void print_cache_notes(const FolderFrameStore* store, const CacheOptions& options) {
+void print_cache_notes(const FolderStateStore* store, const CacheOptions& options) {
   if (!store) return;
   if (const int damaged = store->damaged_count(); damaged > 0) {
     print_note(options, fmt::format("removed {} damaged file{}; those frames were solved again",

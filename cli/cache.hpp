@@ -19,10 +19,10 @@ void add_cache(CLI::App& command, CacheOptions& options);
 
 /// The store in the requested folder. Null if no folder was requested, or, with a note on stderr,
 /// if the folder cannot be made: a bake works without it. Errors: InvalidInput if it is a file.
-Result<std::unique_ptr<FolderFrameStore>> open_cache(const CacheOptions& options);
+Result<std::unique_ptr<FolderStateStore>> open_cache(const CacheOptions& options);
 
 /// Prints notes on stderr about the store after a run; null: prints nothing.
-void print_cache_notes(const FolderFrameStore* store, const CacheOptions& options);
+void print_cache_notes(const FolderStateStore* store, const CacheOptions& options);
 
 /// ", 12 frames solved, 83 read" for a summary.
 std::string cache_summary(const FrameCounts& counts);

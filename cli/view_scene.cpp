@@ -26,7 +26,7 @@ std::string title_of(const Scene& scene) {
 }
 
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
-                              const StopRequest& should_stop, MemoryFrameStore* store) {
+                              const StopRequest& should_stop, MemoryStateStore* store) {
   print_notes(scene);
   const auto frames = parse_frames(options.frames, scene);
   if (!frames) return fail(frames.error());

@@ -3,7 +3,7 @@
 #include "frame_range.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
-#include "pliant/simulation/frame_store.hpp"
+#include "pliant/states/state_store.hpp"
 #include "view.hpp"
 #include "viewer/bake.hpp"
 
@@ -24,6 +24,6 @@ std::string title_of(const Scene& scene);
 /// `store` are not solved again; the memory of the store counts towards the command's limit.
 /// Errors: those of `parse_frames`, of the simulation and of `view_bake`.
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
-                              const StopRequest& should_stop, MemoryFrameStore* store = nullptr);
+                              const StopRequest& should_stop, MemoryStateStore* store = nullptr);
 
 }  // namespace pliant::cli

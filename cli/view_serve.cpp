@@ -103,7 +103,7 @@ std::size_t store_bytes(const ResourceOptions& resources) {
 
 // Bakes the scene in its present state. Returns the watch over its files.
 std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer& server,
-                                 MemoryFrameStore& store) {
+                                 MemoryStateStore& store) {
   // Watch the file before reading it, so that no save is missed.
   auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
   server.tell_working();
@@ -142,7 +142,7 @@ int serve_view(const ViewOptions& options, std::string_view page) {
   if (std::ferror(stdout) != 0)
     return exit_failed;  // the address was not printed, so no one can
                          // use the server
-  MemoryFrameStore store(store_bytes(options.resources));
+  MemoryStateStore store(store_bytes(options.resources));
   while (!was_interrupted()) {
     const auto watch = bake_once(options, *server, store);
     while (!was_interrupted() && !watch->has_changed()) std::this_thread::sleep_for(pause);

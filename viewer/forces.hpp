@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "pliant/feedback/frame_report.hpp"
 #include "pliant/scene/scene.hpp"
-#include "pliant/simulation/frame_report.hpp"
 #include "viewer/frame_range.hpp"
 #include "viewer/json.hpp"
 

@@ -90,7 +90,7 @@ if(result EQUAL 0)
 endif()
 
 # The project passes all arguments.
-file(READ "${SOURCE}/lib/pliant/simulation/CMakeLists.txt" text)
+file(READ "${SOURCE}/lib/pliant/states/CMakeLists.txt" text)
 if(text MATCHES "timeline/edit")
   message(SEND_ERROR "the digest contains the editing of curves")
 endif()

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/format.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
-#include "pliant/simulation/sampling.hpp"
-#include "pliant/simulation/state_key.hpp"
+#include "pliant/states/state_key.hpp"
 #include "support/catch.hpp"
 
 // Whatever channel the description of the format has is read, listed, written, sampled and hashed,

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "pliant/simulation/sampling.hpp"
+#include "pliant/sampling/sampling.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 

@@ -102,7 +102,7 @@ TEST_CASE("simulations in several threads do not disturb each other",
           "[simulation][random-access][threads]") {
   const Scene s = moving_scene();
   const auto expected = all_states(s);
-  MemoryFrameStore store(bytes_of_state() * 8);
+  MemoryStateStore store(bytes_of_state() * 8);
   std::vector<std::jthread> threads;
   std::atomic<int> wrong = 0;
   for (unsigned seed = 0; seed < 4; ++seed) {

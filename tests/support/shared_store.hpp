@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "pliant/simulation/frame_store.hpp"
+#include "pliant/states/state_store.hpp"
 
 namespace pliant::testing {
 
@@ -16,7 +16,7 @@ inline constexpr int shared_states = 60;
 /// Writes, reads and discards `shared_states` states of some 10 kB in each of four threads. Every
 /// thread that discards a state writes it again. Returns how many the store has at the end; -1 if
 /// any that was read was not as written.
-inline int share(FrameStore& store) {
+inline int share(StateStore& store) {
   const auto key = [](int number) { return hash_of(std::to_string(number)); };
   const auto state = [](int number) {
     return std::string(10'000 + static_cast<std::size_t>(number), static_cast<char>(number));

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <set>
+#include <tuple>
+#include <utility>
 
 namespace pliant {
 namespace {
@@ -80,6 +84,33 @@ std::vector<std::string> to_lines(const Error& error) {
   std::vector<std::string> lines{to_line(error)};
   for (const Error& other : error.others) lines.push_back(to_line(other));
   return lines;
+}
+
+std::vector<Error> sorted(std::vector<Error> errors, std::string_view file) {
+  std::vector<Error> all;
+  for (Error& error : errors) {
+    std::vector<Error> others = std::exchange(error.others, {});
+    all.push_back(std::move(error));
+    std::move(others.begin(), others.end(), std::back_inserter(all));
+  }
+  const auto place = [&](const Error& error) {
+    return std::tuple(error.file != file, std::string_view(error.file), error.line);
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Error& a, const Error& b) { return place(a) < place(b); });
+  std::set<std::tuple<std::string_view, int, std::string_view>> seen;
+  std::vector<Error> distinct;
+  for (const Error& error : all) {
+    if (seen.emplace(error.file, error.line, error.message).second) distinct.push_back(error);
+  }
+  return distinct;
+}
+
+Error as_one(std::vector<Error> errors, std::string_view file) {
+  std::vector<Error> all = sorted(std::move(errors), file);
+  Error first = std::move(all.front());
+  first.others.assign(std::make_move_iterator(all.begin() + 1), std::make_move_iterator(all.end()));
+  return first;
 }
 
 }  // namespace pliant

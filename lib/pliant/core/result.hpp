@@ -60,6 +60,13 @@ inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(st
 /// Idempotent.
 std::string printable(std::string_view text);
 
+/// The errors and their `others` in one list: those of `file` first, those of a file in the order
+/// of lines, each once.
+std::vector<Error> sorted(std::vector<Error> errors, std::string_view file);
+
+/// The first of `sorted`, with the others. Requires: not empty.
+Error as_one(std::vector<Error> errors, std::string_view file);
+
 /// The first problem and all others, one line each: `FILE:LINE: error: MESSAGE`; unknown parts are
 /// omitted.
 std::vector<std::string> to_lines(const Error& error);

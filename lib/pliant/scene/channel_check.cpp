@@ -42,10 +42,23 @@ bool is_finite(const Value<D>& value) {
 
 class ChannelChecker {
  public:
-  ChannelChecker(const Scene& scene, const ChannelFilter& is_checked,
+  ChannelChecker(const Scene& scene, int first, int last, const ChannelFilter& is_checked,
                  const StopRequest& should_stop)
-      : scene_(scene), is_checked_(is_checked), should_stop_(should_stop) {}
+      : scene_(scene),
+        first_(first),
+        last_(last),
+        is_checked_(is_checked),
+        should_stop_(should_stop) {}
 
+  void check_all() {
+    for (const Surface& surface : scene_.surfaces) check(surface);
+    for (const Force& force : scene_.forces) check_channels(force, force);
+    for (const Group& group : scene_.groups) check_channels(group, group);
+  }
+
+  std::vector<Error> take_errors() { return std::move(errors_); }
+
+ private:
   void check(const Surface& surface) {
     check_channels(surface, surface.transform);
     check_channels(surface, surface.material);
@@ -53,12 +66,7 @@ class ChannelChecker {
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
   }
-  void check(const Force& force) { check_channels(force, force); }
-  void check(const Group& group) { check_channels(group, group); }
 
-  std::vector<Error> take_errors() { return std::move(errors_); }
-
- private:
   // The channels of a part of a surface, or of a force or group. Notes which keep their rule.
   template <class Owner, class Part>
   void check_channels(const Owner& owner, const Part& part) {
@@ -111,8 +119,8 @@ class ChannelChecker {
   bool check(const std::string& name, std::string_view attribute, const Channel<D>& channel,
              const Rule& rule) {
     if (!is_checked(name, attribute)) return false;
-    const int last = channel.is_animated() ? scene_.end : scene_.start;
-    for (int frame = scene_.start; frame <= last; ++frame) {
+    const int last = channel.is_animated() ? last_ : first_;
+    for (int frame = first_; frame <= last; ++frame) {
       const Value<D> value = channel.at(frame);
       const Complaint complaint =
           is_finite<D>(value) ? rule(value)
@@ -130,8 +138,8 @@ class ChannelChecker {
     if (!is_checked(surface.name, "c")) return;
     const auto& [density, damping, b, c, d] = surface.material;
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
-    const int last = is_animated ? scene_.end : scene_.start;
-    for (int frame = scene_.start; frame <= last; ++frame) {
+    const int last = is_animated ? last_ : first_;
+    for (int frame = first_; frame <= last; ++frame) {
       const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
       if (!stiffness.is_elliptic() || !std::isfinite(stiffness.c)) {
         return add_error(surface.name, "c", is_animated, frame,
@@ -158,6 +166,7 @@ class ChannelChecker {
   }
 
   const Scene& scene_;
+  int first_, last_;  // frames
   const ChannelFilter& is_checked_;
   const StopRequest& should_stop_;
   std::set<std::string, std::less<>> kept_;  // channels of the present part that keep their rule
@@ -168,10 +177,16 @@ class ChannelChecker {
 
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,
                                   const StopRequest& should_stop) {
-  ChannelChecker checker(scene, is_checked, should_stop);
-  for (const Surface& surface : scene.surfaces) checker.check(surface);
-  for (const Force& force : scene.forces) checker.check(force);
-  for (const Group& group : scene.groups) checker.check(group);
+  ChannelChecker checker(scene, scene.start, scene.end, is_checked, should_stop);
+  checker.check_all();
+  return checker.take_errors();
+}
+
+std::vector<Error> check_channels_at(const Scene& scene, int frame) {
+  const ChannelFilter all;
+  const StopRequest never;
+  ChannelChecker checker(scene, frame, frame, all, never);
+  checker.check_all();
   return checker.take_errors();
 }
 

@@ -24,4 +24,7 @@ using ChannelFilter = std::function<bool(const std::string& name, std::string_vi
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked = {},
                                   const StopRequest& should_stop = {});
 
+/// The same at one frame only.
+std::vector<Error> check_channels_at(const Scene& scene, int frame);
+
 }  // namespace pliant

@@ -105,7 +105,7 @@ inline constexpr Attribute progress_attribute{
 /// Calls `visit(name, attribute, channel)` for each channel of a thing, a `Channel<1>`,
 /// `Channel<3>` or `Switch`; for a position on a path with the name `NAME.progress`.
 template <class T, class Visit>
-void for_each_channel(const T& thing, Visit&& visit);
+void for_each_channel(T& thing, Visit&& visit);
 
 // The words of choices, in the order of their values.
 inline constexpr std::string_view face_words[] = {"quads", "triangles"};
@@ -547,47 +547,44 @@ struct ChannelFinder {
   Visit& visit;
 
   void operator()(const Attribute&) const {}
-  template <class Other>
-  void operator()(const Attribute&, const Other&) const {}
-  template <int D>
-  void operator()(const Attribute& attribute, const Channel<D>& channel) const {
-    visit(std::string(attribute.name), attribute, channel);
-  }
-  void operator()(const Attribute& attribute, const Switch& channel) const {
-    visit(std::string(attribute.name), attribute, channel);
-  }
-  void operator()(const Attribute& attribute, const std::optional<Channel<3>>& channel) const {
-    if (channel) (*this)(attribute, *channel);
-  }
-  void operator()(const Attribute& attribute, const TangentChannel& tangent) const {
-    std::visit([&](const auto& channel) { (*this)(attribute, channel); }, tangent);
-  }
-  void operator()(const Attribute& attribute, const PositionChannel& position) const {
-    if (const PathMotion* const motion = position.path()) {
-      visit(std::string(attribute.name) + ".progress", progress_attribute, motion->progress);
-    } else {
-      (*this)(attribute, *position.channel());
+  template <class Member>
+  void operator()(const Attribute& attribute, Member& member) const {
+    using M = std::remove_const_t<Member>;
+    if constexpr (std::is_same_v<M, Channel<1>> || std::is_same_v<M, Channel<3>> ||
+                  std::is_same_v<M, Switch>) {
+      visit(std::string(attribute.name), attribute, member);
+    } else if constexpr (std::is_same_v<M, std::optional<Channel<3>>>) {
+      if (member) (*this)(attribute, *member);
+    } else if constexpr (std::is_same_v<M, TangentChannel>) {
+      std::visit([&](auto& channel) { (*this)(attribute, channel); }, member);
+    } else if constexpr (std::is_same_v<M, PositionChannel>) {
+      if (auto* const motion = member.path()) {
+        visit(std::string(attribute.name) + ".progress", progress_attribute, motion->progress);
+      } else {
+        (*this)(attribute, *member.channel());
+      }
     }
   }
 };
 
 template <class T, class Visit>
-void for_each_channel(const T& thing, Visit&& visit) {
+void for_each_channel(T& thing, Visit&& visit) {
+  using Thing = std::remove_const_t<T>;
   const ChannelFinder<std::remove_reference_t<Visit>> finder{visit};
-  if constexpr (std::is_same_v<T, Surface>) {
+  if constexpr (std::is_same_v<Thing, Surface>) {
     describe(finder, thing);
     describe(finder, thing.transform);
     describe(finder, thing.material);
     describe(finder, thing.tangents);
     describe(finder, thing.solver);
-  } else if constexpr (std::is_same_v<T, Force>) {
+  } else if constexpr (std::is_same_v<Thing, Force>) {
     // In a group, the group selects the region.
-    const auto row = [&](const Attribute& attribute, const auto&... member) {
+    const auto row = [&](const Attribute& attribute, auto&... member) {
       const bool selects = attribute.name == deformation_radius_attribute.name;
       if (!selects || thing.group.empty()) finder(attribute, member...);
     };
     describe(row, thing);
-    std::visit([&](const auto& kind) { describe(finder, kind); }, thing.shape);
+    std::visit([&](auto& kind) { describe(finder, kind); }, thing.shape);
   } else {
     describe(finder, thing);
   }

@@ -30,28 +30,18 @@ void Findings::add_note(int line, std::string message) {
 }
 
 std::vector<Error> Findings::problems() const {
-  std::vector<Error> problems = problems_;
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const Error& a, const Error& b) { return a.line < b.line; });
-  std::vector<Error> distinct;
-  std::set<std::pair<int, std::string>> seen;
-  for (Error& problem : problems)
-    if (seen.emplace(problem.line, problem.message).second) distinct.push_back(std::move(problem));
+  std::vector<Error> problems = sorted(problems_, file_);
   if (is_full())
-    distinct.push_back(Error{.code = ErrorCode::InvalidInput,
+    problems.push_back(Error{.code = ErrorCode::InvalidInput,
                              .message = "too many problems; reading stopped here",
                              .file = file_,
                              .line = problems.back().line});
-  return distinct;
+  return problems;
 }
 
 Error Findings::to_error() const {
   PLIANT_EXPECTS(!problems_.empty());
-  std::vector<Error> distinct = problems();
-  Error first = std::move(distinct.front());
-  first.others.assign(std::make_move_iterator(distinct.begin() + 1),
-                      std::make_move_iterator(distinct.end()));
-  return first;
+  return as_one(problems(), file_);
 }
 
 std::vector<SceneNote> Findings::notes() const {

@@ -32,7 +32,7 @@ class SurfaceFrame {
   double peak_displacement() const { return peak_displacement_; }
 
  private:
-  friend class Simulation;  // refills it
+  friend class Bodies;  // refills it
 
   std::string name_;
   Field object_positions_;
@@ -61,7 +61,7 @@ class Frame {
   std::string no_surface_text(std::string_view name) const;
 
  private:
-  friend class Simulation;
+  friend class Bodies;
 
   int number_ = 0;
   std::vector<SurfaceFrame> surfaces_;

@@ -12,17 +12,18 @@
 #include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/feedback/frame_report.hpp"
+#include "pliant/feedback/preview.hpp"
+#include "pliant/feedback/warnings.hpp"
 #include "pliant/plate/solver_choice.hpp"
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/frame.hpp"
-#include "pliant/simulation/frame_report.hpp"
 #include "pliant/simulation/frame_sequence.hpp"
-#include "pliant/simulation/rest_shape.hpp"
-#include "pliant/simulation/warnings.hpp"
 
 namespace pliant {
 
-class FrameStore;
+class StateStore;
 
 /// Options of a simulation's run. Only the solver changes results, by 2e-9 of their size at
 /// most: docs/model.md.
@@ -56,7 +57,7 @@ struct SimulationOptions {
   /// Stores states beyond this simulation, so that another simulation, of the same or an edited
   /// scene, need not solve unchanged frames again. Outlives the simulation; null: states are not
   /// stored.
-  FrameStore* store = nullptr;
+  StateStore* store = nullptr;
 };
 
 /// How frames were reached, counted each time the simulation advances by a frame.
@@ -130,6 +131,9 @@ class Simulation {
   /// after all frames.
   std::vector<Warning> warnings() const;
 
+  /// The solver of the options.
+  SolverChoice solver() const;
+
   /// The memory of the surfaces and a frame of each, without their solvers' factors. [bytes]
   std::size_t surface_memory() const;
 
@@ -143,11 +147,15 @@ class Simulation {
   Profile profile() const;
 
  private:
-  class Run;
+  class Player;
 
-  explicit Simulation(std::unique_ptr<Run> run);
+  explicit Simulation(std::unique_ptr<Player> player);
 
-  std::unique_ptr<Run> run_;  // null once moved from
+  std::unique_ptr<Player> player_;  // null once moved from
 };
+
+/// The same for the scene and the rest shapes of a simulation, within `options.max_memory`.
+Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
+                                            const SimulationOptions& options = {});
 
 }  // namespace pliant

@@ -34,8 +34,11 @@ class PositionChannel {
   /// The path; null: a constant or curve.
   const PathMotion* path() const { return std::get_if<PathMotion>(&way_); }
 
+  PathMotion* path() { return std::get_if<PathMotion>(&way_); }
+
   /// The constant or curve; null: a path.
   const Channel<3>* channel() const { return std::get_if<Channel<3>>(&way_); }
+  Channel<3>* channel() { return std::get_if<Channel<3>>(&way_); }
 
  private:
   std::variant<Channel<3>, PathMotion> way_;

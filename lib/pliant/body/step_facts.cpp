@@ -1,0 +1,104 @@
+#include "pliant/body/step_facts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+// Whether any node in the box moves.
+bool moves_any(std::span<const Patch> patches, const Box& box) {
+  for (const Patch& patch : patches) {
+    const Box inside = intersection(patch.box, box);
+    for (int j = inside.j0; j <= inside.j1; ++j) {
+      for (int i = inside.i0; i <= inside.i1; ++i) {
+        if (patch.holds(i, j)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Whether any two of the boxes meet; if so, merges them.
+bool merge_two(std::vector<Box>& boxes) {
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+      if (intersection(boxes[a], boxes[b]).is_empty()) continue;
+      boxes[a].include(boxes[b]);
+      boxes[b] = boxes.back();
+      boxes.pop_back();
+      return true;
+    }
+  }
+  return false;
+}
+
+ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const StepReport& report,
+                    Combine combine) {
+  const ForceSelection& selected = report.selection.forces[k];
+  const bool is_solved = !report.patches_of_force(k).empty();
+  const bool reaches =
+      is_solved && overlaps(report.selection.regions[selected.region], selected.force);
+  // The solved part of a union may be somewhere else.
+  const bool is_elsewhere =
+      combine == Combine::Union && !moves_any(report.patches_of_force(k), selected.deformation);
+  const bool has_magnitude = inputs.forces[k].magnitude != 0;
+  const bool selects_itself =
+      inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
+  ForceFacts facts;
+  facts.is_too_small = (!is_solved || is_elsewhere) && !selected.deformation.is_empty();
+  facts.is_outside = is_solved && !selected.force.is_empty() && !reaches && has_magnitude;
+  facts.touches = !selects_itself || !selected.deformation.is_empty() || reaches;
+  facts.is_lost =
+      std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
+  // Another warning about this frame replaces this one.
+  const bool is_here = reaches || (facts.touches && selected.force.is_empty());
+  const bool is_told = facts.is_lost || (is_elsewhere && !selected.deformation.is_empty());
+  facts.is_push_awaited = is_solved && has_magnitude && is_here && !is_told;
+  facts.pushes = report.pushing[k];
+  return facts;
+}
+
+}  // namespace
+
+bool falls_apart(const Selection& selection, std::vector<Box>& room) {
+  // Usually all boxes meet the first one, or boxes merged with it.
+  Box met;
+  for (bool grows = true; grows && met != selection.region;) {
+    grows = false;
+    for (const ForceSelection& force : selection.forces) {
+      const Box& box = force.deformation;
+      if (box.is_empty() || (!met.is_empty() && intersection(met, box).is_empty())) continue;
+      const Box before = met;
+      met.include(box);
+      grows = grows || met != before;
+    }
+  }
+  if (met == selection.region) return false;
+  room.assign(1, met);
+  for (const ForceSelection& force : selection.forces) {
+    const Box& box = force.deformation;
+    if (!box.is_empty() && intersection(met, box).is_empty()) room.push_back(box);
+  }
+  while (merge_two(room)) {
+  }
+  return room.size() > 1;
+}
+
+StepFacts facts_of(const BodyInputs& inputs, const StepReport& report, Combine combine,
+                   StepFacts reuse) {
+  StepFacts facts = std::move(reuse);
+  facts.is_solved = report.is_solved;
+  facts.forces.clear();
+  for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
+    facts.forces.push_back(facts_of(k, inputs, report, combine));
+  }
+  if (combine == Combine::Box && report.is_solved && falls_apart(report.selection, facts.room)) {
+    for (std::size_t k = 0; k < facts.forces.size(); ++k) {
+      facts.forces[k].is_apart = !report.selection.forces[k].deformation.is_empty();
+    }
+  }
+  return facts;
+}
+
+}  // namespace pliant

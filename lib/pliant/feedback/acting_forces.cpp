@@ -1,0 +1,115 @@
+#include "pliant/feedback/acting_forces.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "pliant/scene/description.hpp"
+
+namespace pliant {
+namespace {
+
+// Whether a force of magnitude 1 changes between frames, on a surface that does not move.
+struct Changes {
+  template <class Kind>
+  bool operator()(const Kind& kind) const {
+    bool any = false;
+    for_each_channel(kind, [&](const std::string&, const Attribute&, const auto& channel) {
+      any = any || channel.is_animated();
+    });
+    return any;
+  }
+  bool operator()(const NoiseChannels& noise) const {
+    return noise.rate.at(0)[0] != 0 || operator()<NoiseChannels>(noise);
+  }
+  bool operator()(const CustomForce&) const { return true; }
+};
+
+bool changes(const Surface& surface) {
+  const auto& [translate, rotate, scale, order] = surface.transform;
+  const MaterialChannels& material = surface.material;
+  return translate.is_animated() || rotate.is_animated() || scale.is_animated() ||
+         material.b.is_animated() || material.c.is_animated() || material.d.is_animated();
+}
+
+bool changes(const Force& force) {
+  return force.deformation_radius.is_animated() || force.force_radius.is_animated() ||
+         std::visit(Changes{}, force.shape);
+}
+
+bool changes(const Group& group) {
+  return group.center.is_animated() || group.deformation_radius.is_animated();
+}
+
+}  // namespace
+
+ActingForces::ActingForces(const Scene& scene, const Surface& surface,
+                           std::vector<std::size_t> forces, std::vector<std::size_t> groups)
+    : scene_(scene), surface_(surface), forces_(std::move(forces)) {
+  std::map<std::string_view, const Group*> named;
+  for (const Group& group : scene.groups) named.emplace(group.name, &group);
+  for (const std::size_t force : forces_) {
+    const auto found = named.find(scene.forces[force].group);
+    group_of_.push_back(found != named.end() ? found->second : nullptr);
+    clocks_.push_back(clock_of(scene.forces[force], scene.start));
+  }
+  for (const std::size_t group : groups) groups_.push_back(&scene.groups[group]);
+}
+
+BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& faults) const {
+  BodyInputs inputs = sample_body(scene_, surface_, frame);
+  std::vector<const Group*> selecting;  // one for each enabled force
+  for (std::size_t k = 0; k < forces_.size(); ++k) {
+    const Force& force = scene_.forces[forces_[k]];
+    if (!pliant::is_enabled(force, group_of_[k], frame)) continue;
+    inputs.forces.push_back(sample_force(scene_, force, surface_, frame, faults, clocks_[k].get()));
+    inputs.selectors.push_back(static_cast<int>(inputs.selectors.size()));
+    selecting.push_back(group_of_[k]);
+  }
+  for (const Group* const group : groups_) {
+    if (!group->enabled.at(frame)) continue;
+    const auto selector = static_cast<int>(inputs.forces.size());
+    for (std::size_t k = 0; k < selecting.size(); ++k) {
+      if (selecting[k] == group) inputs.selectors[k] = selector;
+    }
+    inputs.forces.push_back(sample_group(*group, frame));
+    inputs.selectors.push_back(selector);
+  }
+  return inputs;
+}
+
+std::vector<std::size_t> ActingForces::enabled_at(int frame) const {
+  std::vector<std::size_t> enabled;
+  for (std::size_t k = 0; k < forces_.size(); ++k) {
+    if (pliant::is_enabled(scene_.forces[forces_[k]], group_of_[k], frame)) {
+      enabled.push_back(forces_[k]);
+    }
+  }
+  return enabled;
+}
+
+bool ActingForces::is_enabled(std::size_t force, int frame) const {
+  const auto place = std::find(forces_.begin(), forces_.end(), force) - forces_.begin();
+  return pliant::is_enabled(scene_.forces[force], group_of_[static_cast<std::size_t>(place)],
+                            frame);
+}
+
+bool ActingForces::selects_at(int frame) const {
+  for (std::size_t k = 0; k < forces_.size(); ++k) {
+    if (pliant::is_enabled(scene_.forces[forces_[k]], group_of_[k], frame)) return true;
+  }
+  return std::any_of(groups_.begin(), groups_.end(),
+                     [&](const Group* group) { return group->enabled.at(frame); });
+}
+
+bool ActingForces::stand_still() const {
+  return !changes(surface_) && std::none_of(forces_.begin(), forces_.end(), [&](std::size_t force) {
+    return changes(scene_.forces[force]);
+  }) && std::none_of(groups_.begin(), groups_.end(), [](const Group* group) {
+    return changes(*group);
+  });
+}
+
+}  // namespace pliant

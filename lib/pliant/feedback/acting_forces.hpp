@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "pliant/sampling/sampling.hpp"
+
+namespace pliant {
+
+// Some forces of a scene, and their effect on one surface without the other forces; not for other
+// rooms.
+class ActingForces {
+ public:
+  /// Indices in the scene, ascending, of forces that target the surface and of groups that select
+  /// on it. Requires: the scene outlives this.
+  ActingForces(const Scene& scene, const Surface& surface, std::vector<std::size_t> forces,
+               std::vector<std::size_t> groups);
+
+  /// The inputs at a frame, as `sample_inputs` would return them with only these forces and groups.
+  BodyInputs at(int frame, const std::shared_ptr<ForceFaults>& faults) const;
+
+  /// The forces among `at(frame).forces`, in their order; the regions of groups follow them.
+  std::vector<std::size_t> enabled_at(int frame) const;
+
+  bool is_enabled(std::size_t force, int frame) const;
+
+  /// Whether any force or group is enabled.
+  bool selects_at(int frame) const;
+
+  /// Whether, while enabled, only magnitudes change between frames.
+  bool stand_still() const;
+
+  const std::vector<std::size_t>& forces() const { return forces_; }
+
+ private:
+  const Scene& scene_;
+  const Surface& surface_;
+  std::vector<std::size_t> forces_;
+  std::vector<const Group*> group_of_;  // of each force; null: no group
+  std::vector<const Group*> groups_;
+  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // of each force; null: not needed
+};
+
+}  // namespace pliant

@@ -1,0 +1,35 @@
+#include "pliant/feedback/frame_report.hpp"
+
+#include <utility>
+
+#include "pliant/sampling/sampling.hpp"
+
+namespace pliant {
+
+Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
+  const auto step = body.look(inputs.body);
+  if (!step) return fail(step.error());
+  SurfaceReport report;
+  report.is_solved = step->is_solved;
+  report.steps = step->steps;
+  report.unknown_count = step->unknown_count();
+  report.recovering = step->recovering;
+  report.settled = static_cast<int>(step->settling.size());
+  report.regions = step->selection.regions;
+  for (const auto& patches : step->patches) report.region_is_solved.push_back(!patches.empty());
+  const Field nodes = body.measured_nodes(inputs.body.transform);
+  for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
+    const SampledForce& force = inputs.body.forces[k];
+    const ForceSelection& selection = step->selection.forces[k];
+    report.forces.push_back(
+        {std::string(inputs.sources[k].name), inputs.sources[k].kind,
+         std::make_shared<SampledForce>(force), selection,
+         push_of(body.grid(), nodes, force, selection.force, step->patches_of_force(k))});
+  }
+  if (std::string fault = inputs.faults->first(); !fault.empty()) {
+    return fail(ErrorCode::NotFinite, std::move(fault));
+  }
+  return report;
+}
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/region/selection.hpp"
+
+namespace pliant {
+
+class Body;
+struct SampledForce;
+struct SurfaceInputs;
+
+/// A force, or the region of a group, that is enabled at a frame and targets the surface.
+struct ForceReport {
+  std::string name;       ///< of the force, or of the group whose region it is
+  std::string_view kind;  ///< the name of its element: point, ..., group; "custom"
+  /// Centre, radii, direction, magnitude at the frame, world space: see forces/force.hpp. Never
+  /// null. A falloff curve is owned by the simulation's scene.
+  std::shared_ptr<const SampledForce> sampled;
+  ForceSelection selection;  ///< its boxes in nodes, and the index of its region
+  Push push;                 ///< its effect on the nodes that move
+};
+
+/// The solve at a frame, on one surface. SPEC 5, 6.
+struct SurfaceReport {
+  bool is_solved = false;              ///< false: the state does not change
+  TimeSteps steps;                     ///< of the solve
+  int unknown_count = 0;               ///< nodes that move
+  int recovering = 0;                  ///< nodes solved because they are not back at rest
+  int settled = 0;                     ///< nodes set to rest before the solve
+  std::vector<Region> regions;         ///< also those too small to solve
+  std::vector<bool> region_is_solved;  ///< for each region
+  std::vector<ForceReport> forces;     ///< in the order of the scene, then those of groups
+};
+
+/// The solve of a body in its present state with these inputs. Errors: as `Body::look`; NotFinite
+/// if a custom force returns an invalid value. Not for programs.
+Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs);
+
+/// The solve at one frame, which computes the next frame's mesh from this frame's.
+struct FrameReport {
+  int frame = 0;
+  std::vector<SurfaceReport> surfaces;  ///< in the order of the scene
+};
+
+}  // namespace pliant

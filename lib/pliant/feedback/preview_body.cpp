@@ -1,0 +1,199 @@
+#include "pliant/feedback/preview_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/plate/vibration.hpp"
+
+namespace pliant {
+namespace {
+
+// Patches whose outline is not a rectangle need a sparse factor, which is slow for many nodes.
+constexpr int most_masked_unknowns = 50'000;
+
+// The vibration of a node that is most visible: the one with the largest product of share and
+// period. By share alone it might be one of a bundle of fast ones, which fade at once.
+double seen_lambda(std::span<const ExcitedMode> modes) {
+  const auto weight = [](const ExcitedMode& mode) {
+    return std::abs(mode.share) / std::sqrt(mode.lambda);
+  };
+  return std::max_element(
+             modes.begin(), modes.end(),
+             [&](const auto& one, const auto& other) { return weight(one) < weight(other); })
+      ->lambda;
+}
+
+}  // namespace
+
+PreviewBody::PreviewBody(const GridMapping& mapping, const SolverSettings& settings,
+                         StopRequest should_stop, MemoryBudget& memory)
+    : mapping_(mapping),
+      settings_(settings),
+      should_stop_(std::move(should_stop)),
+      memory_(memory),
+      share_(&memory) {}
+
+Body PreviewBody::make(Reference reference) const {
+  return Body(
+      mapping_.grid, mapping_.rest,
+      {settings_.stepping, reference, settings_.measure, settings_.combine, settings_.release},
+      SolverCache(SolverChoice::Auto, &memory_));
+}
+
+Result<void> PreviewBody::reserve() {
+  if (real_) return {};
+  // A field has three numbers per node; a body keeps five fields of all nodes, and four of the
+  // solved ones.
+  const bool has_two = settings_.reference != Reference::Rest;
+  const std::size_t bytes =
+      static_cast<std::size_t>(node_count()) * 9 * 3 * sizeof(double) * (has_two ? 2 : 1);
+  if (!share_.try_resize(bytes)) {
+    return fail(ErrorCode::OutOfMemory, "previewing its forces " + share_.complaint(bytes));
+  }
+  real_.emplace(make(settings_.reference));
+  if (has_two) plain_.emplace(make(Reference::Rest));
+  return {};
+}
+
+Result<void> PreviewBody::check_faults() const {
+  std::string fault = faults_->first();
+  if (fault.empty()) return {};
+  return fail(ErrorCode::NotFinite, std::move(fault));
+}
+
+Result<StepReport> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
+  PLIANT_EXPECTS(real_.has_value());
+  if (should_stop_ && should_stop_()) return fail(ErrorCode::Interrupted, "interrupted");
+  body(is_plain).reset();
+  auto report = body(is_plain).look(inputs);
+  if (auto sound = check_faults(); !sound) return fail(sound.error());
+  return report;
+}
+
+Result<void> PreviewBody::settle(BodyInputs inputs, bool is_plain) {
+  PLIANT_EXPECTS(real_.has_value());
+  inputs.dynamics = {0, 0};
+  inputs.dt = inputs.frame_length;
+  begin(is_plain);
+  is_at_rest_ = false;
+  auto stepped = step(std::move(inputs));
+  if (!stepped) return fail(stepped.error());
+  return {};
+}
+
+void PreviewBody::begin(bool is_plain) {
+  Body& now = body(is_plain);
+  now.reset();
+  current_ = &now;
+  is_plain_ = is_plain;
+  is_at_rest_ = is_plain;
+}
+
+Result<double> PreviewBody::step(BodyInputs inputs) {
+  if (is_plain_) inputs.tangents = {};
+  is_at_rest_ =
+      is_at_rest_ && std::all_of(inputs.forces.begin(), inputs.forces.end(),
+                                 [](const SampledForce& force) { return force.magnitude == 0; });
+  if (is_at_rest_) return 0.0;
+  const auto stepped = body(is_plain_).step(inputs, should_stop_);
+  if (auto sound = check_faults(); !sound) return fail(sound.error());
+  if (!stepped) return fail(stepped.error());
+  const StepReport& report = body(is_plain_).last_step();
+  return least_cost() + static_cast<double>(report.unknown_count()) * report.steps.count;
+}
+
+// The displacements of a box's nodes, row by row; object space.
+Field PreviewBody::displacements(const Box& box) const {
+  const Grid& grid = mapping_.grid;
+  Field ways(Eigen::Index{box.columns()} * box.rows(), 3);
+  for (int j = box.j0; j <= box.j1; ++j) {
+    const int node = grid.node(box.i0, j), count = box.columns();
+    ways.middleRows(Eigen::Index{j - box.j0} * count, count) =
+        current_->state().positions.middleRows(node, count) -
+        current_->rest().middleRows(node, count);
+  }
+  return ways;
+}
+
+PreviewBody::Peak PreviewBody::peak(const Transform& transform,
+                                    const std::optional<Box>& box) const {
+  const Grid& grid = mapping_.grid;
+  const Box within = box.value_or(grid.box());
+  const Field way = vectors_to_world(transform, displacements(within));
+  Eigen::Index row = 0;
+  Peak peak;
+  peak.size = std::sqrt(way.rowwise().squaredNorm().maxCoeff(&row));
+  peak.way = way.row(row).transpose();
+  const int column = static_cast<int>(row % within.columns());
+  peak.node = grid.node(within.i0 + column, within.j0 + static_cast<int>(row / within.columns()));
+  return peak;
+}
+
+Vector3d PreviewBody::displacement(const Transform& transform, int node) const {
+  return transform.linear *
+         (current_->state().positions.row(node) - current_->rest().row(node)).transpose();
+}
+
+std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
+                                                 const SampledForce& force) const {
+  const Field nodes = to_world(inputs.transform, mapping_.rest);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
+    nearest = std::min(nearest, distance(force.shape, nodes.row(node).transpose()));
+  }
+  const Vector3d middle =
+      0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
+  return {nearest, distance(force.shape, middle)};
+}
+
+Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
+                                              std::span<const Patch> patches,
+                                              RegionPreview region) const {
+  const Patch* moved = &patches[0];
+  int most = 0;
+  for (const Patch& patch : patches) {
+    const double size = peak(inputs.transform, patch.box).size;
+    const bool is_larger = region.static_peak == 0 && size == 0 && patch.interior_count() > most;
+    if (size <= region.static_peak && !is_larger) continue;
+    region.static_peak = std::max(size, region.static_peak);
+    most = patch.interior_count();
+    moved = &patch;
+  }
+  const Box& box = moved->box;
+  const Grid grid{box.columns(), box.rows(), mapping_.grid.hu, mapping_.grid.hv};
+  const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
+  if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
+
+  const auto solver = make_plate_solver(SolverChoice::Auto, &memory_);
+  const auto lambda = smallest_eigenvalue(*solver, system, should_stop_);
+  if (!lambda) return fail(lambda.error());
+  std::vector<ExcitedMode> modes = {{*lambda, 1}};
+  const Field ways = interior_of(system.outline, displacements(box));
+  Eigen::Index node = 0;
+  const Field world = vectors_to_world(inputs.transform, ways);
+  const double size = std::sqrt(world.rowwise().squaredNorm().maxCoeff(&node));
+  if (size > 0) {
+    const Eigen::VectorXd along =
+        ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));
+    auto excited = excited_modes(*solver, system, along, node, should_stop_);
+    if (!excited) return fail(excited.error());
+    modes = *std::move(excited);
+  }
+  const Dynamics& dynamics = inputs.dynamics;
+  const TimeSteps steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
+  if (dynamics.density > 0) {
+    const Swing natural = natural_swing(*lambda, dynamics);
+    region.first_frequency = natural.frequency;
+    region.damping_ratio = natural.damping_ratio;
+  }
+  region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, inputs.frame_length);
+  region.settling = settling_of(modes, dynamics, steps, inputs.frame_length);
+  region.has_vibration = true;
+  region.solver_memory = solver->memory();
+  return region;
+}
+
+}  // namespace pliant

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "pliant/body/body.hpp"
+#include "pliant/feedback/preview.hpp"
+#include "pliant/mesh/grid_mapping.hpp"
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+// A body for trying forces, for `preview_forces`; internal to feedback. It is the engine's own
+// `Body`, so that a preview and a bake agree. *Plain* means: elastic about its rest shape and
+// without tangents, so that only forces move it.
+class PreviewBody {
+ public:
+  /// Requires: mapping, settings and memory outlive it.
+  PreviewBody(const GridMapping& mapping, const SolverSettings& settings, StopRequest should_stop,
+              MemoryBudget& memory);
+
+  /// Makes the bodies, unless they exist. Errors: OutOfMemory.
+  Result<void> reserve();
+
+  int node_count() const { return mapping_.grid.node_count(); }
+  const std::shared_ptr<ForceFaults>& faults() const { return faults_; }
+
+  /// Checks that custom forces have returned only valid values so far. Errors: NotFinite.
+  Result<void> check_faults() const;
+
+  /// Reports the patches that a step from rest would solve.
+  Result<StepReport> look(const BodyInputs& inputs, bool is_plain);
+
+  /// Brings it to rest under the inputs, starting from its rest shape: one step without density and
+  /// damping.
+  Result<void> settle(BodyInputs inputs, bool is_plain);
+
+  /// Starts an animation at rest.
+  void begin(bool is_plain);
+
+  /// A lower estimate for the cost of a frame, in steps of nodes.
+  double least_cost() const { return node_count() + 5000.0; }
+
+  /// Advances it by a frame. Returns the cost, in steps of nodes.
+  Result<double> step(BodyInputs inputs);
+
+  struct Peak {
+    double size = 0;           ///< world [length]
+    Vector3d way = {0, 0, 0};  ///< world [length]
+    int node = 0;
+  };
+
+  /// The largest present displacement; if a box is given, within the box.
+  Peak peak(const Transform& transform, const std::optional<Box>& box = {}) const;
+  Vector3d displacement(const Transform& transform, int node) const;  ///< world [length]
+
+  /// From the force to the nearest node at rest and to the middle of their bounding box, in world
+  /// space. [length]
+  std::pair<double, double> distances(const BodyInputs& inputs, const SampledForce& force) const;
+
+  /// The vibrations of a settled region when it is released, for its patch with the peak. Requires:
+  /// it is settled under `inputs`; there are patches.
+  Result<RegionPreview> vibrations(const BodyInputs& inputs, std::span<const Patch> patches,
+                                   RegionPreview region) const;
+
+ private:
+  Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
+  Body make(Reference reference) const;
+  Field displacements(const Box& box) const;
+
+  const GridMapping& mapping_;
+  const SolverSettings& settings_;
+  StopRequest should_stop_;
+  MemoryBudget& memory_;
+  MemoryShare share_;
+  std::optional<Body> real_;   // as in the scene
+  std::optional<Body> plain_;  // if `real_` is not elastic about its rest shape
+  const Body* current_ = nullptr;
+  bool is_plain_ = true;     // whether the animation is of the plain body
+  bool is_at_rest_ = false;  // nothing has moved yet
+  std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
+};
+
+}  // namespace pliant

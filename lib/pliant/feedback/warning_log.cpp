@@ -1,0 +1,86 @@
+#include "pliant/feedback/warning_log.hpp"
+
+#include <algorithm>
+
+namespace pliant {
+
+FrameRanges& WarningLog::frames_of(FramesOfCauses& causes, const CauseView& cause) {
+  const auto found = causes.find(cause);
+  if (found != causes.end()) return found->second;
+  return causes[{cause.kind, std::string(cause.surface), std::string(cause.force)}];
+}
+
+void WarningLog::add(Warning::Kind kind, std::string_view surface, std::string_view force,
+                     int frame) {
+  frames_of(frames_, {kind, surface, force}).add(frame);
+}
+
+void WarningLog::expect(Warning::Kind kind, std::string_view surface, std::string_view force,
+                        int frame) {
+  frames_of(expected_, {kind, surface, force}).add(frame);
+}
+
+void WarningLog::happened(Warning::Kind kind, std::string_view surface, std::string_view force) {
+  if (happened_.contains(CauseView{kind, surface, force})) return;
+  happened_.insert({kind, std::string(surface), std::string(force)});
+}
+
+std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_complete) const {
+  FramesOfCauses all = frames_;
+  if (is_range_complete) {
+    for (const auto& [cause, frames] : expected_) {
+      if (!happened_.contains(cause)) all.emplace(cause, frames);
+    }
+  }
+  std::vector<Warning> warnings;
+  for (const auto& [cause, frames] : all) {
+    if (cause.kind == Warning::Kind::ForcesApart && !warnings.empty() &&
+        warnings.back().kind == cause.kind && warnings.back().surface == cause.surface) {
+      warnings.back().others.push_back(cause.force);
+      warnings.back().frames.add(frames);
+      continue;
+    }
+    warnings.push_back({cause.kind, cause.surface, cause.force, frames});
+  }
+  // An author who writes combine="box" explicitly needs no warning.
+  std::erase_if(warnings, [&](const Warning& warning) {
+    return warning.kind == Warning::Kind::ForcesApart &&
+           scene.origin.gives(warning.surface, "combine");
+  });
+  for (Warning& warning : warnings) {
+    warning.is_group = std::any_of(scene.groups.begin(), scene.groups.end(),
+                                   [&](const Group& group) { return group.name == warning.force; });
+  }
+  return warnings;
+}
+
+void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
+               const StepFacts& facts) {
+  using enum Warning::Kind;
+  for (std::size_t k = 0; k < facts.forces.size(); ++k) {
+    const ForceSource& source = inputs.sources[k];
+    const std::string_view force = source.name;
+    const ForceFacts& of_force = facts.forces[k];
+    if (of_force.is_too_small) log.add(RegionTooSmall, surface, force, frame);
+    if (of_force.is_outside) log.add(OutsideRegion, surface, force, frame);
+    if (of_force.is_lost) log.add(LostNodes, surface, force, frame);
+    if (of_force.is_apart) log.add(ForcesApart, surface, force, frame);
+    // A force with named targets is expected to affect each of them; a force without, at least one
+    // surface.
+    const std::string_view place = source.targets.empty() ? std::string_view() : surface;
+    if (source.selects) {
+      log.expect(SelectsNothing, place, force, frame);
+      if (of_force.touches) log.happened(SelectsNothing, place, force);
+    }
+    if (of_force.is_push_awaited) {
+      log.expect(PushesNothing, place, force, frame);
+      if (of_force.pushes) log.happened(PushesNothing, place, force);
+    }
+  }
+  if (!inputs.body.tangents.are_zero()) {
+    log.expect(TangentsUnused, surface, {}, frame);
+    if (facts.is_solved) log.happened(TangentsUnused, surface, {});
+  }
+}
+
+}  // namespace pliant

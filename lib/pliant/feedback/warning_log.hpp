@@ -1,0 +1,62 @@
+#pragma once
+
+#include <compare>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/body/step_facts.hpp"
+#include "pliant/feedback/warnings.hpp"
+#include "pliant/sampling/sampling.hpp"
+
+namespace pliant {
+
+/// Collects warnings by cause, each with all its frames.
+class WarningLog {
+ public:
+  void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
+
+  /// Notes that something is expected to happen at some frame of the range, perhaps this one. If it
+  /// `happened` at none, it becomes a warning with all these frames.
+  void expect(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
+  void happened(Warning::Kind kind, std::string_view surface, std::string_view force);
+
+  /// In the order of kind, surface and force. Expectations that never happened are included only if
+  /// the range is complete. All forces that are apart on one surface form one warning, and none if
+  /// the scene's file gives `combine`.
+  std::vector<Warning> warnings(const Scene& scene, bool is_range_complete) const;
+
+ private:
+  struct CauseView {
+    Warning::Kind kind;
+    std::string_view surface;
+    std::string_view force;
+    friend auto operator<=>(const CauseView&, const CauseView&) = default;
+  };
+  struct Cause {
+    Warning::Kind kind;
+    std::string surface;
+    std::string force;
+    operator CauseView() const { return {kind, surface, force}; }
+  };
+  // Finds a cause without copying its names.
+  struct Before {
+    using is_transparent = void;
+    bool operator()(const CauseView& a, const CauseView& b) const { return a < b; }
+  };
+  using FramesOfCauses = std::map<Cause, FrameRanges, Before>;
+
+  static FrameRanges& frames_of(FramesOfCauses& causes, const CauseView& cause);
+
+  FramesOfCauses frames_;
+  FramesOfCauses expected_;
+  std::set<Cause, Before> happened_;
+};
+
+/// Adds the facts of one surface's step at a frame.
+void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
+               const StepFacts& facts);
+
+}  // namespace pliant

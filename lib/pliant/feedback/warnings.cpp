@@ -1,0 +1,81 @@
+#include "pliant/feedback/warnings.hpp"
+
+#include <fmt/format.h>
+
+namespace pliant {
+
+namespace {
+
+// `"a", "b" and "c"`, or `"a", "b", … and 7 more`.
+std::string names_text(const std::string& first, const std::vector<std::string>& others) {
+  constexpr std::size_t most = 6;
+  const bool is_long = others.size() + 1 > most;
+  const std::size_t told = is_long ? most - 1 : others.size();
+  std::string text = fmt::format("\"{}\"", first);
+  for (std::size_t k = 0; k < told; ++k) {
+    const bool is_last = !is_long && k + 1 == told;
+    text += fmt::format("{}\"{}\"", is_last ? " and " : ", ", others[k]);
+  }
+  return is_long ? text + fmt::format(" and {} more", others.size() - told) : text;
+}
+
+// Authors do not read longer lists.
+constexpr std::size_t most_ranges = 8;
+
+}  // namespace
+
+std::string Warning::message() const {
+  const std::string_view noun = is_group ? "group" : "force";
+  const bool is_single = frames.ranges().size() == 1 &&
+                         frames.ranges().front().first == frames.ranges().front().second;
+  const std::string when = (is_single ? "at frame " : "at frames ") + frames.to_string(most_ranges);
+  switch (kind) {
+    case Kind::RegionTooSmall:
+      return fmt::format("{} \"{}\" selects fewer than 3 x 3 nodes of \"{}\" {}: too few to solve",
+                         noun, force, surface, when);
+    case Kind::LostNodes:
+      return fmt::format(
+          "{} \"{}\" lost its own nodes on \"{}\" {}: they are out of its reach; "
+          "measure=\"rest\" measures on the rest mesh",
+          noun, force, surface, when);
+    case Kind::OutsideRegion:
+      return fmt::format(
+          "the force box of \"{}\" is outside the region solved on \"{}\" {}: it pushes no node",
+          force, surface, when);
+    case Kind::SelectsNothing:
+      return fmt::format(
+          "{} \"{}\" selects no node of {} {}: no node is nearer than its deformationRadius", noun,
+          force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+    case Kind::PushesNothing:
+      return fmt::format(
+          "the magnitude of \"{}\" has no effect on {} {}: no node that moves is in its force box, "
+          "or its direction or falloff is 0 there",
+          force, surface.empty() ? "any surface" : fmt::format("\"{}\"", surface), when);
+    case Kind::NeverStarts:
+      return fmt::format("surface \"{}\" is not solved {}: its startFrame is later", surface, when);
+    case Kind::TangentsUnused:
+      return fmt::format("the tangents of \"{}\" have no effect {}: no force selects a region",
+                         surface, when);
+    case Kind::ForcesApart:
+      return fmt::format(
+          "{} select boxes of \"{}\" that do not all meet {}: one region around all of them is "
+          "solved, in which each force moves the surface more than alone; combine=\"islands\" "
+          "solves each box by itself, combine=\"box\" in the scene keeps one region without this "
+          "warning",
+          names_text(force, others), surface, when);
+  }
+  return {};
+}
+
+int line_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.force.empty()) return origin.line_of(warning.force);
+  if (warning.kind == Warning::Kind::NeverStarts) {
+    return origin.line_of(warning.surface, "startFrame");
+  }
+  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
+    if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
+  }
+  return origin.line_of(warning.surface);
+}
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pliant/feedback/frame_ranges.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+/// A likely mistake of the author, found during a run; the run continues.
+struct Warning {
+  enum class Kind {
+    RegionTooSmall,  ///< fewer than 3 x 3 nodes selected: not solved
+    LostNodes,       ///< a force pushes nodes of the rest mesh, but none of the present mesh
+    OutsideRegion,   ///< the force box of a force with a magnitude is outside the solved region
+    SelectsNothing,  ///< an enabled force selects no node and reaches no region, in the whole range
+    PushesNothing,   ///< a force with a magnitude pushes no moving node in the whole range
+    NeverStarts,     ///< the surface's start frame is after the last solved frame
+    TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
+    ForcesApart,     ///< boxes that do not meet form one region, since `combine` is box
+  };
+  Kind kind = Kind::RegionTooSmall;
+  std::string surface;  ///< empty: all, for a force that selects nothing on any surface
+  std::string force;    ///< or group; empty: the warning is about the surface itself
+  FrameRanges frames;
+  std::vector<std::string> others = {};  ///< for ForcesApart: the forces besides `force`
+  bool is_group = false;                 ///< whether `force` is the region of a group
+
+  /// One line for an author, frames included.
+  std::string message() const;
+};
+
+/// The line of a warning's cause: the force, or the tangents or start frame of its surface.
+int line_of(const Warning& warning, const SceneOrigin& origin);
+
+}  // namespace pliant

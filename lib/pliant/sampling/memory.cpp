@@ -1,0 +1,42 @@
+#include "pliant/sampling/memory.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::size_t bytes_of_vector = 3 * sizeof(double);
+constexpr std::size_t bytes_of_uv = 2 * sizeof(double);
+
+std::size_t bytes_of_mesh(std::size_t vertices, std::size_t uvs, std::size_t faces,
+                          std::size_t corners) {
+  return vertices * bytes_of_vector + uvs * bytes_of_uv + (faces + 2 * corners) * sizeof(int);
+}
+
+}  // namespace
+
+std::size_t bytes_of(const Mesh& mesh) {
+  const std::size_t names = mesh.materials.of_faces.size() + mesh.groups.of_faces.size();
+  return bytes_of_mesh(static_cast<std::size_t>(mesh.positions.rows()), mesh.uvs.size(),
+                       mesh.face_sizes.size(), mesh.corner_vertices.size()) +
+         (mesh.corner_normals.size() + mesh.file_vertices.size() + names) * sizeof(int);
+}
+
+std::size_t bytes_of(const GridSheet& sheet) {
+  const auto columns = static_cast<std::size_t>(sheet.columns);
+  const auto rows = static_cast<std::size_t>(sheet.rows);
+  const std::size_t quads = (columns - 1) * (rows - 1);
+  return bytes_of_mesh(columns * rows, columns * rows, (sheet.triangles ? 2 : 1) * quads,
+                       (sheet.triangles ? 6 : 4) * quads);
+}
+
+std::size_t bytes_to_run(std::size_t vertex_count) {
+  // Vectors per node: rest in the mapping and in the body; position and velocity, present and new;
+  // load, displacement and velocity of the plate, twice as many in a solver with sparse factors;
+  // the frame in object space, in world space and in the writer's order; and some spare. In
+  // addition the text of an OBJ file; finding the grid needs less, for index arrays and sorted
+  // (u,v).
+  constexpr std::size_t vectors = 24;
+  constexpr std::size_t text = 200;
+  return vertex_count * (vectors * bytes_of_vector + text);
+}
+
+}  // namespace pliant

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+
+#include "pliant/mesh/grid_sheet.hpp"
+#include "pliant/mesh/mesh.hpp"
+
+namespace pliant {
+
+// The memory that parts of a run need, known before it is allocated. Internal to sampling.
+
+/// A mesh. [bytes]
+std::size_t bytes_of(const Mesh& mesh);
+
+/// The mesh that `make_mesh` makes. Requires: columns, rows >= 3. [bytes]
+std::size_t bytes_of(const GridSheet& sheet);
+
+/// The memory besides the mesh: for finding the grid, then for the state, one frame's step without
+/// the solver's factor, the frame and writing it to a file. An upper bound, reached if a force
+/// selects the whole surface. [bytes]
+std::size_t bytes_to_run(std::size_t vertex_count);
+
+}  // namespace pliant

@@ -1,0 +1,267 @@
+#include "pliant/sampling/sampling.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/description.hpp"
+
+namespace pliant {
+namespace {
+
+Vector3d to_vector(const Value<3>& value) { return {value[0], value[1], value[2]}; }
+
+// The value of a channel at a frame.
+void sample(const Channel<1>& channel, int frame, double& value) { value = channel.at(frame)[0]; }
+template <class Vector>
+void sample(const Vector& channel, int frame, Vector3d& value) {
+  value = to_vector(channel.at(frame));
+}
+void sample(const std::optional<Channel<3>>& channel, int frame, std::optional<Vector3d>& value) {
+  if (channel) value = to_vector(channel->at(frame));
+}
+
+// A tangent of one number applies to all of x, y, z. SPEC 3.
+Vector3d sample_tangent(const TangentChannel& channel, int frame) {
+  if (const auto* number = std::get_if<Channel<1>>(&channel)) {
+    return Vector3d::Constant(number->at(frame)[0]);
+  }
+  return to_vector(std::get<Channel<3>>(channel).at(frame));
+}
+
+// -rho (X(f+1) - 2 X(f) + X(f-1)) p fps^2 for a surface's transform X, as a function of the point
+// X(f) p in the world. It is computed from differences of transforms, so that it is exactly 0 for a
+// surface at rest or in uniform motion if these differences are exact.
+InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
+  const Transform before = sample_transform(surface.transform, frame - 1);
+  const Transform now = sample_transform(surface.transform, frame);
+  const Transform after = sample_transform(surface.transform, frame + 1);
+  const double scale = -surface.material.density.at(frame)[0] * fps * fps;
+  const Matrix3d turning = (after.linear - now.linear) - (now.linear - before.linear);
+  // Row k: the object-space vector of the world's axis k.
+  const Matrix3d axes = inverse_linear(now).transpose();
+  InertiaForce inertia;
+  inertia.origin = now.translation;
+  inertia.offset =
+      scale * ((after.translation - now.translation) - (now.translation - before.translation));
+  for (int row = 0; row < 3; ++row) {
+    for (int k = 0; k < 3; ++k) {
+      inertia.linear(row, k) =
+          scale * (turning(row, 0) * axes(k, 0) + turning(row, 1) * axes(k, 1) +
+                   turning(row, 2) * axes(k, 2));
+    }
+  }
+  return inertia;
+}
+
+std::string place_text(const Vector3d& p) {
+  return fmt::format("({}, {}, {})", p.x(), p.y(), p.z());
+}
+
+// The program's functions at one time, with checks of their results.
+FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
+                            const ForceTime& time, const std::shared_ptr<ForceFaults>& faults) {
+  // By value: a report of a frame may outlive the scene.
+  const auto distance = [function = custom.distance, name, time, faults](const Vector3d& p) {
+    if (!function) return 0.0;
+    const double delta = function(p, time);
+    if (delta >= 0) return delta;
+    faults->add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0", name,
+                            place_text(p), delta));
+    return std::numeric_limits<double>::infinity();
+  };
+  const auto unit_force = [function = custom.unit_force, name, time,
+                           faults](const Vector3d& p) -> Vector3d {
+    Vector3d force = function(p, time);
+    if (force.allFinite()) return force;
+    faults->add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
+                            place_text(p), place_text(force)));
+    return Vector3d::Zero();
+  };
+  return {distance, unit_force};
+}
+
+struct SampleShape {
+  const Scene& scene;
+  const Force& force;
+  const Surface& surface;
+  int frame;
+  const std::shared_ptr<ForceFaults>& faults;
+  NoiseClock* clock;  // null: the sum is computed here
+
+  double seconds() const { return frame / scene.fps; }
+
+  // The time in cells at the frame, summed with the rate of each frame, so that the pattern never
+  // jumps. docs/model.md, "Forces".
+  double noise_cells(const Channel<1>& rate) const {
+    if (!rate.is_animated() || frame <= scene.start) return rate.at(frame)[0] * seconds();
+    const auto rate_at = [&](int earlier) { return rate.at(earlier)[0]; };
+    if (clock) return clock->sum(frame, rate_at) / scene.fps;
+    return NoiseClock(scene.start).sum(frame, rate_at) / scene.fps;
+  }
+
+  template <class Kind>
+  ForceShape operator()(const Kind& kind) const {
+    typename Description<Kind>::Sampled sampled;
+    const auto row = [this](const Attribute&, const auto& channel, auto& value) {
+      sample(channel, frame, value);
+    };
+    describe(row, kind, sampled);
+    return sampled;
+  }
+  ForceShape operator()(const NoiseChannels& noise) const {
+    return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],
+                      noise_cells(noise.rate), noise.seed.value_or(scene.seed)};
+  }
+  ForceShape operator()(const InertiaChannels&) const {
+    return sample_inertia(surface, scene.fps, frame);
+  }
+  ForceShape operator()(const CustomForce& custom) const {
+    return sample_custom(custom, force.name, {frame, seconds()}, faults);
+  }
+};
+
+bool holds(const std::vector<std::string>& targets, const std::string& surface) {
+  return targets.empty() || std::find(targets.begin(), targets.end(), surface) != targets.end();
+}
+
+}  // namespace
+
+void ForceFaults::add(std::string message) {
+  const std::lock_guard lock(mutex_);
+  if (first_.empty()) first_ = std::move(message);
+}
+
+std::string ForceFaults::first() const {
+  const std::lock_guard lock(mutex_);
+  return first_;
+}
+
+void ForceFaults::clear() {
+  const std::lock_guard lock(mutex_);
+  first_.clear();
+}
+
+std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
+  const auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+  if (!noise || !noise->rate.is_animated()) return nullptr;
+  return std::make_unique<NoiseClock>(start);
+}
+
+SceneSampling::SceneSampling(const Scene& scene) : targets_(targets_of(scene)) {
+  for (const Force& force : scene.forces) clocks_.push_back(clock_of(force, scene.start));
+}
+
+SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
+                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock) {
+  const SampleShape sample{scene, force, surface, frame, faults, clock};
+  return {.shape = std::visit(sample, force.shape),
+          .magnitude = force.magnitude.at(frame)[0],
+          .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
+          .force_radius = force.force_radius.at(frame)[0],
+          .falloff = force.falloff,
+          .falloff_curve = force.falloff_curve ? &*force.falloff_curve : nullptr};
+}
+
+SampledForce sample_group(const Group& group, int frame) {
+  return region_sphere(to_vector(group.center.at(frame)), group.deformation_radius.at(frame)[0]);
+}
+
+const Group* group_of(const Scene& scene, const Force& force) {
+  if (force.group.empty()) return nullptr;
+  const auto found = std::find_if(scene.groups.begin(), scene.groups.end(),
+                                  [&](const Group& group) { return group.name == force.group; });
+  return found != scene.groups.end() ? &*found : nullptr;
+}
+
+bool is_enabled(const Force& force, const Group* group, int frame) {
+  return force.enabled.at(frame) && (!group || group->enabled.at(frame));
+}
+
+bool targets(const Force& force, const Group* group, const std::string& surface) {
+  return holds(force.targets, surface) && (!group || holds(group->targets, surface));
+}
+
+int first_solved_frame(const Scene& scene, const Surface& surface) {
+  return std::max(scene.start, surface.solver.start_frame.value_or(scene.start));
+}
+
+bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
+  return surface.enabled && frame >= first_solved_frame(scene, surface);
+}
+
+Transform sample_transform(const TransformChannels& channels, int frame) {
+  return make_transform(to_vector(channels.translate.at(frame)),
+                        to_vector(channels.rotate.at(frame)), to_vector(channels.scale.at(frame)),
+                        channels.rotate_order);
+}
+
+BodySettings body_settings(const SolverSettings& solver) {
+  return {solver.stepping, solver.reference, solver.measure, solver.combine, solver.release};
+}
+
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
+  const MaterialChannels& material = surface.material;
+  const TangentChannels& tangents = surface.tangents;
+  return {.transform = sample_transform(surface.transform, frame),
+          .stiffness = {material.b.at(frame)[0], material.c.at(frame)[0], material.d.at(frame)[0]},
+          .dynamics = {material.density.at(frame)[0], material.damping.at(frame)[0]},
+          .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
+                       sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
+          .frame_length = 1 / scene.fps,
+          .dt = surface.solver.dt.at(frame)[0],
+          .forces = {}};
+}
+
+SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
+                            int frame, SurfaceInputs reuse) {
+  const SurfaceTargets& targets = sampling.targets(surface);
+  SurfaceInputs inputs = std::move(reuse);
+  std::vector<SampledForce>& forces = inputs.body.forces;
+  std::vector<int>& selectors = inputs.body.selectors;
+  forces.clear();
+  selectors.clear();
+  inputs.sources.clear();
+  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
+  body.forces = std::move(forces);
+  body.selectors = std::move(selectors);
+  inputs.body = std::move(body);
+  // Reports of earlier frames may still refer to theirs.
+  if (inputs.faults.use_count() == 1) {
+    inputs.faults->clear();
+  } else {
+    inputs.faults = std::make_shared<ForceFaults>();
+  }
+
+  for (const auto& [index, place] : targets.forces) {
+    const Force& force = scene.forces[index];
+    const Group* const group = place >= 0 ? &scene.groups[targets.groups[place]] : nullptr;
+    if (!is_enabled(force, group, frame)) continue;
+    forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
+                                  sampling.clock(index)));
+    const auto* const custom = std::get_if<CustomForce>(&force.shape);
+    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
+                              custom ? std::string_view(custom->key) : std::string_view()});
+    // The selectors of groups are not known yet: -1 - place stands for them.
+    selectors.push_back(group ? -1 - place : static_cast<int>(selectors.size()));
+  }
+  const std::size_t member_count = selectors.size();
+  std::vector<int>& group_selectors = inputs.group_selectors;
+  group_selectors.assign(targets.groups.size(), 0);
+  for (std::size_t place = 0; place < targets.groups.size(); ++place) {
+    const Group& group = scene.groups[targets.groups[place]];
+    if (!group.enabled.at(frame)) continue;
+    group_selectors[place] = static_cast<int>(forces.size());
+    selectors.push_back(static_cast<int>(forces.size()));
+    forces.push_back(sample_group(group, frame));
+    inputs.sources.push_back({group.name, "group", group.targets, true});
+  }
+  for (std::size_t k = 0; k < member_count; ++k) {
+    if (selectors[k] < 0) selectors[k] = group_selectors[-1 - selectors[k]];
+  }
+  return inputs;
+}
+
+}  // namespace pliant

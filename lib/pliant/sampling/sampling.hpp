@@ -1,0 +1,108 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/body/body.hpp"
+#include "pliant/sampling/noise_clock.hpp"
+#include "pliant/sampling/targets.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+// From channels to the values of one frame; not for programs.
+
+/// Invalid results of custom forces: a negative or NaN distance, a force that is not finite. They
+/// are replaced by "out of reach" and 0; the caller that sampled the inputs must end the run.
+class ForceFaults {
+ public:
+  void add(std::string message);
+  std::string first() const;  ///< names the force, the position and the value; empty: none
+  void clear();
+
+ private:
+  mutable std::mutex mutex_;
+  std::string first_;
+};
+
+/// The origin of a sampled force: a force, or the region of a group.
+struct ForceSource {
+  std::string_view name;
+  std::string_view kind;  ///< the name of its element: point, ..., group; "custom"
+  std::span<const std::string> targets;
+  bool selects = true;        ///< false: its group selects instead
+  std::string_view key = {};  ///< `CustomForce::key`
+};
+
+/// The inputs of one surface's step at a frame. Refers to the scene, which must outlive it and not
+/// change.
+struct SurfaceInputs {
+  BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups
+  std::vector<ForceSource> sources;     ///< of `body.forces`; the selector of a force in a group is
+                                        ///< that of the group
+  std::shared_ptr<ForceFaults> faults;  ///< shared by the custom forces
+  std::vector<int> group_selectors = {};  ///< reused to avoid allocations
+};
+
+/// A clock for a noise with a keyed rate, in a scene that starts at `start`; null for any other
+/// force.
+std::unique_ptr<NoiseClock> clock_of(const Force& force, int start);
+
+/// Data for sampling that are the same at all frames of a scene: which forces act on which surface,
+/// and the clocks of noises with a keyed rate. Stores only indices, so the scene may move, but not
+/// change. Thread-safe.
+class SceneSampling {
+ public:
+  explicit SceneSampling(const Scene& scene);
+
+  const SurfaceTargets& targets(std::size_t surface) const { return targets_[surface]; }
+
+  /// The clock of a noise with a keyed rate; null for any other force.
+  NoiseClock* clock(std::size_t force) const { return clocks_[force].get(); }
+
+ private:
+  std::vector<SurfaceTargets> targets_;
+  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // one per force
+};
+
+/// The choices of a surface's body.
+BodySettings body_settings(const SolverSettings& solver);
+
+/// The inputs of a surface without forces.
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);
+
+/// The inputs of a surface, by its index in the scene for which `sampling` was made. Reuses the
+/// memory of `reuse`, earlier inputs or empty ones: then only custom functions allocate.
+SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
+                            int frame, SurfaceInputs reuse = {});
+
+/// A force as it acts on `surface`; a force in a group selects no region. Invalid results of custom
+/// forces are added to `faults`. `clock` is that of the force; null: the time of a noise with a
+/// keyed rate is summed again from the start.
+SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
+                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock = nullptr);
+
+/// The region of a group.
+SampledForce sample_group(const Group& group, int frame);
+
+/// The first frame at which an enabled surface is solved; before it is at rest.
+int first_solved_frame(const Scene& scene, const Surface& surface);
+
+/// Whether a surface is solved at a frame; otherwise its state does not change.
+bool is_solved_at(const Scene& scene, const Surface& surface, int frame);
+
+Transform sample_transform(const TransformChannels& channels, int frame);
+
+/// The group of a force; null: none.
+const Group* group_of(const Scene& scene, const Force& force);
+
+/// Whether a force, and its group if it has one, is enabled at a frame, and targets a surface.
+/// `SceneSampling` knows the targets of all pairs.
+bool is_enabled(const Force& force, const Group* group, int frame);
+bool targets(const Force& force, const Group* group, const std::string& surface);
+
+}  // namespace pliant

@@ -1,0 +1,75 @@
+#include "pliant/sampling/targets.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <string>
+#include <string_view>
+
+namespace pliant {
+namespace {
+
+class Surfaces {
+ public:
+  explicit Surfaces(const Scene& scene) : all_(scene.surfaces.size()) {
+    std::iota(all_.begin(), all_.end(), std::size_t{0});
+    for (const std::size_t k : all_) named_.emplace(scene.surfaces[k].name, k);
+  }
+
+  // The surfaces with these names, in the order of the scene; no names: all surfaces.
+  std::vector<std::size_t> of(const std::vector<std::string>& targets) const {
+    if (targets.empty()) return all_;
+    std::vector<std::size_t> found;
+    for (const std::string& target : targets) {
+      if (const auto named = named_.find(target); named != named_.end()) {
+        found.push_back(named->second);
+      }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+ private:
+  std::vector<std::size_t> all_;
+  std::map<std::string_view, std::size_t> named_;
+};
+
+// The surfaces on which a group acts, and its index among the groups of each.
+struct GroupPlaces {
+  std::vector<std::size_t> surfaces = {};  // ascending
+  std::vector<int> places = {};            // one for each surface
+
+  int place_at(std::size_t surface) const {
+    const auto found = std::lower_bound(surfaces.begin(), surfaces.end(), surface);
+    return found != surfaces.end() && *found == surface ? places[found - surfaces.begin()] : -1;
+  }
+};
+
+}  // namespace
+
+std::vector<SurfaceTargets> targets_of(const Scene& scene) {
+  std::vector<SurfaceTargets> targets(scene.surfaces.size());
+  const Surfaces surfaces(scene);
+  std::map<std::string_view, GroupPlaces> groups;
+  for (std::size_t group = 0; group < scene.groups.size(); ++group) {
+    GroupPlaces places{surfaces.of(scene.groups[group].targets)};
+    for (const std::size_t surface : places.surfaces) {
+      places.places.push_back(static_cast<int>(targets[surface].groups.size()));
+      targets[surface].groups.push_back(group);
+    }
+    groups.emplace(scene.groups[group].name, std::move(places));
+  }
+  for (std::size_t force = 0; force < scene.forces.size(); ++force) {
+    const auto group = groups.find(scene.forces[force].group);
+    const bool is_member = group != groups.end();
+    for (const std::size_t surface : surfaces.of(scene.forces[force].targets)) {
+      const int place = is_member ? group->second.place_at(surface) : -1;
+      if (is_member && place < 0) continue;  // the group does not act on this surface
+      targets[surface].forces.push_back({force, place});
+    }
+  }
+  return targets;
+}
+
+}  // namespace pliant

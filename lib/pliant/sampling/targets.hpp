@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pliant/scene/scene.hpp"
+
+namespace pliant {
+
+// Which forces act on which surfaces, looked up by name once per scene; not for programs.
+
+/// The forces and groups that target one surface, enabled or not, in the order of the scene.
+struct SurfaceTargets {
+  struct Member {
+    std::size_t force = 0;  ///< index in the scene
+    int group = -1;         ///< index of its group in `groups`; -1: none
+  };
+  std::vector<Member> forces = {};
+  std::vector<std::size_t> groups = {};  ///< indices in the scene
+};
+
+/// One for each surface. Cost: linear in the number of targets and the size of the result.
+std::vector<SurfaceTargets> targets_of(const Scene& scene);
+
+}  // namespace pliant

@@ -1,0 +1,252 @@
+#include "pliant/simulation/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/stage_timer.hpp"
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/check.hpp"
+
+namespace pliant {
+namespace {
+
+struct Extent {
+  bool is_finite = true;
+  double peak_displacement = 0;
+};
+
+// Whether all nodes are finite in world space, and their largest distance from rest there. One pass
+// over the nodes, in parallel lanes.
+Extent extent_of(const Transform& transform, const Field& positions, const Field& rest) {
+  constexpr int lanes = 32;
+  alignas(64) double largest[lanes] = {};     // squared distance
+  alignas(64) double not_finite[lanes] = {};  // 0, or NaN after the first value that is not finite
+  const Matrix3d& a = transform.linear;
+  const Eigen::Index count = positions.rows();
+  for (Eigen::Index first = 0; first < count; first += lanes) {
+    const int width = static_cast<int>(std::min<Eigen::Index>(lanes, count - first));
+    alignas(64) double squares[lanes] = {};
+    for (int k = 0; k < 3; ++k) {
+      const double ax = a(k, 0), ay = a(k, 1), az = a(k, 2), moved = transform.translation[k];
+      const double* const x = &positions(first, 0);
+      const double* const y = &positions(first, 1);
+      const double* const z = &positions(first, 2);
+      const double* const rest_x = &rest(first, 0);
+      const double* const rest_y = &rest(first, 1);
+      const double* const rest_z = &rest(first, 2);
+      for (int n = 0; n < width; ++n) {
+        const double world = (x[n] * ax + y[n] * ay + z[n] * az) + moved;
+        const double way =
+            (x[n] - rest_x[n]) * ax + (y[n] - rest_y[n]) * ay + (z[n] - rest_z[n]) * az;
+        not_finite[n] += world - world;
+        squares[n] += way * way;
+      }
+    }
+    for (int n = 0; n < lanes; ++n) largest[n] = squares[n] > largest[n] ? squares[n] : largest[n];
+  }
+  return {std::all_of(not_finite, not_finite + lanes, [](double x) { return x == 0; }),
+          std::sqrt(*std::max_element(largest, largest + lanes))};
+}
+
+}  // namespace
+
+Bodies::Bodies(const Scene& scene, const SceneSampling& sampling, const SimulationOptions& options)
+    : scene_(scene),
+      sampling_(sampling),
+      memory_(options.max_memory),
+      threads_(options.threads),
+      solver_(options.solver),
+      most_lanes_(options.most_lanes),
+      should_stop_(options.should_stop),
+      profiles_(options.profile ? scene.surfaces.size() : 0) {}
+
+Result<void> check_to_simulate(const Scene& scene) {
+  std::vector<Error> errors = check_scene(scene);
+  if (scene.surfaces.empty()) {
+    errors.push_back({.code = ErrorCode::InvalidInput,
+                      .message = "the scene has no surface to simulate",
+                      .file = scene.origin.file});
+  }
+  if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
+  return {};
+}
+
+tl::unexpected<Error> interrupted_at_start() {
+  return fail(ErrorCode::Interrupted, "interrupted before the first frame");
+}
+
+Result<void> Bodies::make_all() {
+  std::vector<Error> errors = check_channels(scene_, {}, should_stop_);
+  for (const Surface& surface : scene_.surfaces) {
+    if (should_stop_ && should_stop_()) break;
+    MemoryShare share(&memory_);
+    auto rest_shape = make_rest_shape(surface, scene_.origin, share, should_stop_);
+    if (!rest_shape) {
+      errors.push_back(std::move(rest_shape.error()));
+      continue;
+    }
+    add(surface, *std::move(rest_shape), std::move(share));
+  }
+  steps_.resize(bodies_.size());
+  if (should_stop_ && should_stop_()) return interrupted_at_start();
+  if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
+  return {};
+}
+
+void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share) {
+  const GridMapping& mapping = rest_shape.mapping;
+  // Several surfaces are solved in parallel; a single one uses all threads.
+  ThreadPool* const threads = scene_.surfaces.size() == 1 ? &threads_ : nullptr;
+  bodies_.emplace_back(mapping.grid, mapping.rest, body_settings(surface.solver),
+                       SolverCache(solver_, &memory_, threads, most_lanes_));
+  rest_shapes_.push_back(std::move(rest_shape));
+  shares_.push_back(std::move(share));
+}
+
+void Bodies::step(int frame, KeptStates* kept, const std::function<bool()>& give_way) {
+  threads_.for_each(bodies_.size(), [&](std::size_t k) { step(k, frame, kept); });
+  const auto lacks_memory = [](const Step& step) {
+    return step.is_solved_now && !step.outcome &&
+           step.outcome.error().code == ErrorCode::OutOfMemory;
+  };
+  if (std::any_of(steps_.begin(), steps_.end(), lacks_memory) && give_way && give_way()) {
+    threads_.for_each(bodies_.size(), [&](std::size_t k) {
+      if (lacks_memory(steps_[k])) step(k, frame, kept);
+    });
+  }
+}
+
+void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
+  Step& step = steps_[index];
+  const Surface& surface = scene_.surfaces[index];
+  step.is_solved_now = is_solved_at(scene_, surface, frame);
+  step.is_read = false;
+  if (!step.is_solved_now) return;
+  Body& body = bodies_[index];
+  {
+    const StageTimer timer(profile_of(index), Stage::Sampling);
+    step.inputs = sample_inputs(scene_, sampling_, index, frame, std::move(step.inputs));
+  }
+  if (kept) {
+    const StageTimer timer(profile_of(index), Stage::Checkpoints);
+    if (should_stop_ && should_stop_()) {
+      step.outcome = fail(ErrorCode::Interrupted, "interrupted");
+      return;
+    }
+    if (auto stored = kept->read(index, frame, step.inputs, body)) {
+      body.restore(std::move(stored->state));
+      step.facts = std::move(stored->facts);
+      step.is_read = true;
+      step.outcome = {};
+      return;
+    }
+  }
+  step.outcome = body.step(step.inputs.body, should_stop_, profile_of(index));
+  if (!step.outcome) return;
+  step.facts =
+      facts_of(step.inputs.body, body.last_step(), surface.solver.combine, std::move(step.facts));
+  if (kept && step.inputs.faults->first().empty()) {
+    const StageTimer timer(profile_of(index), Stage::Checkpoints);
+    kept->write(index, frame, body, step.facts);
+  }
+}
+
+Result<void> Bodies::outcome(std::size_t index, int frame) const {
+  const Step& step = steps_[index];
+  if (!step.is_solved_now) return {};
+  const Surface& surface = scene_.surfaces[index];
+  if (std::string fault = step.inputs.faults->first(); !fault.empty()) {
+    return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame));
+  }
+  if (!step.outcome) return fail(located(step.outcome.error(), surface, frame));
+  return {};
+}
+
+Result<Frame> Bodies::output(int frame, Frame reuse) {
+  reuse.number_ = frame;
+  reuse.surfaces_.resize(bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const StageTimer timer(profile_of(k), Stage::Output);
+    const Surface& surface = scene_.surfaces[k];
+    const Field& nodes = bodies_[k].state().positions;
+    const Transform transform = sample_transform(surface.transform, frame);
+    const Extent extent = extent_of(transform, nodes, bodies_[k].rest());
+    if (!extent.is_finite) {
+      return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
+                          surface, frame));
+    }
+    SurfaceFrame& shown = reuse.surfaces_[k];
+    shown.name_ = surface.name;
+    shown.transform_ = transform;
+    shown.peak_displacement_ = extent.peak_displacement;
+    shown.object_positions_ =
+        rest_shapes_[k].mapping.to_vertices(nodes, std::move(shown.object_positions_));
+  }
+  return reuse;
+}
+
+Result<FrameReport> Bodies::report(int frame) {
+  std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
+  threads_.for_each(bodies_.size(), [&](std::size_t k) {
+    if (!is_solved_at(scene_, scene_.surfaces[k], frame)) return;
+    surfaces[k] = report_of(bodies_[k], sample_inputs(scene_, sampling_, k, frame));
+  });
+  FrameReport report{frame, {}};
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (!surfaces[k]) return fail(located(surfaces[k].error(), scene_.surfaces[k], frame));
+    report.surfaces.push_back(*std::move(surfaces[k]));
+  }
+  return report;
+}
+
+void Bodies::reset() {
+  for (Body& body : bodies_) body.reset();
+}
+
+void Bodies::restore(std::vector<BodyState> states) {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].restore(std::move(states[k]));
+}
+
+std::vector<BodyState> Bodies::states(std::vector<BodyState> reuse) const {
+  reuse.resize(bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) reuse[k] = bodies_[k].state();
+  return reuse;
+}
+
+// The error with its surface and frame.
+Error Bodies::located(Error error, const Surface& surface, int frame) const {
+  if (error.code == ErrorCode::Interrupted) {  // no surface caused it
+    return {ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame)};
+  }
+  error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
+  error.file = scene_.origin.file;
+  error.line = scene_.origin.line_of(surface.name);
+  return error;
+}
+
+Profile* Bodies::profile_of(std::size_t surface) {
+  return profiles_.empty() ? nullptr : &profiles_[surface];
+}
+
+Profile Bodies::profile() const {
+  Profile all;
+  for (const Profile& profile : profiles_) all.add(profile);
+  return all;
+}
+
+std::size_t Bodies::surface_memory() const {
+  std::size_t bytes = 0;
+  for (const MemoryShare& share : shares_) bytes += share.bytes();
+  return bytes;
+}
+
+SolverCounts Bodies::solver_counts() const {
+  SolverCounts total;
+  for (const Body& body : bodies_) total = total + body.solver_counts();
+  return total;
+}
+
+}  // namespace pliant

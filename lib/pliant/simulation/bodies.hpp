@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "pliant/body/body.hpp"
+#include "pliant/body/step_facts.hpp"
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/simulation/simulation.hpp"
+#include "pliant/states/kept_states.hpp"
+
+namespace pliant {
+
+/// Checks that `check_scene` finds nothing, and that there is a surface. Internal to simulation.
+Result<void> check_to_simulate(const Scene& scene);
+
+/// The error of a run that was stopped while it was made.
+tl::unexpected<Error> interrupted_at_start();
+
+/// All bodies of a scene, and their step from one frame to the next. It does not know which frame
+/// its bodies are at, nor what came before. Internal to simulation.
+class Bodies {
+ public:
+  /// One surface's step; reused to avoid allocations.
+  struct Step {
+    bool is_solved_now = false;  ///< false: the surface is disabled, or starts later
+    bool is_read = false;        ///< read from the store, not solved
+    SurfaceInputs inputs;
+    Result<void> outcome;
+    StepFacts facts;
+  };
+
+  /// Requires: scene and sampling outlive it.
+  Bodies(const Scene& scene, const SceneSampling& sampling, const SimulationOptions& options);
+
+  /// Checks every channel at every frame of the scene, reads the meshes and makes a body of each.
+  /// Errors: those of all channels and meshes; Interrupted.
+  Result<void> make_all();
+
+  /// Steps all surfaces from the output of a frame to that of the next, several of them at the same
+  /// time. `kept`: where steps are read and written; null: nowhere. If memory is short, `give_way`
+  /// may release some and return true; then the surfaces that lacked it try again.
+  void step(int frame, KeptStates* kept, const std::function<bool()>& give_way);
+
+  /// The last step of a surface.
+  const Step& last_step(std::size_t surface) const { return steps_[surface]; }
+
+  /// The error of its last step, at `frame`, with the surface's name and line.
+  Result<void> outcome(std::size_t surface, int frame) const;
+
+  /// The surfaces as shown at a frame. Errors: NotFinite.
+  Result<Frame> output(int frame, Frame reuse);
+
+  /// The solve that `step` would make at a frame. Errors: those of `Body::look` and of custom
+  /// forces.
+  Result<FrameReport> report(int frame);
+
+  void reset();  ///< all bodies to rest
+  void restore(std::vector<BodyState> states);
+  std::vector<BodyState> states(std::vector<BodyState> reuse = {}) const;
+
+  std::size_t size() const { return bodies_.size(); }
+  std::span<const Body> all() const { return bodies_; }
+  std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
+  MemoryBudget& memory() { return memory_; }
+  SolverChoice solver() const { return solver_; }
+  std::size_t surface_memory() const;
+  SolverCounts solver_counts() const;
+  Profile profile() const;
+  Profile* profile_of(std::size_t surface);  ///< null: no profiling
+
+ private:
+  void add(const Surface& surface, RestShape rest_shape, MemoryShare share);
+  void step(std::size_t index, int frame, KeptStates* kept);
+  Error located(Error error, const Surface& surface, int frame) const;
+
+  const Scene& scene_;
+  const SceneSampling& sampling_;
+  MemoryBudget memory_;
+  ThreadPool threads_;
+  std::vector<MemoryShare> shares_;  // one a surface, as the following
+  std::vector<RestShape> rest_shapes_;
+  std::vector<Body> bodies_;
+  std::vector<Step> steps_;
+  SolverChoice solver_;
+  int most_lanes_;
+  StopRequest should_stop_;
+  std::vector<Profile> profiles_;  // one a surface; empty: no profiling
+};
+
+}  // namespace pliant

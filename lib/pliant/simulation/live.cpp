@@ -1,0 +1,384 @@
+#include "pliant/simulation/live.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/description.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/text.hpp"
+#include "pliant/simulation/bodies.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr double largest_value = 1e150;  // of a key
+
+// A value that holds from a frame on.
+struct Held {
+  int frame = 0;
+  std::vector<double> value;
+};
+
+// A channel that can be set.
+struct Input {
+  using Of = std::variant<Channel<1>*, Channel<3>*, Switch*>;
+
+  std::string path;
+  Range range;
+  Of channel;
+  bool is_transform = false;
+  const Force* noise = nullptr;  // the noise whose rate it is
+  std::vector<Held> held = {};   // recorded, in the order of frames
+};
+
+template <int D>
+Value<D> value_of(std::span<const double> numbers) {
+  Value<D> value;
+  std::copy_n(numbers.begin(), D, value.begin());
+  return value;
+}
+
+template <int D>
+Key<D> step_key(double frame, const Value<D>& value) {
+  return {.frame = frame, .value = value, .next = {.kind = Interpolation::Kind::Step}};
+}
+
+// Requires: sound keys.
+template <int D>
+Curve<D> curve_of(std::vector<Key<D>> keys) {
+  auto curve = Curve<D>::make({.keys = std::move(keys)});
+  PLIANT_EXPECTS(curve.has_value());
+  return *std::move(curve);
+}
+
+// A constant rate and a keyed one round differently, so in a live run each rate is keyed from the
+// start. Errors: InvalidInput.
+Result<void> key_rates(Scene& scene) {
+  for (Force& force : scene.forces) {
+    auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+    if (!noise || noise->rate.is_animated()) continue;
+    const Value<1> rate = noise->rate.at(scene.start);
+    if (!(std::abs(rate[0]) <= largest_value)) {
+      return fail(
+          ErrorCode::InvalidInput,
+          fmt::format("{}.rate is {}, but a live run takes at most 1e150", force.name, rate[0]),
+          scene.origin.file, scene.origin.line_of(force.name, "rate"));
+    }
+    noise->rate = curve_of<1>({step_key<1>(scene.start, rate)});
+  }
+  return {};
+}
+
+std::vector<Input> inputs_that_can_be_set(Scene& scene) {
+  std::vector<Input> inputs;
+  const auto add_all = [&](auto& thing) {
+    for_each_channel(thing,
+                     [&](const std::string& name, const Attribute& attribute, auto& channel) {
+                       inputs.push_back({thing.name + '.' + name, attribute.range, &channel});
+                     });
+  };
+  for (Surface& surface : scene.surfaces) {
+    const std::size_t first = inputs.size();
+    add_all(surface);
+    for_each_channel(surface.transform, [&](const std::string&, const Attribute&, auto& channel) {
+      for (std::size_t k = first; k < inputs.size(); ++k) {
+        if (inputs[k].channel == Input::Of(&channel)) inputs[k].is_transform = true;
+      }
+    });
+  }
+  for (Force& force : scene.forces) {
+    const std::size_t first = inputs.size();
+    add_all(force);
+    auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+    for (std::size_t k = first; noise && k < inputs.size(); ++k) {
+      if (inputs[k].channel == Input::Of(&noise->rate)) inputs[k].noise = &force;
+    }
+  }
+  for (Group& group : scene.groups) add_all(group);
+  return inputs;
+}
+
+// The keys of a channel that was first as authored and was then set: its values at all frames up to
+// then, the one before the start too, since inertia reads it.
+template <int D>
+std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
+                                  std::span<const Held> held) {
+  std::vector<Key<D>> keys;
+  const int first = held.front().frame;
+  if (authored.is_animated()) {
+    for (int frame = start - 1; frame < first; ++frame) {
+      keys.push_back(step_key<D>(frame, authored.at(frame)));
+    }
+  } else if (first > start) {
+    keys.push_back(step_key<D>(start, authored.at(start)));
+  }
+  for (const Held& one : held) keys.push_back(step_key<D>(one.frame, value_of<D>(one.value)));
+  auto curve = Curve<D>::make({.keys = std::move(keys)});
+  if (!curve) return {};
+  return *std::move(curve);
+}
+
+}  // namespace
+
+/// The bodies at the present frame, and the channels that can be set.
+class LiveSimulation::Run {
+ public:
+  Run(Scene scene, const LiveOptions& options)
+      : records_(options.records),
+        scene_(std::move(scene)),
+        authored_(records_ ? scene_ : Scene()),
+        sampling_(scene_),
+        bodies_(scene_, sampling_, options.simulation),
+        inputs_(inputs_that_can_be_set(scene_)),
+        frame_(scene_.start) {
+    for (std::size_t k = 0; k < inputs_.size(); ++k) places_.emplace(inputs_[k].path, k);
+  }
+
+  Result<void> make_bodies() { return bodies_.make_all(); }
+  int frame() const { return frame_; }
+  const Scene& scene() const { return scene_; }
+  const Bodies& bodies() const { return bodies_; }
+
+  Result<void> set(std::string_view channel, std::span<const double> value);
+  Result<void> advance();
+  Result<Frame> positions(Frame reuse) { return bodies_.output(frame_, std::move(reuse)); }
+  Result<FrameReport> report();
+  Result<Scene> performance() const;
+
+ private:
+  tl::unexpected<Error> no_channel(std::string_view channel) const;
+  void apply(Input& input, std::span<const double> value);
+  template <int D>
+  void hold(const Input& input, Channel<D>& channel, const Value<D>& value);
+  Result<void> check();
+  Result<void> step();
+
+  bool records_;
+  Scene scene_;     // with the present values
+  Scene authored_;  // if it records
+  SceneSampling sampling_;
+  Bodies bodies_;
+  std::vector<Input> inputs_;
+  std::map<std::string_view, std::size_t> places_;  // in `inputs_`, by path
+  int frame_;
+  bool is_checked_ = false;        // the present values, at this frame
+  std::vector<BodyState> before_;  // the states before a step; reused
+};
+
+tl::unexpected<Error> LiveSimulation::Run::no_channel(std::string_view channel) const {
+  std::vector<std::string_view> paths;
+  for (const auto& [path, place] : places_) paths.push_back(path);
+  const auto near = xml::nearest_word(channel, paths);
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("the scene has no channel \"{}\"{}", printable(channel),
+                          near ? fmt::format("; did you mean \"{}\"?", *near) : ""));
+}
+
+Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const double> value) {
+  const auto place = places_.find(channel);
+  if (place == places_.end()) return no_channel(channel);
+  Input& input = inputs_[place->second];
+  const auto refuse = [&](std::string_view rule) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{} is {}, but {}", input.path, fmt::join(value, " "), rule));
+  };
+  const std::size_t count = std::holds_alternative<Channel<3>*>(input.channel) ? 3 : 1;
+  if (value.size() != count) {
+    return refuse(fmt::format("must be {} number{}", count, count == 1 ? "" : "s"));
+  }
+  for (const double number : value) {
+    if (!(std::abs(number) <= largest_value)) {
+      return refuse("must be finite, and at most 1e150 from 0");
+    }
+  }
+  if (const auto rule = input.range.broken_rule(value)) return refuse(*rule);
+  if (std::holds_alternative<Switch*>(input.channel) && value[0] != 0 && value[0] != 1) {
+    return refuse("must be 0 or 1");
+  }
+  apply(input, value);
+  is_checked_ = false;
+  if (!records_) return {};
+  const int from = input.is_transform ? frame_ + 1 : frame_;
+  if (!input.held.empty() && input.held.back().frame == from) input.held.pop_back();
+  input.held.push_back({from, {value.begin(), value.end()}});
+  return {};
+}
+
+void LiveSimulation::Run::apply(Input& input, std::span<const double> value) {
+  if (auto* const number = std::get_if<Channel<1>*>(&input.channel)) {
+    hold<1>(input, **number, value_of<1>(value));
+  } else if (auto* const vector = std::get_if<Channel<3>*>(&input.channel)) {
+    hold<3>(input, **vector, value_of<3>(value));
+  } else {
+    *std::get<Switch*>(input.channel) = Switch(value[0] != 0);
+  }
+}
+
+template <int D>
+void LiveSimulation::Run::hold(const Input& input, Channel<D>& channel, const Value<D>& value) {
+  if (input.is_transform) {
+    // Inertia reads three frames.
+    channel =
+        curve_of<D>({step_key<D>(frame_ - 1, channel.at(frame_ - 1)),
+                     step_key<D>(frame_, channel.at(frame_)), step_key<D>(frame_ + 1, value)});
+  } else if (input.noise) {
+    // The time of the noise is summed with the rates that were valid, then with the new one.
+    const auto place = static_cast<std::size_t>(input.noise - scene_.forces.data());
+    if constexpr (D == 1) {
+      const auto rate_at = [&](int earlier) { return channel.at(earlier)[0]; };
+      if (NoiseClock* const clock = sampling_.clock(place); clock && frame_ > scene_.start) {
+        clock->sum(frame_, rate_at);
+      }
+    }
+    channel = curve_of<D>({step_key<D>(frame_, value)});
+  } else {
+    channel = value;
+  }
+}
+
+// The rules of single channels and those between them.
+Result<void> LiveSimulation::Run::check() {
+  if (is_checked_) return {};
+  std::vector<Error> errors = check_channels_at(scene_, frame_);
+  if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
+  is_checked_ = true;
+  return {};
+}
+
+Result<FrameReport> LiveSimulation::Run::report() {
+  if (auto sound = check(); !sound) return fail(sound.error());
+  return bodies_.report(frame_);
+}
+
+Result<void> LiveSimulation::Run::advance() {
+  if (frame_ >= largest_frame) {
+    return fail(ErrorCode::InvalidInput, fmt::format("frame {} is the last one", frame_));
+  }
+  if (records_ && frame_ - scene_.start + 1 >= max_frames) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("a recorded scene has at most {} frames", max_frames));
+  }
+  if (auto sound = check(); !sound) return sound;
+  // If one body fails, the others may have stepped; one alone is unchanged.
+  if (bodies_.size() > 1) before_ = bodies_.states(std::move(before_));
+  const auto take_back = [&] {
+    if (bodies_.size() > 1) bodies_.restore(before_);
+  };
+  Result<void> stepped;
+  try {
+    stepped = step();
+  } catch (...) {  // from a custom force
+    take_back();
+    throw;
+  }
+  if (!stepped) {
+    take_back();
+    return stepped;
+  }
+  ++frame_;
+  const auto is_animated = [](const Input& input) {
+    return std::visit([](const auto* channel) { return channel->is_animated(); }, input.channel);
+  };
+  is_checked_ = std::none_of(inputs_.begin(), inputs_.end(), is_animated);
+  return {};
+}
+
+Result<void> LiveSimulation::Run::step() {
+  bodies_.step(frame_, nullptr, {});
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (auto done = bodies_.outcome(k, frame_); !done) return done;
+  }
+  return {};
+}
+
+Result<Scene> LiveSimulation::Run::performance() const {
+  PLIANT_EXPECTS(records_);
+  Scene scene = authored_;
+  scene.end = frame_;
+  const std::vector<Input> authored = inputs_that_can_be_set(scene);
+  for (std::size_t k = 0; k < authored.size(); ++k) {
+    const std::vector<Held>& held = inputs_[k].held;
+    if (held.empty()) continue;
+    const auto replace = [&]<int D>(Channel<D>& channel) {
+      auto curve = performed<D>(channel, scene.start, held);
+      if (curve) channel = *std::move(curve);
+      return curve.has_value();
+    };
+    const auto replace_any = [&](auto* of) {
+      if constexpr (std::is_same_v<decltype(of), Switch*>) {
+        auto curve = performed<1>(of->channel(), scene.start, held);
+        if (curve) *of = Switch(*std::move(curve));
+        return curve.has_value();
+      } else {
+        return replace(*of);
+      }
+    };
+    if (!std::visit(replace_any, authored[k].channel)) {
+      return fail(
+          ErrorCode::InvalidInput,
+          fmt::format("{} has a value beyond 1e150, which no key can have", authored[k].path));
+    }
+  }
+  return scene;
+}
+
+Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& options) {
+  const SimulationOptions& run_options = options.simulation;
+  PLIANT_EXPECTS(run_options.threads >= 1 && is_available(run_options.solver));
+  if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
+  if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
+  auto run = std::make_unique<Run>(std::move(scene), options);
+  if (auto made = run->make_bodies(); !made) return fail(made.error());
+  return LiveSimulation(std::move(run));
+}
+
+LiveSimulation::LiveSimulation(std::unique_ptr<Run> run) : run_(std::move(run)) {}
+LiveSimulation::LiveSimulation(LiveSimulation&&) noexcept = default;
+LiveSimulation& LiveSimulation::operator=(LiveSimulation&&) noexcept = default;
+LiveSimulation::~LiveSimulation() = default;
+
+int LiveSimulation::frame() const { return run_->frame(); }
+
+Result<void> LiveSimulation::set(std::string_view channel, std::span<const double> value) {
+  return run_->set(channel, value);
+}
+
+Result<void> LiveSimulation::set(std::string_view channel, double value) {
+  return run_->set(channel, std::span(&value, 1));
+}
+
+Result<void> LiveSimulation::set(std::string_view channel, const Value<3>& value) {
+  return run_->set(channel, std::span(value));
+}
+
+Result<void> LiveSimulation::advance() { return run_->advance(); }
+
+Result<Frame> LiveSimulation::positions(Frame reuse) { return run_->positions(std::move(reuse)); }
+
+Result<FrameReport> LiveSimulation::report() { return run_->report(); }
+
+Result<Scene> LiveSimulation::performance() const { return run_->performance(); }
+
+const Scene& LiveSimulation::scene() const { return run_->scene(); }
+
+std::span<const RestShape> LiveSimulation::rest_shapes() const {
+  return run_->bodies().rest_shapes();
+}
+
+}  // namespace pliant

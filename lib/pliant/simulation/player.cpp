@@ -1,0 +1,153 @@
+#include "pliant/simulation/player.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/stage_timer.hpp"
+
+namespace pliant {
+
+Simulation::Player::Player(Scene scene, const SimulationOptions& options)
+    : scene_(std::move(scene)),
+      sampling_(scene_),
+      bodies_(scene_, sampling_, options),
+      frame_(scene_.start),
+      furthest_frame_(scene_.start),
+      cache_(scene_.start, options.checkpoint_bytes, &bodies_.memory()),
+      kept_(scene_, sampling_, options.store) {}
+
+Result<void> Simulation::Player::make_bodies() {
+  if (auto made = bodies_.make_all(); !made) return made;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Body& body = bodies_.all()[k];
+    kept_.add(rest_key(body.grid(), body.rest(), body_settings(scene_.surfaces[k].solver),
+                       bodies_.solver()));
+  }
+  return {};
+}
+
+// Advances to a frame of the range; back to the start if that fails.
+Result<void> Simulation::Player::reach(int frame) {
+  if (frame < scene_.start || frame > scene_.end) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("frame {} is outside the scene's frames {} to {}", frame, scene_.start,
+                            scene_.end));
+  }
+  // On failure some bodies may have stepped and others not: rewind, so that the next call is valid.
+  // Only custom forces throw.
+  Result<void> reached;
+  try {
+    reached = go_to(frame);
+  } catch (...) {
+    rewind(scene_.start);
+    throw;
+  }
+  if (!reached) rewind(scene_.start);
+  return reached;
+}
+
+Result<Frame> Simulation::Player::at(int frame, Frame reuse) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
+  return bodies_.output(frame, std::move(reuse));
+}
+
+Result<FrameReport> Simulation::Player::report(int frame) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
+  return bodies_.report(frame);
+}
+
+Result<std::string> Simulation::Player::state_bytes(int frame) {
+  if (auto reached = reach(frame); !reached) return fail(reached.error());
+  return kept_.checkpoint(frame, bodies_.all());
+}
+
+Result<int> Simulation::Player::restore(std::string_view state_bytes) {
+  auto found = kept_.read_checkpoint(state_bytes, bodies_.all());
+  if (!found) return fail(found.error());
+  frame_ = found->frame;
+  bodies_.restore(std::move(found->states));
+  keep(true);
+  furthest_frame_ = std::max(furthest_frame_, frame_);
+  return frame_;
+}
+
+Result<void> Simulation::Player::go_to(int frame) {
+  const std::optional<int> kept = cache_.latest_until(frame);
+  if (frame < frame_ || kept > frame_) rewind(frame);
+  // Frames not passed before are read one by one, for their warnings.
+  if (kept_.has_store() && frame <= furthest_frame_) read_latest(frame);
+  while (frame_ < frame) {
+    if (auto stepped = step(); !stepped) return stepped;
+    passed_.add(frame_);
+    ++frame_;
+    keep(frame_ <= furthest_frame_);
+    furthest_frame_ = std::max(furthest_frame_, frame_);
+  }
+  return {};
+}
+
+// After going back once, a request for a frame shortly before is likely.
+void Simulation::Player::keep(bool is_going_back) {
+  const bool is_wanted = is_going_back ? cache_.wants(frame_) : cache_.wants_checkpoint(frame_);
+  if (!is_wanted) return;
+  const StageTimer timer(bodies_.profile_of(0), Stage::Checkpoints);
+  cache_.keep(frame_, bodies_.states());
+}
+
+// Advances from the output of frame_ to that of the next frame. What the surfaces say is processed
+// in their order, since they may be solved in parallel. Kept frames give way to the next one.
+Result<void> Simulation::Player::step() {
+  bodies_.step(frame_, kept_.has_store() ? &kept_ : nullptr, [this] { return cache_.give_way(); });
+  bool is_solved = false, is_read = false;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Surface& surface = scene_.surfaces[k];
+    if (surface.enabled) warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
+    const Bodies::Step& step = bodies_.last_step(k);
+    if (!step.is_solved_now) continue;
+    warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
+    if (auto done = bodies_.outcome(k, frame_); !done) return done;
+    add_facts(warnings_, surface.name, frame_, step.inputs, step.facts);
+    (step.is_read ? is_read : is_solved) = true;
+  }
+  frame_counts_.solved += is_solved ? 1 : 0;
+  frame_counts_.read += is_read && !is_solved ? 1 : 0;
+  return {};
+}
+
+// Goes back to a kept frame, or to the start, where all bodies are at rest.
+void Simulation::Player::rewind(int frame) {
+  const std::optional<int> kept = cache_.latest_until(frame);
+  if (kept) {
+    bodies_.restore(cache_.use(*kept));
+  } else {
+    bodies_.reset();
+  }
+  frame_ = kept.value_or(scene_.start);
+}
+
+// Advances to the latest frame up to `frame` for which the store has all states, if it is later
+// than the present frame.
+void Simulation::Player::read_latest(int frame) {
+  for (int candidate = frame; candidate > frame_; --candidate) {
+    auto found = kept_.states_at(candidate, bodies_.all());
+    if (!found) continue;
+    bodies_.restore(std::move(found->states));
+    frame_ = candidate;
+    ++frame_counts_.read;
+    keep(true);
+    return;
+  }
+}
+
+std::vector<Warning> Simulation::Player::warnings() const {
+  const auto& ranges = passed_.ranges();
+  const bool is_complete =
+      scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
+                                     ranges.front().second == scene_.end - 1);
+  return warnings_.warnings(scene_, is_complete);
+}
+
+}  // namespace pliant

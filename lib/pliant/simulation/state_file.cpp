@@ -1,0 +1,29 @@
+#include "pliant/simulation/state_file.hpp"
+
+#include <utility>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/io/atomic_file.hpp"
+
+namespace pliant {
+
+Result<void> write_state(const std::string& file, Simulation& simulation, int frame) {
+  const auto bytes = simulation.state_bytes(frame);
+  if (!bytes) return fail(bytes.error());
+  auto out = AtomicFile::create(file);
+  if (!out) return fail(out.error());
+  if (auto written = out->write(*bytes); !written) return written;
+  return out->commit();
+}
+
+Result<int> read_state(const std::string& file, Simulation& simulation) {
+  const auto bytes = read_file(file);
+  if (!bytes) return fail(bytes.error());
+  auto frame = simulation.restore(*bytes);
+  if (frame) return frame;
+  Error error = std::move(frame.error());
+  error.file = file;
+  return fail(std::move(error));
+}
+
+}  // namespace pliant

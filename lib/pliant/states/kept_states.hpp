@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/body/body.hpp"
+#include "pliant/core/hash.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/states/state_key.hpp"
+#include "pliant/states/state_store.hpp"
+#include "pliant/states/stored_state.hpp"
+
+namespace pliant {
+
+/// The states of all surfaces at a frame.
+struct FrameStates {
+  int frame = 0;
+  std::vector<BodyState> states;  ///< in the order of the scene
+};
+
+/// The states of a scene's surfaces beyond one run: in a store, each under its key, and as the
+/// bytes of a checkpoint. `bodies` are those of all surfaces, in the order of the scene. Not for
+/// programs.
+class KeptStates {
+ public:
+  /// Requires: scene and sampling outlive it. `store` null: there are checkpoints only.
+  KeptStates(const Scene& scene, const SceneSampling& sampling, StateStore* store)
+      : scene_(scene), sampling_(sampling), store_(store) {}
+
+  /// Adds the next surface, by the key of its body at rest.
+  void add(const Hash& rest_key) { keys_.emplace_back(rest_key); }
+
+  bool has_store() const { return store_ != nullptr; }
+
+  /// The result of a step at `frame` with these inputs, if the store has it. Requires: the earlier
+  /// frames were asked for, or `states_at` was.
+  std::optional<StoredState> read(std::size_t surface, int frame, const SurfaceInputs& inputs,
+                                  const Body& body);
+
+  /// Writes the result of the same step, which the body is in after it.
+  void write(std::size_t surface, int frame, const Body& body, const StepFacts& facts);
+
+  /// The states of all surfaces at a frame; null if the store lacks any of them.
+  std::optional<FrameStates> states_at(int frame, std::span<const Body> bodies);
+
+  /// The present states as the bytes of a checkpoint at `frame`.
+  std::string checkpoint(int frame, std::span<const Body> bodies);
+
+  /// The states of a checkpoint. Errors: InvalidInput if the bytes are damaged, or not of this
+  /// scene, at that frame, under this engine and solver.
+  Result<FrameStates> read_checkpoint(std::string_view bytes, std::span<const Body> bodies);
+
+ private:
+  const std::optional<Hash>& key(std::size_t surface, int frame);
+  Hash sealing_key(std::size_t surface, int frame);
+
+  const Scene& scene_;
+  const SceneSampling& sampling_;
+  StateStore* store_;
+  std::vector<KeyChain> keys_;  // one a surface
+};
+
+}  // namespace pliant

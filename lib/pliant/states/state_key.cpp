@@ -1,0 +1,188 @@
+#include "pliant/states/state_key.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/states/engine.hpp"
+
+namespace pliant {
+namespace {
+
+// The functions below use structured bindings for their values, so that a new member causes a
+// compile error here and cannot be forgotten in the keys.
+
+// The data to hash, in a fixed order. Numbers are added by their bits.
+class Ingredients {
+ public:
+  void add(std::uint64_t number) {
+    for (int byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(number >> (8 * byte) & 0xff);
+  }
+  void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
+  void add(int number) { add(std::int64_t{number}); }
+  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(std::string_view text) {
+    add(std::uint64_t{text.size()});
+    bytes_ += text;
+  }
+  void add(const Hash& hash) {
+    add(hash.high);
+    add(hash.low);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void add(Enum choice) { add(static_cast<std::int64_t>(choice)); }
+
+  void add(const Vector3d& vector) {
+    for (const double number : vector) add(number);
+  }
+  void add(const Matrix3d& matrix) {
+    for (int row = 0; row < 3; ++row) add(Vector3d(matrix.row(row)));
+  }
+  template <std::size_t D>
+  void add(const std::array<double, D>& numbers) {
+    for (const double number : numbers) add(number);
+  }
+  template <class T>
+  void add(const std::optional<T>& value) {
+    add(int{value.has_value()});
+    if (value) add(*value);
+  }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(std::uint64_t{values.size()});
+    for (const T& value : values) add(value);
+  }
+
+  void add(const Transform& transform) {
+    const auto& [linear, translation] = transform;
+    add_all(linear, translation);
+  }
+  void add(const Stiffness& stiffness) {
+    const auto& [b, c, d] = stiffness;
+    add_all(b, c, d);
+  }
+  void add(const Dynamics& dynamics) {
+    const auto& [density, damping] = dynamics;
+    add_all(density, damping);
+  }
+  void add(const EdgeTangents& tangents) {
+    const auto& [su0, su1, sv0, sv1] = tangents;
+    add_all(su0, su1, sv0, sv1);
+  }
+  void add(const Grid& grid) {
+    const auto& [columns, rows, hu, hv] = grid;
+    add_all(columns, rows, hu, hv);
+  }
+  void add(const BodySettings& settings) {
+    const auto& [stepping, reference, measure, combine, release] = settings;
+    add_all(stepping, reference, measure, combine, release);
+  }
+
+  void add(const Interpolation& interpolation) {
+    const auto& [kind, ease, side, amplitude, period, back, control] = interpolation;
+    add_all(kind, ease, side, amplitude, period, back, control);
+  }
+  void add(const Tangent<1>& tangent) {
+    const auto& [kind, slope, length, handle_frames, handle_value] = tangent;
+    add_all(kind, slope, length, handle_frames, handle_value);
+  }
+  void add(const Key<1>& key) {
+    const auto& [frame, value, next, in, out, left] = key;
+    add_all(frame, value, next, in, out, left);
+  }
+  void add(const Extrapolation<1>& extrapolation) {
+    const auto& [kind, slope, count] = extrapolation;
+    add_all(kind, slope, count);
+  }
+  void add(const Loop<1>& loop) {
+    const auto& [from, to, before, after, offset] = loop;
+    add_all(from, to, before, after, offset);
+  }
+  void add(const CurveKeys<1>& curve) {
+    const auto& [keys, before, after, loop, overshoot] = curve;
+    add_all(keys, before, after, loop, overshoot);
+  }
+
+  // A force of any kind.
+  template <class Kind>
+  requires requires(const Kind& kind) { kind.values(); }
+  void add(const Kind& kind) {
+    std::apply([&](const auto&... values) { add_all(values...); }, kind.values());
+  }
+
+  void add(const SampledForce& force) {
+    const auto& [shape, magnitude, deformation_radius, force_radius, falloff, falloff_curve] =
+        force;
+    add(std::uint64_t{shape.index()});
+    std::visit([this](const auto& of_kind) { add(of_kind); }, shape);
+    add_all(magnitude, deformation_radius, force_radius, falloff);
+    add(int{falloff_curve != nullptr});
+    if (falloff_curve) add(falloff_curve->keys());
+  }
+  void add(const BodyInputs& inputs) {
+    const auto& [transform, stiffness, dynamics, tangents, frame_length, dt, forces, selectors] =
+        inputs;
+    add_all(transform, stiffness, dynamics, tangents, frame_length, dt, forces, selectors);
+  }
+
+  Hash hash() const { return hash_of(std::string_view(bytes_)); }
+
+ private:
+  template <class... Values>
+  void add_all(const Values&... values) {
+    (add(values), ...);
+  }
+
+  std::string bytes_;
+};
+
+}  // namespace
+
+Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
+              SolverChoice solver) {
+  Ingredients ingredients;
+  ingredients.add(engine_name());
+  ingredients.add(grid);
+  ingredients.add(hash_of(rest));
+  ingredients.add(settings);
+  ingredients.add(solver);
+  // The available solvers decide which sparse solver a choice means.
+  for (const SolverChoice kind : available_solvers()) ingredients.add(name_of(kind));
+  return ingredients.hash();
+}
+
+Hash unnamed_key(const Hash& rest) {
+  Ingredients ingredients;
+  ingredients.add(rest);
+  ingredients.add(std::string_view("unnamed"));
+  return ingredients.hash();
+}
+
+std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, int frame) {
+  Ingredients ingredients;
+  ingredients.add(before);
+  ingredients.add(inputs.body);
+  for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
+    if (!std::holds_alternative<FunctionForce>(inputs.body.forces[k].shape)) continue;
+    const std::string_view key = inputs.sources[k].key;
+    if (key.empty()) return {};
+    ingredients.add(key);
+    ingredients.add(frame);
+  }
+  return ingredients.hash();
+}
+
+void KeyChain::append(const SurfaceInputs* inputs, int frame) {
+  const std::optional<Hash> before = keys_.back();
+  if (!inputs || !before) {
+    keys_.push_back(before);
+  } else {
+    keys_.push_back(next_key(*before, *inputs, frame));
+  }
+}
+
+}  // namespace pliant

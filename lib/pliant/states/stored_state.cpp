@@ -1,0 +1,213 @@
+#include "pliant/states/stored_state.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "pliant/states/sealed_bytes.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr std::string_view magic("pliant state 1\n\0", 16);
+
+// Nodes first, first + 1, ..., first + count - 1.
+struct Run {
+  std::uint64_t first = 0;
+  std::uint64_t count = 0;
+};
+
+bool is_same(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool is_at_rest(const BodyState& state, const Field& rest, Eigen::Index node) {
+  for (int component = 0; component < 3; ++component) {
+    if (!is_same(state.positions(node, component), rest(node, component))) return false;
+    if (!is_same(state.velocities(node, component), 0)) return false;
+  }
+  return state.unsettled.empty() || state.unsettled[static_cast<std::size_t>(node)] == 0;
+}
+
+// One bit for each of x, y and z of the positions, then of the velocities, set if the component of
+// any node differs from rest. On a surface pushed along one axis, four of the six are at rest
+// everywhere.
+using Columns = std::uint64_t;
+
+bool holds(Columns columns, int component) { return (columns >> component & 1u) != 0; }
+
+Columns columns_away_from_rest(const BodyState& state, const Field& rest) {
+  const auto is_zero = [](double number) { return is_same(number, 0); };
+  Columns columns = 0;
+  for (int component = 0; component < 3; ++component) {
+    const auto positions = state.positions.col(component);
+    const auto velocities = state.velocities.col(component);
+    if (!std::equal(positions.begin(), positions.end(), rest.col(component).begin(), is_same)) {
+      columns |= Columns{1} << component;
+    }
+    if (!std::all_of(velocities.begin(), velocities.end(), is_zero)) {
+      columns |= Columns{8} << component;
+    }
+  }
+  return columns;
+}
+
+std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) {
+  std::vector<Run> runs;
+  for (Eigen::Index node = 0; node < rest.rows(); ++node) {
+    if (is_at_rest(state, rest, node)) continue;
+    const auto place = static_cast<std::uint64_t>(node);
+    if (!runs.empty() && runs.back().first + runs.back().count == place) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({place, 1});
+    }
+  }
+  return runs;
+}
+
+unsigned char bits_of(const ForceFacts& facts) {
+  const auto& [is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost, is_apart] =
+      facts;
+  unsigned bits = 0;
+  for (const bool fact :
+       {is_apart, is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost}) {
+    bits = bits << 1 | (fact ? 1u : 0u);
+  }
+  return static_cast<unsigned char>(bits);
+}
+
+ForceFacts facts_of(unsigned bits) {
+  const auto bit = [bits](int place) { return (bits >> place & 1u) != 0; };
+  return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
+}
+
+// Reads runs. Null if they are not within the nodes or not ascending.
+std::optional<std::vector<Run>> read_runs(ByteReader& reader, std::uint64_t node_count) {
+  const std::uint64_t count = reader.number();
+  if (count > reader.left() / sizeof(Run)) return {};
+  std::vector<Run> runs(static_cast<std::size_t>(count));
+  std::uint64_t next = 0;
+  for (Run& run : runs) {
+    run.first = reader.number();
+    run.count = reader.number();
+    if (run.first < next || run.first > node_count || run.count > node_count - run.first) return {};
+    next = run.first + run.count;
+  }
+  return runs;
+}
+
+void append_rows(std::string& bytes, const Field& field, const std::vector<Run>& runs,
+                 Columns columns) {
+  for (int component = 0; component < 3; ++component) {
+    if (!holds(columns, component)) continue;
+    for (const Run& run : runs) {
+      append(bytes, field.col(component).data() + run.first, run.count * sizeof(double));
+    }
+  }
+}
+
+void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, Columns columns) {
+  for (int component = 0; component < 3; ++component) {
+    if (!holds(columns, component)) continue;
+    for (const Run& run : runs) {
+      reader.take(field.col(component).data() + run.first, run.count * sizeof(double));
+    }
+  }
+}
+
+constexpr std::size_t bytes_of_node = 6 * sizeof(double) + 1;
+
+// The most bytes of a state besides its runs and nodes.
+std::size_t most_head(std::size_t force_count) {
+  return magic.size() + 2 * sizeof(Hash) + 6 * sizeof(std::uint64_t) + force_count;
+}
+
+// An upper bound for the bytes of a state: in the worst case every other node is away from rest, or
+// all are.
+std::size_t most_bytes(Eigen::Index node_count) {
+  constexpr std::size_t forces = 1'000'000;  // more than any scene has
+  const auto nodes = static_cast<std::size_t>(node_count);
+  return most_head(forces) + (nodes + 1) / 2 * sizeof(Run) + nodes * bytes_of_node;
+}
+
+}  // namespace
+
+std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
+                     const Field& rest) {
+  const std::vector<Run> runs = runs_away_from_rest(state, rest);
+  const Columns columns = columns_away_from_rest(state, rest);
+  std::size_t away = 0;
+  for (const Run& run : runs) away += run.count;
+  std::string bytes;
+  bytes.reserve(most_head(facts.forces.size()) + runs.size() * sizeof(Run) +
+                away * (static_cast<std::size_t>(std::popcount(columns)) * sizeof(double) + 1));
+  bytes += magic;
+  append(bytes, key);
+  append(bytes, static_cast<std::uint64_t>(rest.rows()));
+  append(bytes, std::uint64_t{state.unsettled.empty() ? 0u : 1u});
+  append(bytes, std::uint64_t{facts.is_solved ? 1u : 0u});
+  append(bytes, std::uint64_t{facts.forces.size()});
+  for (const ForceFacts& of_force : facts.forces) {
+    bytes += static_cast<char>(bits_of(of_force));
+  }
+  append(bytes, std::uint64_t{runs.size()});
+  for (const Run& run : runs) {
+    append(bytes, run.first);
+    append(bytes, run.count);
+  }
+  append(bytes, columns);
+  append_rows(bytes, state.positions, runs, columns);
+  append_rows(bytes, state.velocities, runs, columns >> 3);
+  if (!state.unsettled.empty()) {
+    for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
+  }
+  append_seal(bytes);
+  return bytes;
+}
+
+std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
+                                      bool has_marks) {
+  const auto held = unsealed(bytes, magic);
+  if (!held) return {};
+  ByteReader reader(*held);
+  if (reader.hash() != key) return {};
+  const auto node_count = static_cast<std::uint64_t>(rest.rows());
+  if (reader.number() != node_count || reader.number() != (has_marks ? 1u : 0u)) return {};
+  StoredState stored;
+  stored.facts.is_solved = reader.number() != 0;
+  const std::uint64_t force_count = reader.number();
+  if (force_count > reader.left()) return {};
+  for (std::uint64_t k = 0; k < force_count; ++k) {
+    unsigned char bits = 0;
+    reader.take(&bits, 1);
+    stored.facts.forces.push_back(facts_of(bits));
+  }
+  const auto runs = read_runs(reader, node_count);
+  if (!runs) return {};
+  BodyState& state = stored.state;
+  state.positions = rest;
+  state.velocities = Field::Zero(rest.rows(), 3);
+  const Columns columns = reader.number();
+  take_rows(reader, state.positions, *runs, columns);
+  take_rows(reader, state.velocities, *runs, columns >> 3);
+  if (has_marks) {
+    state.unsettled.assign(static_cast<std::size_t>(node_count), 0);
+    for (const Run& run : *runs) reader.take(state.unsettled.data() + run.first, run.count);
+  }
+  if (!reader.is_sound() || reader.left() != 0) return {};
+  if (!state.positions.allFinite() || !state.velocities.allFinite()) return {};
+  return stored;
+}
+
+std::optional<StoredState> read_stored(StateStore& store, const Hash& key, const Field& rest,
+                                       bool has_marks) {
+  const auto bytes = store.read(key, most_bytes(rest.rows()));
+  if (!bytes) return {};
+  auto stored = from_bytes(*bytes, key, rest, has_marks);
+  if (!stored) store.discard(key);
+  return stored;
+}
+
+}  // namespace pliant

@@ -1,0 +1,74 @@
+#include "pliant/sampling/rest_shape.hpp"
+
+#include "support/catch.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+Surface with_shape(SurfaceShape shape) {
+  Surface surface;
+  surface.name = "s";
+  surface.shape = std::move(shape);
+  return surface;
+}
+
+const SceneOrigin origin{"a.xml", {{"s", 2}, {"s.file", 4}}};
+
+std::string complaint(SurfaceShape shape) {
+  const auto rest = make_rest_shape(with_shape(std::move(shape)), origin);
+  return rest ? "none" : to_lines(rest.error()).front();
+}
+
+}  // namespace
+
+TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][rest_shape]") {
+  const GridSheet sheet{.columns = 4, .rows = 3, .width = 3, .depth = 2};
+  const RestShape from_sheet = make_rest_shape(with_shape(sheet), {}).value();
+  CHECK(from_sheet.name == "s");
+  CHECK(make_rest_shape(with_shape(make_mesh(sheet)), {})->mapping.rest == from_sheet.mapping.rest);
+
+  const ScratchFolder folder;
+  std::string obj;
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      obj += "v " + std::to_string(i - 1.5) + " 0 " + std::to_string(j - 1) + "\nvt " +
+             std::to_string(i) + " " + std::to_string(j) + "\n";
+    }
+  }
+  for (int k : {1, 2, 3, 5, 6, 7}) {
+    obj += "f";
+    for (int corner : {k, k + 4, k + 5, k + 1})
+      obj += " " + std::to_string(corner) + "/" + std::to_string(corner);
+    obj += "\n";
+  }
+  const auto from_file = make_rest_shape(with_shape(MeshFile{folder.write("m.obj", obj)}), {});
+  REQUIRE(from_file);
+  CHECK(from_file->mapping.rest == from_sheet.mapping.rest);
+}
+
+TEST_CASE("a shape that cannot be had is the scene's error or the file's",
+          "[sampling][rest_shape]") {
+  const ScratchFolder folder;
+  CHECK_THAT(complaint(MeshFile{folder.file("none.obj")}),
+             StartsWith("a.xml:4: error: surface \"s\": ") && Contains("none.obj") &&
+                 Contains("No such file"));
+  CHECK_THAT(complaint(MeshFile{folder.write("bad.obj", "v 1 2\n")}),
+             Contains("bad.obj:1: error: vertex has 2 numbers, but needs 3"));
+  CHECK_THAT(complaint(MeshFile{folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")}),
+             StartsWith("a.xml:4: error: surface \"s\", mesh ") && Contains("has no (u,v)"));
+  for (const std::string ending : {".ply", ".gltf", ".glb", ".fbx", ".dae"}) {
+    CHECK_THAT(complaint(MeshFile{folder.file("none" + ending)}),
+               StartsWith("a.xml:4: error: surface \"s\": ") && Contains("No such file"));
+  }
+  CHECK_THAT(complaint(MeshFile{folder.write("mesh.stl", "")}),
+             StartsWith("a.xml:4: error: ") && Contains("allowed: .obj, .ply"));
+  CHECK_THAT(
+      complaint(MeshFile{folder.write("set.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "", 1}),
+      Contains("set.obj: error: the object has 0 UV sets"));
+  CHECK_THAT(complaint(Mesh{}), StartsWith("a.xml:2: error: ") || StartsWith("a.xml:4: error: "));
+}
