@@ -445,3 +445,74 @@ TEST_CASE("what a program's tests are told is all that is wrong", "[replay]") {
   CHECK(std::count(told.begin(), told.end(), '\n') == 2);
   CHECK_THAT(expect_replay(scene, folder.file("none")), Contains("none"));
 }
+
+TEST_CASE("a program records a scene that no file can contain, and verifies it", "[replay]") {
+  const ScratchFolder scratch;
+  const std::string log = scratch.file("own.replay");
+  const auto simulation_with = [](double strength) {
+    Scene scene;
+    scene.end = 8;
+    scene.surfaces.push_back(
+        {.name = "sheet",
+         .shape = make_mesh({.columns = 11, .rows = 11, .width = 10, .depth = 10})});
+    Force own{.name = "own", .targets = {}, .magnitude = 900, .deformation_radius = 4};
+    own.shape = CustomForce{.unit_force = [strength](const Vector3d& p, const ForceTime& time) {
+      return Vector3d(0, strength + p.x() * 0.1 + time.frame, 0);
+    }};
+    scene.forces.push_back(own);
+    return Simulation::make(std::move(scene)).value();
+  };
+  auto recorded = simulation_with(1);
+  REQUIRE(recorded.at(5));  // any frame before
+  const auto header = record_replay(recorded, log, {.states_every = 3});
+  REQUIRE(header);
+  CHECK(header->scene_file.empty());
+  CHECK(header->scene_text.empty());
+
+  auto same = simulation_with(1);
+  const auto verdict = verify_replay(log, same);
+  REQUIRE(verdict);
+  CHECK(verdict->holds());
+  CHECK(verdict->frame_count == 8);
+  auto other = simulation_with(1 + 1e-12);
+  const auto differs = verify_replay(log, other);
+  REQUIRE(differs);
+  REQUIRE_FALSE(differs->holds());
+  CHECK_THAT(differs->lines().front(), StartsWith("frame 2: surface \"sheet\": positions differ"));
+
+  const auto by_command = verify_replay(log);
+  REQUIRE_FALSE(by_command);
+  CHECK(by_command.error().code == ErrorCode::InvalidInput);
+  CHECK_THAT(by_command.error().message, Contains("only the program can verify it"));
+}
+
+TEST_CASE("a program's log is verified without the program if it has the scene", "[replay]") {
+  const ScratchFolder scratch;
+  const std::string log = scratch.file("code.replay");
+  Scene scene = parse_scene(scene_xml, "", "").value();
+  scene.origin = {};
+  auto simulation = Simulation::make(scene).value();
+  const auto header = record_replay(simulation, log);
+  REQUIRE(header);
+  CHECK(header->scene_file.empty());
+  const auto verdict = verify_replay(log);
+  REQUIRE(verdict);
+  CHECK(verdict->holds());
+  CHECK(verdict->lines().empty());
+
+  // The log of a file, by the program that read it; and another solver.
+  const std::string file = scratch.write("scene.xml", scene_xml);
+  REQUIRE(record_replay(file, log));
+  auto loaded = Simulation::make(load_scene(file).value()).value();
+  CHECK(verify_replay(log, loaded).value().holds());
+  auto by_eigen = Simulation::make(scene, {.solver = SolverChoice::Eigen}).value();
+  const auto refused = verify_replay(log, by_eigen);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message, Contains("solver auto, but the simulation uses eigen"));
+  scene.forces.front().magnitude = 1;
+  auto edited = Simulation::make(scene).value();
+  REQUIRE(record_replay(simulation, log));
+  const auto told = verify_replay(log, edited).value();
+  CHECK_FALSE(told.holds());
+  CHECK_THAT(told.lines().front(), StartsWith("the scene of the program was edited"));
+}

@@ -101,7 +101,7 @@ std::vector<std::string> causes_in(const ReplayHeader& a, const ReplayHeader& b)
   }
   if (a.scene_text != b.scene_text) {
     causes.push_back(fmt::format("the scene {} was edited; the first change is in line {}",
-                                 printable(a.scene_file),
+                                 a.scene_file.empty() ? "of the program" : printable(a.scene_file),
                                  first_other_line(a.scene_text, b.scene_text)));
   }
   for (const ReplayFile& file : a.files) {

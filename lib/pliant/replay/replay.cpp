@@ -36,12 +36,22 @@ struct FoundScene {
 
 Result<FoundScene> find_scene(const std::filesystem::path& log_file, const ReplayHeader& header,
                               const std::optional<std::string>& given, const std::string& root) {
+  const std::filesystem::path folder = log_file.parent_path();
+  if (!given && header.scene_file.empty()) {
+    if (!header.scene_text.empty()) {
+      return FoundScene{{.text = header.scene_text, .folder = folder, .root = root}};
+    }
+    return fail(ErrorCode::InvalidInput,
+                "a program recorded it, with a scene that no file can contain: only the program "
+                "can verify it",
+                log_file.string(), 1);
+  }
   const std::filesystem::path file =
-      given ? std::filesystem::path(*given) : log_file.parent_path() / header.scene_file;
+      given ? std::filesystem::path(*given) : folder / header.scene_file;
   std::error_code ignored;
   if (!given && !std::filesystem::exists(file, ignored)) {
     return FoundScene{
-        {file, header.scene_text, root},
+        {.file = file, .text = header.scene_text, .root = root},
         fmt::format("the scene {} does not exist; its text in the log is simulated instead",
                     printable(header.scene_file))};
   }
@@ -101,6 +111,38 @@ Result<void> read_on(ReplayLogReader& log) {
   }
 }
 
+// Plays a simulation into a log, with a header that lacks frames and surfaces.
+Result<ReplayHeader> record(Simulation& simulation, ReplayHeader header,
+                            const std::string& log_file, const ReplayOptions& options) {
+  const Scene& scene = simulation.scene();
+  if (options.last_frame &&
+      (*options.last_frame < scene.start || *options.last_frame > scene.end)) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the last frame to record is {}; the scene has frames {} to {}",
+                            *options.last_frame, scene.start, scene.end),
+                scene.origin.file);
+  }
+  if (auto free = check_log_place(log_file, scene); !free) return fail(free.error());
+  complete(header, simulation, options.last_frame);
+  auto log = ReplayLogWriter::create(log_file, header);
+  if (!log) return fail(log.error());
+  if (auto done = write_frames(simulation, header, *log, options); !done) {
+    return fail(done.error());
+  }
+  return header;
+}
+
+// Compares a log with a simulation whose header, complete, is `now`.
+Result<void> compare(ReplayLogReader& log, const ReplayHeader& now, Simulation& simulation,
+                     const ReplayOptions& options, ReplayVerdict& verdict) {
+  verdict.mismatches = mismatches_in(log.header(), now);
+  ThreadPool threads(options.simulation.threads);
+  const auto compute = [&](const ReplayFrame& recorded) {
+    return digest(simulation, recorded.number, threads, !recorded.states.empty());
+  };
+  return compare_frames(log, last_comparable_frame(log.header(), now), options, verdict, compute);
+}
+
 }  // namespace
 
 Result<ReplayHeader> record_replay(const std::string& scene_file, const std::string& log_file,
@@ -109,24 +151,18 @@ Result<ReplayHeader> record_replay(const std::string& scene_file, const std::str
   if (!written) return fail(written.error());
   auto simulation = simulation_of(*written, options.simulation);
   if (!simulation) return fail(simulation.error());
-  const Scene& scene = simulation->scene();
-  if (options.last_frame &&
-      (*options.last_frame < scene.start || *options.last_frame > scene.end)) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("the last frame to record is {}; the scene has frames {} to {}",
-                            *options.last_frame, scene.start, scene.end),
-                scene_file);
-  }
-  if (auto free = check_log_place(log_file, scene); !free) return fail(free.error());
-  auto header = header_of_text(*written, log_file, options.simulation.solver);
-  if (!header) return header;
-  complete(*header, *simulation, options.last_frame);
-  auto log = ReplayLogWriter::create(log_file, *header);
-  if (!log) return fail(log.error());
-  if (auto done = write_frames(*simulation, *header, *log, options); !done) {
-    return fail(done.error());
-  }
-  return header;
+  return record(*simulation,
+                header_of(simulation->scene(), *written, log_file, options.simulation.solver),
+                log_file, options);
+}
+
+Result<ReplayHeader> record_replay(Simulation& simulation, const std::string& log_file,
+                                   const ReplayOptions& options) {
+  const Scene& scene = simulation.scene();
+  const std::filesystem::path folder = std::filesystem::path(log_file).parent_path();
+  return record(simulation,
+                header_of(scene, written_by_program(scene, folder), log_file, simulation.solver()),
+                log_file, options);
 }
 
 Result<ReplayVerdict> verify_replay(const std::string& log_file,
@@ -150,15 +186,36 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file,
   auto simulation = simulation_of(found->written, run);
   if (!simulation) return fail_because(simulation.error(), verdict.causes, log_file);
   complete(*now, *simulation, then.end);
-  verdict.mismatches = mismatches_in(then, *now);
+  if (auto compared = compare(*log, *now, *simulation, options, verdict); !compared) {
+    return fail(compared.error());
+  }
+  return verdict;
+}
 
-  ThreadPool threads(run.threads);
-  const auto compute = [&](const ReplayFrame& recorded) {
-    return digest(*simulation, recorded.number, threads, !recorded.states.empty());
-  };
-  auto compared =
-      compare_frames(*log, last_comparable_frame(then, *now), options, verdict, compute);
-  if (!compared) return fail(compared.error());
+Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& simulation,
+                                    const ReplayOptions& options) {
+  auto log = ReplayLogReader::open(log_file);
+  if (!log) return fail(log.error());
+  const ReplayHeader& then = log->header();
+  const auto solver = solver_of(then, log_file);
+  if (!solver) return fail(solver.error());
+  if (*solver != simulation.solver()) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("recorded with the solver {}, but the simulation uses {}",
+                            name_of(*solver), name_of(simulation.solver())),
+                log_file, 1);
+  }
+  const Scene& scene = simulation.scene();
+  const std::filesystem::path folder = std::filesystem::path(log_file).parent_path();
+  ReplayHeader now = header_of(scene, written_by_program(scene, folder), log_file, *solver);
+  complete(now, simulation, then.end);
+  ReplayVerdict verdict;
+  // The text of a scene file may say the same in other words.
+  if (!then.scene_file.empty()) now.scene_text = then.scene_text;
+  verdict.causes = causes_in(then, now);
+  if (auto compared = compare(*log, now, simulation, options, verdict); !compared) {
+    return fail(compared.error());
+  }
   return verdict;
 }
 

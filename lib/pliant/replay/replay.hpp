@@ -40,12 +40,24 @@ struct ReplayOptions {
 Result<ReplayHeader> record_replay(const std::string& scene_file, const std::string& log_file,
                                    const ReplayOptions& options = {});
 
+/// The same for a simulation of a program, whose scene may be one that no file can contain: with
+/// meshes as arrays and functions as forces. The log has the scene as text if it can be written;
+/// meshes are named relative to the log's folder. `options.simulation` is not used, but for its
+/// threads.
+Result<ReplayHeader> record_replay(Simulation& simulation, const std::string& log_file,
+                                   const ReplayOptions& options = {});
+
 /// Simulates the recorded run again, and compares. Uses the given scene file; without one, the
 /// recorded file; if that does not exist, the scene text in the log. Meshes are looked up in the
 /// scene's folder. Errors: as `record_replay`, with causes known from the log; InvalidInput for a
 /// log that was changed or truncated, naming its line.
 Result<ReplayVerdict> verify_replay(const std::string& log_file,
                                     const std::optional<std::string>& scene_file = {},
+                                    const ReplayOptions& options = {});
+
+/// Compares a recorded run with a simulation of a program. Errors: those of `Simulation::report`;
+/// as `verify_replay` for its log; InvalidInput if the log was recorded with another solver.
+Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& simulation,
                                     const ReplayOptions& options = {});
 
 /// Compares two logs, and their states if both have them. Errors: as `verify_replay` for its log.

@@ -13,6 +13,7 @@
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
+#include "pliant/scene/write.hpp"
 
 namespace pliant {
 namespace {
@@ -32,11 +33,10 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
 
 // Relative to the scene's folder; relative to its canonical path if the file is given by one.
 std::string name_of(const SceneInput& input, const WrittenScene& written) {
-  const fs::path folder = written.file.parent_path();
   std::error_code unknown;
-  const fs::path real = fs::canonical(folder.empty() ? "." : folder, unknown);
+  const fs::path real = fs::canonical(written.folder.empty() ? "." : written.folder, unknown);
   const bool is_real = !unknown && fs::weakly_canonical(input.file, unknown) == input.file;
-  return name_from(is_real ? real : folder, input.file);
+  return name_from(is_real ? real : written.folder, input.file);
 }
 
 bool is_one_file(const fs::path& a, const fs::path& b) {
@@ -45,7 +45,7 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 }
 
 Result<Scene> scene_of(const WrittenScene& written) {
-  return parse_scene(written.text, written.file.string(), written.file.parent_path(), written.root);
+  return parse_scene(written.text, written.file.string(), written.folder, written.root);
 }
 
 }  // namespace
@@ -53,27 +53,37 @@ Result<Scene> scene_of(const WrittenScene& written) {
 Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root) {
   auto text = read_file(file, std::size_t{256} << 20);  // the same limit as `load_scene`
   if (!text) return fail(text.error());
-  return WrittenScene{file, *std::move(text), root};
+  return WrittenScene{.file = file, .text = *std::move(text), .root = root};
 }
 
-Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path& log_file,
-                                    SolverChoice solver) {
-  const auto scene = scene_of(written);
-  if (!scene) return fail(scene.error());
+WrittenScene written_by_program(const Scene& scene, const fs::path& folder) {
+  auto text = to_xml(scene, folder.string());
+  return {.file = {}, .text = text ? *std::move(text) : std::string(), .folder = folder};
+}
+
+ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs::path& log_file,
+                       SolverChoice solver) {
   ReplayHeader header;
   header.version = PLIANT_VERSION;
-  header.scene_file = name_from(log_file.parent_path(), written.file);
+  if (!written.file.empty()) header.scene_file = name_from(log_file.parent_path(), written.file);
   header.scene_text = written.text;
-  for (const SceneInput& input : inputs_of(*scene)) {
+  for (const SceneInput& input : inputs_of(scene)) {
     // The scene is stored as text. Reading a pipe or a device could block, or never end.
     std::error_code ignored;
-    if (input.file == written.file || !fs::is_regular_file(input.file, ignored)) continue;
+    if (input.file == scene.origin.file || !fs::is_regular_file(input.file, ignored)) continue;
     const auto bytes = read_file(input.file);
     if (bytes) header.files.push_back({name_of(input, written), hash_of(*bytes)});
   }
   header.solver = name_of(solver);
   header.factors = name_of(available_solvers().front());
   return header;
+}
+
+Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path& log_file,
+                                    SolverChoice solver) {
+  const auto scene = scene_of(written);
+  if (!scene) return fail(scene.error());
+  return header_of(*scene, written, log_file, solver);
 }
 
 void complete(ReplayHeader& header, const Simulation& simulation, std::optional<int> last_frame) {

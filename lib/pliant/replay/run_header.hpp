@@ -12,17 +12,26 @@ namespace pliant {
 
 /// The text of a scene, and the folders for its meshes.
 struct WrittenScene {
-  std::filesystem::path file;
-  std::string text;
-  std::filesystem::path root = {};  ///< as in `load_scene`
+  std::filesystem::path file = {};  ///< empty: made by a program
+  std::string text = {};            ///< empty: of a program, and no file can contain it
+  std::filesystem::path folder = file.parent_path();  ///< of the meshes' relative names
+  std::filesystem::path root = {};                    ///< as in `load_scene`
 };
 
 /// Errors: as `read_file`.
 Result<WrittenScene> read_scene_text(const std::filesystem::path& file,
                                      const std::filesystem::path& root);
 
+/// The scene of a program, as text if a file can contain it; its meshes are named relative to
+/// `folder`.
+WrittenScene written_by_program(const Scene& scene, const std::filesystem::path& folder);
+
 /// The part of a log's header that is known before the simulation: all but frames and surfaces.
-/// Files that cannot be read are omitted. Errors: as `parse_scene`.
+/// Files that cannot be read are omitted.
+ReplayHeader header_of(const Scene& scene, const WrittenScene& written,
+                       const std::filesystem::path& log_file, SolverChoice solver);
+
+/// The same for a text. Errors: as `parse_scene`.
 Result<ReplayHeader> header_of_text(const WrittenScene& written,
                                     const std::filesystem::path& log_file, SolverChoice solver);
 

@@ -1,0 +1,280 @@
+#include "pliant/simulation/live.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pliant/scene/channels.hpp"
+#include "pliant/scene/read.hpp"
+#include "pliant/scene/write.hpp"
+#include "support/catch.hpp"
+#include "support/scenes.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr int frame_count = 9;
+
+/// Two surfaces, and forces of every kind, in and without a group, with constant and keyed
+/// channels.
+Scene of_everything() {
+  const auto text = R"(<scene start="1" end="9">
+    <surface name="sheet"><grid columns="11" rows="12" width="10" depth="10"/>
+      <transform translate="1 0 0" rotate="5 10 15"/><material density="0.02" damping="0.05"/>
+      <tangents su0="0.1" sv1="0.1 0.2 0"/></surface>
+    <surface name="other"><grid columns="9" rows="9" width="8" depth="8"/>
+      <transform><animate attribute="translate"><key frame="-3" value="0 3 0"/>
+        <key frame="9" value="1 2 1"/></animate></transform>
+      <solver dt="0.02" release="recover"/></surface>
+    <point name="poke" magnitude="400" center="1 0.5 0" deformationRadius="4" forceRadius="4"/>
+    <radial name="swell" deformationRadius="3" forceRadius="3" center="2 1 0">
+      <animate attribute="magnitude"><key frame="1" value="100"/><key frame="6" value="300"/>
+      </animate></radial>
+    <line name="ridge" magnitude="200" from="-2 0.5 0" to="2 0.5 1" direction="0 1 1"
+      deformationRadius="2" forceRadius="2"/>
+    <uniform name="weight" magnitude="-5" deformationRadius="1"/>
+    <vortex name="turn" magnitude="50" center="0 0.5 0" pull="0.5" deformationRadius="3"
+      forceRadius="3"/>
+    <noise name="wind" magnitude="80" frequency="0.5" rate="2" deformationRadius="5"
+      forceRadius="5"/>
+    <inertia name="sway" deformationRadius="3"/>
+    <point name="slide" magnitude="100" deformationRadius="2" forceRadius="2">
+      <path attribute="center" progress="0.25"><waypoint at="-3 0.5 0"/><waypoint at="3 0.5 1"/><waypoint at="0 0 3"/>
+      </path></point>
+    <group name="pair" center="0 0 1" deformationRadius="3">
+      <radial name="left" magnitude="60" center="-1 -1 1" forceRadius="3"/>
+      <noise name="right" magnitude="40" forceRadius="3"/>
+    </group></scene>)";
+  auto scene = parse_scene(text, "scene.xml", "");
+  REQUIRE(scene);
+  return *std::move(scene);
+}
+
+/// The numbers of a channel at a frame; of a switch, 0 or 1.
+std::vector<double> value_at(const NamedChannel& named, int frame) {
+  std::vector<double> value;
+  std::visit(
+      [&](const auto* channel) {
+        if constexpr (std::is_same_v<decltype(channel), const Switch*>) {
+          value.push_back(channel->at(frame) ? 1 : 0);
+        } else {
+          for (const double number : channel->at(frame)) value.push_back(number);
+        }
+      },
+      named.channel);
+  return value;
+}
+
+/// A valid value other than that of the channel at the frame.
+std::vector<double> other_value(const NamedChannel& named, int frame) {
+  std::vector<double> value = value_at(named, frame);
+  for (double& number : value) {
+    if (std::holds_alternative<const Switch*>(named.channel)) {
+      number = 1 - number;
+    } else {
+      number = number == 0 ? 0.0625 * frame : number * (1 + 0.03125 * frame);
+    }
+  }
+  // With release="recover" tangents must stay 0.
+  if (named.path.starts_with("other.s") && named.path.find("scale") == std::string::npos) {
+    for (double& number : value) number = 0;
+  }
+  return value;
+}
+
+std::vector<std::string> paths_of(const Scene& scene) {
+  std::vector<std::string> paths;
+  for (const NamedChannel& named : channels_of(scene)) paths.push_back(named.path);
+  return paths;
+}
+
+/// Plays a live run, which sets the channels for which `is_set(channel, frame)` is true before each
+/// step, and requires that all its frames have the bits of its performance.
+template <class IsSet>
+void check_against_performance(const Scene& scene, int frames, const IsSet& is_set,
+                               int threads = 1) {
+  LiveOptions options;
+  options.simulation.threads = threads;
+  options.records = true;
+  auto live = LiveSimulation::make(scene, options);
+  REQUIRE(live);
+  std::vector<Frame> played;
+  for (int k = 0; k < frames; ++k) {
+    auto frame = live->positions();
+    REQUIRE(frame);
+    played.push_back(*std::move(frame));
+    const std::vector<NamedChannel> channels = channels_of(live->scene());
+    std::vector<std::pair<std::string, std::vector<double>>> values;
+    for (const NamedChannel& named : channels) {
+      if (is_set(named.path, live->frame())) {
+        values.emplace_back(named.path, other_value(named, live->frame()));
+      }
+    }
+    for (const auto& [path, value] : values) {
+      CAPTURE(path, live->frame());
+      REQUIRE(live->set(path, value));
+    }
+    REQUIRE(live->advance());
+  }
+  const auto performance = live->performance();
+  REQUIRE(performance);
+  CHECK(performance->end == scene.start + frames);
+  auto simulation = Simulation::make(*performance);
+  REQUIRE(simulation);
+  for (const Frame& frame : played) {
+    const auto again = simulation->at(frame.number());
+    REQUIRE(again);
+    for (std::size_t k = 0; k < frame.surfaces().size(); ++k) {
+      CAPTURE(frame.number(), frame.surfaces()[k].name());
+      CHECK(frame.surfaces()[k].positions() == again->surfaces()[k].positions());
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a live run has the bits of the scene that has its values as keys, for each channel",
+          "[simulation][live]") {
+  const Scene scene = of_everything();
+  for (const std::string& path : paths_of(scene)) {
+    CAPTURE(path);
+    check_against_performance(scene, frame_count, [&](const std::string& channel, int frame) {
+      return channel == path && (frame == 3 || frame == 4 || frame == 7);
+    });
+  }
+}
+
+TEST_CASE("a live run that sets all channels has the bits of its performance",
+          "[simulation][live][threads]") {
+  const int every = GENERATE(1, 2, 5);
+  const int threads = GENERATE(1, 2);
+  check_against_performance(
+      of_everything(), frame_count,
+      [&](const std::string& channel, int frame) {
+        return (static_cast<int>(channel.size()) + frame) % every == 0;
+      },
+      threads);
+}
+
+TEST_CASE("a channel has the value that was set, a transform one frame later",
+          "[simulation][live]") {
+  auto live = LiveSimulation::make(of_everything()).value();
+  REQUIRE(live.advance());
+  const auto value_of = [&](const std::string& path, int frame) {
+    std::vector<double> value;
+    for (const NamedChannel& named : channels_of(live.scene())) {
+      if (named.path == path) value = value_at(named, frame);
+    }
+    return value;
+  };
+  for (const std::string& path : paths_of(live.scene())) {
+    CAPTURE(path);
+    const bool is_transform =
+        path.ends_with(".translate") || path.ends_with(".rotate") || path.ends_with(".scale");
+    const std::vector<double> before = value_of(path, live.frame());
+    std::vector<double> value = before;
+    for (double& number : value) number = number == 0 ? 1 : number / 2;
+    if (path.ends_with("enabled")) value = {0};
+    REQUIRE(live.set(path, value));
+    CHECK(value_of(path, live.frame()) == (is_transform ? before : value));
+    CHECK(value_of(path, live.frame() + 1) == value);
+    CHECK(value_of(path, 1'000'000) == value);
+  }
+}
+
+TEST_CASE("a performance that is written and read again has the same bits", "[simulation][live]") {
+  LiveOptions options;
+  options.records = true;
+  auto live = LiveSimulation::make(of_everything(), options).value();
+  std::vector<Frame> played;
+  for (int k = 0; k < frame_count; ++k) {
+    REQUIRE(live.set("poke.center", Value<3>{0.1 * k, 0.5, 0.2 * k}));
+    REQUIRE(live.set("wind.rate", 0.3 * k));
+    REQUIRE(live.set("sheet.rotate", Value<3>{0, 3.0 * k, 0}));
+    REQUIRE(live.set("pair.enabled", k % 2));
+    REQUIRE(live.advance());
+    played.push_back(live.positions().value());
+  }
+  const auto text = to_xml(live.performance().value());
+  REQUIRE(text);
+  auto again = Simulation::make(parse_scene(*text, "scene.xml", "").value()).value();
+  for (const Frame& frame : played) {
+    CAPTURE(frame.number());
+    CHECK(frame.surface("sheet").positions() ==
+          again.at(frame.number()).value().surface("sheet").positions());
+  }
+}
+
+TEST_CASE("a live run has no last frame", "[simulation][live]") {
+  Scene s = scene({sheet("sheet")}, {poke("poke", {0, 0, 0})}, 3);
+  s.forces[0].magnitude = curve({{1, 100}, {3, 900}});
+  Scene longer = s;
+  longer.end = 30;
+  auto live = LiveSimulation::make(s).value();
+  auto whole = Simulation::make(longer).value();
+  for (int frame = 1; frame < 30; ++frame) REQUIRE(live.advance());
+  CHECK(live.frame() == 30);
+  CHECK(live.positions().value().surface("sheet").positions() ==
+        whole.at(30).value().surface("sheet").positions());
+  CHECK(live.report().value().frame == 30);
+}
+
+TEST_CASE("a value that breaks a rule is refused, and changes nothing", "[simulation][live]") {
+  const Scene s = scene({sheet("sheet")}, {poke("poke", {0, 0, 0})});
+  auto live = LiveSimulation::make(s).value();
+  const auto refused = [&](const Result<void>& result) {
+    REQUIRE_FALSE(result);
+    CHECK(result.error().code == ErrorCode::InvalidInput);
+    return result.error().message;
+  };
+  CHECK_THAT(refused(live.set("poke.magnitud", 1)), Contains("did you mean \"poke.magnitude\"?"));
+  CHECK_THAT(refused(live.set("poke.center", 1)), Contains("poke.center is 1, but must be 3 numb"));
+  CHECK_THAT(refused(live.set("poke.magnitude", Value<3>{})), Contains("must be 1 number"));
+  CHECK_THAT(refused(live.set("poke.magnitude", std::nan(""))), Contains("must be finite"));
+  CHECK_THAT(refused(live.set("poke.magnitude", std::numeric_limits<double>::infinity())),
+             Contains("must be finite"));
+  CHECK_THAT(refused(live.set("poke.forceRadius", -1)), Contains("poke.forceRadius is -1, but"));
+  CHECK_THAT(refused(live.set("poke.enabled", 0.5)), Contains("must be 0 or 1"));
+  CHECK_THAT(refused(live.set("sheet.scale", Value<3>{1, 0, 1})), Contains("sheet.scale is 1 0 1"));
+  REQUIRE(live.advance());
+  CHECK(live.positions().value().surface("sheet").positions() == baked(s, "sheet")[1]);
+
+  // Rules between channels are checked once all are set.
+  REQUIRE(live.set("sheet.c", -3));
+  CHECK_THAT(refused(live.advance()), Contains("sheet.c is -3, but must be greater than"));
+  CHECK(live.frame() == 2);
+  REQUIRE(live.set("sheet.b", 4));
+  REQUIRE(live.advance());
+  CHECK(live.frame() == 3);
+}
+
+TEST_CASE("a live frame that fails changes nothing, on any surface", "[simulation][live]") {
+  bool is_faulty = false;
+  Scene s = scene({sheet("a"), sheet("b")}, {poke("poke", {0, 0, 0})});
+  Force own{.name = "own", .targets = {"b"}, .magnitude = 1};
+  own.shape = CustomForce{.unit_force = [&is_faulty](const Vector3d&, const ForceTime&) {
+    if (is_faulty) throw std::runtime_error("broken");
+    return Vector3d(0, 1, 0);
+  }};
+  s.forces.push_back(own);
+  auto live = LiveSimulation::make(s).value();
+  auto whole = Simulation::make(s).value();
+  for (int frame = 1; frame < 5; ++frame) REQUIRE(live.advance());
+  is_faulty = true;
+  CHECK_THROWS(live.advance());
+  is_faulty = false;
+  CHECK(live.frame() == 5);
+  REQUIRE(live.set("a.dt", 1e-30));
+  CHECK_FALSE(live.advance());
+  REQUIRE(live.set("a.dt", 0.01));
+  for (int frame = 5; frame < 8; ++frame) REQUIRE(live.advance());
+  for (const std::string name : {"a", "b"}) {
+    CHECK(live.positions().value().surface(name).positions() ==
+          whole.at(8).value().surface(name).positions());
+  }
+}
