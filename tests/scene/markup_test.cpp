@@ -2,7 +2,10 @@
 
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "scene/scene_text.hpp"
 #include "support/catch.hpp"
@@ -12,6 +15,7 @@ namespace pliant::testing {
 namespace {
 
 using namespace std::string_literals;
+using namespace std::string_view_literals;
 
 TEST_CASE("each malformed document is told in one line", "[scene][markup]") {
   const std::string root = "<scene start=\"1\" end=\"2\">\n";
@@ -77,6 +81,29 @@ TEST_CASE("each malformed document is told in one line", "[scene][markup]") {
       {"<scen/>", 1, {"the root element is <scen>", "did you mean \"scene\"?"}},
       {"<html><body/></html>", 1, {"the root element is <html>", "allowed: scene"}},
   });
+}
+
+TEST_CASE("UTF-8 of every length is sound", "[scene][markup]") {
+  for (const std::string_view text :
+       {""sv, "plain\t\r\n"sv, "ä€😀"sv, "\xC2\x80"sv, "\xDF\xBF"sv, "\xE0\xA0\x80"sv,
+        "\xED\x9F\xBF"sv, "\xEE\x80\x80"sv, "\xF0\x90\x80\x80"sv, "\xF4\x8F\xBF\xBF"sv}) {
+    CAPTURE(text);
+    CHECK(problems_of(scene_with("<!--" + std::string(text) + "-->")).empty());
+  }
+}
+
+TEST_CASE("the first byte that is no UTF-8 or no XML is told", "[scene][markup]") {
+  for (const std::string_view bad :
+       {"\0"sv, "\x01"sv, "\x1F"sv, "\x80"sv, "\xBF"sv, "\xC0\x80"sv, "\xC1\xBF"sv, "\xC3"sv,
+        "\xC3("sv, "\xE0\x9F\xBF"sv, "\xE2\x82"sv, "\xED\xA0\x80"sv, "\xF0\x8F\xBF\xBF"sv,
+        "\xF0\x9F\x98"sv, "\xF4\x90\x80\x80"sv, "\xF5\x80\x80\x80"sv, "\xFF"sv}) {
+    const auto byte = static_cast<unsigned char>(bad[0]);
+    const std::string told = byte == 0     ? "a NUL byte"
+                             : byte < 0x20 ? fmt::format("the control character 0x{:02X}", byte)
+                                           : fmt::format("the byte 0x{:02X} is not UTF-8", byte);
+    check_each({{"<scene>\n<!-- ä" + std::string(bad) + "\n\xFE\x02 -->", 2, {told}},
+                {"<scene>\n\n" + std::string(bad), 3, {told}}});
+  }
 }
 
 TEST_CASE("what XML allows around a scene is read over", "[scene][markup]") {
