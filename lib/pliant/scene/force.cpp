@@ -6,7 +6,7 @@
 #include <tinyxml2.h>
 
 #include "pliant/scene/animate.hpp"
-#include "pliant/scene/falloff.hpp"
+#include "pliant/scene/keys.hpp"
 #include "pliant/scene/path.hpp"
 
 namespace pliant::xml {
@@ -21,6 +21,23 @@ void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& f
                        fmt::format("{} deformationRadius: a force in a <group> must not have one; "
                                    "the deformationRadius of the group selects the region",
                                    tag(element)));
+}
+
+/// Checks that a force has only one falloff: its attribute or a single <falloff>. `first_line` is
+/// the line of an earlier <falloff>; 0: this is the first.
+void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attribute,
+                          int& first_line, Findings& findings) {
+  const int line = falloff.GetLineNum();
+  const std::string parent = tag(*falloff.Parent()->ToElement());
+  if (first_line != 0)
+    findings.add_problem(line, fmt::format("{} has a second <falloff>; the first is at line {}",
+                                           parent, first_line));
+  else if (attribute.line != 0)
+    findings.add_problem(
+        line, fmt::format(
+                  "{} has both a <falloff> and the attribute falloff (line {}); remove one of them",
+                  parent, attribute.line));
+  if (first_line == 0) first_line = line;
 }
 
 template <class Kind>
@@ -64,7 +81,8 @@ Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* 
       {"falloff",
        [&](const Element& child) {
          check_single_falloff(child, *find(table, "falloff"), falloff_line, file.findings);
-         force.falloff_curve = read_falloff(child, force.name, file.findings);
+         force.falloff_curve = read_curve<1>(child, KeyAxis::Falloff, ValueKind::Number,
+                                             force.name + ".falloff", file.findings);
        }},
   };
   read_children(element, children, file.findings);
@@ -74,6 +92,25 @@ Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* 
   }
   record_element(element, force.name, table, file);
   return force;
+}
+
+Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces, SceneFile& file) {
+  Group group;
+  Table table = table_of(group);
+  read_attributes(element, table, file.findings);
+  using Element = tinyxml2::XMLElement;
+  std::vector<Child> children = {
+      {"animate",
+       [&](const Element& child) { read_animate(child, table, group.name, file.findings); }},
+      {"path", [&](const Element& child) { read_path(child, table, group.name, file); }},
+  };
+  for (const Force& kind : force_kinds())
+    children.push_back({kind_of(kind), [&, kind](const Element& child) {
+                          forces.push_back(read_force(child, kind, &group, file));
+                        }});
+  read_children(element, children, file.findings);
+  record_element(element, group.name, table, file);
+  return group;
 }
 
 }  // namespace pliant::xml

@@ -19,4 +19,7 @@ Force standard_force(const Force& force);
 Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
                  SceneFile& file);
 
+/// Reads a <group>, and appends the forces in it to `forces`.
+Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces, SceneFile& file);
+
 }  // namespace pliant::xml

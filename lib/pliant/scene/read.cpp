@@ -16,7 +16,6 @@
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/force.hpp"
-#include "pliant/scene/group.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/rules.hpp"
