@@ -1,15 +1,24 @@
 #include "pliant/scene/markup.hpp"
 
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
+#include "pliant/core/read_file.hpp"
+#include "pliant/scene/text.hpp"
+#include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
+#include "support/scenes.hpp"
 
 namespace pliant::testing {
 namespace {
@@ -210,6 +219,325 @@ TEST_CASE("no mutation of a scene crashes the reader", "[scene][markup]") {
     if (!scene && scene.error().message.empty()) FAIL(text);
   }
   CHECK(sound > 0);  // some only change a value or a comment
+}
+
+std::optional<xml::Markup> places_of(std::string_view text) {
+  xml::Findings findings("places.xml");
+  return xml::scan_markup(text, findings);
+}
+
+void append_utf8(std::string& text, unsigned long code) {
+  const auto append = [&](unsigned long byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return append(code);
+  if (code >= 0x10000) append(0xF0 | code >> 18U);
+  if (code >= 0x800) append((code >= 0x10000 ? 0x80 : 0xE0) | (code >> 12U & 0x3F));
+  append((code >= 0x800 ? 0x80 : 0xC0) | (code >> 6U & 0x3F));
+  append(0x80 | (code & 0x3F));
+}
+
+/// The value of an attribute, from its text within the quotes: references are replaced, and each
+/// line end is a line feed.
+std::string decoded(std::string_view raw) {
+  std::string value;
+  for (std::size_t at = 0; at < raw.size(); ++at) {
+    const std::string_view pair = raw.substr(at, 2);
+    if (pair == "\r\n" || pair == "\n\r") ++at;
+    if (raw[at] == '\r' || raw[at] == '\n') {
+      value += '\n';
+    } else if (raw[at] == '&') {
+      const std::size_t end = raw.find(';', at);
+      const std::string name(raw.substr(at + 1, end - at - 1));
+      if (name[0] == '#')
+        append_utf8(value, name[1] == 'x' ? std::stoul(name.substr(2), nullptr, 16)
+                                          : std::stoul(name.substr(1)));
+      else
+        value += name == "amp"    ? '&'
+                 : name == "lt"   ? '<'
+                 : name == "gt"   ? '>'
+                 : name == "quot" ? '"'
+                                  : '\'';
+      at = end;
+    } else {
+      value += raw[at];
+    }
+  }
+  return value;
+}
+
+/// Holds the places of a text against the tree that tinyxml2 makes of it.
+class PlaceCheck {
+ public:
+  explicit PlaceCheck(const std::string& text)
+      : text_(text), places_(places_of(text)), lines_(text) {}
+
+  /// The first disagreement; empty if there is none.
+  std::string find() {
+    if (!places_) return "the scan finds a problem";
+    tinyxml2::XMLDocument document;
+    if (document.Parse(text_.data(), text_.size()) != tinyxml2::XML_SUCCESS)
+      return document.ErrorStr();
+    visit(*document.RootElement(), xml::ElementPlace::no_parent);
+    expect(element_ == places_->elements.size() && attribute_ == places_->attributes.size(),
+           "there are more places than tinyxml2 has elements and attributes");
+    return complaint_;
+  }
+
+ private:
+  void expect(bool is_so, std::string_view what) {
+    if (!is_so && complaint_.empty())
+      complaint_ = fmt::format("element {}, attribute {}: {}", element_, attribute_, what);
+  }
+
+  void visit(const tinyxml2::XMLElement& element, std::uint32_t parent) {
+    if (element_ == places_->elements.size()) return expect(false, "a place is missing");
+    const auto index = static_cast<std::uint32_t>(element_++);
+    const xml::ElementPlace& place = places_->elements[index];
+    const std::string_view tag = place.opening_tag().of(text_);
+    const std::string_view whole = place.whole().of(text_);
+    expect(place.name.of(text_) == element.Name(), "its name");
+    expect(place.parent == parent, "its parent");
+    expect(lines_.line_of(place.opening_tag().begin) == element.GetLineNum(), "its line");
+    expect(tag.starts_with(fmt::format("<{}", element.Name())) && tag.ends_with('>'), "its tag");
+    expect(place.closes_itself() == tag.ends_with("/>"), "whether it closes itself");
+    expect(place.closes_itself() ? whole == tag : ends_in_closing_tag(whole, element.Name()),
+           "its closing tag");
+    visit_attributes(element, index);
+    std::uint32_t free = place.tag_end;  // from here on the next child may stand
+    for (const auto* child = element.FirstChildElement(); child;
+         child = child->NextSiblingElement()) {
+      const std::size_t child_index = element_;
+      visit(*child, index);
+      if (!complaint_.empty()) return;
+      const xml::TextRange inner = places_->elements[child_index].whole();
+      expect(inner.begin >= free && inner.end < place.end, "the place of a child");
+      free = inner.end;
+    }
+  }
+
+  void visit_attributes(const tinyxml2::XMLElement& element, std::size_t index) {
+    const auto places = places_->attributes_of(index);
+    std::uint32_t free = places_->elements[index].name.end;
+    std::size_t count = 0;
+    for (const auto* given = element.FirstAttribute(); given; given = given->Next()) {
+      if (count == places.size()) return expect(false, "an attribute is missing");
+      const xml::AttributePlace& place = places[count++];
+      ++attribute_;
+      expect(place.name.of(text_) == given->Name(), "the name of an attribute");
+      expect(decoded(place.value.of(text_)) == given->Value(), "the value of an attribute");
+      expect(lines_.line_of(place.name.begin) == given->GetLineNum(), "the line of an attribute");
+      expect(place.name.begin > free && place.whole().end < places_->elements[index].tag_end,
+             "the place of an attribute");
+      free = place.whole().end - 1;
+      const std::string alone = fmt::format("<a {}/>", place.whole().of(text_));
+      tinyxml2::XMLDocument document;
+      expect(document.Parse(alone.data(), alone.size()) == tinyxml2::XML_SUCCESS &&
+                 document.RootElement()->Attribute(given->Name(), given->Value()),
+             "the whole of an attribute");
+    }
+    expect(count == places.size(), "an attribute too many");
+  }
+
+  /// Whether a text ends in `</name>`, with blanks after the name.
+  static bool ends_in_closing_tag(std::string_view text, std::string_view name) {
+    const std::size_t at = text.rfind("</");
+    return at != std::string_view::npos && text.ends_with('>') &&
+           xml::trimmed(text.substr(at + 2, text.size() - at - 3)) == name;
+  }
+
+  const std::string& text_;
+  std::optional<xml::Markup> places_;
+  xml::LineCounter lines_;
+  std::size_t element_ = 0;
+  std::size_t attribute_ = 0;
+  std::string complaint_;
+};
+
+/// Everything that is difficult to find one's way in: markup within comments, CDATA and values,
+/// both quotes, blanks wherever they may be, line ends of both kinds.
+const std::vector<std::string> difficult_texts = {
+    "<scene/>",
+    "<scene></scene>",
+    "<scene a=''/>",
+    "<scene a=\"\" b='&#x20AC;'/>",
+    "\xEF\xBB\xBF<?xml version=\"1.0\" encoding='utf-8'?>\r\n<?style href=\"a.css\"?>\r\n"
+    "<!DOCTYPE scene SYSTEM \"s.dtd\">\r\n<!-- <scene start=\"0\"> -->\r\n"
+    "<scene\r\n  start = '1'\r\n\tend\r\n=\r\n\"2\"\r\n\r\n>\r\n</scene\r\n>\r\n<!-- end -->\r\n",
+    "<scene>\n<!-- <a b=\"1\"/> & \" ' -- -->\n<![CDATA[</scene> <a b='1'> ]] >\n]]><a><b/></a  >"
+    "<c d=\"/>\" e='\"' f=\"'\"\n/>text > \"quoted\" a='1' &lt;a b='1'/&gt;<c\n></c></scene>",
+    "<scene a=\"x='1' y='2'\" b='&lt;b c=&quot;&apos;&#34;&#x22;&gt;' "
+    "c=\"two\nlines\r\nthree\rfour\"\n"
+    " d='--&gt;>]]>'\n><é:ü-1. ñ_=\"ä€😀&#x1F600;&#228;\"/>\n</scene>",
+};
+
+/// A random element with attributes, text, comments, CDATA sections and elements in it.
+class RandomMarkup {
+ public:
+  explicit RandomMarkup(unsigned seed) : random_(seed) {}
+
+  std::string text() {
+    text_ = pick({"", "\xEF\xBB\xBF"});
+    text_ += pick({"", "<?xml version='1.0'?>", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"});
+    text_ += pick({"", "\n", "<!DOCTYPE scene>\r\n", "<!-- <a> -->", "\n\n  "});
+    add_element("scene", 5);
+    return text_ + pick({"", "\n", "<!-- </scene> -->", "\r\n\r\n"});
+  }
+
+ private:
+  std::size_t below(std::size_t count) { return random_() % count; }
+  std::string pick(const std::vector<std::string>& choices) {
+    return choices[below(choices.size())];
+  }
+  std::string blanks() { return pick({"", "", " ", "\n", "\r\n", "\t ", " \n\n"}); }
+
+  void add_attribute(std::size_t number) {
+    text_ += pick({" ", "\n", "\r\n\t", "  \n"});
+    text_ += pick({"a", "in", "ä", "x:y", "_", "to-1."}) + std::to_string(number);
+    text_ += blanks() + "=" + blanks();
+    const std::string quote = pick({"\"", "'"});
+    text_ += quote;
+    for (std::size_t count = below(5); count > 0; --count)
+      text_ += pick({"1", "-2.5e3 ", "&amp;", "&lt;", "&#65;", "&#x20AC;", "&apos;&quot;", "ä€😀",
+                     "\n", "\r\n", ">", "/>", "=", "--", "a=", quote == "'" ? "\"" : "'"});
+    text_ += quote;
+  }
+
+  void add_element(const std::string& name, std::size_t deepest) {
+    text_ += '<' + name;
+    for (std::size_t number = 0, count = below(5); number < count; ++number) add_attribute(number);
+    text_ += blanks();
+    if (below(3) == 0) {
+      text_ += "/>";
+      return;
+    }
+    text_ += '>';
+    for (std::size_t count = below(6); count > 0; --count) {
+      text_ += pick({"", "", "\n  ", "text", " a='1' ", "&amp;>", "\r\n", "<!-- <a b='c'> & -- -->",
+                     "<![CDATA[</a> <b c=\"d\">]]>"});
+      if (deepest > 0 && below(2) == 0)
+        add_element(pick({"key", "point", "a", "é", "n:s"}), deepest - 1);
+    }
+    text_ += "</" + name + blanks() + '>';
+  }
+
+  std::mt19937 random_;
+  std::string text_;
+};
+
+TEST_CASE("every element and attribute stands where tinyxml2 finds it", "[scene][markup]") {
+  for (const std::string& text : difficult_texts) {
+    CAPTURE(text);
+    CHECK(PlaceCheck(text).find() == "");
+  }
+  CHECK(PlaceCheck(std::string(rich_scene)).find() == "");
+  int deep = 0;
+  for (int seed = 0; seed < rounds(2000); ++seed) {
+    const std::string text = RandomMarkup(seed).text();
+    CAPTURE(seed, text);
+    REQUIRE(PlaceCheck(text).find() == "");
+    deep += places_of(text)->elements.size() > 20 ? 1 : 0;
+  }
+  CHECK(deep > 0);
+}
+
+TEST_CASE("scenes of files and written ones stand where tinyxml2 finds them", "[scene][markup]") {
+  for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(
+             std::filesystem::path(PLIANT_SOURCE_FOLDER) / folder)) {
+      if (entry.path().extension() != ".xml") continue;
+      CAPTURE(entry.path().string());
+      CHECK(PlaceCheck(read_file(entry.path().string(), 1U << 20U).value()).find() == "");
+      const Scene scene = load_scene(entry.path().string()).value();
+      CHECK(PlaceCheck(to_xml(scene).value()).find() == "");
+    }
+  }
+  std::mt19937 random(20'050'613);
+  for (int round = 0; round < rounds(100); ++round) {
+    Scene written = scene({}, {});
+    for (std::size_t count = random() % 4; count > 0; --count)
+      written.surfaces.push_back(sheet(fmt::format("s{}", count)));
+    for (std::size_t count = random() % 4; count > 0; --count) {
+      Force force = poke(fmt::format("f{}", count), {0, 0, 0});
+      std::vector<std::pair<double, double>> keys;
+      for (std::size_t key = 0, last = random() % 9; key <= last; ++key)
+        keys.emplace_back(key, 1e-3 * static_cast<double>(random()));
+      if (random() % 2 == 0) force.magnitude = curve(keys);
+      written.forces.push_back(std::move(force));
+    }
+    const std::string text = to_xml(written).value();
+    CAPTURE(text);
+    CHECK(PlaceCheck(text).find() == "");
+  }
+}
+
+/// What a text says, one entry for each element, attribute and text.
+std::vector<std::string> content_of(const std::string& text) {
+  tinyxml2::XMLDocument document;
+  REQUIRE(document.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS);
+  std::vector<std::string> content;
+  const std::function<void(const tinyxml2::XMLNode&)> add = [&](const tinyxml2::XMLNode& node) {
+    content.emplace_back(node.Value() ? node.Value() : "");
+    if (const auto* element = node.ToElement())
+      for (const auto* given = element->FirstAttribute(); given; given = given->Next())
+        content.push_back(fmt::format("{}={}", given->Name(), given->Value()));
+    for (const auto* child = node.FirstChild(); child; child = child->NextSibling()) add(*child);
+    content.emplace_back("end");
+  };
+  add(document);
+  return content;
+}
+
+TEST_CASE("a value replaced at its place changes this attribute alone", "[scene][markup]") {
+  std::vector<std::string> texts = difficult_texts;
+  texts.emplace_back(rich_scene);
+  for (int seed = 0; seed < rounds(50); ++seed) texts.push_back(RandomMarkup(seed).text());
+  for (const std::string& text : texts) {
+    CAPTURE(text);
+    const std::vector<std::string> before = content_of(text);
+    const std::optional<xml::Markup> places = places_of(text);
+    REQUIRE(places);
+    for (const xml::AttributePlace& place : places->attributes) {
+      const auto [begin, end] = place.value;
+      const std::string changed = std::string(text).replace(begin, end - begin, "a new &#118;alue");
+      const std::vector<std::string> after = content_of(changed);
+      REQUIRE(after.size() == before.size());
+      const auto [was, is] = std::mismatch(before.begin(), before.end(), after.begin());
+      REQUIRE(is != after.end());
+      CHECK(*is == fmt::format("{}=a new value", place.name.of(text)));
+      CHECK(*was == fmt::format("{}={}", place.name.of(text), decoded(place.value.of(text))));
+      CHECK(std::equal(was + 1, before.end(), is + 1));
+    }
+  }
+}
+
+TEST_CASE("every truncated prefix of a difficult text is a problem", "[scene][markup]") {
+  for (const std::string& text : difficult_texts) {
+    const std::size_t whole = places_of(text).value().elements.at(0).end;
+    for (std::size_t length = 0; length < whole; ++length) {
+      CAPTURE(text, length);
+      if (places_of(text.substr(0, length))) FAIL("a prefix is sound");
+    }
+    CHECK(places_of(text.substr(0, whole)));
+  }
+}
+
+TEST_CASE("lines and columns of offsets are counted from 1", "[scene][markup]") {
+  const std::string_view text = "\xEF\xBB\xBF<a>\n\n  ä<b/>\r\n</a>";
+  xml::LineCounter lines(text);
+  struct Row {
+    std::string_view part;
+    int line;
+    int column;
+  };
+  const std::vector<Row> rows = {{"<a>", 1, 1}, {"<b/>", 3, 5}, {"</a>", 4, 1}};
+  const auto check = [&](const Row& row) {
+    CAPTURE(row.part);
+    CHECK(lines.line_of(text.find(row.part)) == row.line);
+    CHECK(lines.column_of(text.find(row.part)) == row.column);
+  };
+  std::for_each(rows.begin(), rows.end(), check);
+  std::for_each(rows.rbegin(), rows.rend(), check);
+  CHECK(lines.line_of(text.size()) == 4);
+  CHECK(lines.column_of(text.size()) == 5);
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <optional>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::xml {
@@ -19,6 +19,8 @@ constexpr std::size_t deepest = 50;
 constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_attributes = 100;     // per element
 constexpr std::size_t most_markup = 20'000'000;  // elements and attributes per file
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 constexpr std::string_view one_scene = "; a scene file must contain one <scene>";
 
@@ -104,19 +106,17 @@ bool is_reference(std::string_view name) {
          is_xml_character(code_point);
 }
 
-/// Scans a text once, tag by tag.
+/// Scans a text once, tag by tag. Places are offsets; lines are counted only for problems.
 class MarkupScanner {
  public:
-  MarkupScanner(std::string_view text, Findings& findings) : text_(text), findings_(findings) {}
+  MarkupScanner(std::string_view text, Findings& findings)
+      : text_(text), findings_(findings), lines_(text) {
+    if (stands(byte_order_mark)) at_ = byte_order_mark.size();
+  }
 
-  void scan();
+  Markup scan();
 
  private:
-  struct Open {
-    std::string_view name;
-    int line;
-  };
-
   void scan_text();
   void scan_comment();
   void scan_cdata();
@@ -124,55 +124,67 @@ class MarkupScanner {
   void scan_instruction();
   void scan_closing_tag();
   void scan_opening_tag();
-  bool scan_attribute(const Open& element, std::vector<std::string_view>& names);
-  void check_references(std::string_view text, int line);
+  bool scan_attribute();
+  void check_references(std::string_view text);
   void finish();
 
   bool at_end() const { return at_ == text_.size(); }
   char next() const { return text_[at_]; }
   bool stands(std::string_view ahead) const { return text_.substr(at_).starts_with(ahead); }
   void skip_blanks();
-  std::string_view take(std::size_t count);  ///< advances, counting lines
+  std::string_view take(std::size_t count);
   std::string_view take_name();
   /// The text before `end`, then skips `end`; a problem if the file ends first.
   std::string_view take_until(std::string_view end, std::string_view what);
 
+  std::size_t offset_of(std::string_view part) const { return part.data() - text_.data(); }
+  TextRange range_of(std::string_view part) const {
+    const auto begin = static_cast<std::uint32_t>(offset_of(part));
+    return {begin, begin + static_cast<std::uint32_t>(part.size())};
+  }
+
+  bool has_root() const { return !markup_.elements.empty(); }
+  ElementPlace& innermost() { return markup_.elements[open_.back()]; }
+  std::string_view name_of(const ElementPlace& element) const { return element.name.of(text_); }
+  /// `<name> of line 3`.
+  std::string title(const ElementPlace& element) {
+    return fmt::format("<{}> of line {}", name_of(element), lines_.line_of(element.name.begin));
+  }
+
   // Messages do not quote a file that is probably not a scene.
-  void add(int line, std::string_view message) {
-    const bool is_other = has_root_ && !is_scene_;
+  void add(std::size_t where, std::string_view message) {
+    const bool is_other = has_root() && name_of(markup_.elements.front()) != "scene";
     if (is_other && is_stopped_) return;
-    findings_.add_problem(line, is_other ? "malformed XML, and the root element is not <scene>"
-                                         : fmt::format("malformed XML: {}", message));
+    findings_.add_problem(lines_.line_of(where),
+                          is_other ? "malformed XML, and the root element is not <scene>"
+                                   : fmt::format("malformed XML: {}", message));
     is_stopped_ = is_stopped_ || is_other;
   }
   /// Adds a problem after which the rest cannot be parsed, and stops.
-  void stop(int line, std::string_view message) {
+  void stop(std::size_t where, std::string_view message) {
     if (is_stopped_) return;
-    add(line, message);
+    add(where, message);
     is_stopped_ = true;
   }
 
   std::string_view text_;
   Findings& findings_;
+  LineCounter lines_;
   std::size_t at_ = 0;
-  int line_ = 1;
-  std::vector<Open> open_;  // from the root inwards
-  bool has_root_ = false;
-  bool is_scene_ = false;    // the root is a <scene>
-  bool is_prologue_ = true;  // only the declaration and other instructions so far
-  std::size_t markup_count_ = 0;
+  Markup markup_;
+  std::vector<std::uint32_t> open_;  // indices of elements, from the root inwards
+  bool is_prologue_ = true;          // only the declaration and other instructions so far
   bool is_stopped_ = false;
 };
 
 std::string_view MarkupScanner::take(std::size_t count) {
   const std::string_view taken = text_.substr(at_, count);
-  line_ += static_cast<int>(std::count(taken.begin(), taken.end(), '\n'));
   at_ += taken.size();
   return taken;
 }
 
 void MarkupScanner::skip_blanks() {
-  take(std::min(text_.find_first_not_of(blanks, at_), text_.size()) - at_);
+  at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
 }
 
 std::string_view MarkupScanner::take_name() {
@@ -180,17 +192,16 @@ std::string_view MarkupScanner::take_name() {
   if (end < text_.size() && begins_name(text_[end]))
     while (end < text_.size() && continues_name(text_[end])) ++end;
   if (end - at_ > longest_name)
-    stop(line_, fmt::format("the name {} has more than {} bytes",
-                            in_quotes(text_.substr(at_, end - at_)), longest_name));
+    stop(at_, fmt::format("the name {} has more than {} bytes",
+                          in_quotes(text_.substr(at_, end - at_)), longest_name));
   return take(end - at_);
 }
 
 std::string_view MarkupScanner::take_until(std::string_view end, std::string_view what) {
-  const int line = line_;
   const std::size_t found = text_.find(end, at_);
   if (found == std::string_view::npos) {
-    take(text_.size() - at_);
-    stop(line_, fmt::format("the file ends inside {} that begins at line {}", what, line));
+    stop(text_.size(),
+         fmt::format("the file ends inside {} that begins at line {}", what, lines_.line_of(at_)));
     return {};
   }
   const std::string_view taken = take(found - at_);
@@ -198,7 +209,11 @@ std::string_view MarkupScanner::take_until(std::string_view end, std::string_vie
   return taken;
 }
 
-void MarkupScanner::scan() {
+Markup MarkupScanner::scan() {
+  if (const auto fault = find_encoding_fault(text_.substr(at_))) {
+    findings_.add_problem(lines_.line_of(at_ + fault->at), fault->message);
+    is_stopped_ = true;
+  }
   while (!at_end() && !is_stopped_) {
     if (next() != '<')
       scan_text();
@@ -216,27 +231,27 @@ void MarkupScanner::scan() {
       scan_opening_tag();
   }
   if (!is_stopped_) finish();
+  return std::move(markup_);
 }
 
 void MarkupScanner::finish() {
   if (!open_.empty())
-    return stop(line_, fmt::format("the file ends inside <{}> of line {}, which is not closed",
-                                   open_.back().name, open_.back().line));
-  if (trimmed(text_).empty())
+    return stop(at_,
+                fmt::format("the file ends inside {}, which is not closed", title(innermost())));
+  if (has_root()) return;
+  if (text_.find('<') == std::string_view::npos)
     return findings_.add_problem(1, fmt::format("the file is empty{}", one_scene));
-  if (!has_root_) stop(line_, fmt::format("the file contains no element{}", one_scene));
+  stop(at_, fmt::format("the file contains no element{}", one_scene));
 }
 
 void MarkupScanner::scan_text() {
-  const int line = line_;
   const std::string_view text = take(std::min(text_.find('<', at_), text_.size()) - at_);
-  check_references(text, line);
-  if (open_.empty() && !trimmed(text).empty()) {
-    const auto ahead = text.substr(0, text.find_first_not_of(blanks));
-    stop(line + static_cast<int>(std::count(ahead.begin(), ahead.end(), '\n')),
-         has_root_ ? fmt::format("the text {} is outside the <scene>", in_quotes(trimmed(text)))
-                   : fmt::format("there is text before the <scene>{}", one_scene));
-  }
+  check_references(text);
+  const std::string_view inner = trimmed(text);
+  if (open_.empty() && !inner.empty())
+    stop(offset_of(inner), has_root()
+                               ? fmt::format("the text {} is outside the <scene>", in_quotes(inner))
+                               : fmt::format("there is text before the <scene>{}", one_scene));
 }
 
 void MarkupScanner::scan_comment() {
@@ -246,26 +261,26 @@ void MarkupScanner::scan_comment() {
 }
 
 void MarkupScanner::scan_cdata() {
-  if (open_.empty()) return stop(line_, "a CDATA section is outside the <scene>");
+  if (open_.empty()) return stop(at_, "a CDATA section is outside the <scene>");
   take(9);
   take_until("]]>", "a CDATA section");
 }
 
 void MarkupScanner::scan_doctype() {
-  const int line = line_;
+  const std::size_t start = at_;
   is_prologue_ = false;
-  if (has_root_) return stop(line, "a DOCTYPE is allowed only before the <scene>");
+  if (has_root()) return stop(start, "a DOCTYPE is allowed only before the <scene>");
   const std::string_view text = take_until(">", "a DOCTYPE");
   if (text.find('[') != std::string_view::npos)
-    stop(line,
+    stop(start,
          "a DOCTYPE with declarations of its own [...] is not supported: its entities "
          "would not be read");
 }
 
 void MarkupScanner::scan_instruction() {
-  const int line = line_;
+  const std::size_t start = at_;
   if (!is_prologue_)
-    return stop(line,
+    return stop(start,
                 "the XML declaration and processing instructions must come before everything else");
   take(2);
   const std::string_view name = take_name();
@@ -280,152 +295,167 @@ void MarkupScanner::scan_instruction() {
   for (char& c : upper)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   if (upper != "UTF-8" && upper != "US-ASCII" && upper != "ASCII")
-    stop(line,
+    stop(start,
          fmt::format("the encoding {} is not supported; save the file as UTF-8", in_quotes(value)));
 }
 
 void MarkupScanner::scan_closing_tag() {
-  const int line = line_;
+  const std::size_t start = at_;
   take(2);
   const std::string_view name = take_name();
   skip_blanks();
-  if (at_end()) return stop(line_, "the file ends inside a closing tag");
+  if (at_end()) return stop(at_, "the file ends inside a closing tag");
   if (name.empty() || next() != '>')
-    return stop(line, fmt::format("a closing tag must be </name>, not {}",
-                                  in_quotes(fmt::format("</{}{}", name, next()))));
+    return stop(start, fmt::format("a closing tag must be </name>, not {}",
+                                   in_quotes(fmt::format("</{}{}", name, next()))));
   take(1);
   if (open_.empty()) {
-    return stop(line, has_root_ ? fmt::format("</{}> has no opening tag", name)
-                                : std::string("there is a closing tag before the <scene>"));
+    return stop(start, has_root() ? fmt::format("</{}> has no opening tag", name)
+                                  : std::string("there is a closing tag before the <scene>"));
   }
-  if (open_.back().name != name)
-    return stop(line, fmt::format("</{}> comes before <{}> of line {} is closed", name,
-                                  open_.back().name, open_.back().line));
+  if (name_of(innermost()) != name)
+    return stop(start, fmt::format("</{}> comes before {} is closed", name, title(innermost())));
+  innermost().end = static_cast<std::uint32_t>(at_);
   open_.pop_back();
 }
 
 void MarkupScanner::scan_opening_tag() {
-  const int line = line_;
+  const std::size_t start = at_;
   is_prologue_ = false;
   take(1);
-  const Open element{take_name(), line};
-  if (element.name.empty())
-    return stop(line, at_end() ? std::string("the file ends inside a tag")
-                               : fmt::format("{} does not begin a tag; write a literal < as &lt;",
-                                             in_quotes(fmt::format("<{}", next()))));
-  if (open_.empty() && has_root_)
-    return stop(line,
-                fmt::format("<{}> is outside the root element; a file must contain one <scene>",
-                            element.name));
-  if (!has_root_) is_scene_ = element.name == "scene";
-  has_root_ = true;
+  const std::string_view name = take_name();
+  if (name.empty())
+    return stop(start, at_end() ? std::string("the file ends inside a tag")
+                                : fmt::format("{} does not begin a tag; write a literal < as &lt;",
+                                              in_quotes(fmt::format("<{}", next()))));
+  if (open_.empty() && has_root())
+    return stop(
+        start,
+        fmt::format("<{}> is outside the root element; a file must contain one <scene>", name));
+  const auto index = static_cast<std::uint32_t>(markup_.elements.size());
+  markup_.elements.push_back(
+      {.name = range_of(name),
+       .parent = open_.empty() ? ElementPlace::no_parent : open_.back(),
+       .first_attribute = static_cast<std::uint32_t>(markup_.attributes.size())});
   if (open_.size() >= deepest)
-    return stop(line, fmt::format("<{}> is nested deeper than {} elements", element.name, deepest));
-  ++markup_count_;
+    return stop(start, fmt::format("<{}> is nested deeper than {} elements", name, deepest));
 
-  std::vector<std::string_view> names;
+  ElementPlace& element = markup_.elements.back();
   for (;;) {
     const std::size_t before = at_;
     skip_blanks();
-    if (at_end())
-      return stop(line_,
-                  fmt::format("the file ends inside the tag <{}> of line {}", element.name, line));
-    if (stands("/>")) {
-      take(2);
+    if (at_end()) return stop(at_, fmt::format("the file ends inside the tag {}", title(element)));
+    const bool closes_itself = stands("/>");
+    if (closes_itself || next() == '>') {
+      take(closes_itself ? 2 : 1);
+      element.tag_end = element.end = static_cast<std::uint32_t>(at_);
+      if (!closes_itself) open_.push_back(index);
       return;
     }
-    if (next() == '>') {
-      take(1);
-      open_.push_back(element);
-      return;
-    }
-    if (at_ == before && !names.empty() && begins_name(next()))
-      return stop(line_, fmt::format("a space is missing after the value of {} in <{}>",
-                                     in_quotes(names.back()), element.name));
-    if (!scan_attribute(element, names)) return;
+    if (at_ == before && markup_.attributes.size() > element.first_attribute && begins_name(next()))
+      return stop(at_, fmt::format("a space is missing after the value of {} in <{}>",
+                                   in_quotes(markup_.attributes.back().name.of(text_)), name));
+    if (!scan_attribute()) return;
   }
 }
 
-/// Reads one `name="value"`. Returns whether the rest of the tag can be read.
-bool MarkupScanner::scan_attribute(const Open& element, std::vector<std::string_view>& names) {
-  const int line = line_;
+/// Reads one `name="value"` of the last element. Returns whether the rest of the tag can be read.
+bool MarkupScanner::scan_attribute() {
+  const std::size_t start = at_;
+  const ElementPlace& element = markup_.elements.back();
+  const std::string_view owner = name_of(element);
   const std::string_view name = take_name();
-  const auto refuse = [&](int where, std::string_view message) {
+  const auto refuse = [&](std::size_t where, std::string_view message) {
     stop(where, message);
     return false;
   };
   const auto ends = [&] {
-    return refuse(line_, fmt::format("the file ends inside the tag <{}> of line {}", element.name,
-                                     element.line));
+    return refuse(at_, fmt::format("the file ends inside the tag {}", title(element)));
   };
   if (name.empty())
-    return refuse(line,
+    return refuse(start,
                   fmt::format("{} in <{}> is not an attribute; a quote or > is missing before it",
-                              in_quotes(text_.substr(at_, 1)), element.name));
+                              in_quotes(text_.substr(at_, 1)), owner));
   skip_blanks();
   if (at_end()) return ends();
   if (next() != '=')
-    return refuse(line, fmt::format("the attribute {} of <{}> has no value; write {}=\"…\"",
-                                    in_quotes(name), element.name, name));
+    return refuse(start, fmt::format("the attribute {} of <{}> has no value; write {}=\"…\"",
+                                     in_quotes(name), owner, name));
   take(1);
   skip_blanks();
   if (at_end()) return ends();
   const char quote = next();
   if (quote != '"' && quote != '\'')
-    return refuse(line, fmt::format("the value of {} in <{}> is not in quotes", in_quotes(name),
-                                    element.name));
+    return refuse(start,
+                  fmt::format("the value of {} in <{}> is not in quotes", in_quotes(name), owner));
   take(1);
-  const int value_line = line_;
-  const std::size_t closing = text_.find_first_of(quote == '"' ? "\"<" : "'<", at_);
-  if (closing == std::string_view::npos) {
-    take(text_.size() - at_);
-    return refuse(line_, fmt::format("the file ends inside the value of {} in <{}> of line {}",
-                                     in_quotes(name), element.name, line));
-  }
-  if (text_[closing] == '<')
-    return refuse(line, fmt::format("the value of {} in <{}> has no closing quote before the next "
-                                    "<; write a literal < as &lt;",
-                                    in_quotes(name), element.name));
-  check_references(take(closing - at_), value_line);
-  take(1);
-  if (std::find(names.begin(), names.end(), name) != names.end())
-    add(line, fmt::format("<{}> has the attribute {} twice", element.name, in_quotes(name)));
-  names.push_back(name);
-  if (names.size() > most_attributes)
-    return refuse(line,
-                  fmt::format("<{}> has more than {} attributes", element.name, most_attributes));
-  if (++markup_count_ > most_markup)
-    return refuse(line,
+  const std::size_t closing = text_.find(quote, at_);
+  const std::string_view value = text_.substr(at_, closing - at_);
+  if (value.find('<') != std::string_view::npos)
+    return refuse(start, fmt::format("the value of {} in <{}> has no closing quote before the next "
+                                     "<; write a literal < as &lt;",
+                                     in_quotes(name), owner));
+  if (closing == std::string_view::npos)
+    return refuse(text_.size(),
+                  fmt::format("the file ends inside the value of {} in <{}> of line {}",
+                              in_quotes(name), owner, lines_.line_of(start)));
+  check_references(value);
+  take(value.size() + 1);
+  const std::span<const AttributePlace> others = markup_.attributes_of(markup_.elements.size() - 1);
+  if (std::any_of(others.begin(), others.end(),
+                  [&](const AttributePlace& other) { return other.name.of(text_) == name; }))
+    add(start, fmt::format("<{}> has the attribute {} twice", owner, in_quotes(name)));
+  if (others.size() == most_attributes)
+    return refuse(start, fmt::format("<{}> has more than {} attributes", owner, most_attributes));
+  markup_.attributes.push_back({range_of(name), range_of(value)});
+  if (markup_.elements.size() + markup_.attributes.size() > most_markup)
+    return refuse(start,
                   fmt::format("the file has more than {} elements and attributes", most_markup));
   return true;
 }
 
-void MarkupScanner::check_references(std::string_view text, int line) {
+void MarkupScanner::check_references(std::string_view text) {
   constexpr std::size_t longest = 12;  // enough for &#x10FFFF; with a few leading zeros
-  std::size_t counted = 0;
   for (std::size_t at = text.find('&'); at != std::string_view::npos; at = text.find('&', at + 1)) {
-    line += static_cast<int>(std::count(text.begin() + counted, text.begin() + at, '\n'));
-    counted = at;
+    const std::size_t where = offset_of(text) + at;
     const std::size_t end = text.substr(at, longest).find(';');
     if (end == std::string_view::npos)
-      add(line, "\"&\" does not begin an entity; write a literal & as &amp;");
+      add(where, "\"&\" does not begin an entity; write a literal & as &amp;");
     else if (!is_reference(text.substr(at + 1, end - 1)))
-      add(line, fmt::format("{} is not a known entity; write a literal & as &amp;",
-                            in_quotes(text.substr(at, end + 1))));
+      add(where, fmt::format("{} is not a known entity; write a literal & as &amp;",
+                             in_quotes(text.substr(at, end + 1))));
   }
 }
 
 }  // namespace
 
-bool check_markup(std::string_view text, Findings& findings) {
+std::span<const AttributePlace> Markup::attributes_of(std::size_t element) const {
+  const std::size_t first = elements[element].first_attribute;
+  const std::size_t last =
+      element + 1 < elements.size() ? elements[element + 1].first_attribute : attributes.size();
+  return std::span(attributes).subspan(first, last - first);
+}
+
+int LineCounter::line_of(std::size_t offset) {
+  const auto [from, to] = std::minmax(offset, counted_);
+  const auto count = static_cast<int>(std::count(text_.begin() + from, text_.begin() + to, '\n'));
+  line_ += offset < counted_ ? -count : count;
+  counted_ = offset;
+  return line_;
+}
+
+int LineCounter::column_of(std::size_t offset) const {
+  const std::size_t line = text_.substr(0, offset).rfind('\n') + 1;  // 0 if there is none
+  const bool has_mark = line == 0 && text_.starts_with(byte_order_mark);
+  return static_cast<int>(offset - line - (has_mark ? byte_order_mark.size() : 0)) + 1;
+}
+
+std::optional<Markup> scan_markup(std::string_view text, Findings& findings) {
+  PLIANT_EXPECTS(text.size() < ElementPlace::no_parent);
   const std::size_t problems_before = findings.problem_count();
-  if (const auto fault = find_encoding_fault(text)) {
-    const auto line = 1 + std::count(text.begin(), text.begin() + fault->at, '\n');
-    findings.add_problem(static_cast<int>(line), fault->message);
-    return false;
-  }
-  MarkupScanner(text, findings).scan();
-  return findings.problem_count() == problems_before;
+  Markup markup = MarkupScanner(text, findings).scan();
+  if (findings.problem_count() != problems_before) return std::nullopt;
+  return markup;
 }
 
 }  // namespace pliant::xml

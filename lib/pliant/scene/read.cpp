@@ -142,8 +142,7 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
   if (text.size() > largest_file)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene is larger than {} MiB", largest_file >> 20U), name);
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
-  if (!check_markup(text, file.findings)) return fail(file.findings.to_error());
+  if (!scan_markup(text, file.findings)) return fail(file.findings.to_error());
 
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
