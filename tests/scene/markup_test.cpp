@@ -173,6 +173,22 @@ TEST_CASE("sizes that would take gigabytes or hours are refused early", "[scene]
   CHECK(problems_of(scene_with(repeated("<a/>", rounds(30'000)))).size() < 20'000);
 }
 
+TEST_CASE("elements and attributes are counted against one limit", "[scene][markup]") {
+  const auto problem_of = [](std::string_view text, std::size_t most) {
+    xml::Findings findings("plate.xml");
+    const bool is_sound = xml::scan_markup(text, findings, most).has_value();
+    return is_sound ? "" : to_lines(findings.to_error()).at(0);
+  };
+  const std::string_view elements = "<scene>\n<a/><b>\n</b><c/></scene>";
+  CHECK(problem_of(elements, 4) == "");
+  CHECK(problem_of(elements, 3) ==
+        "plate.xml:3: error: malformed XML: the file has more than 3 elements and attributes");
+  const std::string_view attributes = "<scene a=''\n b=''>\n<c/></scene>";
+  CHECK(problem_of(attributes, 4) == "");
+  CHECK_THAT(problem_of(attributes, 3), contains_text("has more than 3"));
+  CHECK_THAT(problem_of(attributes, 2), contains_text("plate.xml:2: "));
+}
+
 TEST_CASE("every truncated prefix of a scene is an error with a line", "[scene][markup]") {
   REQUIRE(problems_of(rich_scene).empty());
   const std::size_t whole = rich_scene.find_last_of('>') + 1;  // only a line feed follows

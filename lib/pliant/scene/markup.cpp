@@ -13,12 +13,11 @@
 namespace pliant::xml {
 namespace {
 
-// Far above any real scene, but below sizes that would need gigabytes or hours: tinyxml2 stores
-// about a hundred bytes for each element and attribute, and recurses once per level.
+// Far above any real scene, but below sizes that would need hours: tinyxml2 recurses once per
+// level.
 constexpr std::size_t deepest = 50;
 constexpr std::size_t longest_name = 100;
-constexpr std::size_t most_attributes = 100;     // per element
-constexpr std::size_t most_markup = 20'000'000;  // elements and attributes per file
+constexpr std::size_t most_attributes = 100;  // per element
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
@@ -109,8 +108,8 @@ bool is_reference(std::string_view name) {
 /// Scans a text once, tag by tag. Places are offsets; lines are counted only for problems.
 class MarkupScanner {
  public:
-  MarkupScanner(std::string_view text, Findings& findings)
-      : text_(text), findings_(findings), lines_(text) {
+  MarkupScanner(std::string_view text, Findings& findings, std::size_t most)
+      : text_(text), findings_(findings), lines_(text), most_(most) {
     if (stands(byte_order_mark)) at_ = byte_order_mark.size();
   }
 
@@ -146,6 +145,12 @@ class MarkupScanner {
   bool has_root() const { return !markup_.elements.empty(); }
   ElementPlace& innermost() { return markup_.elements[open_.back()]; }
   std::string_view name_of(const ElementPlace& element) const { return element.name.of(text_); }
+  /// Whether there are too many elements and attributes, the last one at `where`; if so, stops.
+  bool is_over_limit(std::size_t where) {
+    if (markup_.elements.size() + markup_.attributes.size() <= most_) return false;
+    stop(where, fmt::format("the file has more than {} elements and attributes", most_));
+    return true;
+  }
   /// `<name> of line 3`.
   std::string title(const ElementPlace& element) {
     return fmt::format("<{}> of line {}", name_of(element), lines_.line_of(element.name.begin));
@@ -170,6 +175,7 @@ class MarkupScanner {
   std::string_view text_;
   Findings& findings_;
   LineCounter lines_;
+  std::size_t most_;  // elements and attributes
   std::size_t at_ = 0;
   Markup markup_;
   std::vector<std::uint32_t> open_;  // indices of elements, from the root inwards
@@ -339,6 +345,7 @@ void MarkupScanner::scan_opening_tag() {
        .first_attribute = static_cast<std::uint32_t>(markup_.attributes.size())});
   if (open_.size() >= deepest)
     return stop(start, fmt::format("<{}> is nested deeper than {} elements", name, deepest));
+  if (is_over_limit(start)) return;
 
   ElementPlace& element = markup_.elements.back();
   for (;;) {
@@ -408,10 +415,7 @@ bool MarkupScanner::scan_attribute() {
   if (others.size() == most_attributes)
     return refuse(start, fmt::format("<{}> has more than {} attributes", owner, most_attributes));
   markup_.attributes.push_back({range_of(name), range_of(value)});
-  if (markup_.elements.size() + markup_.attributes.size() > most_markup)
-    return refuse(start,
-                  fmt::format("the file has more than {} elements and attributes", most_markup));
-  return true;
+  return !is_over_limit(start);
 }
 
 void MarkupScanner::check_references(std::string_view text) {
@@ -450,10 +454,10 @@ int LineCounter::column_of(std::size_t offset) const {
   return static_cast<int>(offset - line - (has_mark ? byte_order_mark.size() : 0)) + 1;
 }
 
-std::optional<Markup> scan_markup(std::string_view text, Findings& findings) {
+std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std::size_t most) {
   PLIANT_EXPECTS(text.size() < ElementPlace::no_parent);
   const std::size_t problems_before = findings.problem_count();
-  Markup markup = MarkupScanner(text, findings).scan();
+  Markup markup = MarkupScanner(text, findings, most).scan();
   if (findings.problem_count() != problems_before) return std::nullopt;
   return markup;
 }

@@ -51,8 +51,12 @@ struct Markup {
   std::span<const AttributePlace> attributes_of(std::size_t element) const;
 };
 
-/// Scans a text: well-formed XML with one root element, and of a size that can be read. A byte
-/// order mark at its begin is allowed. Requires: fewer than 4 GiB.
+/// The most elements and attributes of a scene file. tinyxml2 needs about a hundred bytes for each.
+inline constexpr std::size_t most_markup = 20'000'000;
+
+/// Scans a text: well-formed XML with one root element, and of a size that can be read, so with at
+/// most `most` elements and attributes. It may begin with a byte order mark. Requires: fewer than
+/// 4 GiB.
 ///
 /// tinyxml2 reads the structure, but accepts much that XML does not allow: it treats unknown
 /// entities as text, stops at a NUL byte or a surplus closing tag and ignores the rest, and accepts
@@ -60,7 +64,8 @@ struct Markup {
 /// element with all others, so an element with very many is slow. Here each of these is a problem,
 /// reported with its line. Null if there was one; otherwise the places are those of the elements
 /// and attributes in tinyxml2's tree.
-std::optional<Markup> scan_markup(std::string_view text, Findings& findings);
+std::optional<Markup> scan_markup(std::string_view text, Findings& findings,
+                                  std::size_t most = most_markup);
 
 /// Lines and columns of offsets in a text, counted from 1. It counts lines from the offset before,
 /// so that all offsets in their order need one pass.
