@@ -1,7 +1,6 @@
-#include "pliant/feedback/warning_log.hpp"
-
 #include <string>
 
+#include "pliant/feedback/warning_log.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 

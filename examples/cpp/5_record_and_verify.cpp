@@ -1,6 +1,6 @@
 // Records what a scene does, and checks later that it still does the same, bit for bit: a test for
 // a pipeline that upgrades its compiler, its libraries or pliant.
-// usage: 4_record_and_verify SCENE.xml LOG.replay
+// usage: 5_record_and_verify SCENE.xml LOG.replay
 
 #include <cstdio>
 
@@ -10,7 +10,7 @@
 
 int main(int count, char* arguments[]) {
   if (count != 3) {
-    std::fprintf(stderr, "usage: 4_record_and_verify SCENE.xml LOG.replay\n");
+    std::fprintf(stderr, "usage: 5_record_and_verify SCENE.xml LOG.replay\n");
     return 2;
   }
   // Whole states at every tenth frame, hashes at the others.
