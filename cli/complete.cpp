@@ -87,7 +87,11 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 void print_words(const std::vector<std::pair<std::string, std::string>>& words) {
   std::string text = "words\n";
-  for (const auto& [word, does] : words) text += word + (does.empty() ? "" : '\t' + does) + '\n';
+  for (const auto& [word, does] : words) {
+    text += word;
+    if (!does.empty()) text += '\t' + does;
+    text += '\n';
+  }
   say(text);
 }
 

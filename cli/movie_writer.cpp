@@ -27,17 +27,11 @@ Words pictures_from(const std::string& source, const FrameRate& rate) {
 }
 
 // Converts screen colours to BT.709, as players expect, and tags the file with it.
-const Words to_yuv = {"-vf",
-                      "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+"
-                      "full_chroma_int,format=yuv420p",
-                      "-colorspace",
-                      "bt709",
-                      "-color_primaries",
-                      "bt709",
-                      "-color_trc",
-                      "bt709",
-                      "-color_range",
-                      "tv"};
+const std::string to_yuv_filter =
+    "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_int,"
+    "format=yuv420p";
+const Words to_yuv = {"-vf",   to_yuv_filter, "-colorspace", "bt709",        "-color_primaries",
+                      "bt709", "-color_trc",  "bt709",       "-color_range", "tv"};
 
 // Without the version of ffmpeg and the time of day.
 const Words plain = {"-an", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"};

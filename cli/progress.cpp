@@ -1,6 +1,7 @@
 #include "progress.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -40,7 +41,7 @@ void Progress::draw_bar(Clock::time_point now) const {
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double rate = elapsed > 0 ? done_ / elapsed : 0;
   const double seconds_left = rate > 0 ? std::min((frame_count_ - done_) / rate, 359'999.0) : 0;
-  const auto left = static_cast<int>(seconds_left + 0.5);
+  const long left = std::lround(seconds_left);
   draw(fmt::format("[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left", std::string(filled, '#'),
                    std::string(width - filled, '.'), done_, frame_count_, rate, left / 60,
                    left % 60));

@@ -7,8 +7,7 @@ file(WRITE "${OUT}" "#include <span>
 namespace ${NAMESPACE} {
 
 constexpr unsigned char bytes_of_${NAME}[] = {${bytes}};
-extern const std::span<const unsigned char> ${NAME};
-const std::span<const unsigned char> ${NAME}{bytes_of_${NAME}};
+extern const std::span<const unsigned char> ${NAME}{bytes_of_${NAME}};
 
 }  // namespace ${NAMESPACE}
 ")

@@ -16,8 +16,7 @@ file(WRITE "${OUT}" "#include <span>
 namespace pliant::viewer {
 
 ${array}
-extern const std::span<const unsigned char> embedded_page;
-const std::span<const unsigned char> embedded_page{${span}};
+extern const std::span<const unsigned char> embedded_page{${span}};
 
 }  // namespace pliant::viewer
 ")

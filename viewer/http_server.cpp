@@ -124,7 +124,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void refuse(int status);
   void linger(std::size_t bytes);
   void begin_stream();
-  void write_event(std::shared_ptr<const std::string> event);
+  void write_event(const std::shared_ptr<const std::string>& event);
   void close();
   void part();
   bool is_last() const;
@@ -366,7 +366,7 @@ void Session::begin_stream() {
 void Session::tell_news() {
   attempt([this] {
     if (!is_stream_ || is_writing_) return;
-    if (auto event = server_.service.next_event(seen_)) write_event(std::move(event));
+    if (const auto event = server_.service.next_event(seen_)) write_event(event);
   });
 }
 
@@ -378,7 +378,7 @@ void Session::tell_heartbeat() {
 }
 
 // One event at a time: events that happen meanwhile are queried after it.
-void Session::write_event(std::shared_ptr<const std::string> event) {
+void Session::write_event(const std::shared_ptr<const std::string>& event) {
   is_writing_ = true;
   stream_.expires_after(server_.limits.write);
   const auto text = asio::buffer(*event);

@@ -168,7 +168,7 @@ void ViewServer::publish(std::string packed) {
 
 void ViewServer::tell_working() { state_->tell(event_text("working", "")); }
 
-void ViewServer::tell_failure(std::string messages) {
+void ViewServer::tell_failure(const std::string& messages) {
   state_->tell(event_text("failed", messages));
 }
 

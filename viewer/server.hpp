@@ -37,7 +37,7 @@ class ViewServer {
   void tell_working();
   /// Notifies pages that the new bake failed; open pages keep the previous one. `messages`: a JSON
   /// array of {kind, file, line, text}.
-  void tell_failure(std::string messages);
+  void tell_failure(const std::string& messages);
 
   /// The page at `address()`take requests the job, and sends one picture back. A new order replaces
   /// the last.

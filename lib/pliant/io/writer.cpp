@@ -56,7 +56,7 @@ const Format* find_format(const std::filesystem::path& file) {
 // OUT, or OUT-NAME.ext if there are several surfaces; NAME is inserted before the frame's place if
 // OUT has one, so that it is still a sequence: x.###.obj becomes x-NAME.###.obj.
 std::filesystem::path file_for(const AnimationPlan& plan, const std::string& surface) {
-  const std::filesystem::path file = plan.file;
+  std::filesystem::path file = plan.file;
   if (plan.surfaces.size() == 1) return file;
   std::string name = file.filename().string();
   const std::size_t frame = name.find('#');

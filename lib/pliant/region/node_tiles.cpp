@@ -29,7 +29,7 @@ struct Extremes {
       const Lanes lanes = Eigen::Map<const Lanes>(numbers + k);
       least = least.min(lanes);
       largest = largest.max(lanes);
-      sum += lanes - lanes;
+      sum += lanes - lanes;  // NOLINT(misc-redundant-expression): 0 only if finite
     }
     low = least;
     high = largest;

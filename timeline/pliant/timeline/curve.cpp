@@ -41,7 +41,8 @@ Curve<D>::Curve(Curve&&) noexcept = default;
 
 template <int D>
 Curve<D>& Curve<D>::operator=(const Curve& other) {
-  return *this = Curve(other);
+  *this = Curve(other);
+  return *this;
 }
 
 template <int D>

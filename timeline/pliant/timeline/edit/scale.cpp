@@ -171,7 +171,7 @@ template <int D>
 tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>& scaling) {
   if (const auto error = timeline::fault_of(curve, scaling)) return tl::unexpected(*error);
   if (scaling.time_factor < 0) {
-    const auto reversed = reverse(curve, scaling.frame);
+    auto reversed = reverse(curve, scaling.frame);
     if (!reversed) return reversed;
     Scaling<D> forwards = scaling;
     forwards.time_factor = -scaling.time_factor;
