@@ -36,7 +36,9 @@ void for_stretches_around(const Grid& grid, const Box& hole, const F& f) {
 }
 
 // NaN if a number is not finite, else 0.
-double unsoundness(const RowView& numbers) { return (numbers - numbers).sum(); }
+double unsoundness(const RowView& numbers) {
+  return (numbers - numbers).sum();  // NOLINT(misc-redundant-expression): 0 only if finite
+}
 
 }  // namespace
 

@@ -46,7 +46,7 @@ bool changes(const Group& group) {
 }  // namespace
 
 ActingForces::ActingForces(const Scene& scene, const Surface& surface,
-                           std::vector<std::size_t> forces, std::vector<std::size_t> groups)
+                           std::vector<std::size_t> forces, const std::vector<std::size_t>& groups)
     : scene_(scene), surface_(surface), forces_(std::move(forces)) {
   std::map<std::string_view, const Group*> named;
   for (const Group& group : scene.groups) named.emplace(group.name, &group);

@@ -15,7 +15,7 @@ class ActingForces {
   /// Indices in the scene, ascending, of forces that target the surface and of groups that select
   /// on it. Requires: the scene outlives this.
   ActingForces(const Scene& scene, const Surface& surface, std::vector<std::size_t> forces,
-               std::vector<std::size_t> groups);
+               const std::vector<std::size_t>& groups);
 
   /// The inputs at a frame, as `sample_inputs` would return them with only these forces and groups.
   BodyInputs at(int frame, const std::shared_ptr<ForceFaults>& faults) const;

@@ -224,12 +224,12 @@ std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
   std::vector<std::size_t> all_forces, all_groups;
   std::vector<Case> cases;
   const auto add = [&](Preview::Of of, std::size_t which, std::vector<std::size_t> forces,
-                       std::vector<std::size_t> groups) {
+                       const std::vector<std::size_t>& groups) {
     Preview preview;
     preview.surface = index;
     preview.of = of;
     preview.index = which;
-    cases.push_back({std::move(preview), {scene, surface, std::move(forces), std::move(groups)}});
+    cases.push_back({std::move(preview), {scene, surface, std::move(forces), groups}});
   };
   std::map<std::string_view, std::size_t> group_named;
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {
@@ -255,7 +255,7 @@ std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
     if (!members[group].empty()) add(Preview::Of::Group, group, members[group], {group});
   }
   if (!all_forces.empty() || !all_groups.empty()) {
-    add(Preview::Of::All, 0, std::move(all_forces), std::move(all_groups));
+    add(Preview::Of::All, 0, std::move(all_forces), all_groups);
   }
   return cases;
 }

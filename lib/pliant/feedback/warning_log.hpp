@@ -33,6 +33,7 @@ class WarningLog {
     Warning::Kind kind;
     std::string_view surface;
     std::string_view force;
+    // NOLINTNEXTLINE(modernize-use-nullptr): not a pointer, but the 0 that <=> compares with
     friend auto operator<=>(const CauseView&, const CauseView&) = default;
   };
   struct Cause {

@@ -219,15 +219,15 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
                             int frame, SurfaceInputs reuse) {
   const SurfaceTargets& targets = sampling.targets(surface);
   SurfaceInputs inputs = std::move(reuse);
+  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
+  body.forces = std::move(inputs.body.forces);
+  body.selectors = std::move(inputs.body.selectors);
+  inputs.body = std::move(body);
   std::vector<SampledForce>& forces = inputs.body.forces;
   std::vector<int>& selectors = inputs.body.selectors;
   forces.clear();
   selectors.clear();
   inputs.sources.clear();
-  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
-  body.forces = std::move(forces);
-  body.selectors = std::move(selectors);
-  inputs.body = std::move(body);
   // Reports of earlier frames may still refer to theirs.
   if (inputs.faults.use_count() == 1) {
     inputs.faults->clear();
