@@ -54,8 +54,7 @@ class DirectSolver final : public PlateSolver {
     ++counts_.solves;
     auto solution = factorization_->solve(right_hand_sides);
     for (int pass = 0; solution && pass < refinement_passes_; ++pass) {
-      const auto correction =
-          factorization_->solve(residual(*factored_, *solution, right_hand_sides));
+      auto correction = factorization_->solve(residual(*factored_, *solution, right_hand_sides));
       if (!correction) return correction;
       *solution += *correction;
     }

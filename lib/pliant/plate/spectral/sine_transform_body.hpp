@@ -8,8 +8,8 @@ namespace {
 constexpr int lanes = PLIANT_LANES;
 
 // The compiler's vector extension: element-wise arithmetic. In memory they need not be aligned.
-typedef double Lanes __attribute__((vector_size(8 * PLIANT_LANES)));
-typedef double LanesAt __attribute__((vector_size(8 * PLIANT_LANES), aligned(8), may_alias));
+using Lanes __attribute__((vector_size(8 * PLIANT_LANES))) = double;
+using LanesAt __attribute__((vector_size(8 * PLIANT_LANES), aligned(8), may_alias)) = double;
 
 #define PLIANT_INLINED __attribute__((always_inline))  // after a lambda's parameters
 #define PLIANT_INLINE PLIANT_INLINED inline
