@@ -315,18 +315,17 @@ Result<Scene> LiveSimulation::Run::performance() const {
   for (std::size_t k = 0; k < authored.size(); ++k) {
     const std::vector<Held>& held = inputs_[k].held;
     if (held.empty()) continue;
-    const auto replace = [&]<int D>(Channel<D>& channel) {
-      auto curve = performed<D>(channel, scene.start, held);
-      if (curve) channel = *std::move(curve);
-      return curve.has_value();
+    const auto replace = [&]<int D>(const Channel<D>& of, auto& channel) {
+      auto curve = performed<D>(of, scene.start, held);
+      if (!curve) return false;
+      channel = *std::move(curve);
+      return true;
     };
-    const auto replace_any = [&](auto* of) {
-      if constexpr (std::is_same_v<decltype(of), Switch*>) {
-        auto curve = performed<1>(of->channel(), scene.start, held);
-        if (curve) *of = Switch(*std::move(curve));
-        return curve.has_value();
+    const auto replace_any = [&](auto* channel) {
+      if constexpr (std::is_same_v<decltype(channel), Switch*>) {
+        return replace(channel->channel(), *channel);
       } else {
-        return replace(*of);
+        return replace(*channel, *channel);
       }
     };
     if (!std::visit(replace_any, authored[k].channel)) {
