@@ -28,6 +28,7 @@
 #include <fmt/format.h>
 
 #include "measuring.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/spectral/spectral_plate.hpp"
 #ifdef PLIANT_BENCH_SUPERNODAL
@@ -99,12 +100,12 @@ Row measure(int columns, int rows, const Options& options, ThreadPool& threads) 
   // About half a second per size, but at least three rounds.
   const int rounds = static_cast<int>(std::clamp(3e6 / static_cast<double>(nodes), 3.0, 101.0));
   {
-    const auto solver = make_plate_solver(SolverChoice::Spectral, nullptr, &threads);
+    const auto solver = make_plate_solver(SolverChoice::Spectral, {.threads = &threads});
     PlateState now = state;
     const auto advance = [&](int count) {
       now = solver->advance(problem, {count, dt}, std::move(now)).value();
     };
-    SpectralPlate set_up(nullptr, &threads);
+    SpectralPlate set_up({.threads = &threads});
     PlateSystem system{grid, problem.stiffness, dynamics.shift(dt)};
     (void)set_up.prepare(system);
     std::vector<double> a(static_cast<std::size_t>(5 * nodes), 0.0), b(a.size(), 1.0),

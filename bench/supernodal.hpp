@@ -13,7 +13,7 @@ namespace pliant::bench {
 /// the BLAS, and its licence is the GPL.
 class SupernodalSolver final : public PlateSolver {
  public:
-  SupernodalSolver() {
+  SupernodalSolver() : PlateSolver({}) {
     cholmod_start(&common_);
     common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.nmethods = 1;

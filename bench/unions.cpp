@@ -23,6 +23,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "pliant/region/combine.hpp"
@@ -78,17 +79,16 @@ Times measure(PlateProblem problem, int repetitions, const Make& make) {
   const Field zero = Field::Zero(problem.outline.grid().node_count(), 3);
   PlateState state{zero, zero};
   long asked = 0;
+  const RunContext context{.should_stop = [&] {
+    ++asked;
+    return false;
+  }};
   std::unique_ptr<PlateSolver> solver;
-  const auto advance = [&] {
-    state = check(solver->advance(problem, frame, std::move(state), [&] {
-      ++asked;
-      return false;
-    }));
-  };
+  const auto advance = [&] { state = check(solver->advance(problem, frame, std::move(state))); };
   Times times{};
   times.first = median_ms(repetitions, [&] {
     solver.reset();
-    solver = make();
+    solver = make(context);
     advance();
   });
   times.fresh = median_ms(repetitions, [&] {
@@ -105,12 +105,14 @@ Times measure(PlateProblem problem, int repetitions, const Make& make) {
 void measure(const char* shape, int side, const std::vector<Box>& boxes) {
   const PlateProblem problem = problem_on(side, boxes);
   const bool is_small = side < 300;
-  const Times ours =
-      measure(problem, is_small ? 5 : 3, [] { return make_schwarz_solver(nullptr, nullptr); });
+  const Times ours = measure(problem, is_small ? 5 : 3, [](const RunContext& context) {
+    return make_schwarz_solver(context);
+  });
   const SolverChoice choice =
       is_available(SolverChoice::Cholmod) ? SolverChoice::Cholmod : SolverChoice::Eigen;
-  const Times direct =
-      measure(problem, is_small ? 5 : 1, [&] { return make_plate_solver(choice); });
+  const Times direct = measure(problem, is_small ? 5 : 1, [&](const RunContext& context) {
+    return make_plate_solver(choice, context);
+  });
   fmt::print(
       "| {} | {} | {} | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.1f} | {} | {} |\n",
       side, shape, unknown_count(problem.outline), ours.first, direct.first / ours.first,

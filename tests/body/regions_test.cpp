@@ -179,26 +179,29 @@ TEST_CASE("a frame is taken whole or not at all", "[body][islands]") {
   const std::vector<SampledForce> narrow{press(-20, 0, 3e4), press(0, 1, 4e4, 4.5),
                                          press(20, 0, -5e4, 2.5)};
   const auto release = GENERATE(Release::Freeze, Release::Recover);
-  Body body(s.grid, s.rest,
-            {.measure = Measure::Rest, .combine = Combine::Islands, .release = release});
+  const BodySettings settings{
+      .measure = Measure::Rest, .combine = Combine::Islands, .release = release};
+  int patience = -1, asked = 0;
+  Body body(s.grid, s.rest, settings, SolverChoice::Auto,
+            {.should_stop = [&] { return asked++ == patience; }});
   REQUIRE(step(body, inputs_of(wide)));
   REQUIRE(step(body, inputs_of(wide)));
-  Body uninterrupted(s.grid, s.rest,
-                     {.measure = Measure::Rest, .combine = Combine::Islands, .release = release});
+  Body uninterrupted(s.grid, s.rest, settings);
   uninterrupted.restore(body.state());
   REQUIRE(step(uninterrupted, inputs_of(narrow)));
 
   const BodyState before = body.state();
   int interrupted = 0;
-  for (int patience = 0;; ++patience) {
-    int asked = 0;
-    const auto report = step(body, inputs_of(narrow), [&] { return asked++ == patience; });
+  for (patience = 0;; ++patience) {
+    asked = 0;
+    const auto report = step(body, inputs_of(narrow));
     if (report) break;
     REQUIRE(report.error().code == ErrorCode::Interrupted);
     REQUIRE(body.state() == before);
     ++interrupted;
   }
   CHECK(interrupted >= 3);  // in each island
+  patience = -1;
   CHECK(body.state() == uninterrupted.state());
 
   // The last island overflows a double, the others do not.

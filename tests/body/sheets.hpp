@@ -46,9 +46,8 @@ inline BodyInputs inputs_of(std::vector<SampledForce> forces) {
 }
 
 /// Steps a body; a copy of its report.
-inline Result<StepReport> step(Body& body, const BodyInputs& inputs,
-                               const StopRequest& should_stop = {}) {
-  if (auto stepped = body.step(inputs, should_stop); !stepped) return fail(stepped.error());
+inline Result<StepReport> step(Body& body, const BodyInputs& inputs) {
+  if (auto stepped = body.step(inputs); !stepped) return fail(stepped.error());
   return body.last_step();
 }
 

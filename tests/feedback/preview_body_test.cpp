@@ -10,9 +10,8 @@ using namespace pliant::testing;
 TEST_CASE("what is settled is what a massless surface comes to", "[feedback][preview]") {
   Scene s = scene({sheet("s", 21)}, {poke("f", {0.3, 0, 0.2})}, 2);
   s.surfaces[0].tangents.su0 = Channel<3>(Value<3>{0, 3, 0});
-  const RestShape shape = make_rest_shape(s.surfaces[0], {}).value();
-  MemoryBudget memory;
-  PreviewBody body(shape.mapping, s.surfaces[0].solver, {}, memory);
+  const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
+  PreviewBody body(shape.mapping, s.surfaces[0].solver, {});
   REQUIRE(body.reserve());
   const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   const auto settled_peak = [&](bool is_plain) {
@@ -36,9 +35,8 @@ TEST_CASE("a plain body knows no rest but its own shape", "[feedback][preview]")
   // With reference="none" a force of magnitude 0 alone moves the nodes of a flat sheet.
   Scene s = scene({sheet("s", 21)}, {poke("f", {0, 0, 0}, 0)}, 2);
   s.surfaces[0].solver.reference = Reference::None;
-  const RestShape shape = make_rest_shape(s.surfaces[0], {}).value();
-  MemoryBudget memory;
-  PreviewBody body(shape.mapping, s.surfaces[0].solver, {}, memory);
+  const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
+  PreviewBody body(shape.mapping, s.surfaces[0].solver, {});
   REQUIRE(body.reserve());
   const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   REQUIRE(body.settle(inputs, false));
@@ -49,9 +47,9 @@ TEST_CASE("a plain body knows no rest but its own shape", "[feedback][preview]")
 
 TEST_CASE("a preview takes its memory out of the budget", "[feedback][preview]") {
   const Scene s = scene({sheet("s", 21)}, {poke("f", {0, 0, 0})}, 2);
-  const RestShape shape = make_rest_shape(s.surfaces[0], {}).value();
+  const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
   MemoryBudget little(1000);
-  PreviewBody body(shape.mapping, s.surfaces[0].solver, {}, little);
+  PreviewBody body(shape.mapping, s.surfaces[0].solver, {.memory = &little});
   const auto reserved = body.reserve();
   REQUIRE_FALSE(reserved);
   CHECK(reserved.error().code == ErrorCode::OutOfMemory);

@@ -7,6 +7,7 @@
 
 #include "mesh/boxed_programs.hpp"
 #include "mesh/mesh_files.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -17,8 +18,8 @@ using Catch::Matchers::EndsWith;
 namespace {
 
 Result<Mesh> misread(const std::filesystem::path& file, const std::string& what,
-                     const ReadLimits& limits = {}) {
-  return read_boxed(misbehaving(), file, what, 0, limits);
+                     const RunContext& context = {}) {
+  return read_boxed(misbehaving(), file, what, 0, context);
 }
 
 std::string boxed_complaint(const std::filesystem::path& file, const std::string& what) {
@@ -63,7 +64,8 @@ TEST_CASE("a budget below the file's own bound is memory that is short",
           "[mesh][read_boxed][threads]") {
   const ScratchFolder folder;
   const auto file = folder.write("a.fbx", std::string(1 << 20, 'x'));
-  const auto mesh = misread(file, "allocate", {.max_memory = 1000});
+  MemoryBudget little(1000);
+  const auto mesh = misread(file, "allocate", {.memory = &little});
   REQUIRE_FALSE(mesh);
   CHECK(mesh.error().code == ErrorCode::OutOfMemory);
   CHECK_THAT(mesh.error().message, contains_text("537 MB"));

@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/profile.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
@@ -99,6 +101,33 @@ TEST_CASE("ill-conditioned plates are solved to the last digits", "[plate][solve
     yardstick += solver->solve(residual(system, yardstick, f)).value();
   }
   CHECK((w - yardstick).norm() < 1e-14 * yardstick.norm());
+}
+
+TEST_CASE("solvers keep to the context that they were made with", "[plate][solver]") {
+  const SolverChoice choice = GENERATE_SOLVER();
+  MemoryBudget memory(std::size_t{64} << 20);
+  Profile profile;
+  int asked = 0, patience = 5;
+  const RunContext context{
+      .memory = &memory, .profile = &profile, .should_stop = [&] { return ++asked > patience; }};
+  const Grid grid = unit_grid(30, 31);
+  const Field zero = Field::Zero(grid.node_count(), 3);
+  const PlateProblem problem{grid, {1, 2, 1}, {40, 20}, {}, Field::Ones(grid.node_count(), 3)};
+  {
+    const auto solver = make_plate_solver(choice, context);
+    REQUIRE(solver->advance(problem, {5, 0.01}, {zero, zero}));
+    CHECK(asked == 5);
+    CHECK(memory.total() - memory.available() == solver->memory());
+    CHECK(profile[Stage::SetUp] > 0);
+    CHECK(profile[Stage::Solve] > 0);
+    CHECK(profile.total() == profile[Stage::SetUp] + profile[Stage::Solve]);
+    patience = asked + 2;
+    const auto stopped = solver->advance(problem, {5, 0.01}, {zero, zero});
+    REQUIRE_FALSE(stopped);
+    CHECK(stopped.error().code == ErrorCode::Interrupted);
+    CHECK(asked == 8);
+  }
+  CHECK(memory.available() == memory.total());
 }
 
 TEST_CASE("the solver of the factors comes first", "[plate][solver]") {

@@ -6,6 +6,8 @@
 #include <new>
 #include <utility>
 
+#include "pliant/core/profile.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "support/count_allocations.hpp"
 
@@ -17,7 +19,7 @@ bool is_free_of_allocations(const char* name, PlateSolver& solver, PlateProblem 
   const Field zero = Field::Zero(problem.outline.grid().node_count(), 3);
   PlateState state{zero, zero};
   const auto frame = [&] {
-    auto next = solver.advance(problem, {20, 0.001}, std::move(state), [] { return false; });
+    auto next = solver.advance(problem, {20, 0.001}, std::move(state));
     if (!next) std::abort();
     state = *std::move(next);
   };
@@ -49,10 +51,13 @@ int main() {
   ThreadPool threads(2);
   const Grid grid{130, 90, 0.01, 0.01};
   const Field load = Field::Ones(grid.node_count(), 3);
-  const auto spectral = make_plate_solver(SolverChoice::Auto, nullptr, &threads);
+  Profile profile;
+  const RunContext context{
+      .threads = &threads, .profile = &profile, .should_stop = [] { return false; }};
+  const auto spectral = make_plate_solver(SolverChoice::Auto, context);
   bool is_good =
       is_free_of_allocations("rectangle", *spectral, {grid, {1, 2, 1}, {40, 20}, {}, load});
-  const auto schwarz = make_schwarz_solver(nullptr, &threads);
+  const auto schwarz = make_schwarz_solver(context);
   is_good = is_free_of_allocations("union", *schwarz,
                                    {{grid, three_quarters(grid)}, {1, 2, 1}, {40, 20}, {}, load}) &&
             is_good;

@@ -1,5 +1,6 @@
 #include "pliant/plate/solver_cache.hpp"
 
+#include "pliant/core/memory_budget.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
 
@@ -36,7 +37,7 @@ TEST_CASE("each outline keeps its solver while it is among those of the frame",
 
 TEST_CASE("solvers that are let go give their memory back", "[plate][solver_cache]") {
   MemoryBudget budget(1'000'000);
-  SolverCache cache(SolverChoice::Auto, &budget);
+  SolverCache cache(SolverChoice::Auto, {.memory = &budget});
   const Outline outline = unit_grid(21, 21);
   const Field zero = Field::Zero(21 * 21, 3);
   const PlateProblem problem{outline, {1, 2, 1}, {}, {}, zero};

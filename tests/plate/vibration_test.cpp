@@ -130,3 +130,23 @@ TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[pl
   }
   CHECK(modes.size() > 2);
 }
+
+TEST_CASE("vibrations are no longer searched when the run is stopped", "[plate][vibration]") {
+  int asked = 0, patience = 0;
+  const auto solver =
+      make_plate_solver(SolverChoice::Auto, {.should_stop = [&] { return asked++ == patience; }});
+  const PlateSystem system{Grid{12, 13, 1.0 / 11, 1.0 / 12}, {1, 2, 1}, 0};
+  const Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(unknown_count(system.outline), 1, 2);
+  for (patience = 0; patience < 3; ++patience) {
+    asked = 0;
+    const auto lambda = smallest_eigenvalue(*solver, system);
+    REQUIRE_FALSE(lambda);
+    CHECK(lambda.error().code == ErrorCode::Interrupted);
+    CHECK(asked == patience + 1);
+    asked = 0;
+    const auto modes = excited_modes(*solver, system, shape, 3);
+    REQUIRE_FALSE(modes);
+    CHECK(modes.error().code == ErrorCode::Interrupted);
+    CHECK(asked == patience + 1);
+  }
+}

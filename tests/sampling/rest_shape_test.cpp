@@ -28,9 +28,10 @@ std::string complaint(SurfaceShape shape) {
 
 TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][rest_shape]") {
   const GridSheet sheet{.columns = 4, .rows = 3, .width = 3, .depth = 2};
-  const RestShape from_sheet = make_rest_shape(with_shape(sheet), {}).value();
+  const RestShape from_sheet = make_rest_shape(with_shape(sheet), {})->shape;
   CHECK(from_sheet.name == "s");
-  CHECK(make_rest_shape(with_shape(make_mesh(sheet)), {})->mapping.rest == from_sheet.mapping.rest);
+  CHECK(make_rest_shape(with_shape(make_mesh(sheet)), {})->shape.mapping.rest ==
+        from_sheet.mapping.rest);
 
   const ScratchFolder folder;
   std::string obj;
@@ -48,7 +49,35 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][
   }
   const auto from_file = make_rest_shape(with_shape(MeshFile{folder.write("m.obj", obj)}), {});
   REQUIRE(from_file);
-  CHECK(from_file->mapping.rest == from_sheet.mapping.rest);
+  CHECK(from_file->shape.mapping.rest == from_sheet.mapping.rest);
+}
+
+TEST_CASE("the memory of a shape is reserved as long as it is held", "[simulation][rest_shape]") {
+  const Surface surface = with_shape(GridSheet{.columns = 4, .rows = 3, .width = 3, .depth = 2});
+  MemoryBudget budget(1'000'000);
+  const RunContext context{.memory = &budget};
+  std::size_t checked_bytes = 0;
+  {
+    const auto checked = check_rest_shape(surface, origin, context);
+    REQUIRE(checked);
+    checked_bytes = checked->bytes();
+    CHECK(checked_bytes > 0);
+    CHECK(budget.total() - budget.available() == checked_bytes);
+  }
+  CHECK(budget.available() == budget.total());
+  {
+    const auto made = make_rest_shape(surface, origin, context);
+    REQUIRE(made);
+    CHECK(made->memory.bytes() == checked_bytes);
+    CHECK(budget.total() - budget.available() == checked_bytes);
+  }
+  CHECK(budget.available() == budget.total());
+
+  MemoryBudget little(checked_bytes - 1);
+  CHECK(check_rest_shape(surface, origin, {.memory = &little}).error().code ==
+        ErrorCode::OutOfMemory);
+  CHECK(make_rest_shape(surface, origin, {.memory = &little}).error().code ==
+        ErrorCode::OutOfMemory);
 }
 
 TEST_CASE("a shape that cannot be had is the scene's error or the file's",

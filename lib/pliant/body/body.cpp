@@ -71,8 +71,13 @@ std::span<const Patch> StepReport::patches_of_force(std::size_t k) const {
   return patches[static_cast<std::size_t>(region)];
 }
 
-Body::Body(const Grid& grid, Field rest, const BodySettings& settings, SolverCache solvers)
-    : grid_(grid), rest_(std::move(rest)), settings_(settings), solvers_(std::move(solvers)) {
+Body::Body(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
+           RunContext context)
+    : grid_(grid),
+      rest_(std::move(rest)),
+      settings_(settings),
+      profile_(context.profile),
+      solvers_(solver, std::move(context)) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
   reset();
 }
@@ -98,13 +103,12 @@ Field Body::measured_nodes(const Transform& transform) const {
 
 Result<StepReport> Body::look(const BodyInputs& inputs) const {
   BodyWorkspace work;
-  if (auto planned = plan(inputs, work, nullptr); !planned) return fail(planned.error());
+  if (auto planned = plan(inputs, work); !planned) return fail(planned.error());
   return std::move(work.report);
 }
 
 // Writes the report of the workspace, all but the solve.
-Result<void> Body::plan(const BodyInputs& inputs, BodyWorkspace& work, Profile* profile) const {
-  const StageTimer timer(profile, Stage::Selection);
+Result<void> Body::plan(const BodyInputs& inputs, BodyWorkspace& work) const {
   StepReport& report = work.report;
   work.tiles.update(grid_, {measured(), inputs.transform});
   if (!work.tiles.are_finite()) {
@@ -158,25 +162,26 @@ std::vector<int> Body::lost_forces(const BodyInputs& inputs, const Selection& se
   return lost;
 }
 
-Result<void> Body::step(const BodyInputs& inputs, const StopRequest& should_stop,
-                        Profile* profile) {
+Result<void> Body::step(const BodyInputs& inputs) {
   if (inputs.forces.empty() && !recovers()) {
     work_.selection = {};
     work_.report = {};
     return {};
   }
-  if (auto planned = plan(inputs, work_, profile); !planned) return planned;
+  StageTimer planning(profile_, Stage::Selection);
+  if (auto planned = plan(inputs, work_); !planned) return planned;
+  planning.stop();
   const StepReport& report = work_.report;
   if (!report.is_solved) {
     settle(report.settling);
     return {};
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
-  StageTimer beginning(profile, Stage::StateOut);
+  StageTimer beginning(profile_, Stage::StateOut);
   begin_next(report);
   beginning.stop();
-  if (auto solved = solve(inputs, should_stop, profile); !solved) return solved;
-  const StageTimer ending(profile, Stage::StateOut);
+  if (auto solved = solve(inputs); !solved) return solved;
+  const StageTimer ending(profile_, Stage::StateOut);
   return take();
 }
 
@@ -220,8 +225,7 @@ void Body::keep_solvers(const StepReport& report) {
   solvers_.keep_only(outlines);
 }
 
-Result<void> Body::solve(const BodyInputs& inputs, const StopRequest& should_stop,
-                         Profile* profile) {
+Result<void> Body::solve(const BodyInputs& inputs) {
   const StepReport& report = work_.report;
   keep_solvers(report);
   const bool from_rest = settings_.reference == Reference::Rest;
@@ -243,14 +247,13 @@ Result<void> Body::solve(const BodyInputs& inputs, const StopRequest& should_sto
       problem.stiffness = inputs.stiffness;
       problem.dynamics = inputs.dynamics;
       problem.tangents = tangents_of(patch, region, inputs.tangents);
-      problem.profile = profile;
       {
-        const StageTimer timer(profile, Stage::Load);
+        const StageTimer timer(profile_, Stage::Load);
         problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, report.selection, k,
                                      box, to_object, std::move(problem.load));
       }
       {
-        const StageTimer timer(profile, Stage::StateIn);
+        const StageTimer timer(profile_, Stage::StateIn);
         Field& displacement = one.plate.displacement;
         displacement = from_rest
                            ? difference_of(grid_, box, positions, rest_, std::move(displacement))
@@ -258,7 +261,7 @@ Result<void> Body::solve(const BodyInputs& inputs, const StopRequest& should_sto
         one.plate.velocity = rows_of(grid_, box, state_.velocities, std::move(one.plate.velocity));
       }
       PlateSolver& solver = solvers_.solver_of(work_.outlines[place]);
-      auto next = solver.advance(problem, report.steps, std::move(one.plate), should_stop);
+      auto next = solver.advance(problem, report.steps, std::move(one.plate));
       if (!next) return fail(next.error());
       one.plate = *std::move(next);
       ++place;

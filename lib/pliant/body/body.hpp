@@ -5,9 +5,8 @@
 #include "pliant/body/settings.hpp"
 #include "pliant/body/state.hpp"
 #include "pliant/body/workspace.hpp"
-#include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/force.hpp"
 #include "pliant/plate/plate.hpp"
@@ -34,8 +33,10 @@ struct BodyInputs {
 class Body {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
+  /// `solver` and `context` are those of its plates; the context's profile receives the times of
+  /// its steps.
   Body(const Grid& grid, Field rest, const BodySettings& settings,
-       SolverCache solvers = SolverCache());
+       SolverChoice solver = SolverChoice::Auto, RunContext context = {});
 
   /// Sets the rest mesh and removes all velocity.
   void reset();
@@ -47,13 +48,12 @@ class Body {
   /// Solves one frame: selects the regions on the current mesh, and moves their interiors to the
   /// next frame. A node that the last solve did not move starts with velocity 0, any other with its
   /// velocity from the last solve; a frame without a solve changes neither. Errors: NotFinite if a
-  /// node or the new state is not finite; Interrupted if `should_stop` returns true; those of the
-  /// solver. The state is then unchanged.
+  /// node or the new state is not finite; Interrupted; those of the solver. The state is then
+  /// unchanged.
   ///
   /// Nothing is allocated while the regions stay the same, plates are solved in sine space and no
-  /// node recovers. `profile` receives the times; null: no profiling.
-  Result<void> step(const BodyInputs& inputs, const StopRequest& should_stop = {},
-                    Profile* profile = nullptr);
+  /// node recovers.
+  Result<void> step(const BodyInputs& inputs);
 
   /// The report of the last step; empty before the first.
   const StepReport& last_step() const { return work_.report; }
@@ -75,13 +75,13 @@ class Body {
   const Field& measured() const {
     return settings_.measure == Measure::Rest ? rest_ : state_.positions;
   }
-  Result<void> plan(const BodyInputs& inputs, BodyWorkspace& work, Profile* profile) const;
+  Result<void> plan(const BodyInputs& inputs, BodyWorkspace& work) const;
   std::vector<int> lost_forces(const BodyInputs& inputs, const Selection& selection,
                                BodyWorkspace& work, std::vector<int> lost) const;
   void settle(const std::vector<int>& nodes);
   void begin_next(const StepReport& report);
   void keep_solvers(const StepReport& report);
-  Result<void> solve(const BodyInputs& inputs, const StopRequest& should_stop, Profile* profile);
+  Result<void> solve(const BodyInputs& inputs);
   Result<void> take();
   void mark_unsettled();
   bool recovers() const { return settings_.release == Release::Recover; }
@@ -90,6 +90,7 @@ class Body {
   Field rest_;
   BodySettings settings_;
   BodyState state_;
+  Profile* profile_;  // null: no profiling
   SolverCache solvers_;
   BodyWorkspace work_;
 };

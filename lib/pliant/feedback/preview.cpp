@@ -30,10 +30,10 @@ struct Case {
 class SurfacePreviewer {
  public:
   SurfacePreviewer(const Scene& scene, const Surface& surface, const RestShape& rest_shape,
-                   double most_searched, const StopRequest& should_stop, MemoryBudget& memory)
+                   double most_searched, const RunContext& context)
       : scene_(scene),
         surface_(surface),
-        body_(rest_shape.mapping, surface_.solver, should_stop, memory),
+        body_(rest_shape.mapping, surface_.solver, context),
         first_(first_solved_frame(scene_, surface_)),
         last_(std::max(first_, scene_.end - 1)),
         most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
@@ -277,7 +277,7 @@ bool has_frames(const Case& one, const Scene& scene) {
 
 Result<std::vector<Preview>> preview_forces(const Scene& scene,
                                             std::span<const RestShape> rest_shapes,
-                                            MemoryBudget& memory, const StopRequest& should_stop) {
+                                            const RunContext& context) {
   PLIANT_EXPECTS(rest_shapes.size() == scene.surfaces.size());
   std::vector<std::vector<Case>> cases;
   std::size_t count = 0;
@@ -295,7 +295,7 @@ Result<std::vector<Preview>> preview_forces(const Scene& scene,
   for (std::size_t k = 0; k < cases.size(); ++k) {
     if (cases[k].empty()) continue;
     SurfacePreviewer previewer(scene, scene.surfaces[k], rest_shapes[k],
-                               searched_nodes / static_cast<double>(count), should_stop, memory);
+                               searched_nodes / static_cast<double>(count), context);
     for (Case& one : cases[k]) {
       if (auto looked = previewer.look(one); !looked) return fail(looked.error());
     }

@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "pliant/core/grid.hpp"
-#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/plate/swing.hpp"
 #include "pliant/region/combine.hpp"
 #include "pliant/sampling/rest_shape.hpp"
@@ -102,7 +101,6 @@ inline constexpr int most_previewed_unknowns = 200'000;
 /// force returns an invalid value or a state is not finite; Interrupted.
 Result<std::vector<Preview>> preview_forces(const Scene& scene,
                                             std::span<const RestShape> rest_shapes,
-                                            MemoryBudget& memory,
-                                            const StopRequest& should_stop = {});
+                                            const RunContext& context = {});
 
 }  // namespace pliant

@@ -29,18 +29,17 @@ double seen_lambda(std::span<const ExcitedMode> modes) {
 }  // namespace
 
 PreviewBody::PreviewBody(const GridMapping& mapping, const SolverSettings& settings,
-                         StopRequest should_stop, MemoryBudget& memory)
+                         RunContext context)
     : mapping_(mapping),
       settings_(settings),
-      should_stop_(std::move(should_stop)),
-      memory_(memory),
-      share_(&memory) {}
+      context_(std::move(context)),
+      share_(context_.memory) {}
 
 Body PreviewBody::make(Reference reference) const {
   return Body(
       mapping_.grid, mapping_.rest,
       {settings_.stepping, reference, settings_.measure, settings_.combine, settings_.release},
-      SolverCache(SolverChoice::Auto, &memory_));
+      SolverChoice::Auto, context_);
 }
 
 Result<void> PreviewBody::reserve() {
@@ -66,7 +65,7 @@ Result<void> PreviewBody::check_faults() const {
 
 Result<StepReport> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
   PLIANT_EXPECTS(real_.has_value());
-  if (should_stop_ && should_stop_()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   body(is_plain).reset();
   auto report = body(is_plain).look(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
@@ -98,7 +97,7 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
       is_at_rest_ && std::all_of(inputs.forces.begin(), inputs.forces.end(),
                                  [](const SampledForce& force) { return force.magnitude == 0; });
   if (is_at_rest_) return 0.0;
-  const auto stepped = body(is_plain_).step(inputs, should_stop_);
+  const auto stepped = body(is_plain_).step(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
   if (!stepped) return fail(stepped.error());
   const StepReport& report = body(is_plain_).last_step();
@@ -167,8 +166,8 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
   const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
   if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
 
-  const auto solver = make_plate_solver(SolverChoice::Auto, &memory_);
-  const auto lambda = smallest_eigenvalue(*solver, system, should_stop_);
+  const auto solver = make_plate_solver(SolverChoice::Auto, context_);
+  const auto lambda = smallest_eigenvalue(*solver, system);
   if (!lambda) return fail(lambda.error());
   std::vector<ExcitedMode> modes = {{*lambda, 1}};
   const Field ways = interior_of(system.outline, displacements(box));
@@ -178,7 +177,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
   if (size > 0) {
     const Eigen::VectorXd along =
         ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));
-    auto excited = excited_modes(*solver, system, along, node, should_stop_);
+    auto excited = excited_modes(*solver, system, along, node);
     if (!excited) return fail(excited.error());
     modes = *std::move(excited);
   }

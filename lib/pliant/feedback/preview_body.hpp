@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pliant/body/body.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/sampling/sampling.hpp"
@@ -18,9 +19,8 @@ namespace pliant {
 // without tangents, so that only forces move it.
 class PreviewBody {
  public:
-  /// Requires: mapping, settings and memory outlive it.
-  PreviewBody(const GridMapping& mapping, const SolverSettings& settings, StopRequest should_stop,
-              MemoryBudget& memory);
+  /// Requires: mapping and settings outlive it.
+  PreviewBody(const GridMapping& mapping, const SolverSettings& settings, RunContext context);
 
   /// Makes the bodies, unless they exist. Errors: OutOfMemory.
   Result<void> reserve();
@@ -73,8 +73,7 @@ class PreviewBody {
 
   const GridMapping& mapping_;
   const SolverSettings& settings_;
-  StopRequest should_stop_;
-  MemoryBudget& memory_;
+  RunContext context_;
   MemoryShare share_;
   std::optional<Body> real_;   // as in the scene
   std::optional<Body> plain_;  // if `real_` is not elastic about its rest shape

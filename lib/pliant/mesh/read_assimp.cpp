@@ -243,7 +243,7 @@ class OpenFile {
 };
 
 Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& file,
-                         const std::string& object, int uv_set, const ReadLimits& limits) {
+                         const std::string& object, int uv_set, const RunContext& context) {
   if (auto readable = check_readable(file); !readable) return fail(readable.error());
   const OpenFile opened(file);
   struct stat status {};
@@ -261,9 +261,9 @@ Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& 
   const std::string ending = ending_of(file);
   const auto run = [&](const BoxLimits& box) {
     return run_boxed(program, {ending.substr(1), object, std::to_string(uv_set)},
-                     opened.descriptor(), box, limits.should_stop);
+                     opened.descriptor(), box, context.should_stop);
   };
-  const BoxLimits box = box_limits(file_bytes, limits.max_memory);
+  const BoxLimits box = box_limits(file_bytes, MemoryShare(context.memory).available());
   BoxLimits other_box = box;
   other_box.freed = 0x5a;
   auto other_run = std::async(std::launch::async, [&] { return run(other_box); });
@@ -290,14 +290,14 @@ BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory) {
 }
 
 Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
-                        const std::string& object, int uv_set, const ReadLimits& limits) {
+                        const std::string& object, int uv_set, const RunContext& context) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
   const auto in_file = [&](Error error) {
     error.file = file.string();
     return fail(std::move(error));
   };
   try {
-    auto mesh = read_opened(program, file, object, uv_set, limits);
+    auto mesh = read_opened(program, file, object, uv_set, context);
     return mesh ? std::move(mesh) : in_file(mesh.error());
   } catch (const std::bad_alloc&) {
     return in_file({ErrorCode::OutOfMemory, "the mesh does not fit in memory"});
@@ -305,10 +305,10 @@ Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& f
 }
 
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object, int uv_set,
-                         const ReadLimits& limits) {
+                         const RunContext& context) {
   const std::string_view program(reinterpret_cast<const char*>(mesh_reader_program.data()),
                                  mesh_reader_program.size());
-  return read_boxed(program, file, object, uv_set, limits);
+  return read_boxed(program, file, object, uv_set, context);
 }
 
 }  // namespace pliant

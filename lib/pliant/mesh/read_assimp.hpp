@@ -1,12 +1,10 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <string>
 
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -14,21 +12,13 @@ namespace pliant {
 /// The most texture-coordinate sets of a mesh in a file.
 inline constexpr int max_uv_sets = 8;
 
-/// Limits for reading a mesh file.
-struct ReadLimits {
-  /// Of the process that reads an FBX or Collada file; at least 512 MB, since that includes the
-  /// libraries, and no more than the file's size justifies. [bytes]
-  std::size_t max_memory = std::numeric_limits<std::size_t>::max();
-
-  /// Called while that process works; true: reading ends at once, with Interrupted.
-  StopRequest should_stop = {};
-};
-
 /// Reads one object of an FBX (.fbx) or Collada (.dae) file through assimp.
 ///
 /// assimp reads outside its buffers for files made to exploit it. So it runs in a process of its
 /// own, which can access only this file and a pipe, with limits on memory and time, and its answer
-/// is checked like untrusted input. docs/architecture.md.
+/// is checked like untrusted input. docs/architecture.md. The process may use what is available of
+/// the run's memory, but at least 512 MB, since that includes the libraries, and no more than the
+/// file's size justifies; it ends when the run is stopped.
 ///
 /// An *object* is a node of the file's scene graph that has faces; a node's meshes, which most
 /// formats split by material, are combined in the order of the file. The transforms of the node and
@@ -48,12 +38,12 @@ struct ReadLimits {
 /// one.
 ///
 /// Errors, naming the file: a file that assimp refuses, with its reason; one on which it crashes,
-/// does not end, or needs more memory than `limits` and the file's size allow; no faces; an object
-/// that does not exist, or no name given and several objects; a UV set that the object lacks; a
-/// transform that is not affine; those of `check_mesh`; OutOfMemory; Interrupted. Unreadable: the
-/// file cannot be read, or is larger than 4 GiB, or no process can be started for it. Requires: 0
-/// <= uv_set < max_uv_sets. Thread-safe.
+/// does not end, or needs more memory than it may use; no faces; an object that does not exist, or
+/// no name given and several objects; a UV set that the object lacks; a transform that is not
+/// affine; those of `check_mesh`; OutOfMemory; Interrupted. Unreadable: the file cannot be read, or
+/// is larger than 4 GiB, or no process can be started for it. Requires: 0 <= uv_set < max_uv_sets.
+/// Thread-safe.
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object = {},
-                         int uv_set = 0, const ReadLimits& limits = {});
+                         int uv_set = 0, const RunContext& context = {});
 
 }  // namespace pliant

@@ -11,7 +11,7 @@ namespace pliant {
 /// or lie. Runs the program twice, at the same time and with different bytes in uninitialised
 /// memory: if the answers differ, they depend on more than the file. Internal to mesh.
 Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
-                        const std::string& object, int uv_set, const ReadLimits& limits);
+                        const std::string& object, int uv_set, const RunContext& context);
 
 /// The limits for a file of this size: time, memory and size of the answer.
 BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory);

@@ -33,7 +33,7 @@ std::vector<std::string> mesh_endings() {
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set,
-                       const std::filesystem::path& root, const ReadLimits& limits) {
+                       const std::filesystem::path& root, const RunContext& context) {
   const std::vector<std::string> endings = mesh_endings();
   const std::string ending = ending_of(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
@@ -44,7 +44,7 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
   if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);
   if (ending == ".ply") return with_only_set(read_ply(file, object), file, uv_set);
   if (is_gltf(ending)) return read_gltf(file, object, uv_set, root);
-  return read_assimp(file, object, uv_set, limits);
+  return read_assimp(file, object, uv_set, context);
 }
 
 std::vector<std::filesystem::path> mesh_references(const std::filesystem::path& file,

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/mesh/mesh.hpp"
-#include "pliant/mesh/read_assimp.hpp"
 
 namespace pliant {
 
@@ -14,14 +14,14 @@ namespace pliant {
 std::vector<std::string> mesh_endings();
 
 /// Reads one object of a mesh file with the reader for the file's ending, in any case: `read_obj`,
-/// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, to which the limits apply.
+/// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses `context`.
 /// `object` names the object if the file has several; `uv_set`, counted from 0, is the set of
 /// (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root` or below;
 /// empty: in its own folder. Errors: InvalidInput for another ending; those of the readers.
 /// Requires: 0 <= uv_set < max_uv_sets.
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
-                       const ReadLimits& limits = {});
+                       const RunContext& context = {});
 
 /// The files that `read_mesh` may open besides this one, existing or not: buffers of a glTF. Empty
 /// for a file that cannot be read.

@@ -7,20 +7,20 @@
 namespace pliant {
 
 Result<PlateState> advance_backward_euler(PlateSolver& solver, const PlateProblem& problem,
-                                          const TimeSteps& steps, PlateState state,
-                                          const StopRequest& should_stop) {
+                                          const TimeSteps& steps, PlateState state) {
+  const RunContext& context = solver.context();
   const Outline& outline = problem.outline;
   PLIANT_EXPECTS(is_on_nodes(problem, state));
 
   const double dt = steps.length;
   const double inertia = problem.dynamics.inertia(dt);
   const double shift = problem.dynamics.shift(dt);
-  StageTimer set_up(problem.profile, Stage::SetUp);
+  StageTimer set_up(context.profile, Stage::SetUp);
   if (auto factored = solver.prepare({outline, problem.stiffness, shift}); !factored) {
     return fail(factored.error());
   }
   set_up.stop();
-  const StageTimer solve(problem.profile, Stage::Solve);
+  const StageTimer solve(context.profile, Stage::Solve);
 
   Field w = interior_of(outline, state.displacement);
   Field v = interior_of(outline, state.velocity);
@@ -29,7 +29,7 @@ Result<PlateState> advance_backward_euler(PlateSolver& solver, const PlateProble
   const Field known = interior_of(outline, load);
 
   for (int step = 0; step < steps.count; ++step) {
-    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     auto next = solver.solve(known + shift * w + inertia * v);
     if (!next) return fail(next.error());
     v = (*next - w) / dt;

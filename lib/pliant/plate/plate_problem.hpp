@@ -1,7 +1,6 @@
 #pragma once
 
 #include "pliant/core/field.hpp"
-#include "pliant/core/profile.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
@@ -25,9 +24,6 @@ struct PlateProblem {
   Dynamics dynamics;
   EdgeTangents tangents;
   Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
-
-  /// Receives the time spent in set-up and solve; null: no profiling. Must outlive the call.
-  Profile* profile = nullptr;
 };
 
 /// Whether the problem's load and the state have a row for each node.

@@ -15,12 +15,8 @@ namespace {
 // kind.
 class AutomaticPlateSolver final : public PlateSolver {
  public:
-  AutomaticPlateSolver(bool prefers_spectral, MemoryBudget* budget, ThreadPool* threads,
-                       int most_lanes)
-      : prefers_spectral_(prefers_spectral),
-        budget_(budget),
-        threads_(threads),
-        most_lanes_(most_lanes) {}
+  AutomaticPlateSolver(bool prefers_spectral, const RunContext& context)
+      : PlateSolver(context), prefers_spectral_(prefers_spectral) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     return suited(system.outline, system.stiffness).prepare(system);
@@ -31,10 +27,9 @@ class AutomaticPlateSolver final : public PlateSolver {
     return solver_->solve(right_hand_sides);
   }
 
-  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
-                             const StopRequest& should_stop) override {
-    return suited(problem.outline, problem.stiffness)
-        .advance(problem, steps, std::move(state), should_stop);
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
+                             PlateState state) override {
+    return suited(problem.outline, problem.stiffness).advance(problem, steps, std::move(state));
   }
 
   SolverCounts counts() const override {
@@ -79,18 +74,15 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::unique_ptr<PlateSolver> make(Way way) const {
     switch (way) {
       case Way::Spectral:
-        return make_spectral_solver(budget_, threads_, most_lanes_);
+        return make_spectral_solver(context());
       case Way::Schwarz:
-        return make_schwarz_solver(budget_, threads_, most_lanes_);
+        return make_schwarz_solver(context());
       default:
-        return make_sparse_solver(available_solvers().front(), budget_);
+        return make_sparse_solver(available_solvers().front(), context());
     }
   }
 
   bool prefers_spectral_;
-  MemoryBudget* budget_;
-  ThreadPool* threads_;
-  int most_lanes_;
   std::unique_ptr<PlateSolver> solver_;
   Way way_ = Way::Direct;
   Outline asked_for_;
@@ -101,8 +93,8 @@ class AutomaticPlateSolver final : public PlateSolver {
 }  // namespace
 
 Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeSteps& steps,
-                                        PlateState state, const StopRequest& should_stop) {
-  return advance_backward_euler(*this, problem, steps, std::move(state), should_stop);
+                                        PlateState state) {
+  return advance_backward_euler(*this, problem, steps, std::move(state));
 }
 
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
@@ -126,14 +118,12 @@ bool worth_iterating(int unknowns, const Stiffness& stiffness) {
          stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
 }
 
-std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, MemoryBudget* budget,
-                                               ThreadPool* threads, int most_lanes) {
+std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, const RunContext& context) {
   PLIANT_EXPECTS(is_available(choice));
   if (choice == SolverChoice::Auto || choice == SolverChoice::Spectral) {
-    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, budget, threads,
-                                                  most_lanes);
+    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, context);
   }
-  return make_sparse_solver(choice, budget);
+  return make_sparse_solver(choice, context);
 }
 
 }  // namespace pliant

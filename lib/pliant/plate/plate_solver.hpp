@@ -2,11 +2,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 
-#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
-#include "pliant/core/thread_pool.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/time_steps.hpp"
@@ -18,7 +17,7 @@ namespace pliant {
 /// results may differ in the last digits. Not thread-safe; give each body its own.
 class PlateSolver {
  public:
-  PlateSolver() = default;
+  explicit PlateSolver(RunContext context) : context_(std::move(context)) {}
   PlateSolver(const PlateSolver&) = delete;
   PlateSolver& operator=(const PlateSolver&) = delete;
   virtual ~PlateSolver() = default;
@@ -31,19 +30,25 @@ class PlateSolver {
   virtual Result<void> prepare(const PlateSystem& system) = 0;
 
   /// Solves for three right-hand sides (#unknowns x 3). Requires: `prepare` succeeded, and
-  /// `advance` was not called since. Errors: OutOfMemory.
+  /// `advance` was not called since. Errors: OutOfMemory; Interrupted.
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
 
   /// Advances a plate over an interval as `advance_backward_euler` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.
-  /// Reuse and errors: those of `prepare`; Interrupted.
+  /// Its profile receives the times of set-up and solve. Reuse and errors: those of `prepare`;
+  /// Interrupted.
   virtual Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
-                                     PlateState state, const StopRequest& should_stop = {});
+                                     PlateState state);
 
   virtual SolverCounts counts() const = 0;
 
   /// The memory that the solver uses now. [bytes]
   virtual std::size_t memory() const = 0;
+
+  const RunContext& context() const { return context_; }
+
+ private:
+  RunContext context_;
 };
 
 /// Whether `Auto` solves such a plate in sine space: true if that is faster, unless c is so close
@@ -55,12 +60,8 @@ bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
 /// are needed. Depends on nothing else.
 bool worth_iterating(int unknowns, const Stiffness& stiffness);
 
-/// A solver that reserves its memory from `budget` and may use `threads`, which must both outlive
-/// it; null: no limit, one thread. Its vectors have at most `most_lanes` doubles, or the fewest
-/// that the architecture allows. The bits depend on none of these. Requires: `choice` is available.
+/// Requires: `choice` is available.
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice = SolverChoice::Auto,
-                                               MemoryBudget* budget = nullptr,
-                                               ThreadPool* threads = nullptr,
-                                               int most_lanes = widest_lanes);
+                                               const RunContext& context = {});
 
 }  // namespace pliant

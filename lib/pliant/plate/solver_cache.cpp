@@ -17,7 +17,7 @@ PlateSolver& SolverCache::solver_of(const Outline& outline) {
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [&](const Kept& kept) { return kept.outline == outline; });
   if (found != kept_.end()) return *found->solver;
-  kept_.push_back({outline, make_plate_solver(choice_, budget_, threads_, most_lanes_)});
+  kept_.push_back({outline, make_plate_solver(choice_, context_)});
   return *kept_.back().solver;
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pliant/plate/outline/outline.hpp"
@@ -14,9 +15,8 @@ namespace pliant {
 class SolverCache {
  public:
   /// For solvers made by `make_plate_solver` with these arguments.
-  explicit SolverCache(SolverChoice choice = SolverChoice::Auto, MemoryBudget* budget = nullptr,
-                       ThreadPool* threads = nullptr, int most_lanes = widest_lanes)
-      : choice_(choice), budget_(budget), threads_(threads), most_lanes_(most_lanes) {}
+  explicit SolverCache(SolverChoice choice = SolverChoice::Auto, RunContext context = {})
+      : choice_(choice), context_(std::move(context)) {}
 
   /// Destroys all solvers except those of `outlines`. Called before a frame, to make room for the
   /// new solvers it needs.
@@ -35,9 +35,7 @@ class SolverCache {
   };
 
   SolverChoice choice_;
-  MemoryBudget* budget_;
-  ThreadPool* threads_;
-  int most_lanes_;
+  RunContext context_;
   std::vector<Kept> kept_;
   SolverCounts gone_;  // counts of the solvers that were destroyed
 };

@@ -42,12 +42,12 @@ std::optional<SolverChoice> solver_choice(std::string_view name) {
   return {};
 }
 
-std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice, MemoryBudget* budget) {
+std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice, const RunContext& context) {
 #ifdef PLIANT_WITH_CHOLMOD
-  if (choice == SolverChoice::Cholmod) return make_cholmod_solver(budget);
+  if (choice == SolverChoice::Cholmod) return make_cholmod_solver(context);
 #endif
   PLIANT_EXPECTS(choice == SolverChoice::Eigen);
-  return make_eigen_solver(budget);
+  return make_eigen_solver(context);
 }
 
 }  // namespace pliant

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -27,9 +26,6 @@ std::string_view name_of(SolverChoice choice);
 
 /// The choice of that name; nullopt for other names.
 std::optional<SolverChoice> solver_choice(std::string_view name);
-
-/// As wide as the vectors of the machine.
-inline constexpr int widest_lanes = std::numeric_limits<int>::max();
 
 /// The work that a solver has done so far; shows whether work was reused.
 struct SolverCounts {

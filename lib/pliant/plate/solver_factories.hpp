@@ -2,28 +2,25 @@
 
 #include <memory>
 
-#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
 
 // The implementations behind `make_plate_solver`. Internal to plate.
 
-std::unique_ptr<PlateSolver> make_cholmod_solver(MemoryBudget* budget);
-std::unique_ptr<PlateSolver> make_eigen_solver(MemoryBudget* budget);
+std::unique_ptr<PlateSolver> make_cholmod_solver(const RunContext& context);
+std::unique_ptr<PlateSolver> make_eigen_solver(const RunContext& context);
 
 /// One of the two above. Requires: it is available.
 std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice = available_solvers().front(),
-                                                MemoryBudget* budget = nullptr);
+                                                const RunContext& context = {});
 
 /// For rectangles.
-std::unique_ptr<PlateSolver> make_spectral_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                  int most_lanes = widest_lanes);
+std::unique_ptr<PlateSolver> make_spectral_solver(const RunContext& context);
 
 /// For outlines that `cover_by_rectangles` covers. If a system needs more than `max_rounds`, its
 /// matrix is factored.
-std::unique_ptr<PlateSolver> make_schwarz_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                 int most_lanes = widest_lanes,
+std::unique_ptr<PlateSolver> make_schwarz_solver(const RunContext& context = {},
                                                  int max_rounds = 60);
 
 }  // namespace pliant

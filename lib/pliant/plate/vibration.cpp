@@ -36,8 +36,7 @@ Result<void> make_ready(PlateSolver& solver, const PlateSystem& system) {
 
 }  // namespace
 
-Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system,
-                                   const StopRequest& should_stop) {
+Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system) {
   if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
   // Inverse iteration on three shapes at once. In their span the eigenvalues mu of the inverse are
@@ -47,7 +46,7 @@ Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& syste
   double lambda = std::numeric_limits<double>::infinity();
   constexpr int most_passes = 500;
   for (int pass = 0; pass < most_passes; ++pass) {
-    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (solver.context().is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     auto solutions = solver.solve(shapes);
     if (!solutions) return fail(solutions.error());
     if (shapes.rows() == 1) return shapes(0, 0) / (*solutions)(0, 0);
@@ -69,8 +68,7 @@ Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& syste
 }
 
 Result<std::vector<ExcitedMode>> excited_modes(PlateSolver& solver, const PlateSystem& system,
-                                               const Eigen::VectorXd& shape, Eigen::Index node,
-                                               const StopRequest& should_stop) {
+                                               const Eigen::VectorXd& shape, Eigen::Index node) {
   PLIANT_EXPECTS(shape.size() == unknown_count(system.outline) && shape(node) != 0);
   if (auto ready = make_ready(solver, system); !ready) return fail(ready.error());
 
@@ -84,7 +82,7 @@ Result<std::vector<ExcitedMode>> excited_modes(PlateSolver& solver, const PlateS
   basis.col(0) = shape / shape.norm();
   Eigen::Index count = 1;
   for (;; ++count) {
-    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (solver.context().is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     Field right_hand_side = Field::Zero(shape.size(), 3);
     right_hand_side.col(0) = basis.col(count - 1);
     auto solved = solver.solve(right_hand_side);

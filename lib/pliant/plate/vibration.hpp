@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
 #include "pliant/plate/plate_solver.hpp"
 
 namespace pliant {
@@ -11,11 +10,10 @@ namespace pliant {
 /// The smallest eigenvalue lambda of L on the interior of a clamped plate, rim and tangents 0
 /// [1/uv^4]: the slowest free vibration of a plate of density rho has the angular frequency
 /// sqrt(lambda / rho) [1/s]. By subspace iteration, to 1e-9 if the eigenvalues are far apart and to
-/// 1e-4 if many are close together, as for a sliver. `should_stop` is called before every pass.
-/// Requires: system.shift is 0; at least one unknown. Errors: those of the solver; Interrupted if
-/// `should_stop` returns true.
-Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system,
-                                   const StopRequest& should_stop = {});
+/// 1e-4 if many are close together, as for a sliver. The stop request of the solver's context is
+/// called before every pass. Requires: system.shift is 0; at least one unknown. Errors: those of
+/// the solver; Interrupted.
+Result<double> smallest_eigenvalue(PlateSolver& solver, const PlateSystem& system);
 
 /// A vibration of a plate that is released, as seen at one of its nodes.
 struct ExcitedMode {
@@ -29,7 +27,6 @@ struct ExcitedMode {
 /// Source: Wilson, Yuan, Dickens, Dynamic analysis by direct superposition of Ritz vectors (1982).
 /// Requires: as above, and shape(node) is not 0. Errors: as above. Cost: at most 24 solves.
 Result<std::vector<ExcitedMode>> excited_modes(PlateSolver& solver, const PlateSystem& system,
-                                               const Eigen::VectorXd& shape, Eigen::Index node,
-                                               const StopRequest& should_stop = {});
+                                               const Eigen::VectorXd& shape, Eigen::Index node);
 
 }  // namespace pliant

@@ -17,14 +17,14 @@ namespace {
 struct MakeMesh {
   Result<Mesh> operator()(const GridSheet& sheet) const { return make_mesh(sheet); }
   Result<Mesh> operator()(const MeshFile& file) const {
-    return read_mesh(file.path, file.object, file.uv_set, file.root, limits);
+    return read_mesh(file.path, file.object, file.uv_set, file.root, context);
   }
   Result<Mesh> operator()(const Mesh& mesh) const {
     if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
     return mesh;
   }
 
-  ReadLimits limits;
+  const RunContext& context;
 };
 
 // The memory for making a shape, as far as it is known in advance.
@@ -71,8 +71,8 @@ Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& 
 
 }  // namespace
 
-Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                                  MemoryShare& memory, const StopRequest& should_stop) {
+Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                      const RunContext& context) {
   const auto at_scene = [&](Error error) {
     // An unreadable file is reported as a problem of the scene; an error in its contents already
     // names the file.
@@ -87,13 +87,14 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
   if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
     if (auto readable = check_mesh_file(file->path); !readable) return at_scene(readable.error());
   }
+  MemoryShare memory(context.memory);
   std::size_t ahead = std::visit(BytesToMake{}, surface.shape);
   if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
   if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
     ahead += BytesToMake::of_references(*file);
     if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
   }
-  auto mesh = std::visit(MakeMesh{{memory.available(), should_stop}}, surface.shape);
+  auto mesh = std::visit(MakeMesh{context}, surface.shape);
   if (!mesh) return at_scene(mesh.error());
   const std::size_t bytes =
       bytes_of(*mesh) + bytes_to_run(static_cast<std::size_t>(mesh->vertex_count()));
@@ -106,21 +107,20 @@ Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& ori
                                 file ? ", mesh " + file->path : "", error.message);
     return at_scene(std::move(error));
   }
-  return RestShape{surface.name, *std::move(mesh), *std::move(mapping)};
+  return ReservedShape{{surface.name, *std::move(mesh), *std::move(mapping)}, std::move(memory)};
 }
 
-Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                              MemoryShare& memory, const StopRequest& should_stop) {
+Result<MemoryShare> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                     const RunContext& context) {
   if (const auto* sheet = std::get_if<GridSheet>(&surface.shape)) {
-    return take(BytesToMake{}(*sheet), surface, origin, memory);
+    MemoryShare memory(context.memory);
+    if (auto taken = take(BytesToMake{}(*sheet), surface, origin, memory); !taken)
+      return fail(taken.error());
+    return memory;
   }
-  const auto made = make_rest_shape(surface, origin, memory, should_stop);
-  return made ? Result<void>() : fail(made.error());
-}
-
-Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin) {
-  MemoryShare unlimited(nullptr);
-  return make_rest_shape(surface, origin, unlimited);
+  auto made = make_rest_shape(surface, origin, context);
+  if (!made) return fail(made.error());
+  return std::move(made->memory);
 }
 
 }  // namespace pliant

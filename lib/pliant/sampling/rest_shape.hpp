@@ -4,7 +4,7 @@
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/scene/scene.hpp"
@@ -18,20 +18,21 @@ struct RestShape {
   GridMapping mapping;
 };
 
-/// Makes or reads a surface's mesh and finds its grid. Errors: those of `read_mesh` and
-/// `check_mesh`; those of `find_grid`, with the surface's line in the scene.
-///
-/// `memory` is resized to the needs of the shape and its body, before a sheet is made or after a
-/// file is read. Further errors: OutOfMemory if the budget has less; Interrupted if `should_stop`
-/// returns true while assimp reads.
-Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                                  MemoryShare& memory, const StopRequest& should_stop = {});
+/// A rest shape with the memory that it and its body need, reserved from the run's.
+struct ReservedShape {
+  RestShape shape;
+  MemoryShare memory;
+};
 
-/// Checks that `make_rest_shape` would succeed, without making sheets.
-Result<void> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                              MemoryShare& memory, const StopRequest& should_stop = {});
+/// Makes or reads a surface's mesh and finds its grid. Reserves memory before a sheet is made and
+/// after a file is read. Errors: those of `read_mesh` and `check_mesh`; those of `find_grid`, with
+/// the surface's line in the scene; OutOfMemory; Interrupted, while assimp reads.
+Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                      const RunContext& context = {});
 
-/// The first function without a limit to memory.
-Result<RestShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin);
+/// Checks that `make_rest_shape` would succeed, without making sheets. Returns the memory that it
+/// would reserve.
+Result<MemoryShare> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                     const RunContext& context);
 
 }  // namespace pliant

@@ -59,8 +59,11 @@ Bodies::Bodies(const Scene& scene, const SceneSampling& sampling, const Simulati
       memory_(options.max_memory),
       threads_(options.threads),
       solver_(options.solver),
-      most_lanes_(options.most_lanes),
-      should_stop_(options.should_stop),
+      // Several surfaces are solved in parallel; a single one uses all threads.
+      context_{.memory = &memory_,
+               .threads = scene.surfaces.size() == 1 ? &threads_ : nullptr,
+               .most_lanes = options.most_lanes,
+               .should_stop = options.should_stop},
       profiles_(options.profile ? scene.surfaces.size() : 0) {}
 
 Result<void> check_to_simulate(const Scene& scene) {
@@ -79,29 +82,28 @@ tl::unexpected<Error> interrupted_at_start() {
 }
 
 Result<void> Bodies::make_all() {
-  std::vector<Error> errors = check_channels(scene_, {}, should_stop_);
+  std::vector<Error> errors = check_channels(scene_, {}, context_.should_stop);
   for (const Surface& surface : scene_.surfaces) {
-    if (should_stop_ && should_stop_()) break;
-    MemoryShare share(&memory_);
-    auto rest_shape = make_rest_shape(surface, scene_.origin, share, should_stop_);
-    if (!rest_shape) {
-      errors.push_back(std::move(rest_shape.error()));
+    if (context_.is_stopped()) break;
+    auto made = make_rest_shape(surface, scene_.origin, context_);
+    if (!made) {
+      errors.push_back(std::move(made.error()));
       continue;
     }
-    add(surface, *std::move(rest_shape), std::move(share));
+    add(surface, std::move(made->shape), std::move(made->memory));
   }
   steps_.resize(bodies_.size());
-  if (should_stop_ && should_stop_()) return interrupted_at_start();
+  if (context_.is_stopped()) return interrupted_at_start();
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
   return {};
 }
 
 void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share) {
   const GridMapping& mapping = rest_shape.mapping;
-  // Several surfaces are solved in parallel; a single one uses all threads.
-  ThreadPool* const threads = scene_.surfaces.size() == 1 ? &threads_ : nullptr;
-  bodies_.emplace_back(mapping.grid, mapping.rest, body_settings(surface.solver),
-                       SolverCache(solver_, &memory_, threads, most_lanes_));
+  RunContext context = context_;
+  context.profile = profile_of(bodies_.size());
+  bodies_.emplace_back(mapping.grid, mapping.rest, body_settings(surface.solver), solver_,
+                       std::move(context));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
 }
@@ -132,7 +134,7 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   }
   if (kept) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
-    if (should_stop_ && should_stop_()) {
+    if (context_.is_stopped()) {
       step.outcome = fail(ErrorCode::Interrupted, "interrupted");
       return;
     }
@@ -144,7 +146,7 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
       return;
     }
   }
-  step.outcome = body.step(step.inputs.body, should_stop_, profile_of(index));
+  step.outcome = body.step(step.inputs.body);
   if (!step.outcome) return;
   step.facts =
       facts_of(step.inputs.body, body.last_step(), surface.solver.combine, std::move(step.facts));

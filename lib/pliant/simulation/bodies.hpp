@@ -88,8 +88,7 @@ class Bodies {
   std::vector<Body> bodies_;
   std::vector<Step> steps_;
   SolverChoice solver_;
-  int most_lanes_;
-  StopRequest should_stop_;
+  RunContext context_;             // of the bodies, each with a profile of its own
   std::vector<Profile> profiles_;  // one a surface; empty: no profiling
 };
 

@@ -26,14 +26,14 @@ Result<void> Simulation::check(const Scene& scene, const SimulationOptions& opti
 
   errors = check_channels(scene, {}, options.should_stop);
   MemoryBudget memory(options.max_memory);
+  const RunContext context{.memory = &memory, .should_stop = options.should_stop};
   std::vector<MemoryShare> shares;  // of all surfaces together
   for (const Surface& surface : scene.surfaces) {
-    if (options.should_stop && options.should_stop()) return interrupted_at_start();
-    shares.emplace_back(&memory);
-    auto checked = check_rest_shape(surface, scene.origin, shares.back(), options.should_stop);
-    if (!checked) errors.push_back(std::move(checked.error()));
+    if (context.is_stopped()) return interrupted_at_start();
+    auto checked = check_rest_shape(surface, scene.origin, context);
+    checked ? shares.push_back(*std::move(checked)) : errors.push_back(std::move(checked.error()));
   }
-  if (options.should_stop && options.should_stop()) return interrupted_at_start();
+  if (context.is_stopped()) return interrupted_at_start();
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
   return {};
 }
@@ -88,7 +88,8 @@ Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
   if (!surfaces.try_resize(std::min(options.max_memory, bytes))) {
     return fail(ErrorCode::OutOfMemory, "simulating the surfaces " + surfaces.complaint(bytes));
   }
-  return preview_forces(simulation.scene(), simulation.rest_shapes(), memory, options.should_stop);
+  return preview_forces(simulation.scene(), simulation.rest_shapes(),
+                        {.memory = &memory, .should_stop = options.should_stop});
 }
 
 }  // namespace pliant

@@ -11,7 +11,7 @@
 #include "pliant/body/state.hpp"
 #include "pliant/core/profile.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/feedback/frame_report.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/feedback/warnings.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/backward_euler.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_factories.hpp"
@@ -64,7 +66,7 @@ TEST_CASE("rectangles together are as exact as a refined factor", "[plate][schwa
   const UnionPlate plate = GENERATE(from_range(union_plates(34)));
   const Field load = Field::Random(plate.grid.node_count(), 3);
   const Field f = interior_of(plate.outline(), load);
-  SchwarzPlate schwarz(nullptr);
+  SchwarzPlate schwarz;
   for (const Stiffness& stiffness :
        {Stiffness{1, 2, 1}, Stiffness{1, 0, 1}, Stiffness{1, 20, 1}, Stiffness{100, 2, 1},
         Stiffness{1, 2, 100}, Stiffness{1, -1.9, 1}, Stiffness{1, -1.999, 1},
@@ -91,7 +93,7 @@ TEST_CASE("steps over rectangles are those of a factored matrix", "[plate][schwa
     for (const double dt : {1e-6, 1e-3, 1e3}) {
       const PlateProblem problem = problem_on(plate, stiffness, dynamics);
       const PlateState state = random_state(plate.grid);
-      const auto schwarz = make_schwarz_solver(nullptr, nullptr);
+      const auto schwarz = make_schwarz_solver();
       const auto direct = make_plate_solver(SolverChoice::Eigen);
       for (const int count : {1, 2, 9}) {
         CAPTURE(plate.name, dynamics.density, dynamics.damping, dt, count);
@@ -119,7 +121,7 @@ TEST_CASE("a round over the rectangles is symmetric and positive definite", "[pl
   const Stiffness stiffness = GENERATE(Stiffness{1, 2, 1}, Stiffness{2, -2.7, 1});
   for (const double shift : {0.0, 1e6}) {
     CAPTURE(plate.name, shift);
-    SchwarzPlate schwarz(nullptr);
+    SchwarzPlate schwarz;
     REQUIRE(prepare(schwarz, {plate.outline(), stiffness, shift}));
     const auto round = [&](const Field& load) {
       Field result = Field::Zero(plate.grid.node_count(), 3);
@@ -150,7 +152,7 @@ TEST_CASE("the rounds do not grow with the plate", "[plate][schwarz]") {
       const auto plates = union_plates(side);
       const UnionPlate& plate = *std::find_if(plates.begin(), plates.end(),
                                               [&](const UnionPlate& p) { return p.name == name; });
-      SchwarzPlate schwarz(nullptr);
+      SchwarzPlate schwarz;
       REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
       solved(schwarz, plate, Field::Ones(plate.grid.node_count(), 3));
       CAPTURE(name, side);
@@ -165,7 +167,7 @@ TEST_CASE("no bit of a union depends on threads or on what was kept", "[plate][s
   const PlateProblem problem = problem_on(plate, {1.5, 1, 2}, {40, 20});
   const PlateState state = random_state(plate.grid);
   const TimeSteps steps{3, 1e-3};
-  const auto plain = make_schwarz_solver(nullptr, nullptr);
+  const auto plain = make_schwarz_solver();
   const PlateState expected = plain->advance(problem, steps, state).value();
   const auto check = [&](PlateSolver& solver) {
     const PlateState next = solver.advance(problem, steps, state).value();
@@ -174,7 +176,7 @@ TEST_CASE("no bit of a union depends on threads or on what was kept", "[plate][s
   };
   for (const int count : {2, 3, 8}) {
     ThreadPool threads(count);
-    check(*make_schwarz_solver(nullptr, &threads));
+    check(*make_schwarz_solver({.threads = &threads}));
   }
   // Other coefficients, another outline and a system on which it fails, in between.
   PlateProblem other = problem;
@@ -194,7 +196,7 @@ TEST_CASE("components are solved as if each were alone", "[plate][schwarz]") {
   PlateProblem problem = problem_on(plate, {1, 2, 1}, {40, 20});
   problem.tangents = {};
   const PlateState state = random_state(plate.grid);
-  const auto solver = make_schwarz_solver(nullptr, nullptr);
+  const auto solver = make_schwarz_solver();
   const PlateState all = solver->advance(problem, {3, 1e-3}, state).value();
   for (int k = 0; k < 3; ++k) {
     PlateProblem alone = problem;
@@ -214,21 +216,27 @@ TEST_CASE("components are solved as if each were alone", "[plate][schwarz]") {
 TEST_CASE("a union stops when asked to, between rounds too", "[plate][schwarz]") {
   const UnionPlate plate = ell(20);
   const PlateProblem problem = problem_on(plate, {}, {});
-  const auto solver = make_schwarz_solver(nullptr, nullptr);
   const PlateState state = random_state(plate.grid);
   for (const int after : {1, 2, 7}) {
     int asked = 0;
-    const auto stopped =
-        solver->advance(problem, {10, 0.1}, state, [&] { return ++asked == after; });
+    const auto solver = make_schwarz_solver({.should_stop = [&] { return ++asked == after; }});
+    const auto stopped = solver->advance(problem, {10, 0.1}, state);
     REQUIRE_FALSE(stopped);
     CHECK(stopped.error().code == ErrorCode::Interrupted);
+    CHECK(asked == after);
+    // A single system too.
+    asked = 0;
+    REQUIRE(solver->prepare({plate.outline(), {1, 2, 1}, 0}));
+    const auto solved = solver->solve(Field::Random(unknown_count(plate.outline()), 3));
+    REQUIRE_FALSE(solved);
+    CHECK(solved.error().code == ErrorCode::Interrupted);
     CHECK(asked == after);
   }
 }
 
 TEST_CASE("what few rounds do not solve is said, and factored", "[plate][schwarz]") {
   const UnionPlate plate = ell(30);
-  SchwarzPlate schwarz(nullptr, nullptr, 2);
+  SchwarzPlate schwarz({}, 2);
   REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
   const Field load = Field::Random(plate.grid.node_count(), 3);
   Field solution = Field::Zero(plate.grid.node_count(), 3);
@@ -239,7 +247,7 @@ TEST_CASE("what few rounds do not solve is said, and factored", "[plate][schwarz
 
   const PlateProblem problem = problem_on(plate, {1, 2, 1}, {40, 20});
   const PlateState state = random_state(plate.grid);
-  const auto impatient = make_schwarz_solver(nullptr, nullptr, widest_lanes, 2);
+  const auto impatient = make_schwarz_solver({}, 2);
   const PlateState fallen_back = impatient->advance(problem, {3, 1e-3}, state).value();
   const auto direct = make_plate_solver(available_solvers().front());
   const PlateState expected = advance_backward_euler(*direct, problem, {3, 1e-3}, state).value();
@@ -253,7 +261,7 @@ TEST_CASE("rectangles solve a system as factors do", "[plate][schwarz][solver]")
   PlateSystem system{plate.outline(), {1, 2, 1}, 3};
   const Field f = Field::Random(unknown_count(system.outline), 3);
   const Field exact = refined(system, f);
-  const auto solver = make_schwarz_solver(nullptr, nullptr);
+  const auto solver = make_schwarz_solver();
   REQUIRE(solver->prepare(system));
   const Field w = solver->solve(f).value();
   CHECK((w - exact).norm() <= 1e-14 * exact.norm());
@@ -264,7 +272,7 @@ TEST_CASE("rectangles solve a system as factors do", "[plate][schwarz][solver]")
   CHECK(solver->solve(f).value() == w);
 
   // Too few rounds, and a matrix that is not positive definite: as the factors.
-  const auto impatient = make_schwarz_solver(nullptr, nullptr, widest_lanes, 2);
+  const auto impatient = make_schwarz_solver({}, 2);
   const auto direct = make_plate_solver(available_solvers().front());
   REQUIRE(direct->prepare(system));
   REQUIRE(impatient->prepare(system));
@@ -278,7 +286,7 @@ TEST_CASE("rectangles solve a system as factors do", "[plate][schwarz][solver]")
 
 TEST_CASE("numbers that are none end the rounds", "[plate][schwarz]") {
   const UnionPlate plate = ell(30);
-  SchwarzPlate schwarz(nullptr);
+  SchwarzPlate schwarz;
   REQUIRE(prepare(schwarz, {plate.outline(), {1, 2, 1}, 0}));
   Field load = Field::Ones(plate.grid.node_count(), 3);
   load(plate.grid.node(3, 4), 1) = std::numeric_limits<double>::infinity();
@@ -298,13 +306,13 @@ TEST_CASE("rectangles keep within the memory they may have", "[plate][schwarz]")
   const PlateState state = random_state(plate.grid);
   for (const std::size_t bytes : {std::size_t{1} << 20, std::size_t{3} << 20}) {
     MemoryBudget small(bytes);
-    const auto refused = make_schwarz_solver(&small, nullptr)->advance(problem, {1, 1}, state);
+    const auto refused = make_schwarz_solver({.memory = &small})->advance(problem, {1, 1}, state);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().code == ErrorCode::OutOfMemory);
     CHECK(small.available() == small.total());
   }
   MemoryBudget enough(std::size_t{64} << 20);
-  const auto solver = make_schwarz_solver(&enough, nullptr);
+  const auto solver = make_schwarz_solver({.memory = &enough});
   REQUIRE(solver->advance(problem, {1, 1}, state));
   CHECK(enough.total() - enough.available() == solver->memory());
   CHECK(solver->memory() <=
@@ -328,7 +336,7 @@ TEST_CASE("large unions go to rectangles by themselves", "[plate][schwarz][solve
     const bool is_large = worth_iterating(unknown_count(plate.outline()), {1, 2, 1});
     CHECK(is_large == (side == 461));
     const Field expected =
-        displacement(is_large ? make_schwarz_solver(nullptr, nullptr) : make_plate_solver(direct));
+        displacement(is_large ? make_schwarz_solver() : make_plate_solver(direct));
     for (const SolverChoice choice : {SolverChoice::Auto, SolverChoice::Spectral})
       CHECK(displacement(make_plate_solver(choice)) == expected);
   }

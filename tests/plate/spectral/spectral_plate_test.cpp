@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
@@ -191,10 +193,10 @@ TEST_CASE("no bit depends on threads, on the width of vectors or on what was kep
     const long first = grid.node(1, 1), count = grid.node_count();
     REQUIRE(plate.advance({problem.load.data() + first, grid.columns, count}, inertia, {7, dt},
                           {next.displacement.data() + first, grid.columns, count},
-                          {next.velocity.data() + first, grid.columns, count}, {}));
+                          {next.velocity.data() + first, grid.columns, count}));
     return next;
   };
-  SpectralPlate plain(nullptr);
+  SpectralPlate plain;
   const PlateState expected = advance(plain);
   const auto check = [&](SpectralPlate& plate) {
     const PlateState next = advance(plate);
@@ -203,12 +205,12 @@ TEST_CASE("no bit depends on threads, on the width of vectors or on what was kep
   };
   for (const int count : {2, 3, 8}) {
     ThreadPool threads(count);
-    SpectralPlate plate(nullptr, &threads);
+    SpectralPlate plate({.threads = &threads});
     check(plate);
   }
   for (int which = 0; runnable_kernels(which); ++which) {
     CAPTURE(runnable_kernels(which)->name);
-    SpectralPlate plate(nullptr, nullptr, *runnable_kernels(which));
+    SpectralPlate plate({.most_lanes = runnable_kernels(which)->lanes});
     check(plate);
   }
   REQUIRE(plain.prepare({unit_grid(201, 33), {1, 2, 1}, 5}));  // larger, then back
@@ -222,14 +224,14 @@ TEST_CASE("the spectral solver keeps within the memory it may have", "[plate][sp
   const PlateProblem problem{grid, {}, {}, {}, Field::Zero(grid.node_count(), 3)};
   const PlateState state = random_state(grid);
   MemoryBudget small(std::size_t{1} << 20);
-  const auto refused =
-      make_plate_solver(SolverChoice::Spectral, &small)->advance(problem, {1, 1}, state);
+  const auto refused = make_plate_solver(SolverChoice::Spectral, {.memory = &small})
+                           ->advance(problem, {1, 1}, state);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::OutOfMemory);
   CHECK(small.available() == small.total());
 
   MemoryBudget enough(std::size_t{64} << 20);
-  const auto solver = make_plate_solver(SolverChoice::Spectral, &enough);
+  const auto solver = make_plate_solver(SolverChoice::Spectral, {.memory = &enough});
   REQUIRE(solver->advance(problem, {1, 1}, state));
   CHECK(enough.total() - enough.available() == solver->memory());
   CHECK(solver->memory() <= sizeof(double) * 40 * static_cast<std::size_t>(grid.node_count()));
@@ -240,9 +242,9 @@ TEST_CASE("a plate in sine space stops when asked to", "[plate][spectral]") {
   const Grid grid = unit_grid(20, 20);
   const PlateProblem problem = problem_on(grid, {}, {});
   int asked = 0;
-  const auto solver = make_plate_solver(SolverChoice::Spectral);
-  const auto stopped =
-      solver->advance(problem, {10, 0.1}, random_state(grid), [&] { return ++asked == 4; });
+  const auto solver =
+      make_plate_solver(SolverChoice::Spectral, {.should_stop = [&] { return ++asked == 4; }});
+  const auto stopped = solver->advance(problem, {10, 0.1}, random_state(grid));
   REQUIRE_FALSE(stopped);
   CHECK(stopped.error().code == ErrorCode::Interrupted);
   CHECK(asked == 4);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/overlap/rectangle_cover.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/sparse/operator.hpp"
@@ -65,8 +66,8 @@ void apply_to_run(const StencilWeights& weights, const double* p, long M, long c
 template <class Work>
 void SchwarzPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
-  if (threads_ && system_.outline.grid().node_count() > worth_a_thread) {
-    threads_->for_each(count, std::ref(work));
+  if (context_.threads && system_.outline.grid().node_count() > worth_a_thread) {
+    context_.threads->for_each(count, std::ref(work));
   } else {
     for (std::size_t k = 0; k < count; ++k) work(k);
   }
@@ -181,7 +182,7 @@ void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
       }
     }
     if (!part.plate) {
-      plates_.push_back(std::make_unique<SpectralPlate>(budget_, threads_, kernels_));
+      plates_.push_back(std::make_unique<SpectralPlate>(context_));
       part.plate = plates_.back().get();
     }
     parts_.push_back(std::move(part));
@@ -371,8 +372,8 @@ void SchwarzPlate::turn_direction(const Sums& factor) {
   });
 }
 
-Result<void> SchwarzPlate::correct(const StopRequest& should_stop) {
-  if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+Result<void> SchwarzPlate::correct() {
+  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   if (rounds_left_-- == 0) {
     return fail(ErrorCode::SolverFailed,
                 fmt::format("the plate of {} unknowns is not solved after {} rounds over its {} "
@@ -386,9 +387,9 @@ Result<void> SchwarzPlate::correct(const StopRequest& should_stop) {
 
 // Conjugate gradients from a recomputed residual, as long as its updates can be trusted. Eq. (37).
 // Components that are not solved afterwards remain set in `is_unsolved`.
-Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should_stop) {
+Result<void> SchwarzPlate::run(bool (&is_unsolved)[3]) {
   find_residual();
-  if (auto corrected = correct(should_stop); !corrected) return corrected;
+  if (auto corrected = correct(); !corrected) return corrected;
   Sums energy, change, size, target = {}, turn = {};
   dot(residual_, correction_, energy);
   dot(correction_, correction_, change);
@@ -415,7 +416,7 @@ Result<void> SchwarzPlate::run(bool (&is_unsolved)[3], const StopRequest& should
     }
     add(direction_, step, solution_);
     add(product_, back, residual_);
-    if (auto corrected = correct(should_stop); !corrected) return corrected;
+    if (auto corrected = correct(); !corrected) return corrected;
     Sums before;
     std::copy_n(energy, 3, before);
     dot(residual_, correction_, energy);
@@ -441,14 +442,14 @@ bool SchwarzPlate::retire(const Sums& energy, const Sums& change, const Sums& ta
 }
 
 // Solves for `load_` from the guess in `solution_`.
-Result<void> SchwarzPlate::iterate(const StopRequest& should_stop) {
+Result<void> SchwarzPlate::iterate() {
   ++counts_.solves;
   rounds_left_ = max_rounds_;
   bool is_unsolved[3];
   for (int k = 0; k < 3; ++k) is_unsolved[k] = !settle_if_free(k);
   while (is_unsolved[0] || is_unsolved[1] || is_unsolved[2]) {
     std::copy_n(is_unsolved, 3, is_active_);
-    if (auto done = run(is_unsolved, should_stop); !done) return done;
+    if (auto done = run(is_unsolved); !done) return done;
   }
   return {};
 }
@@ -474,14 +475,13 @@ void SchwarzPlate::for_each_run(const Work& work) {
   });
 }
 
-Result<void> SchwarzPlate::solve(const ConstNodesView& load, const NodesView& solution,
-                                 const StopRequest& should_stop) {
+Result<void> SchwarzPlate::solve(const ConstNodesView& load, const NodesView& solution) {
   PLIANT_EXPECTS(is_prepared_);
   for_each_run([&](int k, long first, long count) {
     std::copy_n(at(load, k, first), count, load_.of[k] + first);
     std::copy_n(at(solution, k, first), count, solution_.of[k] + first);
   });
-  if (auto done = iterate(should_stop); !done) return done;
+  if (auto done = iterate(); !done) return done;
   for_each_run([&](int k, long first, long count) {
     std::copy_n(solution_.of[k] + first, count, at(solution, k, first));
   });
@@ -500,8 +500,7 @@ void SchwarzPlate::precondition(const ConstNodesView& load, const NodesView& sol
 }
 
 Result<void> SchwarzPlate::advance(const ConstNodesView& load, double inertia, double dt,
-                                   const NodesView& displacement, const NodesView& velocity,
-                                   const StopRequest& should_stop) {
+                                   const NodesView& displacement, const NodesView& velocity) {
   PLIANT_EXPECTS(is_prepared_);
   const double shift = system_.shift;
   // With inertia the first guess continues the motion.
@@ -517,7 +516,7 @@ Result<void> SchwarzPlate::advance(const ConstNodesView& load, double inertia, d
       x[k] = goes_on ? w[k] + dt * v[k] : w[k];
     }
   });
-  if (auto done = iterate(should_stop); !done) return done;
+  if (auto done = iterate(); !done) return done;
   for_each_run([&](int component, long first, long count) {
     const double* const x = solution_.of[component] + first;
     double* const w = at(displacement, component, first);

@@ -6,8 +6,7 @@
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
-#include "pliant/core/thread_pool.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/outline/row_blocks.hpp"
@@ -23,16 +22,9 @@ namespace pliant {
 /// and work per node and step do not grow with the plate. Internal to plate.
 class SchwarzPlate {
  public:
-  /// Reserves memory from `budget` and works on `threads`, which must both outlive it; null: no
-  /// limit, one thread. The bits depend on neither, nor on `kernels`. A system may use at most
-  /// `max_rounds`; most covers need about ten.
-  explicit SchwarzPlate(MemoryBudget* budget, ThreadPool* threads = nullptr, int max_rounds = 60,
-                        const SpectralKernels& kernels = *runnable_kernels(0))
-      : budget_(budget),
-        threads_(threads),
-        kernels_(kernels),
-        memory_(budget),
-        max_rounds_(max_rounds) {}
+  /// A system may use at most `max_rounds`; most covers need about ten.
+  explicit SchwarzPlate(const RunContext& context = {}, int max_rounds = 60)
+      : context_(context), memory_(context.memory), max_rounds_(max_rounds) {}
 
   /// Prepares for a system. Reuse of the last one never changes a result's bits. Requires:
   /// `cover_by_rectangles` finds a cover. Errors: SolverFailed if the matrix is not positive
@@ -42,15 +34,13 @@ class SchwarzPlate {
   /// Solves for three right-hand sides from a guess. Fields are on all nodes, row by row without
   /// gaps, and `first` is node (0,0); only interior nodes are read and written. Requires: prepared.
   /// Errors: SolverFailed if `max_rounds` do not suffice, with `solution` undefined; Interrupted.
-  Result<void> solve(const ConstNodesView& load, const NodesView& solution,
-                     const StopRequest& should_stop = {});
+  Result<void> solve(const ConstNodesView& load, const NodesView& solution);
 
   /// One step of backward Euler with the prepared shift; the load excludes the rim's part; views as
   /// above. Requires: prepared; inertia = rho/dt. Errors: those of `solve`; displacement and
   /// velocity are then unchanged.
   Result<void> advance(const ConstNodesView& load, double inertia, double dt,
-                       const NodesView& displacement, const NodesView& velocity,
-                       const StopRequest& should_stop);
+                       const NodesView& displacement, const NodesView& velocity);
 
   /// One round over the rectangles and back: an approximation of the solution that is linear in the
   /// right-hand side, symmetric and positive definite. Views as above. Requires: prepared.
@@ -80,10 +70,10 @@ class SchwarzPlate {
   void let_go();
   void make_parts(const std::vector<Box>& cover);
   Part part_of(const Box& box) const;
-  Result<void> iterate(const StopRequest& should_stop);
+  Result<void> iterate();
   bool settle_if_free(int component);
-  Result<void> run(bool (&is_unsolved)[3], const StopRequest& should_stop);
-  Result<void> correct(const StopRequest& should_stop);
+  Result<void> run(bool (&is_unsolved)[3]);
+  Result<void> correct();
   bool retire(const Sums& energy, const Sums& change, const Sums& target);
   bool is_any_active() const { return is_active_[0] || is_active_[1] || is_active_[2]; }
   void find_residual();
@@ -101,9 +91,7 @@ class SchwarzPlate {
   template <class Work>
   void for_each_run(const Work& work);
 
-  MemoryBudget* budget_;
-  ThreadPool* threads_;
-  const SpectralKernels& kernels_;
+  RunContext context_;
   MemoryShare memory_;
   int max_rounds_;
   long rounds_ = 0;

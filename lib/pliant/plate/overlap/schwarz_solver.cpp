@@ -13,12 +13,8 @@ namespace {
 
 class SchwarzSolver final : public PlateSolver {
  public:
-  SchwarzSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes, int max_rounds)
-      : budget_(budget),
-        threads_(threads),
-        most_lanes_(most_lanes),
-        max_rounds_(max_rounds),
-        load_(budget) {}
+  SchwarzSolver(const RunContext& context, int max_rounds)
+      : PlateSolver(context), max_rounds_(max_rounds), load_(context.memory) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     system_ = system;
@@ -44,8 +40,8 @@ class SchwarzSolver final : public PlateSolver {
     return fail(no_memory_to_solve(right_hand_sides.rows(), "does not fit in memory"));
   }
 
-  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
-                             const StopRequest& should_stop) override try {
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
+                             PlateState state) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.inertia(steps.length);
@@ -65,14 +61,12 @@ class SchwarzSolver final : public PlateSolver {
     };
     for (; done && step < steps.count; ++step) {
       done = plate_->advance({load_.nodes().data(), grid.columns, grid.node_count()}, inertia,
-                             steps.length, view(state.displacement), view(state.velocity),
-                             should_stop);
+                             steps.length, view(state.displacement), view(state.velocity));
       if (!done) break;
     }
     if (done) return state;
     if (done.error().code != ErrorCode::SolverFailed) return fail(done.error());
-    return finish_directly(problem, {steps.count - step, steps.length}, std::move(state),
-                           should_stop);
+    return finish_directly(problem, {steps.count - step, steps.length}, std::move(state));
   } catch (const std::bad_alloc&) {
     return fail(no_memory_to_solve(problem.outline.unknown_count(), "does not fit in memory"));
   }
@@ -89,10 +83,7 @@ class SchwarzSolver final : public PlateSolver {
 
  private:
   Result<void> prepare_plate(const Outline& outline, const Stiffness& stiffness, double shift) {
-    if (!plate_) {
-      plate_ = std::make_unique<SchwarzPlate>(budget_, threads_, max_rounds_,
-                                              kernels_of_width(most_lanes_));
-    }
+    if (!plate_) plate_ = std::make_unique<SchwarzPlate>(context(), max_rounds_);
     return plate_->prepare(outline, stiffness, shift);
   }
 
@@ -109,24 +100,21 @@ class SchwarzSolver final : public PlateSolver {
   // The rounds do not suffice: factors the matrix of the prepared system.
   Result<void> factor() {
     let_plate_go();
-    factor_ = make_sparse_solver(available_solvers().front(), budget_);
+    factor_ = make_sparse_solver(available_solvers().front(), context());
     return factor_->prepare(system_);
   }
 
   // The same for the remaining steps. Nothing of it is kept, so that the next frame's result
   // depends on that frame alone.
   Result<PlateState> finish_directly(const PlateProblem& problem, const TimeSteps& steps,
-                                     PlateState state, const StopRequest& should_stop) {
+                                     PlateState state) {
     let_plate_go();
-    factor_ = make_sparse_solver(available_solvers().front(), budget_);
-    auto result = factor_->advance(problem, steps, std::move(state), should_stop);
+    factor_ = make_sparse_solver(available_solvers().front(), context());
+    auto result = factor_->advance(problem, steps, std::move(state));
     let_factor_go();
     return result;
   }
 
-  MemoryBudget* budget_;
-  ThreadPool* threads_;
-  int most_lanes_;
   int max_rounds_;
   std::unique_ptr<SchwarzPlate> plate_;
   PlateSystem system_;                   // the last one of `prepare`
@@ -137,9 +125,8 @@ class SchwarzSolver final : public PlateSolver {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_schwarz_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                 int most_lanes, int max_rounds) {
-  return std::make_unique<SchwarzSolver>(budget, threads, most_lanes, max_rounds);
+std::unique_ptr<PlateSolver> make_schwarz_solver(const RunContext& context, int max_rounds) {
+  return std::make_unique<SchwarzSolver>(context, max_rounds);
 }
 
 }  // namespace pliant

@@ -110,8 +110,8 @@ class CholmodFactorization {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_cholmod_solver(MemoryBudget* budget) {
-  return std::make_unique<DirectSolver<CholmodFactorization>>(budget);
+std::unique_ptr<PlateSolver> make_cholmod_solver(const RunContext& context) {
+  return std::make_unique<DirectSolver<CholmodFactorization>>(context);
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/sparse/operator.hpp"
@@ -21,7 +22,8 @@ namespace pliant {
 template <class Factorization>
 class DirectSolver final : public PlateSolver {
  public:
-  explicit DirectSolver(MemoryBudget* budget) : memory_(budget) {}
+  explicit DirectSolver(const RunContext& context)
+      : PlateSolver(context), memory_(context.memory) {}
 
   Result<void> prepare(const PlateSystem& system) override try {
     if (factored_ == system) return {};

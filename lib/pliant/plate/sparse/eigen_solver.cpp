@@ -43,8 +43,8 @@ class EigenFactorization {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_eigen_solver(MemoryBudget* budget) {
-  return std::make_unique<DirectSolver<EigenFactorization>>(budget);
+std::unique_ptr<PlateSolver> make_eigen_solver(const RunContext& context) {
+  return std::make_unique<DirectSolver<EigenFactorization>>(context);
 }
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/stencil.hpp"
 
@@ -48,16 +49,15 @@ class SpectralPlate::Carver {
   std::size_t arrays_ = 0;
 };
 
-SpectralPlate::SpectralPlate(MemoryBudget* budget, ThreadPool* threads,
-                             const SpectralKernels& kernels)
-    : kernels_(kernels), threads_(threads), memory_(budget) {}
+SpectralPlate::SpectralPlate(const RunContext& context)
+    : context_(context), kernels_(kernels_of_width(context.most_lanes)), memory_(context.memory) {}
 
 // Runs tasks that write different numbers. On a small plate they are not worth a thread.
 template <class Work>
 void SpectralPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
-  if (threads_ && long{columns_} * rows_ > worth_a_thread) {
-    threads_->for_each(count, std::ref(work));
+  if (context_.threads && long{columns_} * rows_ > worth_a_thread) {
+    context_.threads->for_each(count, std::ref(work));
   } else {
     for (std::size_t k = 0; k < count; ++k) work(k);
   }
@@ -85,7 +85,8 @@ void SpectralPlate::carve(Carver& carver) {
   const int width = transform_.even_column + filled_up(even_modes(lengths[0]));
   transform_.between_pitch = pitch_of(width);
 
-  const std::size_t tasks = threads_ ? static_cast<std::size_t>(threads_->thread_count()) : 1;
+  const std::size_t tasks =
+      context_.threads ? static_cast<std::size_t>(context_.threads->thread_count()) : 1;
   work_size_ = 0;
   for (const SinePlan& plan : plans_) {
     const SineView view = plan.view();
@@ -365,7 +366,7 @@ SpectralPlate::Parts SpectralPlate::moving_parts() const {
 // The number of parts in which a field is transformed. Columns are independent, so no bit depends
 // on it.
 std::size_t SpectralPlate::chunk_count() const {
-  return threads_ ? static_cast<std::size_t>(threads_->thread_count()) : 1;
+  return context_.threads ? static_cast<std::size_t>(context_.threads->thread_count()) : 1;
 }
 
 SpectralPlate::Range SpectralPlate::chunk(std::size_t task, int count) const {
@@ -403,8 +404,7 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
 }
 
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
-                            const NodesView& displacement, const NodesView& velocity,
-                            const StopRequest& should_stop) {
+                            const NodesView& displacement, const NodesView& velocity) {
   PLIANT_EXPECTS(prepared_.has_value());
   const auto view = [](const NodesView& nodes) {
     return ConstNodesView{nodes.first, nodes.row_stride, nodes.component_stride};
@@ -427,9 +427,9 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
     kernels_.start(parity, component, shift, inertia);
     for (int step = 1; step <= steps.count; ++step) {
       if (is_stopped) return;
-      // The parts call `should_stop` in turn, so that it is called once per step.
+      // The parts ask in turn, so that the stop request is called once per step.
       const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
-      if (asks && should_stop && should_stop()) {
+      if (asks && context_.is_stopped()) {
         is_stopped = true;
         return;
       }

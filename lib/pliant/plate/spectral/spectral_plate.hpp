@@ -6,8 +6,7 @@
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/stop_request.hpp"
-#include "pliant/core/thread_pool.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
@@ -35,10 +34,7 @@ struct ConstNodesView {
 /// O(nodes log side), steps in O(nodes). docs/model.md, "In sine space". Internal to plate.
 class SpectralPlate {
  public:
-  /// Reserves memory from `budget` and works on `threads`, which must both outlive it; null: no
-  /// limit, one thread. The bits depend on neither, nor on `kernels`.
-  explicit SpectralPlate(MemoryBudget* budget, ThreadPool* threads = nullptr,
-                         const SpectralKernels& kernels = *runnable_kernels(0));
+  explicit SpectralPlate(const RunContext& context = {});
 
   /// Prepares for a system. Reuse of the last one never changes a result's bits. Errors:
   /// SolverFailed if the matrix is not positive definite or not finite; OutOfMemory.
@@ -48,11 +44,10 @@ class SpectralPlate {
   void solve(const ConstNodesView& load, const NodesView& solution);
 
   /// Steps of backward Euler on the interior nodes with the prepared shift; the load excludes the
-  /// rim's part. Requires: prepared; inertia = rho/dt. Returns false if `should_stop` returns true;
-  /// displacement and velocity are then unchanged.
+  /// rim's part. Requires: prepared; inertia = rho/dt. Returns false if the context's stop request
+  /// returns true; displacement and velocity are then unchanged.
   bool advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
-               const NodesView& displacement, const NodesView& velocity,
-               const StopRequest& should_stop);
+               const NodesView& displacement, const NodesView& velocity);
 
   const SolverCounts& counts() const { return counts_; }
   std::size_t memory() const { return memory_.bytes(); }
@@ -116,8 +111,8 @@ class SpectralPlate {
   template <class Work>
   void for_each(std::size_t count, const Work& work);
 
+  RunContext context_;
   const SpectralKernels& kernels_;
-  ThreadPool* threads_;
   MemoryShare memory_;
   SolverCounts counts_;
   std::optional<PlateSystem> prepared_;

@@ -13,8 +13,8 @@ namespace {
 
 class SpectralSolver final : public PlateSolver {
  public:
-  SpectralSolver(MemoryBudget* budget, ThreadPool* threads, int most_lanes)
-      : plate_(budget, threads, kernels_of_width(most_lanes)), load_(budget) {}
+  explicit SpectralSolver(const RunContext& context)
+      : PlateSolver(context), plate_(context), load_(context.memory) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     grid_ = system.outline.grid();
@@ -32,18 +32,18 @@ class SpectralSolver final : public PlateSolver {
   }
 
   // Keeps the state in sine space for all steps.
-  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps, PlateState state,
-                             const StopRequest& should_stop) override try {
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
+                             PlateState state) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
     const double inertia = problem.dynamics.inertia(steps.length);
     const double shift = problem.dynamics.shift(steps.length);
-    StageTimer set_up(problem.profile, Stage::SetUp);
+    StageTimer set_up(context().profile, Stage::SetUp);
     if (auto prepared = prepare({problem.outline, problem.stiffness, shift}); !prepared) {
       return fail(prepared.error());
     }
     set_up.stop();
-    const StageTimer solve(problem.profile, Stage::Solve);
+    const StageTimer solve(context().profile, Stage::Solve);
     if (auto taken = load_.take(problem); !taken) return fail(taken.error());
     subtract_rim(problem.outline, problem.stiffness, problem.tangents, state.displacement,
                  load_.nodes());
@@ -53,7 +53,7 @@ class SpectralSolver final : public PlateSolver {
     const bool is_done =
         plate_.advance({load_.nodes().data() + first, grid.columns, count}, inertia, steps,
                        {state.displacement.data() + first, grid.columns, count},
-                       {state.velocity.data() + first, grid.columns, count}, should_stop);
+                       {state.velocity.data() + first, grid.columns, count});
     if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
     clear_rim(problem.outline, state.velocity);
     return state;
@@ -72,9 +72,8 @@ class SpectralSolver final : public PlateSolver {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_spectral_solver(MemoryBudget* budget, ThreadPool* threads,
-                                                  int most_lanes) {
-  return std::make_unique<SpectralSolver>(budget, threads, most_lanes);
+std::unique_ptr<PlateSolver> make_spectral_solver(const RunContext& context) {
+  return std::make_unique<SpectralSolver>(context);
 }
 
 }  // namespace pliant
