@@ -250,7 +250,7 @@ void print_selection(const Options& options) {
     for (int round = 0; round < 5; ++round) {
       quick.push_back(seconds([&] {
         tiles.update(mapping.grid, {mapping.rest, transform});
-        reselect(selection, tiles, forces, Combine::Box);
+        selection = reselected(std::move(selection), tiles, forces, Combine::Box);
       }));
       if (round > 0 && count > 10) continue;
       Selection all;

@@ -55,7 +55,7 @@ double median_ms(int repetitions, const F& f) {
 
 // A load that decreases with the distance from a point, on one patch of boxes.
 PlateProblem problem_on(int side, const std::vector<Box>& boxes) {
-  const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
+  const Patch patch = combine(boxes, Combine::Union).at(0).patches.at(0);
   const double h = 1.0 / (side - 1);
   const Grid grid{side, side, h, h};
   Field load = Field::Zero(grid.node_count(), 3);

@@ -33,15 +33,15 @@ TEST_CASE("what a force leaves recovers to rest, to the bit; frozen it stays", "
   for (int frame = 0; frame < 10; ++frame) {
     BodyInputs in = inputs_of({press(frame - 8, 0, 2e5), press(frame - 8, 8, 1e5, 2.5)});
     in.dynamics = dynamics;
-    REQUIRE(step(recovering, in)->is_solved);
-    REQUIRE(step(frozen, in)->is_solved);
+    REQUIRE(step(recovering, in)->solves());
+    REQUIRE(step(frozen, in)->solves());
   }
   REQUIRE(peak_of(recovering) > 0.1);
   const BodyState trail = frozen.state();
   int frames = 0;
   BodyInputs nothing = inputs_of({});
   nothing.dynamics = dynamics;
-  while (step(recovering, nothing)->is_solved) REQUIRE(++frames < 1000);
+  while (step(recovering, nothing)->solves()) REQUIRE(++frames < 1000);
   CHECK(frames > 3);
   CHECK(recovering.state().positions == s.rest);
   CHECK(recovering.state().velocities.isZero(0));
@@ -58,20 +58,20 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
   Body body = body_with(s, Release::Recover, how);
   BodyInputs in = inputs_of({press(-6, -5, 2e5), press(-1, 1, -3e5, 4.5), press(9, 9, 1e5)});
   in.dynamics = {4000, 8000};
-  for (int frame = 0; frame < 6; ++frame) REQUIRE(step(body, in)->is_solved);
+  for (int frame = 0; frame < 6; ++frame) REQUIRE(step(body, in)->solves());
   in.forces = {press(-6, -5, 0)};  // moves on: its region excludes the others' nodes
-  REQUIRE(step(body, in)->recovering > 0);
+  REQUIRE(!step(body, in)->recovering.empty());
   in.forces.clear();
   std::vector<Region> before;
   int frames = 0, shrunk = 0;
   while (true) {
     const auto report = step(body, in).value();
-    if (!report.is_solved) break;
+    if (!report.solves()) break;
     REQUIRE(++frames < 3000);
     for (const Region& region : report.selection.regions) {
       if (!before.empty()) REQUIRE(is_inside(region, before));
       // The rim is at rest, so no displacement of the rim keeps the interior away from rest.
-      for (const Patch& patch : patches_of(region)) {
+      for (const Patch& patch : region.patches) {
         for (int i = patch.box.i0; i <= patch.box.i1; ++i) {
           REQUIRE(body.state().positions.row(s.grid.node(i, patch.box.j0)) ==
                   s.rest.row(s.grid.node(i, patch.box.j0)));
@@ -90,25 +90,25 @@ TEST_CASE("recovery ends without damping and without inertia too", "[body][recov
   Body body = body_with(s, Release::Recover);
   BodyInputs in = inputs_of({press(0, 0, 2e5)});
   in.dynamics = GENERATE(Dynamics{0, 0}, Dynamics{40, 0}, Dynamics{0, 4000});
-  for (int frame = 0; frame < 5; ++frame) REQUIRE(step(body, in)->is_solved);
+  for (int frame = 0; frame < 5; ++frame) REQUIRE(step(body, in)->solves());
   in.forces.clear();
   int frames = 0;
-  while (step(body, in)->is_solved) REQUIRE(++frames < 2000);
+  while (step(body, in)->solves()) REQUIRE(++frames < 2000);
   CHECK(body.state().positions == s.rest);
 }
 
 TEST_CASE("a node that leaves and is at rest already is let go at once", "[body][recover]") {
   const NodeSheet s = flat_sheet(21, 21);
   Body body = body_with(s, Release::Recover);
-  REQUIRE(step(body, inputs_of({press(0, 0, 0)}))->is_solved);
+  REQUIRE(step(body, inputs_of({press(0, 0, 0)}))->solves());
   const auto report = step(body, inputs_of({})).value();
-  CHECK_FALSE(report.is_solved);
+  CHECK_FALSE(report.solves());
   CHECK(report.settling.empty());
   // Moved, but by less than a millionth of the region.
-  REQUIRE(step(body, inputs_of({press(0, 0, 1e-3)}))->is_solved);
+  REQUIRE(step(body, inputs_of({press(0, 0, 1e-3)}))->solves());
   REQUIRE(peak_of(body) > 0);
   const auto next = step(body, inputs_of({})).value();
-  CHECK_FALSE(next.is_solved);
+  CHECK_FALSE(next.solves());
   CHECK(next.settling.size() == 25);
   CHECK(body.state().positions == s.rest);
   CHECK(body.state().velocities.isZero(0));
@@ -118,11 +118,11 @@ TEST_CASE("a recovering node counts as selected, with its neighbours", "[body][r
   const NodeSheet s = flat_sheet(31, 21);
   Body body = body_with(s, Release::Recover);
   const auto pressed = step(body, inputs_of({press(-8, 0, 2e5)})).value();
-  const Box first = pressed.selection.region;
+  const Box first = pressed.selection.box();
   REQUIRE(first == Box{4, 10, 7, 13});
   const auto report = step(body, inputs_of({press(8, 0, 2e5)})).value();
-  CHECK(report.recovering == 25);  // all nodes that moved
-  CHECK(report.selection.region == Box{4, 26, 7, 13});
+  CHECK(report.recovering.size() == 25);  // all nodes that moved
+  CHECK(report.selection.box() == Box{4, 26, 7, 13});
   CHECK(report.selection.forces[0].deformation == Box{20, 26, 7, 13});
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("the state that is restored goes on in the same way", "[body][recover]
   }
   CHECK(other.state() == body.state());
   body.reset();
-  CHECK_FALSE(step(body, inputs_of({}))->is_solved);
+  CHECK_FALSE(step(body, inputs_of({}))->solves());
 }
 
 TEST_CASE("a step that fails leaves what would have settled as it was", "[body][recover]") {

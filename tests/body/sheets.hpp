@@ -45,8 +45,8 @@ inline BodyInputs inputs_of(std::vector<SampledForce> forces) {
   return in;
 }
 
-/// Steps a body; a copy of its report.
-inline Result<StepReport> step(Body& body, const BodyInputs& inputs) {
+/// Steps a body; a copy of its plan.
+inline Result<StepPlan> step(Body& body, const BodyInputs& inputs) {
   if (auto stepped = body.step(inputs); !stepped) return fail(stepped.error());
   return body.last_step();
 }

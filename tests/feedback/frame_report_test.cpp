@@ -61,7 +61,7 @@ TEST_CASE("a report tells what the solve at its frame moves", "[feedback][report
     for (int node = 0; node < 31 * 31; ++node) {
       bool is_held = false;
       for (const Region& region : s.regions) {
-        for (const Patch& patch : patches_of(region)) is_held |= patch.holds(node % 31, node / 31);
+        for (const Patch& patch : region.patches) is_held |= patch.holds(node % 31, node / 31);
         shapes += region.parts.size() > 1;
       }
       const bool has_moved = before.row(node) != after.row(node);

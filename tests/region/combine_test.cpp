@@ -92,7 +92,7 @@ TEST_CASE("the interior of a union is the nodes whose four cells are inside", "[
     std::vector<Box> boxes = random_boxes(random, 5, 12);
     const std::vector<Region> regions = combine(boxes, Combine::Union);
     std::vector<Patch> patches;
-    if (!regions.empty()) patches = patches_of(regions[0]);
+    if (!regions.empty()) patches = regions[0].patches;
     for (int j = -1; j < 22; ++j) {
       for (int i = -1; i < 22; ++i) {
         const auto holding = std::count_if(patches.begin(), patches.end(),
@@ -120,7 +120,7 @@ TEST_CASE("patches do not neighbour each other", "[region][union]") {
   for (int trial = 0; trial < 200; ++trial) {
     const std::vector<Region> regions = combine(random_boxes(random, 5, 14), Combine::Union);
     if (regions.empty()) continue;
-    const std::vector<Patch> patches = patches_of(regions[0]);
+    const std::vector<Patch> patches = regions[0].patches;
     for (std::size_t a = 0; a < patches.size(); ++a) {
       const Box& box = patches[a].box;
       for (int j = box.j0; j <= box.j1; ++j) {
@@ -140,28 +140,26 @@ TEST_CASE("patches do not neighbour each other", "[region][union]") {
 TEST_CASE("a union that is a box is that box", "[region][union]") {
   const std::vector<Box> halves{{2, 6, 1, 9}, {6, 8, 1, 9}, {3, 5, 3, 4}};
   CHECK(combine(halves, Combine::Union) == combine(std::vector<Box>{{2, 8, 1, 9}}, Combine::Box));
-  CHECK(patches_of(combine(halves, Combine::Union)[0]) ==
-        std::vector<Patch>{Patch{{2, 8, 1, 9}, {}}});
+  CHECK(combine(halves, Combine::Union)[0].patches == std::vector<Patch>{Patch{{2, 8, 1, 9}, {}}});
   // With a column of nodes between them they are two.
   const std::vector<Region> apart =
       combine(std::vector<Box>{{2, 5, 1, 9}, {6, 8, 1, 9}}, Combine::Union);
   REQUIRE(apart.size() == 1);
   CHECK(apart[0].box == Box{2, 8, 1, 9});
-  CHECK(patches_of(apart[0]) ==
-        std::vector<Patch>{Patch{{2, 5, 1, 9}, {}}, Patch{{6, 8, 1, 9}, {}}});
+  CHECK(apart[0].patches == std::vector<Patch>{Patch{{2, 5, 1, 9}, {}}, Patch{{6, 8, 1, 9}, {}}});
 }
 
 TEST_CASE("thin boxes have cells but no interior, lines have neither", "[region][union]") {
   CHECK(combine(std::vector<Box>{{1, 1, 0, 9}, {4, 4, 4, 4}}, Combine::Union).empty());
   const std::vector<Region> strip = combine(std::vector<Box>{{1, 2, 0, 9}}, Combine::Union);
   REQUIRE(strip.size() == 1);
-  CHECK(patches_of(strip[0]).empty());
+  CHECK(strip[0].patches.empty());
   // Two adjacent strips have an interior together, and so has a strip beside a box.
-  CHECK(patches_of(combine(std::vector<Box>{{1, 2, 0, 9}, {2, 3, 0, 9}}, Combine::Union)[0]) ==
+  CHECK(combine(std::vector<Box>{{1, 2, 0, 9}, {2, 3, 0, 9}}, Combine::Union)[0].patches ==
         std::vector<Patch>{Patch{{1, 3, 0, 9}, {}}});
   const std::vector<Region> wider =
       combine(std::vector<Box>{{0, 4, 0, 4}, {4, 5, 0, 2}}, Combine::Union);
   CHECK(wider[0].box == Box{0, 5, 0, 4});
-  REQUIRE(patches_of(wider[0]).size() == 1);
-  CHECK(patches_of(wider[0])[0].interior_count() == 10);
+  REQUIRE(wider[0].patches.size() == 1);
+  CHECK(wider[0].patches[0].interior_count() == 10);
 }

@@ -33,7 +33,7 @@ TEST_CASE("a force acts in the island that its deformation box is part of", "[re
   REQUIRE(selection.regions.size() == 2);
   CHECK(selection.regions[0].box == Box{3, 10, 3, 9});
   CHECK(selection.regions[1].box == Box{20, 24, 10, 14});
-  CHECK(selection.region == Box{3, 24, 3, 14});
+  CHECK(selection.box() == Box{3, 24, 3, 14});
   const auto region = [&](int k) { return selection.forces[k].region; };
   CHECK(std::array{region(0), region(1), region(2), region(3)} == std::array{0, 0, 1, -1});
   const Field first = assemble_load(grid, nodes, forces, selection, 0);
@@ -70,8 +70,9 @@ TEST_CASE("other boxes take part in the regions", "[region]") {
   Selection selection;
   selection.forces = {{{2, 4, 2, 4}, {2, 3, 2, 3}, 0}};
   const std::vector<Box> others{{4, 9, 4, 6}, {20, 24, 10, 15}};
-  CHECK(recombined(selection, Combine::Box, others).region == Box{2, 24, 2, 15});
+  CHECK(recombined(selection, Combine::Box, others).box() == Box{2, 24, 2, 15});
   const Selection islands = recombined(selection, Combine::Islands, others);
+  CHECK(islands.others == others);
   REQUIRE(islands.regions.size() == 2);
   CHECK(islands.regions[0].box == Box{2, 9, 2, 6});
   CHECK(islands.forces[0].region == 0);
@@ -82,7 +83,7 @@ TEST_CASE("a push counts the nodes that move, and only them", "[region]") {
   const SampledForce force = at(5, 5, 3, 100);
   const std::vector<SampledForce> forces{force, at(8, 8, 3, 1)};
   const Selection selection = select_region(grid, nodes, forces, Combine::Union);
-  const std::vector<Patch> patches = patches_of(selection.regions[0]);
+  const std::vector<Patch> patches = selection.regions[0].patches;
   // Two 5 x 5 boxes that overlap in 2 x 2 nodes: 3 x 3 interior nodes each.
   const Push push = push_of(grid, nodes, force, selection.forces[0].force, patches);
   CHECK(push.node_count == 18);

@@ -92,8 +92,7 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
       force.deformation_radius = k % 2 ? delta : number(random, 0, 4);
       force.force_radius = k % 2 ? std::nextafter(delta, 1e9) : number(random, 0, 4);
     }
-    Selection selection;
-    reselect(selection, tiles, forces, Combine::Islands);
+    Selection selection = reselected({}, tiles, forces, Combine::Islands);
     for (std::size_t k = 0; k < forces.size(); ++k) {
       const ForceSelection& selected = selection.forces[k];
       REQUIRE(selected.deformation ==
@@ -104,10 +103,17 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
     CHECK(selection == select_region(grid, nodes, forces, Combine::Islands));
     // Again: if the boxes are unchanged, so is the rest.
     const Selection before = selection;
-    CHECK(reselect(selection, tiles, forces, Combine::Islands));
+    const Region* const kept = selection.regions.data();
+    selection = reselected(std::move(selection), tiles, forces, Combine::Islands);
+    CHECK(selection == before);
+    CHECK(selection.regions.data() == kept);
+    // Boxes that no force selects are not those of the next frame.
+    selection = recombined(std::move(selection), Combine::Islands, {{0, 2, 0, 2}});
+    CHECK(selection.others.size() == 1);
+    selection = reselected(std::move(selection), tiles, forces, Combine::Islands);
     CHECK(selection == before);
     forces.pop_back();
-    CHECK_FALSE(reselect(selection, tiles, forces, Combine::Islands));
+    selection = reselected(std::move(selection), tiles, forces, Combine::Islands);
     CHECK(selection == select_region(grid, nodes, forces, Combine::Islands));
   }
   CHECK(partial > 200);
@@ -148,11 +154,11 @@ TEST_CASE("loads in object space are those in world space taken there", "[region
   }
   const Field nodes = to_world(transform, rest);
   const Selection selection = select_region(grid, nodes, forces);
-  REQUIRE_FALSE(selection.region.is_empty());
+  REQUIRE_FALSE(selection.box().is_empty());
   const Field load = assemble_load(grid, nodes, forces, selection);
   const Field expected = vectors_to_object(transform, load);
   CHECK_FALSE(load.isZero(0));
-  const Field found = assemble_load(grid, {rest, transform}, forces, selection, 0, selection.region,
+  const Field found = assemble_load(grid, {rest, transform}, forces, selection, 0, selection.box(),
                                     inverse_linear(transform), Field::Ones(3, 3));
   CHECK(found == expected);
 }

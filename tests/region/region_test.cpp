@@ -112,16 +112,16 @@ TEST_CASE("regions and force boxes are those of a brute-force reading", "[region
     int deforming = 0;
     for (const ForceSelection& force : selection.forces) deforming += !force.deformation.is_empty();
     overlaps += deforming > 1;
-    empty += selection.region.is_empty();
+    empty += selection.box().is_empty();
     for (int node = 0; node < s.grid.node_count(); ++node) {
       const int i = node % s.grid.columns, j = node / s.grid.columns;
       const auto [u, v] = uv(node);
-      REQUIRE(selection.region.contains(i, j) == region.holds(u, v));
+      REQUIRE(selection.box().contains(i, j) == region.holds(u, v));
       for (std::size_t k = 0; k < s.forces.size(); ++k) {
         REQUIRE(selection.forces[k].force.contains(i, j) == force_boxes[k].holds(u, v));
       }
     }
-    if (selection.region.is_empty()) continue;
+    if (selection.box().is_empty()) continue;
 
     const Field load = assemble_load(s.grid, s.nodes, s.forces, selection);
     int row = 0;
@@ -149,7 +149,7 @@ TEST_CASE("a distance equal to the radius does not select", "[region]") {
   for (int node = 0; node < 81; ++node) nodes.row(node) << node % 9, 0, node / 9;
   const auto region = [&](double radius) {
     SampledForce force{PointForce{{4, 0, 4}, {0, 1, 0}}, 1, radius, radius, Falloff::Constant};
-    return select_region(grid, nodes, {&force, 1}).region;
+    return select_region(grid, nodes, {&force, 1}).box();
   };
   CHECK(region(0).is_empty());
   CHECK(region(std::nextafter(0, 1)) == Box{4, 4, 4, 4});
@@ -165,7 +165,7 @@ TEST_CASE("a force box may reach past the region, and only the part inside acts"
   // Deformation radius 5, force radius 10: thesis fig. 11, left.
   const SampledForce force{PointForce{{4, 0, 4}, {0, 2, 0}}, 3, 2.5, 10, Falloff::Constant};
   const Selection selection = select_region(grid, nodes, {&force, 1});
-  CHECK(selection.region == Box{2, 6, 2, 6});
+  CHECK(selection.box() == Box{2, 6, 2, 6});
   CHECK(selection.forces[0].force == Box{0, 8, 0, 8});
   const Field load = assemble_load(grid, nodes, {&force, 1}, selection);
   REQUIRE(load.rows() == 25);

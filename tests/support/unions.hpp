@@ -19,7 +19,7 @@ struct UnionPlate {
 
 /// The first patch of boxes on a square of `side` nodes over [0,1] x [0,1].
 inline UnionPlate union_plate(std::string name, int side, const std::vector<Box>& boxes) {
-  const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
+  const Patch patch = combine(boxes, Combine::Union).at(0).patches.at(0);
   const double h = 1.0 / (side - 1);
   return {std::move(name), {patch.box.columns(), patch.box.rows(), h, h}, patch.interior};
 }

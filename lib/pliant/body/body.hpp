@@ -41,9 +41,9 @@ class Body {
   /// Sets the rest mesh and removes all velocity.
   void reset();
 
-  /// The report that `step` would return for these inputs, without a solve. Errors: NotFinite if a
-  /// node is not finite in world space.
-  Result<StepReport> look(const BodyInputs& inputs) const;
+  /// The plan of the step that `step` would do. Errors: NotFinite if a node is not finite in world
+  /// space.
+  Result<StepPlan> look(const BodyInputs& inputs) const;
 
   /// Solves one frame: selects the regions on the current mesh, and moves their interiors to the
   /// next frame. A node that the last solve did not move starts with velocity 0, any other with its
@@ -55,8 +55,8 @@ class Body {
   /// node recovers.
   Result<void> step(const BodyInputs& inputs);
 
-  /// The report of the last step; empty before the first.
-  const StepReport& last_step() const { return work_.report; }
+  /// The plan of the last step; empty before the first.
+  const StepPlan& last_step() const { return work_.plan; }
 
   const Grid& grid() const { return grid_; }
   const Field& rest() const { return rest_; }  ///< #nodes x 3, object space [length]
@@ -76,11 +76,10 @@ class Body {
     return settings_.measure == Measure::Rest ? rest_ : state_.positions;
   }
   Result<void> plan(const BodyInputs& inputs, BodyWorkspace& work) const;
-  std::vector<int> lost_forces(const BodyInputs& inputs, const Selection& selection,
-                               BodyWorkspace& work, std::vector<int> lost) const;
+  void find_lost(const BodyInputs& inputs, BodyWorkspace& work) const;
   void settle(const std::vector<int>& nodes);
-  void begin_next(const StepReport& report);
-  void keep_solvers(const StepReport& report);
+  void begin_next();
+  void keep_solvers();
   Result<void> solve(const BodyInputs& inputs);
   Result<void> take();
   void mark_unsettled();

@@ -8,11 +8,10 @@
 namespace pliant {
 namespace {
 
-void mark_interiors(const Grid& grid, std::span<const std::vector<Patch>> patches,
-                    NodeMarks& marks) {
+void mark_interiors(const Grid& grid, std::span<const Region> regions, NodeMarks& marks) {
   marks.assign(static_cast<std::size_t>(grid.node_count()), 0);
-  for (const auto& some : patches) {
-    for (const Patch& patch : some) {
+  for (const Region& region : regions) {
+    for (const Patch& patch : region.patches) {
       for (int j = patch.box.j0 + 1; j < patch.box.j1; ++j) {
         for (int i = patch.box.i0 + 1; i < patch.box.i1; ++i) {
           if (patch.holds(i, j)) marks[grid.node(i, j)] = 1;
@@ -24,31 +23,33 @@ void mark_interiors(const Grid& grid, std::span<const std::vector<Patch>> patche
 
 }  // namespace
 
-Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
-                            std::span<const std::vector<Patch>> patches, NodeMarks& marks) {
-  Recovering recovering;
-  if (std::find(unsettled.begin(), unsettled.end(), 1) == unsettled.end()) return recovering;
-  mark_interiors(grid, patches, marks);
-  std::vector<Box> runs;  // along u, with the neighbours on all sides
-  for (int j = 0; j < grid.rows; ++j) {
-    for (int i = 0; i < grid.columns; ++i) {
-      const int node = grid.node(i, j);
-      if (!unsettled[node] || marks[node]) continue;
-      ++recovering.node_count;
-      const Box around = intersection({i - 1, i + 1, j - 1, j + 1}, grid.box());
-      const bool goes_on = !runs.empty() && runs.back().j1 == around.j1 && runs.back().i1 == i;
-      goes_on ? runs.back().include(around) : runs.push_back(around);
-    }
+std::vector<int> recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
+                                  std::span<const Region> regions, NodeMarks& marks,
+                                  std::vector<int> reuse) {
+  reuse.clear();
+  if (std::find(unsettled.begin(), unsettled.end(), 1) == unsettled.end()) return reuse;
+  mark_interiors(grid, regions, marks);
+  for (int node = 0; node < grid.node_count(); ++node) {
+    if (unsettled[node] && !marks[node]) reuse.push_back(node);
   }
-  recovering.boxes = merged(runs);
-  return recovering;
+  return reuse;
+}
+
+std::vector<Box> boxes_around(const Grid& grid, std::span<const int> nodes) {
+  std::vector<Box> runs;  // along u
+  for (const int node : nodes) {
+    const int i = node % grid.columns, j = node / grid.columns;
+    const Box around = intersection({i - 1, i + 1, j - 1, j + 1}, grid.box());
+    const bool goes_on = !runs.empty() && runs.back().j1 == around.j1 && runs.back().i1 == i;
+    goes_on ? runs.back().include(around) : runs.push_back(around);
+  }
+  return merged(runs);
 }
 
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
-                                const Field& velocities,
-                                std::span<const std::vector<Patch>> patches, NodeMarks& marks,
-                                std::vector<int> reuse) {
-  mark_interiors(grid, patches, marks);
+                                const Field& velocities, std::span<const Region> regions,
+                                NodeMarks& marks, std::vector<int> reuse) {
+  mark_interiors(grid, regions, marks);
   reuse.clear();
   for (int node = 0; node < grid.node_count(); ++node) {
     if (marks[node]) continue;

@@ -6,7 +6,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
-#include "pliant/region/region.hpp"
+#include "pliant/region/combine.hpp"
 
 namespace pliant {
 
@@ -23,21 +23,20 @@ namespace pliant {
 /// 1 for each node that is unsettled (#nodes); empty if none ever is.
 using NodeMarks = std::vector<std::uint8_t>;
 
-/// The nodes that recover, as boxes of nodes.
-struct Recovering {
-  int node_count = 0;
-  std::vector<Box> boxes;  ///< including the neighbours; no two share a node
-};
-/// `patches` are those of the forces, for each region. `marks` is workspace.
-Recovering recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
-                            std::span<const std::vector<Patch>> patches, NodeMarks& marks);
+/// The nodes that recover, ascending. `regions` are those of the forces. `marks` is workspace, and
+/// the result reuses the memory of `reuse`.
+std::vector<int> recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
+                                  std::span<const Region> regions, NodeMarks& marks,
+                                  std::vector<int> reuse);
 
-/// The nodes that are interior to no patch and not at rest without velocity, ascending. `marks` is
+/// Boxes around these nodes (ascending) and their neighbours; no two boxes share a node.
+std::vector<Box> boxes_around(const Grid& grid, std::span<const int> nodes);
+
+/// The nodes that are interior to no region and not at rest without velocity, ascending. `marks` is
 /// workspace, and the result reuses the memory of `reuse`.
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
-                                const Field& velocities,
-                                std::span<const std::vector<Patch>> patches, NodeMarks& marks,
-                                std::vector<int> reuse);
+                                const Field& velocities, std::span<const Region> regions,
+                                NodeMarks& marks, std::vector<int> reuse);
 
 /// The length below which displacement and motion count as settled: 1e-6 of the diagonal of the
 /// bounding box of the region's rest positions (#nodes x 3, object space).

@@ -1,7 +1,9 @@
 #include "pliant/body/step_facts.hpp"
 
-#include <algorithm>
+#include <span>
 #include <utility>
+
+#include "pliant/region/region.hpp"
 
 namespace pliant {
 namespace {
@@ -33,15 +35,14 @@ bool merge_two(std::vector<Box>& boxes) {
   return false;
 }
 
-ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const StepReport& report,
+ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const Selection& selection,
                     Combine combine) {
-  const ForceSelection& selected = report.selection.forces[k];
-  const bool is_solved = !report.patches_of_force(k).empty();
-  const bool reaches =
-      is_solved && overlaps(report.selection.regions[selected.region], selected.force);
+  const ForceSelection& selected = selection.forces[k];
+  const std::span<const Patch> patches = selection.patches_of_force(k);
+  const bool is_solved = !patches.empty();
+  const bool reaches = is_solved && overlaps(selection.regions[selected.region], selected.force);
   // The solved part of a union may be somewhere else.
-  const bool is_elsewhere =
-      combine == Combine::Union && !moves_any(report.patches_of_force(k), selected.deformation);
+  const bool is_elsewhere = combine == Combine::Union && !moves_any(patches, selected.deformation);
   const bool has_magnitude = inputs.forces[k].magnitude != 0;
   const bool selects_itself =
       inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
@@ -49,13 +50,12 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const StepReport& r
   facts.is_too_small = (!is_solved || is_elsewhere) && !selected.deformation.is_empty();
   facts.is_outside = is_solved && !selected.force.is_empty() && !reaches && has_magnitude;
   facts.touches = !selects_itself || !selected.deformation.is_empty() || reaches;
-  facts.is_lost =
-      std::find(report.lost.begin(), report.lost.end(), static_cast<int>(k)) != report.lost.end();
+  facts.is_lost = selected.is_lost;
   // Another warning about this frame replaces this one.
   const bool is_here = reaches || (facts.touches && selected.force.is_empty());
   const bool is_told = facts.is_lost || (is_elsewhere && !selected.deformation.is_empty());
   facts.is_push_awaited = is_solved && has_magnitude && is_here && !is_told;
-  facts.pushes = report.pushing[k];
+  facts.pushes = selected.pushes;
   return facts;
 }
 
@@ -63,8 +63,9 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const StepReport& r
 
 bool falls_apart(const Selection& selection, std::vector<Box>& room) {
   // Usually all boxes meet the first one, or boxes merged with it.
+  const Box all = selection.box();
   Box met;
-  for (bool grows = true; grows && met != selection.region;) {
+  for (bool grows = true; grows && met != all;) {
     grows = false;
     for (const ForceSelection& force : selection.forces) {
       const Box& box = force.deformation;
@@ -74,7 +75,7 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
       grows = grows || met != before;
     }
   }
-  if (met == selection.region) return false;
+  if (met == all) return false;
   room.assign(1, met);
   for (const ForceSelection& force : selection.forces) {
     const Box& box = force.deformation;
@@ -85,17 +86,18 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
   return room.size() > 1;
 }
 
-StepFacts facts_of(const BodyInputs& inputs, const StepReport& report, Combine combine,
+StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combine,
                    StepFacts reuse) {
+  const Selection& selection = plan.selection;
   StepFacts facts = std::move(reuse);
-  facts.is_solved = report.is_solved;
+  facts.is_solved = plan.solves();
   facts.forces.clear();
-  for (std::size_t k = 0; k < report.selection.forces.size(); ++k) {
-    facts.forces.push_back(facts_of(k, inputs, report, combine));
+  for (std::size_t k = 0; k < selection.forces.size(); ++k) {
+    facts.forces.push_back(facts_of(k, inputs, selection, combine));
   }
-  if (combine == Combine::Box && report.is_solved && falls_apart(report.selection, facts.room)) {
+  if (combine == Combine::Box && facts.is_solved && falls_apart(selection, facts.room)) {
     for (std::size_t k = 0; k < facts.forces.size(); ++k) {
-      facts.forces[k].is_apart = !report.selection.forces[k].deformation.is_empty();
+      facts.forces[k].is_apart = !selection.forces[k].deformation.is_empty();
     }
   }
   return facts;

@@ -39,7 +39,7 @@ struct StepFacts {
 bool falls_apart(const Selection& selection, std::vector<Box>& room);
 
 /// Reuses the memory of `reuse`: facts of an earlier step, or empty.
-StepFacts facts_of(const BodyInputs& inputs, const StepReport& report, Combine combine,
+StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combine,
                    StepFacts reuse = {});
 
 }  // namespace pliant

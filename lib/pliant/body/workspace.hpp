@@ -3,31 +3,28 @@
 #include <cstdint>
 #include <vector>
 
-#include "pliant/body/step_report.hpp"
-#include "pliant/plate/plate_solver.hpp"
-#include "pliant/plate/solver_cache.hpp"
-#include "pliant/region/region.hpp"
+#include "pliant/body/step_plan.hpp"
+#include "pliant/plate/plate_problem.hpp"
+#include "pliant/region/node_tiles.hpp"
 
 namespace pliant {
 
-/// Workspace of a body, kept from frame to frame; not part of the state. Fields keep their memory
-/// while the regions keep their shape. Internal to body.
-struct BodyWorkspace {
-  /// A patch and its problem during the solve.
-  struct PatchSolve {
-    const Patch* patch = nullptr;
-    double settling_length = 0;  ///< with `Release::Recover` [length]
-    PlateProblem problem;
-    PlateState plate;
-  };
+/// A patch while it is solved: what the solver is given, and its answer. Internal to body.
+struct PatchSolve {
+  const Patch* patch = nullptr;
+  double settling_length = 0;  ///< with `Release::Recover` [length]
+  PlateProblem problem;
+  PlateState plate;
+};
 
-  Selection selection;   ///< of the forces alone, at the last frame
-  StepReport report;     ///< of the last frame
+/// What a body keeps from frame to frame besides its state: the last plan, and memory for the next
+/// step, which fields keep while the regions keep their shape. Internal to body.
+struct BodyWorkspace {
+  StepPlan plan;
   NodeTiles tiles;       ///< of the nodes that forces measure
   NodeTiles rest_tiles;  ///< of the nodes at rest, if needed
   std::vector<std::uint8_t> marks;
-  std::vector<Outline> outlines;   ///< of the solvers that exist, one for each patch
-  std::vector<PatchSolve> solves;  ///< one for each patch, in the order of the regions
+  std::vector<PatchSolve> solves;  ///< one for each patch and solver, in the order of the regions
   Field next_positions;            ///< the next state, until it is complete
   Field next_velocities;
 };

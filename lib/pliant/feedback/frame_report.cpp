@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "pliant/region/region.hpp"
 #include "pliant/sampling/sampling.hpp"
 
 namespace pliant {
@@ -10,13 +11,15 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   const auto step = body.look(inputs.body);
   if (!step) return fail(step.error());
   SurfaceReport report;
-  report.is_solved = step->is_solved;
+  report.is_solved = step->solves();
   report.steps = step->steps;
   report.unknown_count = step->unknown_count();
-  report.recovering = step->recovering;
+  report.recovering = static_cast<int>(step->recovering.size());
   report.settled = static_cast<int>(step->settling.size());
   report.regions = step->selection.regions;
-  for (const auto& patches : step->patches) report.region_is_solved.push_back(!patches.empty());
+  for (const Region& region : report.regions) {
+    report.region_is_solved.push_back(!region.patches.empty());
+  }
   const Field nodes = body.measured_nodes(inputs.body.transform);
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
     const SampledForce& force = inputs.body.forces[k];
@@ -24,7 +27,7 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
     report.forces.push_back(
         {std::string(inputs.sources[k].name), inputs.sources[k].kind,
          std::make_shared<SampledForce>(force), selection,
-         push_of(body.grid(), nodes, force, selection.force, step->patches_of_force(k))});
+         push_of(body.grid(), nodes, force, selection.force, step->selection.patches_of_force(k))});
   }
   if (std::string fault = inputs.faults->first(); !fault.empty()) {
     return fail(ErrorCode::NotFinite, std::move(fault));

@@ -155,7 +155,7 @@ class SurfacePreviewer {
     if (preview.of == Preview::Of::Force) {
       preview.magnitude = scene_.forces[preview.index].magnitude.at(*preview.frame)[0];
     }
-    preview.selected = step->selection.region;
+    preview.selected = step->selection.box();
     std::vector<Box> room;
     preview.is_apart = !is_plain && surface_.solver.combine == Combine::Box &&
                        !scene_.origin.gives(surface_.name, "combine") &&
@@ -166,12 +166,12 @@ class SurfacePreviewer {
     if (preview.is_solved) {
       if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
     }
-    for (std::size_t k = 0; k < step->selection.regions.size(); ++k) {
+    for (const Region& selected : step->selection.regions) {
       RegionPreview region;
-      region.region = step->selection.regions[k];
-      region.is_solvable = !step->patches[k].empty();
+      region.region = selected;
+      region.is_solvable = !region.region.patches.empty();
       if (preview.is_solved && region.is_solvable) {
-        auto vibrations = body_.vibrations(inputs, step->patches[k], std::move(region));
+        auto vibrations = body_.vibrations(inputs, std::move(region));
         if (!vibrations) return fail(vibrations.error());
         region = *std::move(vibrations);
       }

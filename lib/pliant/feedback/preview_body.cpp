@@ -63,13 +63,13 @@ Result<void> PreviewBody::check_faults() const {
   return fail(ErrorCode::NotFinite, std::move(fault));
 }
 
-Result<StepReport> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
+Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
   PLIANT_EXPECTS(real_.has_value());
   if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   body(is_plain).reset();
-  auto report = body(is_plain).look(inputs);
+  auto plan = body(is_plain).look(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
-  return report;
+  return plan;
 }
 
 Result<void> PreviewBody::settle(BodyInputs inputs, bool is_plain) {
@@ -100,8 +100,8 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   const auto stepped = body(is_plain_).step(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
   if (!stepped) return fail(stepped.error());
-  const StepReport& report = body(is_plain_).last_step();
-  return least_cost() + static_cast<double>(report.unknown_count()) * report.steps.count;
+  const StepPlan& plan = body(is_plain_).last_step();
+  return least_cost() + static_cast<double>(plan.unknown_count()) * plan.steps.count;
 }
 
 // The displacements of a box's nodes, row by row; object space.
@@ -149,8 +149,8 @@ std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
 }
 
 Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
-                                              std::span<const Patch> patches,
                                               RegionPreview region) const {
+  const std::vector<Patch>& patches = region.region.patches;
   const Patch* moved = &patches[0];
   int most = 0;
   for (const Patch& patch : patches) {

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "pliant/body/body.hpp"
@@ -31,8 +30,8 @@ class PreviewBody {
   /// Checks that custom forces have returned only valid values so far. Errors: NotFinite.
   Result<void> check_faults() const;
 
-  /// Reports the patches that a step from rest would solve.
-  Result<StepReport> look(const BodyInputs& inputs, bool is_plain);
+  /// The plan of a step from rest.
+  Result<StepPlan> look(const BodyInputs& inputs, bool is_plain);
 
   /// Brings it to rest under the inputs, starting from its rest shape: one step without density and
   /// damping.
@@ -63,8 +62,7 @@ class PreviewBody {
 
   /// The vibrations of a settled region when it is released, for its patch with the peak. Requires:
   /// it is settled under `inputs`; there are patches.
-  Result<RegionPreview> vibrations(const BodyInputs& inputs, std::span<const Patch> patches,
-                                   RegionPreview region) const;
+  Result<RegionPreview> vibrations(const BodyInputs& inputs, RegionPreview region) const;
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }

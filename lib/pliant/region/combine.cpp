@@ -69,15 +69,6 @@ std::vector<Box> union_parts(std::span<const Box> boxes) {
   return parts;
 }
 
-std::vector<Region> one_region(std::vector<Box> parts) {
-  if (parts.empty()) return {};
-  Region region;
-  for (const Box& part : parts) region.box.include(part);
-  region.parts = std::move(parts);
-  if (is_box(region)) region.parts = {region.box};
-  return {std::move(region)};
-}
-
 // Removes one patch from `left`, the interior nodes that belong to no patch yet: the nodes
 // connected to node (i,j) by steps to the eight neighbours.
 Patch take_patch(Marks& left, int i, int j) {
@@ -106,6 +97,37 @@ Patch take_patch(Marks& left, int i, int j) {
   return patch;
 }
 
+std::vector<Patch> patches_of(const Region& region) {
+  const Box& box = region.box;
+  if (box.columns() < 3 || box.rows() < 3) return {};
+  if (region.parts.size() == 1) return {Patch{box, {}}};
+  const Marks cells = cells_of(region);
+  Marks left(box);
+  for (int j = box.j0 + 1; j < box.j1; ++j) {
+    for (int i = box.i0 + 1; i < box.i1; ++i) {
+      left.at(i, j) =
+          cells.has(i - 1, j - 1) && cells.has(i, j - 1) && cells.has(i - 1, j) && cells.has(i, j);
+    }
+  }
+  std::vector<Patch> patches;
+  for (int j = box.j0 + 1; j < box.j1; ++j) {
+    for (int i = box.i0 + 1; i < box.i1; ++i) {
+      if (left.has(i, j)) patches.push_back(take_patch(left, i, j));
+    }
+  }
+  return patches;
+}
+
+// Requires: parts.
+Region region_of(std::vector<Box> parts) {
+  Region region;
+  for (const Box& part : parts) region.box.include(part);
+  region.parts = std::move(parts);
+  if (is_box(region)) region.parts = {region.box};
+  region.patches = patches_of(region);
+  return region;
+}
+
 }  // namespace
 
 std::vector<Box> merged(std::span<const Box> boxes) {
@@ -131,47 +153,29 @@ std::vector<Box> merged(std::span<const Box> boxes) {
 }
 
 std::vector<Region> combine(std::span<const Box> boxes, Combine how) {
+  std::vector<Region> regions;
   switch (how) {
     case Combine::Box: {
       Box all;
       for (const Box& box : boxes) all.include(box);
-      return all.is_empty() ? std::vector<Region>{} : std::vector<Region>{{all, {all}}};
+      if (!all.is_empty()) regions.push_back(region_of({all}));
+      break;
     }
-    case Combine::Islands: {
-      std::vector<Region> regions;
-      for (const Box& island : merged(boxes)) regions.push_back({island, {island}});
-      return regions;
-    }
+    case Combine::Islands:
+      for (const Box& island : merged(boxes)) regions.push_back(region_of({island}));
+      break;
     case Combine::Union:
-      return one_region(union_parts(boxes));
+      if (auto parts = union_parts(boxes); !parts.empty()) {
+        regions.push_back(region_of(std::move(parts)));
+      }
+      break;
   }
-  return {};
+  return regions;
 }
 
 int Patch::interior_count() const {
   if (is_rectangle()) return (box.columns() - 2) * (box.rows() - 2);
   return static_cast<int>(std::count(interior.begin(), interior.end(), std::uint8_t{1}));
-}
-
-std::vector<Patch> patches_of(const Region& region) {
-  const Box& box = region.box;
-  if (box.columns() < 3 || box.rows() < 3) return {};
-  if (region.parts.size() == 1) return {Patch{box, {}}};
-  const Marks cells = cells_of(region);
-  Marks left(box);
-  for (int j = box.j0 + 1; j < box.j1; ++j) {
-    for (int i = box.i0 + 1; i < box.i1; ++i) {
-      left.at(i, j) =
-          cells.has(i - 1, j - 1) && cells.has(i, j - 1) && cells.has(i - 1, j) && cells.has(i, j);
-    }
-  }
-  std::vector<Patch> patches;
-  for (int j = box.j0 + 1; j < box.j1; ++j) {
-    for (int i = box.i0 + 1; i < box.i1; ++i) {
-      if (left.has(i, j)) patches.push_back(take_patch(left, i, j));
-    }
-  }
-  return patches;
 }
 
 }  // namespace pliant

@@ -15,23 +15,6 @@ enum class Combine {
   Union,    ///< the cells of all boxes together are one region, of any outline
 };
 
-/// The cells of its parts, which are solved together. A node is interior if all its four cells are
-/// inside; the others are the rim.
-struct Region {
-  Box box;                 ///< smallest box around all parts; in nodes
-  std::vector<Box> parts;  ///< boxes whose cells form the region; `box` itself if it is one
-
-  friend bool operator==(const Region&, const Region&) = default;
-};
-
-/// Replaces boxes that share a node by their common box, until none do. Removes empty boxes. The
-/// result does not depend on the order of `boxes`; it is sorted by first row, then by first column.
-std::vector<Box> merged(std::span<const Box> boxes);
-
-/// The regions that `boxes` form, none of them empty; islands in the order of `merged`. A box less
-/// than two nodes wide has no cell, so it is not a part of a union.
-std::vector<Region> combine(std::span<const Box> boxes, Combine how);
-
 /// Interior nodes of a region that form one system of equations: those of a rectangle, or a set
 /// that is connected, diagonally too.
 struct Patch {
@@ -52,8 +35,25 @@ struct Patch {
   friend bool operator==(const Patch&, const Patch&) = default;
 };
 
-/// The patches of a region, in the order of their first interior nodes, row by row; empty if it has
-/// no interior node.
-std::vector<Patch> patches_of(const Region& region);
+/// The cells of its parts, which are solved together. A node is interior if all its four cells are
+/// inside; the others are the rim.
+struct Region {
+  Box box;                 ///< smallest box around all parts; in nodes
+  std::vector<Box> parts;  ///< boxes whose cells form the region; `box` itself if it is one
+
+  /// Its interior nodes, in the order of the first of each patch, row by row; empty: there are
+  /// none, so that it is too small to solve.
+  std::vector<Patch> patches = {};
+
+  friend bool operator==(const Region&, const Region&) = default;
+};
+
+/// Replaces boxes that share a node by their common box, until none do. Removes empty boxes. The
+/// result does not depend on the order of `boxes`; it is sorted by first row, then by first column.
+std::vector<Box> merged(std::span<const Box> boxes);
+
+/// The regions that `boxes` form, none of them empty; islands in the order of `merged`. A box less
+/// than two nodes wide has no cell, so it is not a part of a union.
+std::vector<Region> combine(std::span<const Box> boxes, Combine how);
 
 }  // namespace pliant

@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 // The region that force k acts in; -1: none.
-int region_of(const Selection& selection, std::size_t k, Combine how) {
+int region_of_force(const Selection& selection, std::size_t k, Combine how) {
   if (selection.regions.empty()) return -1;
   if (how != Combine::Islands) return 0;
   const auto selector = static_cast<std::size_t>(selection.forces[k].selector);
@@ -136,14 +136,25 @@ void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
 
 }  // namespace
 
-Selection recombined(Selection selection, Combine how, std::span<const Box> others) {
-  std::vector<Box> boxes(others.begin(), others.end());
+Box Selection::box() const {
+  Box all;
+  for (const Region& region : regions) all.include(region.box);
+  return all;
+}
+
+std::span<const Patch> Selection::patches_of_force(std::size_t k) const {
+  const int region = forces[k].region;
+  if (region < 0) return {};
+  return regions[static_cast<std::size_t>(region)].patches;
+}
+
+Selection recombined(Selection selection, Combine how, std::vector<Box> others) {
+  std::vector<Box> boxes = others;
   for (const ForceSelection& force : selection.forces) boxes.push_back(force.deformation);
+  selection.others = std::move(others);
   selection.regions = combine(boxes, how);
-  selection.region = {};
-  for (const Region& region : selection.regions) selection.region.include(region.box);
   for (std::size_t k = 0; k < selection.forces.size(); ++k) {
-    selection.forces[k].region = region_of(selection, k, how);
+    selection.forces[k].region = region_of_force(selection, k, how);
   }
   return selection;
 }
@@ -153,9 +164,7 @@ Selection select_region(const Grid& grid, const PlacedNodes& nodes,
                         std::span<const int> selectors) {
   NodeTiles tiles;
   tiles.update(grid, nodes);
-  Selection selection;
-  reselect(selection, tiles, forces, how, selectors);
-  return selection;
+  return reselected({}, tiles, forces, how, selectors);
 }
 
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
@@ -164,22 +173,23 @@ ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
   return selecting.boxes;
 }
 
-bool reselect(Selection& selection, const NodeTiles& tiles, std::span<const SampledForce> forces,
-              Combine how, std::span<const int> selectors) {
+Selection reselected(Selection earlier, const NodeTiles& tiles,
+                     std::span<const SampledForce> forces, Combine how,
+                     std::span<const int> selectors) {
   PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
-  bool are_same = selection.forces.size() == forces.size();
+  Selection selection = std::move(earlier);
+  bool are_same = selection.forces.size() == forces.size() && selection.others.empty();
   selection.forces.resize(forces.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     ForceSelection& selected = selection.forces[k];
-    const int selector = selectors.empty() ? static_cast<int>(k) : selectors[k];
-    const ForceSelection now = boxes_of(tiles, forces[k]);
-    are_same = are_same && now.deformation == selected.deformation && selector == selected.selector;
-    selected.selector = selector;
-    selected.deformation = now.deformation;
-    selected.force = now.force;
+    ForceSelection now = boxes_of(tiles, forces[k]);
+    now.selector = selectors.empty() ? static_cast<int>(k) : selectors[k];
+    now.region = selected.region;
+    are_same =
+        are_same && now.deformation == selected.deformation && now.selector == selected.selector;
+    selected = now;
   }
-  if (!are_same) selection = recombined(std::move(selection), how);
-  return are_same;
+  return are_same ? std::move(selection) : recombined(std::move(selection), how);
 }
 
 bool overlaps(const Region& region, const Box& force) {

@@ -24,17 +24,18 @@ Selection select_region(const Grid& grid, const PlacedNodes& nodes,
 /// The boxes of one force alone.
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force);
 
-/// Selects again into `selection`, an earlier result or empty, on the nodes of `tiles`. If all
-/// deformation boxes are unchanged, so are the regions, and nothing is allocated. Returns whether
-/// they are unchanged. A program's own function is called for every node, other forces only for
-/// nodes that can change a box.
-bool reselect(Selection& selection, const NodeTiles& tiles, std::span<const SampledForce> forces,
-              Combine how, std::span<const int> selectors = {});
+/// Selects again on the nodes of `tiles`, in the memory of `earlier`: an earlier result, or empty.
+/// If all deformation boxes are unchanged and no others took part, so are the regions, and nothing
+/// is allocated. A program's own function is called for every node, other forces only for nodes
+/// that can change a box.
+Selection reselected(Selection earlier, const NodeTiles& tiles,
+                     std::span<const SampledForce> forces, Combine how,
+                     std::span<const int> selectors = {});
 
 /// The same selection with regions formed from its boxes and from `others`, boxes that no force
 /// selects. In a box or union every force acts in the one region; with islands, in the one that
 /// contains the deformation box of its `selector`; if that box is empty, in none.
-Selection recombined(Selection selection, Combine how, std::span<const Box> others = {});
+Selection recombined(Selection selection, Combine how, std::vector<Box> others = {});
 
 /// Whether a force box contains a node of the region, rim included.
 bool overlaps(const Region& region, const Box& force);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -8,21 +10,31 @@
 
 namespace pliant {
 
-/// The boxes of one force, and the region it acts in.
+/// One force in the selection of a frame: its boxes, the region it acts in, and its effect there.
 struct ForceSelection {
   Box deformation;   ///< box of the nodes nearer than the deformation radius; empty: there are none
   Box force;         ///< box of the nodes nearer than the force radius; may exceed the region
   int selector = 0;  ///< index of the force whose deformation box it uses; usually the force itself
   int region = -1;   ///< index of the region it acts in; -1: none
 
+  // Known once the body has planned its step.
+  bool pushes = false;   ///< whether it moves any node
+  bool is_lost = false;  ///< whether it selects nodes on the rest mesh, but none now
+
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
 };
 
-/// The region selection of thesis 5.3, fig. 5; SPEC 5.
+/// The region selection of thesis 5.3, fig. 5; SPEC 5: which nodes a frame solves, and which forces
+/// act on them.
 struct Selection {
-  Box region;                          ///< smallest box around all regions; empty: there are none
   std::vector<ForceSelection> forces;  ///< in the order of the forces
+  std::vector<Box> others;             ///< boxes that no force selects, but that are solved too
   std::vector<Region> regions;         ///< in the order of `combine`, also those too small to solve
+
+  Box box() const;  ///< smallest box around all regions; empty: there are none
+
+  /// The patches that force k acts in.
+  std::span<const Patch> patches_of_force(std::size_t k) const;
 
   friend bool operator==(const Selection&, const Selection&) = default;
 };

@@ -108,7 +108,7 @@ std::pair<Grid, InteriorMask> random_union(std::mt19937& random) {
       boxes.push_back({i, i + pick(1, 6), j, j + pick(1, 6)});
     }
     const auto regions = combine(boxes, Combine::Union);
-    for (const Patch& patch : patches_of(regions.at(0))) {
+    for (const Patch& patch : regions.at(0).patches) {
       if (!patch.is_rectangle())
         return {{patch.box.columns(), patch.box.rows(), 0.25, 0.125}, patch.interior};
     }

@@ -86,7 +86,7 @@ TEST_CASE("a cover of random boxes is one, or there is none", "[plate][cover]") 
       const int i = pick(0, 30), j = pick(0, 30);
       boxes.push_back({i, i + pick(4, 30), j, j + pick(4, 30)});
     }
-    const Patch patch = patches_of(combine(boxes, Combine::Union).at(0)).at(0);
+    const Patch patch = combine(boxes, Combine::Union).at(0).patches.at(0);
     if (patch.is_rectangle()) continue;
     const UnionPlate plate{"random", {patch.box.columns(), patch.box.rows(), 1, 1}, patch.interior};
     const auto cover = cover_by_rectangles(plate.outline());

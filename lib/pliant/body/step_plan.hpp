@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/region/selection.hpp"
+
+namespace pliant {
+
+/// What one step of a body does, decided before it solves: for the step itself, and for all that
+/// tell of it.
+struct StepPlan {
+  Selection selection;          ///< of the forces, in the order of the inputs, and of `recovering`
+  TimeSteps steps;              ///< of the solve
+  std::vector<int> recovering;  ///< nodes solved because they are not back at rest, ascending
+  std::vector<int> settling;    ///< nodes put at rest before the solve, ascending
+
+  bool solves() const;        ///< whether any node moves
+  int unknown_count() const;  ///< nodes that move, of all patches
+};
+
+}  // namespace pliant
