@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "pliant/forces/force.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "pliant/plate/sparse/operator.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;
