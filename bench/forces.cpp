@@ -38,7 +38,7 @@ struct Row {
 
 std::vector<Row> rows() {
   const Vector3d center{0.3, 0.2, -0.1}, axis{0.1, 1, 0.2};
-  const std::vector<std::pair<std::string, ForceShape>> shapes = {
+  const std::vector<std::pair<std::string, ForceKind>> shapes = {
       {"point", PointForce{center, axis}},
       {"radial", RadialForce{center}},
       {"line", LineForce{center, axis, {}}},
@@ -47,10 +47,10 @@ std::vector<Row> rows() {
       {"vortex", VortexForce{center, axis, 0.3}},
       {"noise", NoiseForce{center, 3, 0.5, 7}},
       {"inertia", InertiaForce{Matrix3d::Identity(), center, axis}},
-      {"function", FunctionForce{[](const Vector3d& p) { return std::abs(p.x()); },
-                                 [](const Vector3d& p) { return p; }}}};
+      {"function", SampledCustomForce{[](const Vector3d& p) { return std::abs(p.x()); },
+                                      [](const Vector3d& p) { return p; }}}};
   std::vector<Row> rows;
-  for (const auto& [name, shape] : shapes) rows.push_back({name, {.shape = shape, .magnitude = 2}});
+  for (const auto& [name, shape] : shapes) rows.push_back({name, {.kind = shape, .magnitude = 2}});
   for (const auto& [name, falloff] : {std::pair{"point, linear", Falloff::Linear},
                                       {"point, smooth", Falloff::Smooth},
                                       {"point, gaussian", Falloff::Gaussian}}) {
@@ -88,8 +88,8 @@ double nanoseconds(const std::vector<Batch>& batches, const Work& work) {
 
 void measure(Row& row, const std::vector<Batch>& batches) {
   const SampledForce& force = row.force;
-  row.distances.push_back(nanoseconds(
-      batches, [&](const Batch& batch) { sum += distances(force.shape, batch).of[0]; }));
+  row.distances.push_back(
+      nanoseconds(batches, [&](const Batch& batch) { sum += distances(force.kind, batch).of[0]; }));
   Batch sums = {};
   row.forces.push_back(
       nanoseconds(batches, [&](const Batch& batch) { add_forces(force, batch, 0, sums); }));
@@ -100,7 +100,7 @@ void measure(Row& row, const std::vector<Batch>& batches) {
   row.bounds.push_back(nanoseconds(batches, [&](const Batch& batch) {
     for (int k = 0; k < batch.count; ++k) {
       const Vector3d low = batch.at(k);
-      sum += least_distance(force.shape, low, low + Vector3d(0.1, 0.1, 0.1));
+      sum += least_distance(force.kind, low, low + Vector3d(0.1, 0.1, 0.1));
     }
   }));
 }

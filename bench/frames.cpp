@@ -51,11 +51,11 @@ struct Options {
   bool is_least = false;
 };
 
-Force force(std::string name, decltype(Force::shape) shape, double magnitude,
+Force force(std::string name, decltype(Force::kind) shape, double magnitude,
             double deformation_radius, double force_radius, Falloff falloff) {
   Force force;
   force.name = std::move(name);
-  force.shape = std::move(shape);
+  force.kind = std::move(shape);
   force.magnitude = magnitude;
   force.deformation_radius = deformation_radius;
   force.force_radius = force_radius;
@@ -211,7 +211,7 @@ std::vector<SampledForce> strewn(int count, double extent) {
   for (int k = 0; k < count; ++k) {
     const double x = place(random), z = place(random);
     SampledForce& force = forces.emplace_back();
-    force.shape = PointForce{{x, 0, z}, {0, 1, 0}};
+    force.kind = PointForce{{x, 0, z}, {0, 1, 0}};
     force.deformation_radius = extent / 50;
     force.force_radius = extent / 100;
   }
@@ -225,7 +225,7 @@ Selection look_at_all(const Grid& grid, const Field& nodes, std::span<const Samp
     selected.selector = static_cast<int>(selection.forces.size());
     for (int j = 0; j < grid.rows; ++j) {
       for (int i = 0; i < grid.columns; ++i) {
-        const double delta = distance(force.shape, nodes.row(grid.node(i, j)).transpose());
+        const double delta = distance(force.kind, nodes.row(grid.node(i, j)).transpose());
         if (delta < force.deformation_radius) selected.deformation.include(i, j);
         if (delta < force.force_radius) selected.force.include(i, j);
       }

@@ -48,7 +48,7 @@ Scene make_scene(int side) {
   scene.surfaces.push_back(std::move(sheet));
   Force force;
   force.name = "middle";
-  force.shape = PointChannels{.center = Value<3>{0, 0, 0}};
+  force.kind = PointChannels{.center = Value<3>{0, 0, 0}};
   force.magnitude = 500.0;
   force.deformation_radius = 100.0;
   force.force_radius = 4.0;

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pliant/io/writer.hpp"
+#include "pliant/output/writer.hpp"
 #include "report.hpp"
 
 namespace pliant::cli {

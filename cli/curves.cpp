@@ -24,7 +24,7 @@
 #include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/trim.hpp"
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
 #include "resources.hpp"

@@ -10,7 +10,7 @@
 #include "ffmpeg.hpp"
 #include "interrupt.hpp"
 #include "pliant/core/file_ending.hpp"
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 
 namespace pliant::cli {
 namespace {

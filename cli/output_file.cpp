@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/io/output_place.hpp"
+#include "pliant/output/output_place.hpp"
 
 namespace pliant::cli {
 

@@ -27,7 +27,7 @@ Json force_json(const ForceReport& report, const Force* force, int frame) {
                              json[std::string(attribute)] = value_at(frame);
                            });
   } else {
-    json["center"] = to_json(std::get<PointForce>(sampled->shape).center);
+    json["center"] = to_json(std::get<PointForce>(sampled->kind).center);
   }
   json["deformationBox"] = to_json(selection.deformation);
   json["forceBox"] = to_json(selection.force);

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 
 namespace pliant::cli {

@@ -12,7 +12,7 @@
 #include "interrupt.hpp"
 #include "output_file.hpp"
 #include "pliant/core/number.hpp"
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "view_movie.hpp"

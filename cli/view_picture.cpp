@@ -25,7 +25,7 @@
 #include "interrupt.hpp"
 #include "output_file.hpp"
 #include "pliant/core/number.hpp"
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "view_scene.hpp"

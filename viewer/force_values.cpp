@@ -28,7 +28,7 @@ struct AddValues {
 
 void for_each_value(const Force& force,
                     const std::function<void(std::string_view, const ValueAt&)>& add) {
-  std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.shape);
+  std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
 }
 
 }  // namespace pliant::viewer

@@ -20,7 +20,7 @@ int main() {
   wave.deformation_radius = 4;  // nearer nodes are solved
   wave.force_radius = 1.5;      // nearer nodes are pushed
   wave.falloff = pliant::Falloff::Smooth;
-  wave.shape = pliant::CustomForce{
+  wave.kind = pliant::CustomForce{
       // The distance that both radii are compared with: to the crest of the wave.
       .distance =
           [](const pliant::Vector3d& p, const pliant::ForceTime& time) {

@@ -241,11 +241,11 @@ TEST_CASE("a step after one that a force's function ended selects anew", "[body]
   const NodeSheet s = hilly_sheet(41, 21);
   bool throws = false;
   SampledForce function = press(0, 4, 3e4);
-  function.shape = FunctionForce{[&](const Vector3d& p) {
-                                   if (throws) throw 1;
-                                   return (p - Vector3d(0, 0, 4)).norm();
-                                 },
-                                 [](const Vector3d&) { return Vector3d(0, 1, 0); }};
+  function.kind = SampledCustomForce{[&](const Vector3d& p) {
+                                       if (throws) throw 1;
+                                       return (p - Vector3d(0, 0, 4)).norm();
+                                     },
+                                     [](const Vector3d&) { return Vector3d(0, 1, 0); }};
   Body body(s.grid, s.rest, {});
   REQUIRE(step(body, inputs_of({press(-10, 0, 3e4), function})));
   const BodyInputs moved = inputs_of({press(10, 0, 3e4), function});

@@ -30,7 +30,7 @@ int main() {
   wave.deformation_radius = 100;
   wave.force_radius = 3;
   wave.falloff = pliant::Falloff::Smooth;
-  wave.shape = pliant::CustomForce{
+  wave.kind = pliant::CustomForce{
       .distance =
           [](const pliant::Vector3d& p, const pliant::ForceTime& time) {
             return std::abs(p.x() + 5 - 20 * time.seconds);  // to its crest

@@ -38,7 +38,7 @@ TEST_CASE("all forces act as they do on the surface", "[feedback][acting]") {
       CHECK(inputs.forces[k].magnitude == expected.forces[k].magnitude);
       CHECK(inputs.forces[k].deformation_radius == expected.forces[k].deformation_radius);
       const Vector3d p(1, 2, 3);
-      CHECK(distance(inputs.forces[k].shape, p) == distance(expected.forces[k].shape, p));
+      CHECK(distance(inputs.forces[k].kind, p) == distance(expected.forces[k].kind, p));
     }
   }
   CHECK(all.enabled_at(1) == std::vector<std::size_t>{0, 2});
@@ -69,18 +69,18 @@ TEST_CASE("what stands still differs by its magnitude alone", "[feedback][acting
   const std::vector<std::function<void()>> changes = {
       [&] { s.forces[0].force_radius = moved; },
       [&] { s.forces[0].deformation_radius = moved; },
-      [&] { s.forces[0].shape = PointChannels{.center = turned}; },
-      [&] { s.forces[0].shape = PointChannels{.direction = turned}; },
-      [&] { s.forces[0].shape = RadialChannels{.center = turned}; },
-      [&] { s.forces[0].shape = LineChannels{.from = turned}; },
-      [&] { s.forces[0].shape = LineChannels{.to = turned}; },
-      [&] { s.forces[0].shape = LineChannels{.direction = Channel<3>(turned)}; },
-      [&] { s.forces[0].shape = UniformChannels{turned}; },
-      [&] { s.forces[0].shape = VortexChannels{.center = turned}; },
-      [&] { s.forces[0].shape = VortexChannels{.axis = turned}; },
-      [&] { s.forces[0].shape = VortexChannels{.pull = moved}; },
-      [&] { s.forces[0].shape = NoiseChannels{}; },  // noise varies over time
-      [&] { s.forces[0].shape = CustomForce{}; },
+      [&] { s.forces[0].kind = PointChannels{.center = turned}; },
+      [&] { s.forces[0].kind = PointChannels{.direction = turned}; },
+      [&] { s.forces[0].kind = RadialChannels{.center = turned}; },
+      [&] { s.forces[0].kind = LineChannels{.from = turned}; },
+      [&] { s.forces[0].kind = LineChannels{.to = turned}; },
+      [&] { s.forces[0].kind = LineChannels{.direction = Channel<3>(turned)}; },
+      [&] { s.forces[0].kind = UniformChannels{turned}; },
+      [&] { s.forces[0].kind = VortexChannels{.center = turned}; },
+      [&] { s.forces[0].kind = VortexChannels{.axis = turned}; },
+      [&] { s.forces[0].kind = VortexChannels{.pull = moved}; },
+      [&] { s.forces[0].kind = NoiseChannels{}; },  // noise varies over time
+      [&] { s.forces[0].kind = CustomForce{}; },
       [&] { s.groups[0].center = turned; },
       [&] { s.groups[0].deformation_radius = moved; },
       [&] { s.surfaces[0].transform.rotate = turned; },
@@ -92,8 +92,8 @@ TEST_CASE("what stands still differs by its magnitude alone", "[feedback][acting
     CHECK_FALSE(stands());
   }
   s = still;
-  s.forces[0].shape = NoiseChannels{.rate = 0};
+  s.forces[0].kind = NoiseChannels{.rate = 0};
   CHECK(stands());
-  s.forces[1].shape = PointChannels{.center = turned};  // not among the forces
+  s.forces[1].kind = PointChannels{.center = turned};  // not among the forces
   CHECK(stands());
 }

@@ -22,7 +22,7 @@ Scene meeting(Combine how) {
   s.surfaces[2].solver.start_frame = 9;
   for (const double side : {-1.0, 1.0}) {
     Force force = poke(side < 0 ? "left" : "right", {}, 60000 * side);
-    force.shape =
+    force.kind =
         PointChannels{.center = vector_curve({{1, {9 * side, 0, side}}, {8, {2 * side, 0, side}}})};
     force.enabled = switch_at({{1, true}, {10, false}});
     s.forces.push_back(force);
@@ -113,7 +113,7 @@ TEST_CASE("recovering frames have the same bits in any order", "[feedback][recov
 TEST_CASE("the load told of is the load in world space", "[feedback][report]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0}, 700)}, 3);
   s.surfaces[0].transform.scale = Value<3>{1, 2, 0.5};
-  s.forces[0].shape = PointChannels{.center = Value<3>{0, 0, 0}, .direction = Value<3>{0, 3, 4}};
+  s.forces[0].kind = PointChannels{.center = Value<3>{0, 0, 0}, .direction = Value<3>{0, 3, 4}};
   auto simulation = Simulation::make(s).value();
   const ForceReport force = simulation.report(1)->surfaces[0].forces.at(0);
   REQUIRE(force.push.node_count > 0);
@@ -122,7 +122,7 @@ TEST_CASE("the load told of is the load in world space", "[feedback][report]") {
 
 TEST_CASE("a report may outlive the simulation, custom forces included", "[feedback][report]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})}, 3);
-  s.forces[0].shape = CustomForce{
+  s.forces[0].kind = CustomForce{
       .distance = {}, .unit_force = [](const Vector3d& p, const ForceTime&) -> Vector3d {
         return p.x() > 100 ? Vector3d::Constant(std::nan("")) : Vector3d(0, 1, 0);
       }};
@@ -131,7 +131,7 @@ TEST_CASE("a report may outlive the simulation, custom forces included", "[feedb
     s = {};
     return simulation.report(2).value();
   }();
-  const ForceShape& shape = report.surfaces[0].forces.at(0).sampled->shape;
+  const ForceKind& shape = report.surfaces[0].forces.at(0).sampled->kind;
   CHECK(unit_force(shape, {1, 2, 3}) == Vector3d(0, 1, 0));
   CHECK(unit_force(shape, {101, 0, 0}) == Vector3d::Zero());
 }

@@ -112,7 +112,7 @@ TEST_CASE("a force is told of at the frame of its greatest effect", "[feedback][
   }
   SECTION("a weaker push at the middle rather than a stronger one at the rim") {
     force.deformation_radius = 100.0;
-    force.shape = PointChannels{.center = vector_curve({{1, {18, 0, 0}}, {30, {0, 0, 0}}})};
+    force.kind = PointChannels{.center = vector_curve({{1, {18, 0, 0}}, {30, {0, 0, 0}}})};
     force.magnitude = curve({{1, 1200}, {30, 1000}});  // weaker by a sixth
     CHECK(preview_of(s, Preview::Of::Force).frame.value_or(0) >= 25);
   }
@@ -122,7 +122,7 @@ TEST_CASE("a force is told of at the frame of its greatest effect", "[feedback][
     CHECK(preview_of(s, Preview::Of::Force).frame == 11);
   }
   SECTION("not where it selects nothing") {
-    force.shape =
+    force.kind =
         PointChannels{.center = vector_curve({{1, {0, 60, 0}}, {20, {0, 60, 0}}, {22, {0, 0, 0}}})};
     force.magnitude = curve({{1, 0}, {10, -700}, {30, 300}});
     const Preview told = preview_of(s, Preview::Of::Force);
@@ -145,7 +145,7 @@ TEST_CASE("a force is told of at the frame of its greatest effect", "[feedback][
 TEST_CASE("an animation is played as it is baked", "[feedback][preview]") {
   Scene s = scene({sheet("s", 31)}, {poke("f", {-4, 0, 0}), poke("g", {4, 0, 1}, 3000)}, 40);
   s.forces[0].magnitude = curve({{1, 0}, {8, 5000}, {16, 0}});
-  s.forces[1].shape = PointChannels{.center = vector_curve({{1, {4, 0, 0}}, {30, {-6, 0, 2}}})};
+  s.forces[1].kind = PointChannels{.center = vector_curve({{1, {4, 0, 0}}, {30, {-6, 0, 2}}})};
   Surface& surface = s.surfaces[0];
   SECTION("box") {}
   SECTION("islands") { surface.solver.combine = Combine::Islands; }
@@ -218,7 +218,7 @@ TEST_CASE("a group is told of with what its members do there", "[feedback][previ
 TEST_CASE("what selects nothing is told how far away it is", "[feedback][preview]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 60, 0})}, 30);
   s.surfaces[1].transform.translate = Value<3>{100, 0, 0};
-  s.forces[0].shape = PointChannels{.center = vector_curve({{1, {0, 60, 0}}, {10, {0, 5, 0}}})};
+  s.forces[0].kind = PointChannels{.center = vector_curve({{1, {0, 60, 0}}, {10, {0, 5, 0}}})};
   const auto previews = previews_of(s);
   REQUIRE(previews.size() == 4);
   const Preview& a = previews[0];
@@ -240,7 +240,7 @@ TEST_CASE("what selects nothing is told how far away it is", "[feedback][preview
 TEST_CASE("a long range is looked at here and there", "[feedback][preview]") {
   if (is_sanitized) return;  // the search would need minutes, and is the same as for shorter ranges
   Scene s = scene({sheet("s", 101)}, {poke("f", {0, 0, 0})}, 200'000);
-  s.forces[0].shape =
+  s.forces[0].kind =
       PointChannels{.center = vector_curve({{1, {-20, 0, 0}}, {200'000, {20, 0, 0}}})};
   s.forces[0].magnitude = curve({{1, 0}, {777, 4000}, {2000, 0}});
   const Preview told = preview_of(s, Preview::Of::Force);

@@ -61,7 +61,7 @@ TEST_CASE("a force that selects nothing is a warning only over the whole range",
   CHECK(warnings_of(s, 8).empty());  // it may still touch a surface later
 
   s.forces[0].targets.clear();
-  s.forces[0].shape = PointChannels{.center = Value<3>{0, 50, 0}};
+  s.forces[0].kind = PointChannels{.center = Value<3>{0, 50, 0}};
   const auto nowhere = warnings_of(s, 9);
   REQUIRE(nowhere.size() == 1);
   CHECK_THAT(nowhere[0].message(), Contains("selects no node of any surface at frames 1-8"));
@@ -70,7 +70,7 @@ TEST_CASE("a force that selects nothing is a warning only over the whole range",
   s.forces[0].enabled = false;
   CHECK(warnings_of(s, 9).empty());  // disabled on purpose
   s.forces[0].enabled = true;
-  s.forces[0].shape =
+  s.forces[0].kind =
       PointChannels{.center = vector_curve({{1, {0, 50, 0}}, {7, {0, 50, 0}}, {8, {0, 0, 0}}})};
   CHECK(warnings_of(s, 9).empty());  // it touches a surface at last
 }
@@ -101,10 +101,10 @@ TEST_CASE("a magnitude that pushes nothing in the whole range is a warning, and 
   SECTION("a force radius of 0") { force.force_radius = 0.0; }
   SECTION("a force radius below the spacing") { force.force_radius = 0.6; }
   SECTION("no direction") {
-    force.shape = PointChannels{.center = Value<3>{0.5, 0, 0.5}, .direction = Value<3>{0, 0, 0}};
+    force.kind = PointChannels{.center = Value<3>{0.5, 0, 0.5}, .direction = Value<3>{0, 0, 0}};
   }
   SECTION("only nodes of the rim") {
-    force.shape = PointChannels{.center = Value<3>{6, 0, 0.5}};  // on the sheet's own edge
+    force.kind = PointChannels{.center = Value<3>{6, 0, 0.5}};  // on the sheet's own edge
     force.force_radius = 0.6;
   }
   const auto idle = warnings_of(s, 5);
@@ -118,7 +118,7 @@ TEST_CASE("a magnitude that pushes nothing in the whole range is a warning, and 
   CHECK(warnings_of(quiet, 5).empty());
   quiet = s;
   quiet.forces[0].force_radius = curve({{1, 0}, {3, 0}, {4, 3}});
-  quiet.forces[0].shape = PointChannels{.center = Value<3>{0.5, 0, 0.5}};
+  quiet.forces[0].kind = PointChannels{.center = Value<3>{0.5, 0, 0.5}};
   CHECK(warnings_of(quiet, 5).empty());  // it pushes in the end
   quiet = s;
   quiet.forces[0].deformation_radius = 0.8;  // 2 x 2 nodes: that is the warning
@@ -137,7 +137,7 @@ TEST_CASE("warnings tell of islands each by itself", "[feedback][warnings]") {
   CHECK(small[0].force == "g");
   // As a box, the other force's region would contain its nodes; its own island is empty.
   s.forces[1].deformation_radius = 0.0;
-  s.forces[1].shape = PointChannels{.center = Value<3>{-8, 0, 0}};
+  s.forces[1].kind = PointChannels{.center = Value<3>{-8, 0, 0}};
   const auto nothing = warnings_of(s, 4);
   REQUIRE(nothing.size() == 1);
   CHECK(nothing[0].kind == Warning::Kind::SelectsNothing);
@@ -157,7 +157,7 @@ TEST_CASE("a union tells of what is too small in it", "[feedback][warnings]") {
     CHECK(small[0].kind == Warning::Kind::RegionTooSmall);
     CHECK(small[0].force == "g");
   }
-  s.forces[1].shape = PointChannels{.center = Value<3>{-8.5, 0, 0.5}};  // among them
+  s.forces[1].kind = PointChannels{.center = Value<3>{-8.5, 0, 0.5}};  // among them
   CHECK(warnings_of(s, 4).empty());
 }
 
@@ -230,7 +230,7 @@ TEST_CASE("boxes that meet by a chain, or once others have met, are not apart",
   s.forces = {poke("inside", {6, 0, -9}), poke("low", {0, 0, -9}), poke("high", {4, 0, -1})};
   s.forces[0].deformation_radius = s.forces[0].force_radius = 1.5;
   CHECK(warnings_of(s, 3).empty());
-  s.forces[0].shape = PointChannels{.center = Value<3>{11, 0, -9}};
+  s.forces[0].kind = PointChannels{.center = Value<3>{11, 0, -9}};
   CHECK(warnings_of(s, 3).size() == 1);
 }
 
@@ -259,6 +259,6 @@ TEST_CASE("a group's region is called a group", "[feedback][warnings][group]") {
   CHECK_THAT(missed[0].message(), Contains("group \"hand\" selects no node of any surface"));
   s.groups.clear();
   s.forces[0].group.clear();
-  s.forces[0].shape = PointChannels{.center = Value<3>{0, 50, 0}};
+  s.forces[0].kind = PointChannels{.center = Value<3>{0, 50, 0}};
   CHECK_THAT(warnings_of(s, 5)[0].message(), Contains("force \"palm\" selects no node"));
 }

@@ -23,7 +23,7 @@ Vector3d place(std::mt19937& random, double extent) {
   return p;
 }
 
-std::vector<ForceShape> shapes(std::mt19937& random, double extent) {
+std::vector<ForceKind> shapes(std::mt19937& random, double extent) {
   const Vector3d a = place(random, extent), b = place(random, extent), c = place(random, extent);
   return {PointForce{a, b},
           RadialForce{a},
@@ -35,8 +35,8 @@ std::vector<ForceShape> shapes(std::mt19937& random, double extent) {
           VortexForce{a, Vector3d::Zero(), 1},
           NoiseForce{a, 0.7, 1.5, 9},
           InertiaForce{Matrix3d::Random(), a, b},
-          FunctionForce{[](const Vector3d& p) { return std::abs(p.x()); },
-                        [](const Vector3d& p) { return Vector3d(2 * p); }}};
+          SampledCustomForce{[](const Vector3d& p) { return std::abs(p.x()); },
+                             [](const Vector3d& p) { return Vector3d(2 * p); }}};
 }
 
 Batch batch_of(const std::vector<Vector3d>& points) {
@@ -61,11 +61,11 @@ TEST_CASE("a batch of positions gets the bits that each gets alone", "[forces][b
       points.push_back(place(random, extent));
     }
     const Batch batch = batch_of(points);
-    for (const ForceShape& shape : shapes(random, extent)) {
+    for (const ForceKind& shape : shapes(random, extent)) {
       const BatchNumbers found = distances(shape, batch);
       for (int k = 0; k < batch.count; ++k) REQUIRE(found.of[k] == distance(shape, points[k]));
       SampledForce force;
-      force.shape = shape;
+      force.kind = shape;
       force.magnitude = number(random, 5);
       force.force_radius = 1.3 * extent;
       force.falloff = static_cast<Falloff>(random() % 4);
@@ -99,7 +99,7 @@ TEST_CASE("no position of a box is nearer than the bound says", "[forces][batch]
       points.push_back(p);
     }
     points.push_back(low), points.push_back(high);
-    for (const ForceShape& shape : shapes(random, extent)) {
+    for (const ForceKind& shape : shapes(random, extent)) {
       const double bound = least_distance(shape, low, high);
       REQUIRE(bound >= 0);
       far += bound > 0;

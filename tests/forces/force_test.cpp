@@ -36,7 +36,7 @@ double searched_distance(const LineForce& line, const Vector3d& p) {
   return at((low + high) / 2);
 }
 
-std::vector<ForceShape> shapes(RandomVectors& vector) {
+std::vector<ForceKind> shapes(RandomVectors& vector) {
   return {PointForce{vector(), vector()},
           RadialForce{vector()},
           LineForce{vector(), vector(), {}},
@@ -50,33 +50,31 @@ struct Move {
   Eigen::Matrix3d rotation;
   Vector3d translation;
   Vector3d point(const Vector3d& p) const { return rotation * p + translation; }
-  ForceShape operator()(const PointForce& f) const {
+  ForceKind operator()(const PointForce& f) const {
     return PointForce{point(f.center), rotation * f.direction};
   }
-  ForceShape operator()(const RadialForce& f) const { return RadialForce{point(f.center)}; }
-  ForceShape operator()(const LineForce& f) const {
+  ForceKind operator()(const RadialForce& f) const { return RadialForce{point(f.center)}; }
+  ForceKind operator()(const LineForce& f) const {
     LineForce moved{point(f.from), point(f.to), {}};
     if (f.direction) moved.direction = rotation * *f.direction;
     return moved;
   }
-  ForceShape operator()(const UniformForce& f) const {
-    return UniformForce{rotation * f.direction};
-  }
-  ForceShape operator()(const VortexForce& f) const {
+  ForceKind operator()(const UniformForce& f) const { return UniformForce{rotation * f.direction}; }
+  ForceKind operator()(const VortexForce& f) const {
     return VortexForce{point(f.center), rotation * f.axis, f.pull};
   }
-  ForceShape operator()(const NoiseForce& f) const {  // its lattice keeps the axes of the world
+  ForceKind operator()(const NoiseForce& f) const {  // its lattice keeps the axes of the world
     return NoiseForce{point(f.center), f.frequency, f.time, f.seed};
   }
-  ForceShape operator()(const InertiaForce& f) const {
+  ForceKind operator()(const InertiaForce& f) const {
     return InertiaForce{rotation * f.linear * rotation.transpose(), point(f.origin),
                         rotation * f.offset};
   }
-  ForceShape operator()(const FunctionForce& f) const {
+  ForceKind operator()(const SampledCustomForce& f) const {
     const auto back = [*this](const Vector3d& p) -> Vector3d {
       return rotation.transpose() * (p - translation);
     };
-    return FunctionForce{
+    return SampledCustomForce{
         [=](const Vector3d& p) { return f.distance(back(p)); },
         [=, *this](const Vector3d& p) -> Vector3d { return rotation * f.unit_force(back(p)); }};
   }
@@ -111,7 +109,7 @@ TEST_CASE("directions are unit vectors or zero", "[forces]") {
   RandomVectors vector;
   for (int trial = 0; trial < 100; ++trial) {
     const Vector3d p = vector();
-    for (const ForceShape& shape : shapes(vector)) {
+    for (const ForceKind& shape : shapes(vector)) {
       CHECK_THAT(unit_force(shape, p).norm(), WithinAbs(1, 1e-15));
     }
   }
@@ -168,14 +166,14 @@ TEST_CASE("forces move with everything else", "[forces]") {
     const Eigen::Matrix3d rotation = random_rotation(vector);
     const Move move{rotation, vector()};
     const Vector3d p = vector();
-    std::vector<ForceShape> all = shapes(vector);
+    std::vector<ForceKind> all = shapes(vector);
     all.push_back(VortexForce{vector(), vector(), vector().x()});
     all.push_back(InertiaForce{Matrix3d::Random(), vector(), vector()});
-    all.push_back(
-        FunctionForce{[](const Vector3d& q) { return std::abs(q.x()); },
-                      [](const Vector3d& q) { return Vector3d(q.y() * q.y(), 1, q.x() * q.z()); }});
-    for (const ForceShape& shape : all) {
-      const ForceShape moved = std::visit(move, shape);
+    all.push_back(SampledCustomForce{
+        [](const Vector3d& q) { return std::abs(q.x()); },
+        [](const Vector3d& q) { return Vector3d(q.y() * q.y(), 1, q.x() * q.z()); }});
+    for (const ForceKind& shape : all) {
+      const ForceKind moved = std::visit(move, shape);
       CHECK_THAT(distance(moved, move.point(p)), WithinAbs(distance(shape, p), 1e-14));
       CHECK((unit_force(moved, move.point(p)) - rotation * unit_force(shape, p)).norm() < 1e-12);
     }
@@ -184,7 +182,7 @@ TEST_CASE("forces move with everything else", "[forces]") {
 
 TEST_CASE("a force is magnitude times falloff times direction", "[forces]") {
   RandomVectors vector;
-  for (const ForceShape& shape : shapes(vector)) {
+  for (const ForceKind& shape : shapes(vector)) {
     const SampledForce force{shape, -3, 1, 2, Falloff::Gaussian};
     const Vector3d p = vector();
     const double s = distance(shape, p) / 2;
@@ -260,12 +258,12 @@ TEST_CASE("inertia is an affine load", "[forces][inertia]") {
 TEST_CASE("a program's own force answers as the built-in ones do", "[forces]") {
   RandomVectors vector;
   const PointForce point{vector(), vector()};
-  const FunctionForce mine{[&](const Vector3d& p) { return point.distance(p); },
-                           [&](const Vector3d& p) { return point.unit_force(p); }};
+  const SampledCustomForce mine{[&](const Vector3d& p) { return point.distance(p); },
+                                [&](const Vector3d& p) { return point.unit_force(p); }};
   for (const Falloff kind : {Falloff::Linear, Falloff::Gaussian}) {
     const SampledForce built_in{point, 3, 1, 2, kind}, own{mine, 3, 1, 2, kind};
     const Vector3d p = vector();
-    CHECK(distance(own.shape, p) == distance(built_in.shape, p));
+    CHECK(distance(own.kind, p) == distance(built_in.kind, p));
     CHECK(force_at(own, p) == force_at(built_in, p));
   }
 }
@@ -297,7 +295,7 @@ TEST_CASE("a drawn falloff is held beyond s = 1", "[forces][falloff]") {
 
 TEST_CASE("the region of a group selects and pushes nothing", "[forces][group]") {
   const SampledForce region = region_sphere({1, 2, 3}, 4);
-  CHECK(distance(region.shape, {1, 5, 3}) == 3);
+  CHECK(distance(region.kind, {1, 5, 3}) == 3);
   CHECK(region.deformation_radius == 4);
   CHECK(region.force_radius == 0);
   CHECK(region.magnitude == 0);

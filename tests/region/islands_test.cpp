@@ -90,7 +90,7 @@ TEST_CASE("a push counts the nodes that move, and only them", "[region]") {
   CHECK(push.sum == Vector3d(0, 54, 0));
   CHECK(pushes(grid, nodes, force, selection.forces[0].force, patches));
   SampledForce idle = force;
-  std::get<PointForce>(idle.shape).direction.setZero();
+  std::get<PointForce>(idle.kind).direction.setZero();
   CHECK_FALSE(pushes(grid, nodes, idle, selection.forces[0].force, patches));
   CHECK_FALSE(pushes(grid, nodes, force, {0, 3, 0, 20}, patches));  // only the rim
 }

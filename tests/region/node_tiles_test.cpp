@@ -32,7 +32,7 @@ Field hills(const Grid& grid, std::mt19937& random) {
   return nodes;
 }
 
-ForceShape shape(std::mt19937& random, int kind) {
+ForceKind shape(std::mt19937& random, int kind) {
   const Vector3d a = place(random), b = place(random);
   switch (kind % 8) {
     case 0:
@@ -50,12 +50,12 @@ ForceShape shape(std::mt19937& random, int kind) {
     case 6:
       return LineForce{a, a, {}};
     default:
-      return FunctionForce{[a](const Vector3d& p) { return (p - a).norm(); },
-                           [](const Vector3d& p) { return p; }};
+      return SampledCustomForce{[a](const Vector3d& p) { return (p - a).norm(); },
+                                [](const Vector3d& p) { return p; }};
   }
 }
 
-Box near(const Grid& grid, const Field& nodes, const ForceShape& shape, double radius) {
+Box near(const Grid& grid, const Field& nodes, const ForceKind& shape, double radius) {
   Box box;
   for (int node = 0; node < grid.node_count(); ++node) {
     if (distance(shape, nodes.row(node).transpose()) < radius) {
@@ -84,10 +84,10 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
     std::vector<SampledForce> forces;
     for (int k = 0; k < 16; ++k) {
       SampledForce& force = forces.emplace_back();
-      force.shape = shape(random, k);
+      force.kind = shape(random, k);
       // Every other radius equals the distance of some node, or is the next larger number.
       const auto node = static_cast<Eigen::Index>(random() % grid.node_count());
-      const double delta = distance(force.shape, nodes.row(node).transpose());
+      const double delta = distance(force.kind, nodes.row(node).transpose());
       ties += k % 2;
       force.deformation_radius = k % 2 ? delta : number(random, 0, 4);
       force.force_radius = k % 2 ? std::nextafter(delta, 1e9) : number(random, 0, 4);
@@ -96,8 +96,8 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
     for (std::size_t k = 0; k < forces.size(); ++k) {
       const ForceSelection& selected = selection.forces[k];
       REQUIRE(selected.deformation ==
-              near(grid, nodes, forces[k].shape, forces[k].deformation_radius));
-      REQUIRE(selected.force == near(grid, nodes, forces[k].shape, forces[k].force_radius));
+              near(grid, nodes, forces[k].kind, forces[k].deformation_radius));
+      REQUIRE(selected.force == near(grid, nodes, forces[k].kind, forces[k].force_radius));
       partial += !selected.force.is_empty() && selected.force != grid.box();
     }
     CHECK(selection == select_region(grid, nodes, forces, Combine::Islands));
@@ -125,7 +125,7 @@ TEST_CASE("nodes that are no numbers are told of, and hide no others", "[region]
   std::mt19937 random(4);
   Field nodes = hills(grid, random);
   const SampledForce force{PointForce{nodes.row(500).transpose(), {0, 1, 0}}, 1, 2, 1};
-  const Box expected = near(grid, nodes, force.shape, 2);
+  const Box expected = near(grid, nodes, force.kind, 2);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Field some = nodes;
@@ -146,7 +146,7 @@ TEST_CASE("loads in object space are those in world space taken there", "[region
       make_transform({1, 2, 3}, {30, -50, 10}, {1, 2, 0.5}, RotateOrder::Zyx);
   std::vector<SampledForce> forces(6);
   for (int k = 0; k < 6; ++k) {
-    forces[k].shape = shape(random, k);
+    forces[k].kind = shape(random, k);
     forces[k].magnitude = number(random, -3, 3);
     forces[k].deformation_radius = 3;
     forces[k].force_radius = 2.5;

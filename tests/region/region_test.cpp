@@ -27,7 +27,7 @@ struct UvBox {
   }
 };
 
-double brute_distance(const ForceShape& shape, const Vector3d& p) {
+double brute_distance(const ForceKind& shape, const Vector3d& p) {
   if (const auto* point = std::get_if<PointForce>(&shape)) return (p - point->center).norm();
   if (const auto* radial = std::get_if<RadialForce>(&shape)) return (p - radial->center).norm();
   const auto& line = std::get<LineForce>(shape);
@@ -54,7 +54,7 @@ Vector3d lattice_point(std::mt19937& random) {
   return {double(x), double(y), double(pick(random, -3, 16))};
 }
 
-ForceShape lattice_shape(std::mt19937& random) {
+ForceKind lattice_shape(std::mt19937& random) {
   const int kind = pick(random, 0, 2);
   const Vector3d from = lattice_point(random);
   if (kind == 0) return PointForce{from, {0, 1, 0}};
@@ -76,7 +76,7 @@ Situation random_lattice(std::mt19937& random) {
   }
   for (int k = pick(random, 0, 4); k > 0; --k) {
     // Braces evaluate from left to right.
-    s.forces.push_back({.shape = lattice_shape(random),
+    s.forces.push_back({.kind = lattice_shape(random),
                         .magnitude = double(pick(random, -5, 5)),
                         .deformation_radius = double(pick(random, 0, 6)),
                         .force_radius = double(pick(random, 0, 8)),
@@ -100,7 +100,7 @@ TEST_CASE("regions and force boxes are those of a brute-force reading", "[region
     for (std::size_t k = 0; k < s.forces.size(); ++k) {
       for (int node = 0; node < s.grid.node_count(); ++node) {
         const auto [u, v] = uv(node);
-        const double delta = brute_distance(s.forces[k].shape, s.nodes.row(node).transpose());
+        const double delta = brute_distance(s.forces[k].kind, s.nodes.row(node).transpose());
         ties += delta == s.forces[k].deformation_radius;
         if (delta < s.forces[k].deformation_radius) region.add(u, v);
         if (delta < s.forces[k].force_radius) force_boxes[k].add(u, v);

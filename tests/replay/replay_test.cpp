@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "pliant/core/read_file.hpp"
-#include "pliant/io/writer.hpp"
+#include "pliant/output/writer.hpp"
 #include "pliant/replay/expect_replay.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/scene/read.hpp"
@@ -456,7 +456,7 @@ TEST_CASE("a program records a scene that no file can contain, and verifies it",
         {.name = "sheet",
          .shape = make_mesh({.columns = 11, .rows = 11, .width = 10, .depth = 10})});
     Force own{.name = "own", .targets = {}, .magnitude = 900, .deformation_radius = 4};
-    own.shape = CustomForce{.unit_force = [strength](const Vector3d& p, const ForceTime& time) {
+    own.kind = CustomForce{.unit_force = [strength](const Vector3d& p, const ForceTime& time) {
       return Vector3d(0, strength + p.x() * 0.1 + time.frame, 0);
     }};
     scene.forces.push_back(own);

@@ -14,18 +14,18 @@ TEST_CASE("each kind of force has its own attributes", "[scene][force]") {
                  "<line name=\"l\" from=\"7 8 9\" to=\"1 0 1\"/>"
                  "<line name=\"m\" direction=\"1 0 0\" falloff=\"linear\"/>"));
   REQUIRE(scene.forces.size() == 4);
-  const auto& point = std::get<PointChannels>(scene.forces[0].shape);
+  const auto& point = std::get<PointChannels>(scene.forces[0].kind);
   CHECK(point.center.at(1) == Value<3>{1, 2, 3});
   CHECK(point.direction.at(1) == Value<3>{0, 0, -2});
-  CHECK(std::get<RadialChannels>(scene.forces[1].shape).center.at(1) == Value<3>{4, 5, 6});
+  CHECK(std::get<RadialChannels>(scene.forces[1].kind).center.at(1) == Value<3>{4, 5, 6});
   CHECK(scene.forces[1].falloff == Falloff::Gaussian);
   CHECK_FALSE(scene.forces[1].enabled.at(1));
-  const auto& line = std::get<LineChannels>(scene.forces[2].shape);
+  const auto& line = std::get<LineChannels>(scene.forces[2].kind);
   CHECK(line.from.at(1) == Value<3>{7, 8, 9});
   CHECK(line.to.at(1) == Value<3>{1, 0, 1});
   CHECK_FALSE(line.direction);
-  REQUIRE(std::get<LineChannels>(scene.forces[3].shape).direction);
-  CHECK(std::get<LineChannels>(scene.forces[3].shape).direction->at(1) == Value<3>{1, 0, 0});
+  REQUIRE(std::get<LineChannels>(scene.forces[3].kind).direction);
+  CHECK(std::get<LineChannels>(scene.forces[3].kind).direction->at(1) == Value<3>{1, 0, 0});
 }
 
 TEST_CASE("every channel of a force can be animated", "[scene][force]") {
@@ -42,7 +42,7 @@ TEST_CASE("every channel of a force can be animated", "[scene][force]") {
   CHECK(force.deformation_radius.is_animated());
   CHECK(force.force_radius.is_animated());
   CHECK(force.enabled.channel().is_animated());
-  const auto& line = std::get<LineChannels>(force.shape);
+  const auto& line = std::get<LineChannels>(force.kind);
   CHECK(line.from.is_animated());
   CHECK(line.to.is_animated());
   REQUIRE(line.direction);

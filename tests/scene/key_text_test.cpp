@@ -109,7 +109,7 @@ TEST_CASE("a vector channel has three numbers wherever one has one", "[scene][ke
                           "1\"/><loop from=\"1\" to=\"2\" "
                           "after=\"1\" offset=\"1 0 0\"/></animate>"));
   const CurveKeys<3>& curve =
-      std::get<PointChannels>(scene.forces.at(0).shape).center.channel()->curve().keys();
+      std::get<PointChannels>(scene.forces.at(0).kind).center.channel()->curve().keys();
   CHECK(curve.before.slope == Value<3>{1, 2, 3});
   CHECK(curve.keys.at(0).in.slope == Value<3>{4, 5, 6});
   CHECK(curve.keys.at(0).out.handle_frames == 2);

@@ -25,12 +25,12 @@ TEST_CASE("a position may follow a path", "[scene][path]") {
       progress("<key frame=\"1\" value=\"0\"/><key frame=\"9\" value=\"1\"/>") +
       "</path></vortex><group name=\"g\"><path attribute=\"center\">" + corner +
       "</path></group>"));
-  const auto& line = std::get<LineChannels>(scene.forces.at(0).shape);
+  const auto& line = std::get<LineChannels>(scene.forces.at(0).kind);
   CHECK(line.from.path() == nullptr);
   REQUIRE(line.to.path());
   CHECK_FALSE(line.to.is_animated());
   CHECK_THAT(line.to.at(1)[0], WithinAbs(1, 1e-9));  // half of a path of two equally long parts
-  const auto& vortex = std::get<VortexChannels>(scene.forces.at(1).shape);
+  const auto& vortex = std::get<VortexChannels>(scene.forces.at(1).kind);
   REQUIRE(vortex.center.path());
   CHECK(vortex.center.is_animated());
   CHECK(vortex.center.path()->path.is_closed());

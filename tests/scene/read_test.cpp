@@ -62,7 +62,7 @@ TEST_CASE("the example of the format is read to exact values", "[scene][read]") 
   CHECK(poke.deformation_radius.at(1)[0] == 6.1);
   CHECK(poke.force_radius.at(1)[0] == 2.1);
   CHECK(poke.falloff == Falloff::Constant);
-  CHECK(std::get<PointChannels>(poke.shape).center.at(1) == Value<3>{-3, 0, 0});
+  CHECK(std::get<PointChannels>(poke.kind).center.at(1) == Value<3>{-3, 0, 0});
   REQUIRE(poke.magnitude.is_animated());
   CurveKeys<1> expected;
   const Tangent<1> flat{.kind = Tangent<1>::Kind::Flat};
@@ -73,7 +73,7 @@ TEST_CASE("the example of the format is read to exact values", "[scene][read]") 
   CHECK(poke.magnitude.curve().keys() == expected);
   CHECK(scene.forces[1].falloff == Falloff::Smooth);
   CHECK(scene.forces[1].magnitude.at(1)[0] == 3200);
-  const auto& crease = std::get<LineChannels>(scene.forces[2].shape);
+  const auto& crease = std::get<LineChannels>(scene.forces[2].kind);
   CHECK(crease.from.at(1) == Value<3>{-6, 0, -6});
   CHECK(crease.to.at(1) == Value<3>{6, 0, -6});
   REQUIRE(crease.direction);
@@ -134,11 +134,11 @@ TEST_CASE("everything that is left out has its documented default", "[scene][rea
     CHECK(force.force_radius.at(3)[0] == 1);
     CHECK(force.falloff == Falloff::Constant);
   }
-  const auto& point = std::get<PointChannels>(scene.forces.at(0).shape);
+  const auto& point = std::get<PointChannels>(scene.forces.at(0).kind);
   CHECK(point.center.at(3) == Value<3>{0, 0, 0});
   CHECK(point.direction.at(3) == Value<3>{0, 1, 0});
-  CHECK(std::get<RadialChannels>(scene.forces.at(1).shape).center.at(3) == Value<3>{0, 0, 0});
-  const auto& line = std::get<LineChannels>(scene.forces.at(2).shape);
+  CHECK(std::get<RadialChannels>(scene.forces.at(1).kind).center.at(3) == Value<3>{0, 0, 0});
+  const auto& line = std::get<LineChannels>(scene.forces.at(2).kind);
   CHECK(line.from.at(3) == Value<3>{0, 0, 0});
   CHECK(line.to.at(3) == Value<3>{1, 0, 0});
   CHECK_FALSE(line.direction);

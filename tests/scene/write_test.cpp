@@ -29,7 +29,7 @@ class Says {
     for (const Force& force : scene.forces) {
       text_ += std::string(kind_of(force)) + " in " + force.group + '\n';
       describe(*this, force);
-      std::visit([this](const auto& kind) { describe(*this, kind); }, force.shape);
+      std::visit([this](const auto& kind) { describe(*this, kind); }, force.kind);
       if (force.falloff_curve) add(force.falloff_curve->keys());
     }
     for (const Group& group : scene.groups) describe(*this, group);
@@ -131,7 +131,7 @@ TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
   Scene meshed = scene({sheet("s")}, {});
   meshed.surfaces[0].shape = Mesh{};
   Scene custom = scene({sheet("s")}, {poke("f", {0, 0, 0})});
-  custom.forces[0].shape = CustomForce{
+  custom.forces[0].kind = CustomForce{
       .unit_force = [](const Vector3d&, const ForceTime&) { return Vector3d(0, 1, 0); }};
   Scene apart =
       scene({sheet("s")}, {poke("a", {0, 0, 0}), poke("b", {0, 0, 0}), poke("c", {0, 0, 0})});
@@ -178,7 +178,7 @@ TEST_CASE("a new scene in code is written with what differs from the defaults", 
   s.surfaces.push_back({.name = "sheet", .shape = GridSheet{.columns = 3, .rows = 4}});
   Force force;
   force.name = "push";
-  force.shape = InertiaChannels{};
+  force.kind = InertiaChannels{};
   force.magnitude = 1;
   s.forces.push_back(force);
   CHECK(to_xml(s).value() ==

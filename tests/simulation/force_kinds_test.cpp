@@ -22,7 +22,7 @@ double difference(const std::vector<Field>& a, const std::vector<Field>& b) {
 Scene grouped(Scene s) {
   Force& force = s.forces[0];
   s.groups.push_back({.name = "g",
-                      .center = std::get<PointChannels>(force.shape).center,
+                      .center = std::get<PointChannels>(force.kind).center,
                       .deformation_radius = force.deformation_radius});
   force.group = "g";
   force.deformation_radius = 1;  // not used
@@ -76,7 +76,7 @@ TEST_CASE("a force in a group pushes only within the group's region", "[simulati
 TEST_CASE("the order of forces changes the last bits only", "[simulation][forces]") {
   Scene s = scene({sheet("s")}, {poke("a", {-2, 0, 1}), poke("b", {1.5, 0, 0}, -3000),
                                  poke("c", {0.2, 0, -2}, 800)});
-  s.forces[1].shape = RadialChannels{.center = Value<3>{1.5, -1, 0}};
+  s.forces[1].kind = RadialChannels{.center = Value<3>{1.5, -1, 0}};
   Scene turned = s;
   std::swap(turned.forces[0], turned.forces[2]);
   CHECK(difference(baked(s, "s"), baked(turned, "s")) < 1e-12 * peak(baked(s, "s")));
@@ -85,7 +85,7 @@ TEST_CASE("the order of forces changes the last bits only", "[simulation][forces
 TEST_CASE("a uniform force on the whole plate is the load of SPEC 11", "[simulation][uniform]") {
   Scene s = scene({sheet("s", 41)}, {poke("f", {0, 0, 0}, 2000)}, 2);
   s.surfaces[0].material.density = s.surfaces[0].material.damping = 0;
-  s.forces[0].shape = UniformChannels{.direction = Value<3>{0, 3, 0}};
+  s.forces[0].kind = UniformChannels{.direction = Value<3>{0, 3, 0}};
   s.forces[0].deformation_radius = 0.01;  // any radius will do
   s.forces[0].force_radius = 0.01;
   const double height = baked(s, "s")[1](41 * 20 + 20, 1);
@@ -97,7 +97,7 @@ TEST_CASE("a uniform force on the whole plate is the load of SPEC 11", "[simulat
 TEST_CASE("a vortex at rest turns the sheet and lifts nothing", "[simulation][vortex]") {
   // No node is on the axis: a rounding error off it, a node would be pushed with full strength.
   Scene s = scene({sheet("s", 14)}, {poke("f", {0, 0, 0}, 500)}, 6);
-  s.forces[0].shape = VortexChannels{};
+  s.forces[0].kind = VortexChannels{};
   s.forces[0].deformation_radius = s.forces[0].force_radius = 20;
   const std::vector<Field> frames = baked(s, "s");
   CHECK(peak(frames) > 1e-3);
@@ -113,7 +113,7 @@ TEST_CASE("a vortex at rest turns the sheet and lifts nothing", "[simulation][vo
 
 TEST_CASE("noise has the same bits in whatever order frames are asked for", "[simulation][noise]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})}, 20);
-  s.forces[0].shape = NoiseChannels{.frequency = 0.4, .rate = 5};
+  s.forces[0].kind = NoiseChannels{.frequency = 0.4, .rate = 5};
   s.forces[0].deformation_radius = 20;
   s.forces[0].force_radius = 20;
   const std::vector<Field> forwards = baked(s, "s");
@@ -128,7 +128,7 @@ TEST_CASE("noise has the same bits in whatever order frames are asked for", "[si
 
 TEST_CASE("inertia leaves a surface behind when it sets off", "[simulation][inertia]") {
   Scene s = scene({sheet("s", 15)}, {poke("f", {0, 0, 0}, 1)}, 10);
-  s.forces[0].shape = InertiaChannels{};
+  s.forces[0].kind = InertiaChannels{};
   s.surfaces[0].transform.translate = vector_curve({{3, {0, 0, 0}}, {9, {0, 4, 0}}});
   auto simulation = Simulation::make(s).value();
   const auto sag = [&](int frame) {
@@ -152,7 +152,7 @@ TEST_CASE("a custom force that is a point force has its bits", "[simulation][cus
   const Scene built_in = scene({sheet("s")}, {poke("f", {0.3, 0, 0.4})});
   Scene own = built_in;
   const PointForce point{{0.3, 0, 0.4}, {0, 1, 0}};
-  own.forces[0].shape = CustomForce{
+  own.forces[0].kind = CustomForce{
       .distance = [=](const Vector3d& p, const ForceTime&) { return point.distance(p); },
       .unit_force = [=](const Vector3d& p, const ForceTime&) { return point.unit_force(p); }};
   CHECK(are_same(baked(built_in, "s"), baked(own, "s")));
@@ -166,7 +166,7 @@ TEST_CASE("an unsound answer of a custom force ends the run and is located",
           "[simulation][custom]") {
   Scene s = scene({sheet("s")}, {poke("wind", {0, 0, 0}, 1)});
   int bad_from = 4;
-  s.forces[0].shape = CustomForce{.unit_force = [&](const Vector3d& p, const ForceTime& time) {
+  s.forces[0].kind = CustomForce{.unit_force = [&](const Vector3d& p, const ForceTime& time) {
     return time.frame < bad_from ? Vector3d(0, 1, 0) : Vector3d(0, p.x() / 0.0, 0);
   }};
   auto simulation = Simulation::make(s).value();
@@ -178,7 +178,7 @@ TEST_CASE("an unsound answer of a custom force ends the run and is located",
   CHECK_THAT(failed.error().message, contains_text("not finite"));
   bad_from = 100;  // the force is valid again, and so is the simulation
   CHECK(simulation.at(5));
-  std::get<CustomForce>(s.forces[0].shape).distance = [](const Vector3d&, const ForceTime&) {
+  std::get<CustomForce>(s.forces[0].kind).distance = [](const Vector3d&, const ForceTime&) {
     return std::nan("");
   };
   CHECK_FALSE(Simulation::make(s).value().at(3));
@@ -189,7 +189,7 @@ TEST_CASE("what a custom force throws reaches the caller, and the simulation liv
           "[simulation][custom][threads]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0}, 300)});
   bool throws = false;
-  s.forces[0].shape = CustomForce{.unit_force = [&](const Vector3d&, const ForceTime& time) {
+  s.forces[0].kind = CustomForce{.unit_force = [&](const Vector3d&, const ForceTime& time) {
     if (throws && time.frame == 3) throw std::runtime_error("no wind");
     return Vector3d(0, 1, 0);
   }};
@@ -221,9 +221,9 @@ TEST_CASE("scenes built in code are held to the rules of groups and custom force
   s.groups[0].deformation_radius = curve({{1, 1}, {10, -1}});
   CHECK_THAT(message(s), contains_text("g.deformationRadius at frame 6 is "));
   s.groups[0].deformation_radius = 1;
-  s.forces[0].shape = CustomForce{};
+  s.forces[0].kind = CustomForce{};
   CHECK_THAT(message(s), contains_text("custom, but has no unit_force"));
-  s.forces[0].shape = PointChannels{
+  s.forces[0].kind = PointChannels{
       .center = PathMotion{Path::make({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}).value(), 1.25}};
   CHECK(message(s) == "f.center.progress is 1.25, but must be from 0 to 1");
 }

@@ -17,7 +17,7 @@ using namespace pliant;
 Force force_at(double x, double z, double radius, std::string name) {
   Force force;
   force.name = std::move(name);
-  force.shape = PointChannels{.center = Value<3>{x, 0, z}};
+  force.kind = PointChannels{.center = Value<3>{x, 0, z}};
   force.magnitude =
       Curve<1>::make({.keys = {{.frame = 1, .value = {0}}, {.frame = 20, .value = {900}}}}).value();
   force.deformation_radius = radius;

@@ -257,7 +257,7 @@ TEST_CASE("a live frame that fails changes nothing, on any surface", "[simulatio
   bool is_faulty = false;
   Scene s = scene({sheet("a"), sheet("b")}, {poke("poke", {0, 0, 0})});
   Force own{.name = "own", .targets = {"b"}, .magnitude = 1};
-  own.shape = CustomForce{.unit_force = [&is_faulty](const Vector3d&, const ForceTime&) {
+  own.kind = CustomForce{.unit_force = [&is_faulty](const Vector3d&, const ForceTime&) {
     if (is_faulty) throw std::runtime_error("broken");
     return Vector3d(0, 1, 0);
   }};

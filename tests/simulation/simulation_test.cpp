@@ -19,8 +19,8 @@ namespace {
 // A force that moves, grows and is constant for some frames.
 Force travelling() {
   Force force = poke("travelling", {});
-  force.shape = PointChannels{.center = vector_curve({{1, {-4, 0, -2}}, {12, {4, 0, 3}}}),
-                              .direction = Value<3>{0.3, 1, 0}};
+  force.kind = PointChannels{.center = vector_curve({{1, {-4, 0, -2}}, {12, {4, 0, 3}}}),
+                             .direction = Value<3>{0.3, 1, 0}};
   force.magnitude = curve({{1, 0}, {6, 8000}, {12, 2000}});
   force.enabled = switch_at({{1, true}, {7, false}, {9, true}});
   return force;
@@ -117,12 +117,12 @@ TEST_CASE("a rigid motion of surface and forces together moves the result", "[si
     return Value<3>{q[0], q[1], q[2]};
   };
   Force point = poke("point", {-2.3, 0, 1.2});
-  std::get<PointChannels>(point.shape).direction = Value<3>{0.4, 1, -0.2};
+  std::get<PointChannels>(point.kind).direction = Value<3>{0.4, 1, -0.2};
   Force radial = poke("radial", {});
-  radial.shape = RadialChannels{.center = Value<3>{2.2, -1.3, -0.4}};
+  radial.kind = RadialChannels{.center = Value<3>{2.2, -1.3, -0.4}};
   radial.falloff = Falloff::Smooth;
   Force line = poke("line", {}, -3000);
-  line.shape = LineChannels{.from = Value<3>{-4.1, 0.3, -3}, .to = Value<3>{3.3, 0.2, -2.1}};
+  line.kind = LineChannels{.from = Value<3>{-4.1, 0.3, -3}, .to = Value<3>{3.3, 0.2, -2.1}};
   Scene original = scene({sheet("s")}, {point, radial, line});
   original.surfaces[0].solver.combine = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
   original.surfaces[0].solver.release = GENERATE(Release::Freeze, Release::Recover);
@@ -131,11 +131,11 @@ TEST_CASE("a rigid motion of surface and forces together moves the result", "[si
   Scene image = original;
   image.surfaces[0].transform.translate = translate;
   image.surfaces[0].transform.rotate = rotate;
-  std::get<PointChannels>(image.forces[0].shape) = {.center = moved({-2.3, 0, 1.2}),
-                                                    .direction = turned({0.4, 1, -0.2})};
-  std::get<RadialChannels>(image.forces[1].shape) = {.center = moved({2.2, -1.3, -0.4})};
-  std::get<LineChannels>(image.forces[2].shape) = {.from = moved({-4.1, 0.3, -3}),
-                                                   .to = moved({3.3, 0.2, -2.1})};
+  std::get<PointChannels>(image.forces[0].kind) = {.center = moved({-2.3, 0, 1.2}),
+                                                   .direction = turned({0.4, 1, -0.2})};
+  std::get<RadialChannels>(image.forces[1].kind) = {.center = moved({2.2, -1.3, -0.4})};
+  std::get<LineChannels>(image.forces[2].kind) = {.from = moved({-4.1, 0.3, -3}),
+                                                  .to = moved({3.3, 0.2, -2.1})};
   const auto frames = baked(original, "s"), image_frames = baked(image, "s");
   REQUIRE(peak(frames) > 0.1);
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -166,7 +166,7 @@ TEST_CASE("forces that ride on a moving surface act as if nothing moved", "[simu
   moving.surfaces[0].transform.translate = vector_curve(translate);
   moving.surfaces[0].transform.rotate = vector_curve(rotate);
   for (int k = 0; k < 2; ++k) {
-    moving.forces[k].shape =
+    moving.forces[k].kind =
         PointChannels{.center = vector_curve(center[k]), .direction = vector_curve(direction)};
   }
   auto still = Simulation::make(original).value(), carried = Simulation::make(moving).value();
@@ -287,7 +287,7 @@ TEST_CASE("under a scale that is not uniform a force enters through its inverse"
   const auto peak_along = [&](const Value<3>& scale, const Value<3>& direction) {
     s.surfaces[0].transform.scale = scale;
     Force force = poke("f", {0, 0, 0}, 1000);
-    force.shape = PointChannels{.center = Value<3>{0, 0, 0}, .direction = direction};
+    force.kind = PointChannels{.center = Value<3>{0, 0, 0}, .direction = direction};
     force.deformation_radius = force.force_radius = 1000.0;  // the whole sheet, whatever the scale
     s.forces = {force};
     auto simulation = Simulation::make(s).value();

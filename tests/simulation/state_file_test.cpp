@@ -68,10 +68,9 @@ TEST_CASE("a state of something else is refused", "[simulation][state_file]") {
 
   // A force of the program: pliant cannot compare its function; the program must keep it the same.
   Scene own = s;
-  own.forces[0].shape =
-      CustomForce{.unit_force = [](const Vector3d&, const ForceTime&) -> Vector3d {
-        return {0, 1, 0};
-      }};
+  own.forces[0].kind = CustomForce{.unit_force = [](const Vector3d&, const ForceTime&) -> Vector3d {
+    return {0, 1, 0};
+  }};
   auto unknown = Simulation::make(own).value();
   CHECK_FALSE(refusal(unknown.state_bytes(8).value()).empty());
   auto again = Simulation::make(own).value();

@@ -72,11 +72,11 @@ const std::vector<Edit> edits = {
     {"magnitude", [](Scene& s, int k) { scale_from(s.forces[1].magnitude, k); }, 0, 0},
     {"forceRadius", [](Scene& s, int k) { scale_from(s.forces[1].force_radius, k); }, 0, 0},
     {"frequency",
-     [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].shape).frequency, k); },
-     0, 0},
+     [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].kind).frequency, k); }, 0,
+     0},
     // The noise's time at a frame is a sum over the frames before it.
-    {"rate",
-     [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].shape).rate, k); }, 1, 0},
+    {"rate", [](Scene& s, int k) { scale_from(std::get<NoiseChannels>(s.forces[1].kind).rate, k); },
+     1, 0},
     {"group radius", [](Scene& s, int k) { scale_from(s.groups[0].deformation_radius, k); }},
     {"group center", [](Scene& s, int k) { shift_from(s.groups[0].center, k); }},
 };
@@ -306,10 +306,10 @@ TEST_CASE("a program's own force is known by the key that it is given", "[states
     Force own = poke("own", {});
     own.targets = {"s"};
     own.enabled = switch_at({{1, false}, {5, true}});
-    own.shape = CustomForce{.unit_force = [=](const Vector3d&, const ForceTime& time) -> Vector3d {
-                              return {0, strength * time.seconds, 0};
-                            },
-                            .key = key};
+    own.kind = CustomForce{.unit_force = [=](const Vector3d&, const ForceTime& time) -> Vector3d {
+                             return {0, strength * time.seconds, 0};
+                           },
+                           .key = key};
     s.forces.push_back(own);
     FrameCounts counts;
     CHECK((states_of(s, store, counts) == all_states(s)));
@@ -325,9 +325,9 @@ TEST_CASE("a program's own force is known by the key that it is given", "[states
 
 TEST_CASE("frames that failed are not kept", "[states][store]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
-  std::get<PointChannels>(s.forces[0].shape).direction = Value<3>{0, 1, 0};
+  std::get<PointChannels>(s.forces[0].kind).direction = Value<3>{0, 1, 0};
   bool is_sound = false;
-  s.forces[0].shape = CustomForce{
+  s.forces[0].kind = CustomForce{
       .unit_force = [&](const Vector3d&, const ForceTime& time) -> Vector3d {
         return {0, time.frame < 6 || is_sound ? 1.0 : std::numeric_limits<double>::infinity(), 0};
       },

@@ -20,13 +20,13 @@ inline Scene moving_scene() {
   second.material.damping = curve({{3, 20}, {20, 5}});
 
   Force travelling = poke("travelling", {});
-  travelling.shape = PointChannels{.center = vector_curve({{3, {-4, 0, -2}}, {20, {4, 0, 3}}}),
-                                   .direction = Value<3>{0.3, 1, 0}};
+  travelling.kind = PointChannels{.center = vector_curve({{3, {-4, 0, -2}}, {20, {4, 0, 3}}}),
+                                  .direction = Value<3>{0.3, 1, 0}};
   travelling.magnitude = curve({{3, 0}, {9, 8000}, {22, 2000}});
   travelling.enabled = switch_at({{3, true}, {12, false}, {15, true}, {23, false}});
   travelling.falloff_curve = curve({{0, 1}, {0.5, 0.8}, {1, 0}});
   Force gust = poke("gust", {}, 3000);
-  gust.shape = NoiseChannels{.frequency = 0.3, .rate = curve({{3, 1}, {28, 4}})};
+  gust.kind = NoiseChannels{.frequency = 0.3, .rate = curve({{3, 1}, {28, 4}})};
   gust.targets = {"first"};
   gust.group = "weather";
   gust.force_radius = 4;

@@ -53,7 +53,7 @@ inline Force poke(const std::string& name, const Value<3>& center, double magnit
   force.magnitude = magnitude;
   force.deformation_radius = 4.5;
   force.force_radius = 2.5;
-  force.shape = PointChannels{.center = center};
+  force.kind = PointChannels{.center = center};
   return force;
 }
 

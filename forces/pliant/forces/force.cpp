@@ -160,13 +160,13 @@ struct InertiaKernel : Everywhere {
 inline InertiaKernel kernel(const InertiaForce& force) { return {{}, force}; }
 
 struct FunctionKernel {
-  const FunctionForce& force;
+  const SampledCustomForce& force;
 
   double distance(const Triple& p) const { return force.distance(p); }
   Triple unit_force(const Triple& p) const { return force.unit_force(p); }
   double least_distance(const Triple&, const Triple&) const { return 0; }
 };
-inline FunctionKernel kernel(const FunctionForce& force) { return {force}; }
+inline FunctionKernel kernel(const SampledCustomForce& force) { return {force}; }
 
 // The result of `use`, called with the kernel of a force.
 template <class Force, class Use>
@@ -180,7 +180,7 @@ auto with_kernel(const LineForce& line, const Use& use) {
   return use(Directed<AroundSegment>{around, normalised(*line.direction)});
 }
 template <class Use>
-auto with_kernel(const ForceShape& shape, const Use& use) {
+auto with_kernel(const ForceKind& shape, const Use& use) {
   return std::visit([&](const auto& force) { return with_kernel(force, use); }, shape);
 }
 
@@ -228,30 +228,30 @@ double InertiaForce::distance(const Vector3d& p) const { return distance_of(*thi
 Vector3d InertiaForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 
 SampledForce region_sphere(const Vector3d& center, double deformation_radius) {
-  return {.shape = PointForce{center, Vector3d::Zero()},
+  return {.kind = PointForce{center, Vector3d::Zero()},
           .magnitude = 0,
           .deformation_radius = deformation_radius,
           .force_radius = 0};
 }
 
-double distance(const ForceShape& shape, const Vector3d& p) { return distance_of(shape, p); }
+double distance(const ForceKind& shape, const Vector3d& p) { return distance_of(shape, p); }
 
-Vector3d unit_force(const ForceShape& shape, const Vector3d& p) { return unit_force_of(shape, p); }
+Vector3d unit_force(const ForceKind& shape, const Vector3d& p) { return unit_force_of(shape, p); }
 
 Vector3d force_at(const SampledForce& force, const Vector3d& p) {
-  return with_kernel(force.shape, [&](const auto& kind) {
+  return with_kernel(force.kind, [&](const auto& kind) {
     double strength = kind.distance(p);
     fade(force, {&strength, 1});
     return strength * kind.unit_force(p);
   });
 }
 
-BatchNumbers distances(const ForceShape& shape, const Batch& points) {
+BatchNumbers distances(const ForceKind& shape, const Batch& points) {
   return with_kernel(shape, [&](const auto& kind) { return distances_from(kind, points); });
 }
 
 void add_forces(const SampledForce& force, const Batch& points, int first, Batch& sums) {
-  with_kernel(force.shape, [&](const auto& kind) {
+  with_kernel(force.kind, [&](const auto& kind) {
     BatchNumbers strength = distances_from(kind, points);
     fade(force, {strength.of, static_cast<std::size_t>(points.count)});
     double* const x = sums.x + first;
@@ -266,7 +266,7 @@ void add_forces(const SampledForce& force, const Batch& points, int first, Batch
   });
 }
 
-double least_distance(const ForceShape& shape, const Vector3d& low, const Vector3d& high) {
+double least_distance(const ForceKind& shape, const Vector3d& low, const Vector3d& high) {
   return with_kernel(shape, [&](const auto& kind) { return kind.least_distance(low, high); });
 }
 

@@ -97,7 +97,7 @@ struct InertiaForce {
 };
 
 /// A kind of force of an embedding program, at one frame. Requires: neither function is empty.
-struct FunctionForce {
+struct SampledCustomForce {
   /// None: a program identifies its functions by `CustomForce::key`.
   std::tuple<> values() const { return {}; }
 
@@ -105,12 +105,12 @@ struct FunctionForce {
   std::function<Vector3d(const Vector3d& p)> unit_force;
 };
 
-using ForceShape = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
-                                NoiseForce, InertiaForce, FunctionForce>;
+using ForceKind = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
+                               NoiseForce, InertiaForce, SampledCustomForce>;
 
 /// A force at one frame.
 struct SampledForce {
-  ForceShape shape;
+  ForceKind kind;
   double magnitude = 0;           ///< [length b/uv^4]
   double deformation_radius = 1;  ///< [length], >= 0; 0: selects no region
   double force_radius = 1;        ///< [length], >= 0; 0: pushes nothing
@@ -125,10 +125,10 @@ struct SampledForce {
 SampledForce region_sphere(const Vector3d& center, double deformation_radius);
 
 /// Distance from p that decides the selection. [length]
-double distance(const ForceShape& shape, const Vector3d& p);
+double distance(const ForceKind& shape, const Vector3d& p);
 
 /// The force at p per unit of magnitude and falloff.
-Vector3d unit_force(const ForceShape& shape, const Vector3d& p);
+Vector3d unit_force(const ForceKind& shape, const Vector3d& p);
 
 /// The force on a node at p, for any p: the caller checks the force box. Requires: force_radius >
 /// 0. [length b/uv^4]

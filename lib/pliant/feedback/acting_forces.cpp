@@ -36,7 +36,7 @@ bool changes(const Surface& surface) {
 
 bool changes(const Force& force) {
   return force.deformation_radius.is_animated() || force.force_radius.is_animated() ||
-         std::visit(Changes{}, force.shape);
+         std::visit(Changes{}, force.kind);
 }
 
 bool changes(const Group& group) {

@@ -141,11 +141,11 @@ std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
   const Field nodes = to_world(inputs.transform, mapping_.rest);
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
-    nearest = std::min(nearest, distance(force.shape, nodes.row(node).transpose()));
+    nearest = std::min(nearest, distance(force.kind, nodes.row(node).transpose()));
   }
   const Vector3d middle =
       0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
-  return {nearest, distance(force.shape, middle)};
+  return {nearest, distance(force.kind, middle)};
 }
 
 Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,

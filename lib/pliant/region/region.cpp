@@ -54,12 +54,12 @@ class Selecting {
   Selecting(const NodeTiles& tiles, const SampledForce& force) : tiles_(tiles), force_(force) {}
 
   void run() {
-    if (std::holds_alternative<FunctionForce>(force_.shape)) {
+    if (std::holds_alternative<SampledCustomForce>(force_.kind)) {
       ask_all();
       return;
     }
     for (const NodeTiles::Tile& tile : tiles_.tiles()) {
-      const double least = least_distance(force_.shape, tile.low, tile.high);
+      const double least = least_distance(force_.kind, tile.low, tile.high);
       if (!may_add(tile.box, least)) continue;
       for (int j = tile.box.j0; j <= tile.box.j1; ++j) {
         const Box row{tile.box.i0, tile.box.i1, j, j};
@@ -90,7 +90,7 @@ class Selecting {
   void look_at(const Box& row) {
     const int node = tiles_.grid().node(row.i0, row.j0);
     const Batch points = tiles_.nodes().batch(node, row.columns());
-    const BatchNumbers distance = distances(force_.shape, points);
+    const BatchNumbers distance = distances(force_.kind, points);
     include_near(distance, points.count, force_.deformation_radius, row.i0, row.j0,
                  boxes.deformation);
     include_near(distance, points.count, force_.force_radius, row.i0, row.j0, boxes.force);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "pliant/replay/log.hpp"
 
 namespace pliant {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/read_file.hpp"
-#include "pliant/io/output_place.hpp"
+#include "pliant/output/output_place.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"

@@ -61,8 +61,9 @@ std::string place_text(const Vector3d& p) {
 }
 
 // The program's functions at one time, with checks of their results.
-FunctionForce sample_custom(const CustomForce& custom, const std::string& name,
-                            const ForceTime& time, const std::shared_ptr<ForceFaults>& faults) {
+SampledCustomForce sample_custom(const CustomForce& custom, const std::string& name,
+                                 const ForceTime& time,
+                                 const std::shared_ptr<ForceFaults>& faults) {
   // By value: a report of a frame may outlive the scene.
   const auto distance = [function = custom.distance, name, time, faults](const Vector3d& p) {
     if (!function) return 0.0;
@@ -103,7 +104,7 @@ struct SampleShape {
   }
 
   template <class Kind>
-  ForceShape operator()(const Kind& kind) const {
+  ForceKind operator()(const Kind& kind) const {
     typename Description<Kind>::Sampled sampled;
     const auto row = [this](const Attribute&, const auto& channel, auto& value) {
       sample(channel, frame, value);
@@ -111,14 +112,14 @@ struct SampleShape {
     describe(row, kind, sampled);
     return sampled;
   }
-  ForceShape operator()(const NoiseChannels& noise) const {
+  ForceKind operator()(const NoiseChannels& noise) const {
     return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],
                       noise_cells(noise.rate), noise.seed.value_or(scene.seed)};
   }
-  ForceShape operator()(const InertiaChannels&) const {
+  ForceKind operator()(const InertiaChannels&) const {
     return sample_inertia(surface, scene.fps, frame);
   }
-  ForceShape operator()(const CustomForce& custom) const {
+  ForceKind operator()(const CustomForce& custom) const {
     return sample_custom(custom, force.name, {frame, seconds()}, faults);
   }
 };
@@ -145,7 +146,7 @@ void ForceFaults::clear() {
 }
 
 std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
-  const auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+  const auto* const noise = std::get_if<NoiseChannels>(&force.kind);
   if (!noise || !noise->rate.is_animated()) return nullptr;
   return std::make_unique<NoiseClock>(start);
 }
@@ -157,7 +158,7 @@ SceneSampling::SceneSampling(const Scene& scene) : targets_(targets_of(scene)) {
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
                           const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock) {
   const SampleShape sample{scene, force, surface, frame, faults, clock};
-  return {.shape = std::visit(sample, force.shape),
+  return {.kind = std::visit(sample, force.kind),
           .magnitude = force.magnitude.at(frame)[0],
           .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
           .force_radius = force.force_radius.at(frame)[0],
@@ -241,7 +242,7 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
     if (!is_enabled(force, group, frame)) continue;
     forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
                                   sampling.clock(index)));
-    const auto* const custom = std::get_if<CustomForce>(&force.shape);
+    const auto* const custom = std::get_if<CustomForce>(&force.kind);
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
                               custom ? std::string_view(custom->key) : std::string_view()});
     // The selectors of groups are not known yet: -1 - place stands for them.

@@ -584,7 +584,7 @@ void for_each_channel(T& thing, Visit&& visit) {
       if (!selects || thing.group.empty()) finder(attribute, member...);
     };
     describe(row, thing);
-    std::visit([&](auto& kind) { describe(finder, kind); }, thing.shape);
+    std::visit([&](auto& kind) { describe(finder, kind); }, thing.kind);
   } else {
     describe(finder, thing);
   }

@@ -43,7 +43,7 @@ void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attri
 template <class Kind>
 Force standard() {
   Force force;
-  force.shape = Kind{};
+  force.kind = Kind{};
   if constexpr (requires { Description<Kind>::magnitude; })
     force.magnitude = Description<Kind>::magnitude;
   return force;
@@ -58,14 +58,14 @@ std::vector<Force> standards(const std::variant<Kinds...>&) {
 }  // namespace
 
 std::vector<Force> force_kinds() {
-  std::vector<Force> kinds = standards(Force().shape);
-  std::erase_if(
-      kinds, [](const Force& force) { return std::holds_alternative<CustomForce>(force.shape); });
+  std::vector<Force> kinds = standards(Force().kind);
+  std::erase_if(kinds,
+                [](const Force& force) { return std::holds_alternative<CustomForce>(force.kind); });
   return kinds;
 }
 
 Force standard_force(const Force& force) {
-  return std::visit([]<class Kind>(const Kind&) { return standard<Kind>(); }, force.shape);
+  return std::visit([]<class Kind>(const Kind&) { return standard<Kind>(); }, force.kind);
 }
 
 Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,

@@ -114,7 +114,7 @@ class WholeChecker {
       complain(
           force.name, "group",
           fmt::format("force \"{}\" is in \"{}\", which is not a group", force.name, force.group));
-    const auto* const custom = std::get_if<CustomForce>(&force.shape);
+    const auto* const custom = std::get_if<CustomForce>(&force.kind);
     if (custom && !custom->unit_force)
       complain(force.name, "unit_force",
                fmt::format("force \"{}\" is custom, but has no unit_force function", force.name));

@@ -18,8 +18,7 @@ int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
 }  // namespace
 
 std::string_view kind_of(const Force& force) {
-  return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; },
-                    force.shape);
+  return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
 }
 
 int SceneOrigin::line_of(const std::string& name, const std::string& attribute) const {

@@ -164,7 +164,7 @@ struct Force {
   std::optional<Curve<1>> falloff_curve = {};
   std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
                NoiseChannels, InertiaChannels, CustomForce>
-      shape = {};  ///< by default `PointChannels`
+      kind = {};  ///< by default `PointChannels`
 };
 
 /// `point`, `radial`, …: the name of its element in a scene file; `custom` has no element.

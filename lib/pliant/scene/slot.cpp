@@ -310,7 +310,7 @@ std::string not_supported() { return "is not supported by this version of pliant
 Table table_of(Force& force) {
   SlotMaker maker;
   describe(maker, force);
-  std::visit([&](auto& kind) { describe(maker, kind); }, force.shape);
+  std::visit([&](auto& kind) { describe(maker, kind); }, force.kind);
   return maker.take();
 }
 

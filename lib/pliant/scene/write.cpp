@@ -251,7 +251,7 @@ void SceneWriter::write(const Force& force) {
   element(kind_of(force), [&] {
     write_attributes(table_of(own), table_of(standard));
     write_channels(own);
-    std::visit([&](const auto& kind) { write_channels(kind); }, own.shape);
+    std::visit([&](const auto& kind) { write_channels(kind); }, own.kind);
     if (force.falloff_curve) write_curve("falloff", "", *force.falloff_curve, ValueKind::Number);
   });
 }
@@ -307,7 +307,7 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
           "contain; write it to a mesh file",
           surface.name);
   for (const Force& force : scene.forces) {
-    if (std::holds_alternative<CustomForce>(force.shape))
+    if (std::holds_alternative<CustomForce>(force.kind))
       return fmt::format("force \"{}\" is custom, which a scene file cannot contain", force.name);
     if (force.falloff_curve && !is_plain_falloff(force.falloff_curve->keys()))
       return fmt::format(

@@ -71,7 +71,7 @@ Curve<D> curve_of(std::vector<Key<D>> keys) {
 // start. Errors: InvalidInput.
 Result<void> key_rates(Scene& scene) {
   for (Force& force : scene.forces) {
-    auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+    auto* const noise = std::get_if<NoiseChannels>(&force.kind);
     if (!noise || noise->rate.is_animated()) continue;
     const Value<1> rate = noise->rate.at(scene.start);
     if (!(std::abs(rate[0]) <= largest_value)) {
@@ -105,7 +105,7 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
   for (Force& force : scene.forces) {
     const std::size_t first = inputs.size();
     add_all(force);
-    auto* const noise = std::get_if<NoiseChannels>(&force.shape);
+    auto* const noise = std::get_if<NoiseChannels>(&force.kind);
     for (std::size_t k = first; noise && k < inputs.size(); ++k) {
       if (inputs[k].channel == Input::Of(&noise->rate)) inputs[k].noise = &force;
     }

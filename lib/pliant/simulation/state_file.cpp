@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "pliant/core/read_file.hpp"
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 
 namespace pliant {
 

@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "pliant/io/atomic_file.hpp"
+#include "pliant/output/atomic_file.hpp"
 
 namespace pliant {
 namespace {

@@ -16,7 +16,7 @@ namespace {
 // compile error here and cannot be forgotten in the keys.
 
 // The data to hash, in a fixed order. Numbers are added by their bits.
-class Ingredients {
+class HashedValues {
  public:
   void add(std::uint64_t number) {
     for (int byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(number >> (8 * byte) & 0xff);
@@ -144,36 +144,36 @@ class Ingredients {
 
 Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
               SolverChoice solver) {
-  Ingredients ingredients;
-  ingredients.add(engine_name());
-  ingredients.add(grid);
-  ingredients.add(hash_of(rest));
-  ingredients.add(settings);
-  ingredients.add(solver);
+  HashedValues values;
+  values.add(engine_name());
+  values.add(grid);
+  values.add(hash_of(rest));
+  values.add(settings);
+  values.add(solver);
   // The available solvers decide which sparse solver a choice means.
-  for (const SolverChoice kind : available_solvers()) ingredients.add(name_of(kind));
-  return ingredients.hash();
+  for (const SolverChoice kind : available_solvers()) values.add(name_of(kind));
+  return values.hash();
 }
 
 Hash unnamed_key(const Hash& rest) {
-  Ingredients ingredients;
-  ingredients.add(rest);
-  ingredients.add(std::string_view("unnamed"));
-  return ingredients.hash();
+  HashedValues values;
+  values.add(rest);
+  values.add(std::string_view("unnamed"));
+  return values.hash();
 }
 
 std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, int frame) {
-  Ingredients ingredients;
-  ingredients.add(before);
-  ingredients.add(inputs.body);
+  HashedValues values;
+  values.add(before);
+  values.add(inputs.body);
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
-    if (!std::holds_alternative<FunctionForce>(inputs.body.forces[k].shape)) continue;
+    if (!std::holds_alternative<SampledCustomForce>(inputs.body.forces[k].kind)) continue;
     const std::string_view key = inputs.sources[k].key;
     if (key.empty()) return {};
-    ingredients.add(key);
-    ingredients.add(frame);
+    values.add(key);
+    values.add(frame);
   }
-  return ingredients.hash();
+  return values.hash();
 }
 
 void KeyChain::append(const SurfaceInputs* inputs, int frame) {

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "pliant/timeline/arms.hpp"
 #include "pliant/timeline/checks.hpp"
-#include "pliant/timeline/course.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 #include "pliant/timeline/loop.hpp"
 #include "pliant/timeline/number_text.hpp"
+#include "pliant/timeline/segment_handle.hpp"
 #include "pliant/timeline/tangents.hpp"
 
 namespace pliant::timeline {
@@ -108,9 +108,9 @@ class Compiler {
     segment.length = segment.end - segment.start;
     const Value<D>& start = track().values[k];
     const Value<D>& end = track().arrivals[k + 1];
-    // Arms are computed even if no Bézier segment reads them, for their notes.
-    const Arm<D> out = arm(k, true, segment.length);
-    const Arm<D> in = arm(k + 1, false, segment.length);
+    // Handles are computed even if no Bézier segment reads them, for their notes.
+    const SegmentHandle<D> out = handle(k, true, segment.length);
+    const SegmentHandle<D> in = handle(k + 1, false, segment.length);
     switch (next.kind) {
       case Interpolation::Kind::Step:
         segment.ends = value_cubics<D>(start, start, {}, {});
@@ -141,24 +141,25 @@ class Compiler {
     return change;
   }
 
-  Arm<D> arm(std::size_t key, bool is_out, double span) {
+  SegmentHandle<D> handle(std::size_t key, bool is_out, double span) {
     std::vector<std::string> changes;
     const Key<D>& author = keys()[key];
-    const Arm<D> arm = arm_of<D>(is_out ? author.out : author.in, is_out ? out_[key] : in_[key],
-                                 span, is_out, changes);
+    const SegmentHandle<D> handle = segment_handle_of<D>(
+        is_out ? author.out : author.in, is_out ? out_[key] : in_[key], span, is_out, changes);
     for (std::string& each : changes) {
       note(key, is_out ? Subject::OutTangent : Subject::InTangent, std::move(each));
     }
-    return arm;
+    return handle;
   }
 
   /// The outer sides of the end keys, which no segment reads.
   void note_ends() {
-    arm(0, false, 1);
-    arm(keys().size() - 1, true, 1);
+    handle(0, false, 1);
+    handle(keys().size() - 1, true, 1);
   }
 
-  void shape_by_arms(std::size_t k, Arm<D> out, Arm<D> in, Segment<D>& segment) {
+  void shape_by_arms(std::size_t k, SegmentHandle<D> out, SegmentHandle<D> in,
+                     Segment<D>& segment) {
     const double span = segment.length;
     const Lengths lengths{out.length, in.length};
     if (author_.overshoot == Overshoot::Error && !is_function_of_time(lengths, span)) {

@@ -17,7 +17,7 @@ struct Unknown {
   double slope = 0;
   bool is_fixed = false;
   bool is_capped = false;
-  Course::Meeting meeting;
+  KeyPolyline::Corner corner;
 
   void fix(double value) {
     before = after = 0;
@@ -90,9 +90,9 @@ void solve_ring(std::vector<Unknown>& rows) {
 
 class System {
  public:
-  System(const Course& course, const SmoothSides& sides, Slopes& slopes)
-      : course_(course), sides_(sides), slopes_(slopes) {
-    const std::size_t keys = course.size();
+  System(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes)
+      : course_(polyline), sides_(sides), slopes_(slopes) {
+    const std::size_t keys = polyline.size();
     in_.resize(keys);
     out_.resize(keys);
     // In the order of the keys, so that neighbours in time are neighbours among the unknowns; an
@@ -190,22 +190,22 @@ class System {
   /// Eq. 11, scaled so that its weights sum to one.
   void write_joint(std::size_t arriving_key, std::size_t key) {
     Unknown& row = unknowns_[*out_[key]];
-    row.meeting = course_.at(key, true);
-    const Course::Meeting& meeting = row.meeting;
-    const double lengths = meeting.length_before + meeting.length_after;
-    const double before = meeting.length_after / lengths;
-    const double after = meeting.length_before / lengths;
+    row.corner = course_.at(key, true);
+    const KeyPolyline::Corner& corner = row.corner;
+    const double lengths = corner.length_before + corner.length_after;
+    const double before = corner.length_after / lengths;
+    const double after = corner.length_before / lengths;
     row.diagonal = 2;
-    row.right = 3 * (before * meeting.secant_before + after * meeting.secant_after);
+    row.right = 3 * (before * corner.secant_before + after * corner.secant_after);
     couple_before(row, arriving_key - 1, before);
     couple_after(row, key + 1, after);
-    if (row.is_capped && meeting.is_extremum()) row.fix(0);
+    if (row.is_capped && corner.is_extremum()) row.fix(0);
   }
 
   /// Eq. 12 at an end of a run; slope 0 if the key's other side is flat.
   void write_natural(std::size_t key, bool is_out) {
     Unknown& row = unknowns_[is_out ? *out_[key] : *in_[key]];
-    row.meeting = course_.at(key, is_out);
+    row.corner = course_.at(key, is_out);
     row.diagonal = 2;
     if (is_out) {
       row.right = 3 * course_.secants[key];
@@ -215,7 +215,7 @@ class System {
       couple_before(row, key - 1, 1);
     }
     const bool is_flat = meets_flat_side(key, is_out);
-    if (is_flat || (row.is_capped && row.meeting.is_extremum())) row.fix(0);
+    if (is_flat || (row.is_capped && row.corner.is_extremum())) row.fix(0);
   }
 
   bool meets_flat_side(std::size_t key, bool is_out) const {
@@ -251,11 +251,11 @@ class System {
     bool has_fixed = false;
     for (Unknown& unknown : unknowns_) {
       if (unknown.is_fixed || !unknown.is_capped) continue;
-      const Course::Meeting& meeting = unknown.meeting;
+      const KeyPolyline::Corner& corner = unknown.corner;
       const double slope = unknown.slope;
-      const bool opposes = (meeting.has_before && opposite(slope, meeting.secant_before)) ||
-                           (meeting.has_after && opposite(slope, meeting.secant_after));
-      const double cap = meeting.cap();
+      const bool opposes = (corner.has_before && opposite(slope, corner.secant_before)) ||
+                           (corner.has_after && opposite(slope, corner.secant_after));
+      const double cap = corner.cap();
       if (opposes) {
         unknown.fix(0);
       } else if (std::fabs(slope) > cap) {
@@ -270,7 +270,7 @@ class System {
 
   static bool opposite(double a, double b) { return (a > 0 && b < 0) || (a < 0 && b > 0); }
 
-  const Course& course_;
+  const KeyPolyline& course_;
   const SmoothSides& sides_;
   Slopes& slopes_;
   std::vector<Unknown> unknowns_;
@@ -280,8 +280,8 @@ class System {
 
 }  // namespace
 
-void solve_smooth_tangents(const Course& course, const SmoothSides& sides, Slopes& slopes) {
-  System system(course, sides, slopes);
+void solve_smooth_tangents(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes) {
+  System system(polyline, sides, slopes);
   system.solve();
   system.store();
 }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "pliant/timeline/course.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 #include "pliant/timeline/tangents.hpp"
 
 namespace pliant::timeline {
@@ -17,6 +17,6 @@ struct SmoothSides {
 
 /// Replaces the slopes of `smooth` (Capped) and `free` sides by those that make the acceleration
 /// continuous (docs/timeline.md, eq. 11 to 13); reads the slopes of the other sides.
-void solve_smooth_tangents(const Course& course, const SmoothSides& sides, Slopes& slopes);
+void solve_smooth_tangents(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes);
 
 }  // namespace pliant::timeline

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pliant/timeline/course.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 #include "pliant/timeline/smooth_tangents.hpp"
 
 namespace pliant::timeline {
@@ -11,11 +11,11 @@ namespace pliant::timeline {
 namespace {
 
 /// Eq. 8: a mean of the two secants whose weight follows the nearer key. Source: Maya's auto-ease.
-double auto_ease(const Course::Meeting& meeting) {
-  const double f = meeting.length_before / (meeting.length_before + meeting.length_after);
+double auto_ease(const KeyPolyline::Corner& corner) {
+  const double f = corner.length_before / (corner.length_before + corner.length_after);
   const double centred = f - 0.5;
   const double g = 0.5 + centred * (1.5 - 2 * centred * centred);
-  return (1 - g) * meeting.secant_before + g * meeting.secant_after;
+  return (1 - g) * corner.secant_before + g * corner.secant_after;
 }
 
 double capped(double slope, double cap) { return std::clamp(slope, -cap, cap); }
@@ -23,27 +23,27 @@ double capped(double slope, double cap) { return std::clamp(slope, -cap, cap); }
 template <int D>
 class Side {
  public:
-  Side(const std::vector<Key<D>>& keys, const Course& course, double flat_below, int c)
-      : keys_(keys), course_(course), flat_below_(flat_below), c_(c) {}
+  Side(const std::vector<Key<D>>& keys, const KeyPolyline& polyline, double flat_below, int c)
+      : keys_(keys), course_(polyline), flat_below_(flat_below), c_(c) {}
 
   double slope(std::size_t key, bool is_out, bool extends_line) const {
     using Kind = typename Tangent<D>::Kind;
     const Tangent<D>& tangent = is_out ? keys_[key].out : keys_[key].in;
-    const Course::Meeting meeting = course_.at(key, is_out);
+    const KeyPolyline::Corner corner = course_.at(key, is_out);
     switch (tangent.kind) {
       case Kind::Auto:
-        if (meeting.is_open()) return extends_line ? meeting.spline() : 0;
-        return meeting.is_extremum() ? 0 : capped(auto_ease(meeting), meeting.cap());
+        if (corner.is_open()) return extends_line ? corner.spline() : 0;
+        return corner.is_extremum() ? 0 : capped(auto_ease(corner), corner.cap());
       case Kind::Plateau:
-        if (meeting.is_open()) return extends_line ? meeting.spline() : 0;
-        return meeting.is_extremum() ? 0 : capped(meeting.spline(), meeting.cap());
+        if (corner.is_open()) return extends_line ? corner.spline() : 0;
+        return corner.is_extremum() ? 0 : capped(corner.spline(), corner.cap());
       case Kind::Spline:
-        return meeting.spline();
+        return corner.spline();
       case Kind::Clamped:
-        return is_level(key, is_out) ? 0 : meeting.spline();
+        return is_level(key, is_out) ? 0 : corner.spline();
       case Kind::Linear:
-        if (is_out) return meeting.has_after ? meeting.secant_after : meeting.secant_before;
-        return meeting.has_before ? meeting.secant_before : meeting.secant_after;
+        if (is_out) return corner.has_after ? corner.secant_after : corner.secant_before;
+        return corner.has_before ? corner.secant_before : corner.secant_after;
       case Kind::Flat:
         return 0;
       case Kind::Slope:
@@ -75,7 +75,7 @@ class Side {
   }
 
   const std::vector<Key<D>>& keys_;
-  const Course& course_;
+  const KeyPolyline& course_;
   double flat_below_;
   int c_;
 };
@@ -98,8 +98,8 @@ SmoothKind smooth_kind(const Tangent<D>& tangent) {
 template <int D>
 Slopes tangent_slopes(const std::vector<Key<D>>& keys, const Extrapolation<D>& before,
                       const Extrapolation<D>& after, int c) {
-  const Course course = course_of(keys, before, after, c);
-  const Side<D> side(keys, course, 1e-3 * course.range(), c);
+  const KeyPolyline polyline = key_polyline_of(keys, before, after, c);
+  const Side<D> side(keys, polyline, 1e-3 * polyline.range(), c);
   Slopes slopes;
   SmoothSides smooth;
   for (std::size_t k = 0; k < keys.size(); ++k) {
@@ -110,7 +110,7 @@ Slopes tangent_slopes(const std::vector<Key<D>>& keys, const Extrapolation<D>& b
     smooth.in.push_back(smooth_kind(keys[k].in));
     smooth.out.push_back(smooth_kind(keys[k].out));
   }
-  solve_smooth_tangents(course, smooth, slopes);
+  solve_smooth_tangents(polyline, smooth, slopes);
   return slopes;
 }
 

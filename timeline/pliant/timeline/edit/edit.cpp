@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "pliant/timeline/compile.hpp"
-#include "pliant/timeline/course.hpp"
 #include "pliant/timeline/edit/split.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 #include "pliant/timeline/number_text.hpp"
 
 namespace pliant {

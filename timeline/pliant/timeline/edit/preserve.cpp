@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "pliant/timeline/arms.hpp"
 #include "pliant/timeline/compile.hpp"
 #include "pliant/timeline/loop.hpp"
 #include "pliant/timeline/overshoot.hpp"
+#include "pliant/timeline/segment_handle.hpp"
 #include "pliant/timeline/tangents.hpp"
 
 namespace pliant::timeline {
@@ -125,15 +125,15 @@ bool are_close(const Key<D>& a, const Key<D>& b, const Slack& slack) {
 }
 
 template <int D>
-void set_length(Tangent<D>& tangent, Arm<D> arm, double length, bool is_out) {
-  if (!arm.is_vector) {
+void set_length(Tangent<D>& tangent, SegmentHandle<D> handle, double length, bool is_out) {
+  if (!handle.is_vector) {
     tangent.length = length;
     return;
   }
   const double direction = is_out ? 1 : -1;
-  arm = arm.with_length(length);
+  handle = handle.with_length(length);
   tangent.handle_frames = direction * length;
-  for (int c = 0; c < D; ++c) tangent.handle_value[c] = direction * arm.rise[c];
+  for (int c = 0; c < D; ++c) tangent.handle_value[c] = direction * handle.rise[c];
 }
 
 }  // namespace
@@ -211,8 +211,8 @@ void write_corrections(CurveKeys<D>& author, Overshoot policy) {
   for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
     if (!is_bezier(keys, k)) continue;
     const double span = keys[k + 1].frame - keys[k].frame;
-    const Arm<D> out = arm_of<D>(keys[k].out, {}, span, true, ignored);
-    const Arm<D> in = arm_of<D>(keys[k + 1].in, {}, span, false, ignored);
+    const SegmentHandle<D> out = segment_handle_of<D>(keys[k].out, {}, span, true, ignored);
+    const SegmentHandle<D> in = segment_handle_of<D>(keys[k + 1].in, {}, span, false, ignored);
     const Lengths legal = corrected({out.length, in.length}, span, policy);
     if (legal.start != out.length) set_length(keys[k].out, out, legal.start, true);
     if (legal.end != in.length) set_length(keys[k + 1].in, in, legal.end, false);

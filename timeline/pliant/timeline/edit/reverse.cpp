@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/timeline/course.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 #include "pliant/timeline/edit/preserve.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 #include "pliant/timeline/loop.hpp"
 #include "pliant/timeline/number_text.hpp"
 

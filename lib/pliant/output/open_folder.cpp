@@ -1,0 +1,54 @@
+#include "pliant/output/open_folder.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace pliant {
+
+OpenFolder::OpenFolder(const std::filesystem::path& file) {
+  const std::filesystem::path parent = file.parent_path();
+  const char* const name = parent.empty() ? "." : parent.c_str();
+  descriptor_ = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  is_readable_ = descriptor_ >= 0;
+  // A folder that is writable but not readable suffices for everything except a flush.
+  if (!is_readable_ && errno == EACCES) descriptor_ = open(name, O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) error_ = errno;
+}
+
+OpenFolder::~OpenFolder() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+int OpenFolder::rename(const std::string& from, const std::string& to) const {
+  return renameat(descriptor_, from.c_str(), descriptor_, to.c_str()) == 0 ? 0 : errno;
+}
+
+void OpenFolder::remove(const std::string& name) const { unlinkat(descriptor_, name.c_str(), 0); }
+
+int OpenFolder::flush() const { return is_readable_ ? flush_descriptor(descriptor_) : 0; }
+
+void OpenFolder::lock() const {
+  using namespace std::chrono_literals;
+  // Limited, since the process with the lock may hang.
+  for (auto waited = 0ms; waited < 10s; waited += 10ms) {
+    if (!is_readable_ || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+int flush_descriptor(int descriptor) {
+  while (fsync(descriptor) != 0) {
+    if (errno == EINTR) continue;
+    const bool is_unknown = errno == EINVAL || errno == EOPNOTSUPP || errno == ENOSYS;
+    return is_unknown ? 0 : errno;
+  }
+  return 0;
+}
+
+}  // namespace pliant

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace pliant {
+
+// The folder of a file, kept open, so that names in it, and the path to it, may be as long as the
+// system allows. Functions return 0 or an errno. Internal to output.
+class OpenFolder {
+ public:
+  /// The folder of `file`; `error` is the errno if it cannot be opened, 0: it is open.
+  explicit OpenFolder(const std::filesystem::path& file);
+  OpenFolder(OpenFolder&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)),
+        error_(other.error_),
+        is_readable_(other.is_readable_) {}
+  OpenFolder& operator=(OpenFolder&&) = delete;
+  ~OpenFolder();
+
+  int error() const { return error_; }
+  int descriptor() const { return descriptor_; }
+
+  int rename(const std::string& from, const std::string& to) const;
+  void remove(const std::string& name) const;
+
+  /// Flushes the folder's names to the disk; also returns 0 if the file system does not support
+  /// this, or if the folder is writable but not readable, in which case it is impossible.
+  int flush() const;
+
+  /// Waits until no other process has the lock of the folder, ten seconds at most, and locks it
+  /// until this object is destroyed. Does nothing if the file system has no locks.
+  void lock() const;
+
+ private:
+  int descriptor_ = -1;
+  int error_ = 0;
+  bool is_readable_ = false;
+};
+
+/// Flushes the content of an open file to the disk: 0, or the errno. Also 0 if the file system does
+/// not support this.
+int flush_descriptor(int descriptor);
+
+}  // namespace pliant
