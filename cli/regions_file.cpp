@@ -45,7 +45,7 @@ Json surface_json(const Scene& scene, int frame, std::size_t surface, const Surf
     selected.include(region.box);
     Json parts = Json::array();
     for (const Box& part : region.parts) parts.push_back(to_json(part));
-    const bool is_solved = report.region_is_solved[k];
+    const bool is_solved = report.regions[k].is_solved();
     regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
   }
   Json forces = Json::array();

@@ -74,7 +74,7 @@ void SurfaceMarks::add(int frame, const SurfaceReport& report,
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     Json parts = Json::array();
     for (const Box& part : report.regions[k].parts) parts.push_back(corners(part));
-    regions.push_back({{"solved", bool(report.region_is_solved[k])}, {"parts", parts}});
+    regions.push_back({{"solved", report.regions[k].is_solved()}, {"parts", parts}});
   }
   for (const ForceReport& force : report.forces) {
     if (force.selection.force.is_empty() || force.kind == "group") continue;

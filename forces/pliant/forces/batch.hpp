@@ -27,7 +27,7 @@ struct BatchNumbers {
 };
 
 /// `distance` at each position. [length]
-BatchNumbers distances(const ForceKind& shape, const Batch& points);
+BatchNumbers distances(const ForceKind& force, const Batch& points);
 
 /// Adds `force_at` of each position to `sums`, from index `first` on. Requires: force.force_radius
 /// > 0.
@@ -35,6 +35,6 @@ void add_forces(const SampledForce& force, const Batch& points, int first, Batch
 
 /// A lower bound of `distance`, rounding included, for every position whose components are between
 /// those of `low` and `high`. For a program's own function the bound is 0.
-double least_distance(const ForceKind& shape, const Vector3d& low, const Vector3d& high);
+double least_distance(const ForceKind& force, const Vector3d& low, const Vector3d& high);
 
 }  // namespace pliant

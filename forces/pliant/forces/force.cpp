@@ -180,8 +180,8 @@ auto with_kernel(const LineForce& line, const Use& use) {
   return use(Directed<AroundSegment>{around, normalised(*line.direction)});
 }
 template <class Use>
-auto with_kernel(const ForceKind& shape, const Use& use) {
-  return std::visit([&](const auto& force) { return with_kernel(force, use); }, shape);
+auto with_kernel(const ForceKind& force, const Use& use) {
+  return std::visit([&](const auto& kind) { return with_kernel(kind, use); }, force);
 }
 
 template <class Force>
@@ -234,9 +234,9 @@ SampledForce region_sphere(const Vector3d& center, double deformation_radius) {
           .force_radius = 0};
 }
 
-double distance(const ForceKind& shape, const Vector3d& p) { return distance_of(shape, p); }
+double distance(const ForceKind& force, const Vector3d& p) { return distance_of(force, p); }
 
-Vector3d unit_force(const ForceKind& shape, const Vector3d& p) { return unit_force_of(shape, p); }
+Vector3d unit_force(const ForceKind& force, const Vector3d& p) { return unit_force_of(force, p); }
 
 Vector3d force_at(const SampledForce& force, const Vector3d& p) {
   return with_kernel(force.kind, [&](const auto& kind) {
@@ -246,8 +246,8 @@ Vector3d force_at(const SampledForce& force, const Vector3d& p) {
   });
 }
 
-BatchNumbers distances(const ForceKind& shape, const Batch& points) {
-  return with_kernel(shape, [&](const auto& kind) { return distances_from(kind, points); });
+BatchNumbers distances(const ForceKind& force, const Batch& points) {
+  return with_kernel(force, [&](const auto& kind) { return distances_from(kind, points); });
 }
 
 void add_forces(const SampledForce& force, const Batch& points, int first, Batch& sums) {
@@ -266,8 +266,8 @@ void add_forces(const SampledForce& force, const Batch& points, int first, Batch
   });
 }
 
-double least_distance(const ForceKind& shape, const Vector3d& low, const Vector3d& high) {
-  return with_kernel(shape, [&](const auto& kind) { return kind.least_distance(low, high); });
+double least_distance(const ForceKind& force, const Vector3d& low, const Vector3d& high) {
+  return with_kernel(force, [&](const auto& kind) { return kind.least_distance(low, high); });
 }
 
 }  // namespace pliant

@@ -125,10 +125,10 @@ struct SampledForce {
 SampledForce region_sphere(const Vector3d& center, double deformation_radius);
 
 /// Distance from p that decides the selection. [length]
-double distance(const ForceKind& shape, const Vector3d& p);
+double distance(const ForceKind& force, const Vector3d& p);
 
 /// The force at p per unit of magnitude and falloff.
-Vector3d unit_force(const ForceKind& shape, const Vector3d& p);
+Vector3d unit_force(const ForceKind& force, const Vector3d& p);
 
 /// The force on a node at p, for any p: the caller checks the force box. Requires: force_radius >
 /// 0. [length b/uv^4]

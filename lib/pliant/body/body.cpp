@@ -55,7 +55,7 @@ bool is_outline_of(const Outline& outline, const Patch& patch) {
 
 bool StepPlan::solves() const {
   return std::any_of(selection.regions.begin(), selection.regions.end(),
-                     [](const Region& region) { return !region.patches.empty(); });
+                     [](const Region& region) { return region.is_solved(); });
 }
 
 int StepPlan::unknown_count() const {
@@ -221,7 +221,7 @@ Result<void> Body::solve(const BodyInputs& inputs) {
   std::size_t place = 0;
   for (std::size_t k = 0; k < plan.selection.regions.size(); ++k) {
     const Region& region = plan.selection.regions[k];
-    if (region.patches.empty()) continue;
+    if (!region.is_solved()) continue;
     const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
     for (const Patch& patch : region.patches) {
       PatchSolve& one = work_.solves[place++];

@@ -17,9 +17,6 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   report.recovering = static_cast<int>(step->recovering.size());
   report.settled = static_cast<int>(step->settling.size());
   report.regions = step->selection.regions;
-  for (const Region& region : report.regions) {
-    report.region_is_solved.push_back(!region.patches.empty());
-  }
   const Field nodes = body.measured_nodes(inputs.body.transform);
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
     const SampledForce& force = inputs.body.forces[k];

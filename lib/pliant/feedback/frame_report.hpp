@@ -28,14 +28,13 @@ struct ForceReport {
 
 /// The solve at a frame, on one surface. SPEC 5, 6.
 struct SurfaceReport {
-  bool is_solved = false;              ///< false: the state does not change
-  TimeSteps steps;                     ///< of the solve
-  int unknown_count = 0;               ///< nodes that move
-  int recovering = 0;                  ///< nodes solved because they are not back at rest
-  int settled = 0;                     ///< nodes set to rest before the solve
-  std::vector<Region> regions;         ///< also those too small to solve
-  std::vector<bool> region_is_solved;  ///< for each region
-  std::vector<ForceReport> forces;     ///< in the order of the scene, then those of groups
+  bool is_solved = false;           ///< false: the state does not change
+  TimeSteps steps;                  ///< of the solve
+  int unknown_count = 0;            ///< nodes that move
+  int recovering = 0;               ///< nodes solved because they are not back at rest
+  int settled = 0;                  ///< nodes set to rest before the solve
+  std::vector<Region> regions;      ///< also those too small to solve
+  std::vector<ForceReport> forces;  ///< in the order of the scene, then those of groups
 };
 
 /// The solve of a body in its present state with these inputs. Errors: as `Body::look`; NotFinite

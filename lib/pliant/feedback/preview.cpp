@@ -169,7 +169,7 @@ class SurfacePreviewer {
     for (const Region& selected : step->selection.regions) {
       RegionPreview region;
       region.region = selected;
-      region.is_solvable = !region.region.patches.empty();
+      region.is_solvable = region.region.is_solved();
       if (preview.is_solved && region.is_solvable) {
         auto vibrations = body_.vibrations(inputs, std::move(region));
         if (!vibrations) return fail(vibrations.error());

@@ -45,6 +45,8 @@ struct Region {
   /// none, so that it is too small to solve.
   std::vector<Patch> patches = {};
 
+  bool is_solved() const { return !patches.empty(); }
+
   friend bool operator==(const Region&, const Region&) = default;
 };
 

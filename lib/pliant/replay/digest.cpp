@@ -14,7 +14,7 @@ std::string region_text(const SurfaceReport& report, const BodyState& state) {
   std::string text;
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     for (const Box& part : report.regions[k].parts) {
-      text += fmt::format("{} {} {} {} {} {}\n", k, report.region_is_solved[k] ? 1 : 0, part.i0,
+      text += fmt::format("{} {} {} {} {} {}\n", k, report.regions[k].is_solved() ? 1 : 0, part.i0,
                           part.i1, part.j0, part.j1);
     }
   }
