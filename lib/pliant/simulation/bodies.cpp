@@ -109,7 +109,9 @@ void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share
 }
 
 void Bodies::step(int frame, KeptStates* kept, const std::function<bool()>& give_way) {
-  threads_.for_each(bodies_.size(), [&](std::size_t k) { step(k, frame, kept); });
+  // By reference: a std::function would allocate for so many captures.
+  const auto step_one = [&](std::size_t k) { step(k, frame, kept); };
+  threads_.for_each(bodies_.size(), std::ref(step_one));
   const auto lacks_memory = [](const Step& step) {
     return step.is_solved_now && !step.outcome &&
            step.outcome.error().code == ErrorCode::OutOfMemory;
