@@ -27,7 +27,6 @@ std::vector<ForceKind> shapes(std::mt19937& random, double extent) {
   const Vector3d a = place(random, extent), b = place(random, extent), c = place(random, extent);
   return {PointForce{a, b},
           RadialForce{a},
-          PlaneForce{a, b},
           LineForce{a, b, {}},
           LineForce{a, b, c},
           LineForce{a, a, {}},

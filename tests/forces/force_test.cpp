@@ -42,7 +42,6 @@ std::vector<ForceKind> shapes(RandomVectors& vector) {
           LineForce{vector(), vector(), {}},
           LineForce{vector(), vector(), vector()},
           UniformForce{vector()},
-          PlaneForce{vector(), vector()},
           VortexForce{vector(), vector(), 0}};
 }
 
@@ -61,9 +60,6 @@ struct Move {
     return moved;
   }
   ForceKind operator()(const UniformForce& f) const { return UniformForce{rotation * f.direction}; }
-  ForceKind operator()(const PlaneForce& f) const {
-    return PlaneForce{point(f.center), rotation * f.direction};
-  }
   ForceKind operator()(const VortexForce& f) const {
     return VortexForce{point(f.center), rotation * f.axis, f.pull};
   }
@@ -193,20 +189,6 @@ TEST_CASE("a force is magnitude times falloff times direction", "[forces]") {
     const Vector3d expected = -3 * std::exp(-4.5 * s * s) * unit_force(shape, p);
     CHECK((force_at(force, p) - expected).norm() < 1e-14);
   }
-}
-
-TEST_CASE("a plane pushes along its normal, at the distance from it", "[forces]") {
-  RandomVectors vector;
-  for (int trial = 0; trial < 50; ++trial) {
-    const Vector3d center = vector(), normal = vector(), p = vector();
-    const PlaneForce plane{center, normal};
-    CHECK_THAT(distance(plane, p),
-               WithinAbs(std::abs((p - center).dot(normal.normalized())), 1e-14));
-    CHECK((unit_force(plane, p) - normal.normalized()).norm() < 1e-14);
-  }
-  const PlaneForce none{{1, 0, 0}, Vector3d::Zero()};
-  CHECK(distance(none, {1, 3, 4}) == 5);
-  CHECK(unit_force(none, {1, 3, 4}) == Vector3d::Zero());
 }
 
 TEST_CASE("a uniform force is at distance 0 and the same everywhere", "[forces]") {

@@ -14,12 +14,12 @@ namespace pliant::testing {
 namespace {
 
 TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
-  const Scene scene = scene_of(scene_with(
-      "<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/></surface>\n"
-      "<point name=\"point\"/><radial name=\"radial\"/>"
-      "<line name=\"line\" direction=\"0 1 0\"/><uniform name=\"uniform\"/><plane name=\"plane\"/>"
-      "<vortex name=\"vortex\"/><noise name=\"noise\"/><inertia name=\"inertia\"/>"
-      "<group name=\"group\"/>"));
+  const Scene scene = scene_of(
+      scene_with("<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/></surface>\n"
+                 "<point name=\"point\"/><radial name=\"radial\"/>"
+                 "<line name=\"line\" direction=\"0 1 0\"/><uniform name=\"uniform\"/>"
+                 "<vortex name=\"vortex\"/><noise name=\"noise\"/><inertia name=\"inertia\"/>"
+                 "<group name=\"group\"/>"));
   std::set<std::string> paths;
   for (const NamedChannel& channel : channels_of(scene)) {
     CHECK(paths.insert(channel.path).second);

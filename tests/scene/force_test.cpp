@@ -70,7 +70,7 @@ TEST_CASE("a falloff is a curve over s", "[scene][falloff]") {
 
 TEST_CASE("every kind of force takes a falloff", "[scene][falloff]") {
   const std::string kind =
-      GENERATE("point", "radial", "line", "uniform", "plane", "vortex", "noise", "inertia");
+      GENERATE("point", "radial", "line", "uniform", "vortex", "noise", "inertia");
   const Scene scene = scene_of(scene_with(
       "<" + kind + " name=\"f\"><falloff><key at=\"0\" value=\"2\"/></falloff></" + kind + ">"));
   CHECK(scene.forces.at(0).falloff_curve);

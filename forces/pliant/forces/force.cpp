@@ -104,36 +104,6 @@ struct OutwardLineKernel : AroundSegment {
   }
 };
 
-// A distance changes no faster than the position: the distance of the middle minus half the
-// diagonal. Each computed distance is off by less than 16 roundings of the offset from the centre,
-// and by the squares of components below 1e-150, which underflow.
-template <class Kernel>
-double least_from_middle(const Kernel& kernel, const Triple& low, const Triple& high) {
-  const Triple middle = low + 0.5 * (high - low);
-  const auto larger = [](double a, double b) { return std::max(a, b); };
-  const double reach = length(by_component(larger, high - middle, middle - low));
-  const double offset = length(middle - kernel.center) + reach;
-  const double bound = kernel.distance(middle) - reach - 64 * epsilon * offset - 1e-150;
-  return bound >= 0 ? bound : 0;
-}
-
-struct PlaneKernel {
-  Triple center;
-  Triple normal;  // a unit vector, or 0
-
-  double distance(const Triple& p) const {
-    const Triple offset = p - center;
-    return largest_component(normal) == 0 ? length(offset) : std::abs(dot(offset, normal));
-  }
-  Triple unit_force(const Triple&) const { return normal; }
-  double least_distance(const Triple& low, const Triple& high) const {
-    return least_from_middle(*this, low, high);
-  }
-};
-inline PlaneKernel kernel(const PlaneForce& force) {
-  return {force.center, normalised(force.direction)};
-}
-
 struct VortexKernel {
   Triple center;
   Triple axis;  // a unit vector, or 0
@@ -153,8 +123,16 @@ struct VortexKernel {
     const Triple out = normalised(from_axis);
     return normalised(cross(axis, out)) - pull * out;
   }
+  // A distance changes no faster than the position: the distance of the middle minus half the
+  // diagonal. Each computed distance is off by less than 16 roundings of the offset from the
+  // centre, and by the squares of components below 1e-150, which underflow.
   double least_distance(const Triple& low, const Triple& high) const {
-    return least_from_middle(*this, low, high);
+    const Triple middle = low + 0.5 * (high - low);
+    const auto larger = [](double a, double b) { return std::max(a, b); };
+    const double reach = length(by_component(larger, high - middle, middle - low));
+    const double offset = length(middle - center) + reach;
+    const double bound = distance(middle) - reach - 64 * epsilon * offset - 1e-150;
+    return bound >= 0 ? bound : 0;
   }
 };
 inline VortexKernel kernel(const VortexForce& force) {
@@ -242,8 +220,6 @@ double LineForce::distance(const Vector3d& p) const { return distance_of(*this, 
 Vector3d LineForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 double UniformForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
 Vector3d UniformForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
-double PlaneForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
-Vector3d PlaneForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 double VortexForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
 Vector3d VortexForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 double NoiseForce::distance(const Vector3d& p) const { return distance_of(*this, p); }

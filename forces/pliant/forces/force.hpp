@@ -59,17 +59,6 @@ struct UniformForce {
   Vector3d unit_force(const Vector3d& p) const;
 };
 
-/// Pushes along the normal of the plane through `center`. With a normal of length 0 the force is 0,
-/// and distances are to `center`.
-struct PlaneForce {
-  Vector3d center = {0, 0, 0};     ///< world [length]
-  Vector3d direction = {0, 1, 0};  ///< the normal, any length
-
-  auto values() const { return std::tie(center, direction); }
-  double distance(const Vector3d& p) const;  ///< to the plane, on either side
-  Vector3d unit_force(const Vector3d& p) const;
-};
-
 /// Rotates about the line through `center` along `axis`, by the right-hand rule, and pulls towards
 /// it; 0 on the line itself. With an `axis` of length 0 the force is 0, and distances are to
 /// `center`.
@@ -116,8 +105,8 @@ struct SampledCustomForce {
   std::function<Vector3d(const Vector3d& p)> unit_force;
 };
 
-using ForceKind = std::variant<PointForce, RadialForce, LineForce, UniformForce, PlaneForce,
-                               VortexForce, NoiseForce, InertiaForce, SampledCustomForce>;
+using ForceKind = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
+                               NoiseForce, InertiaForce, SampledCustomForce>;
 
 /// A force at one frame.
 struct SampledForce {

@@ -476,23 +476,6 @@ struct Description<UniformChannels> {
 };
 
 template <>
-struct Description<PlaneChannels> {
-  static constexpr std::string_view element = "plane";
-  using Sampled = PlaneForce;
-
-  template <class Row, class... Of>
-  static void rows(Row&& row, Of&... of) {
-    row(Attribute{.name = "center", .meaning = "a point of the plane", .unit = "length"},
-        of.center...);
-    row(Attribute{.name = "direction",
-                  .meaning = "normal of the plane and direction of the push; its length does not "
-                             "matter",
-                  .unit = "1"},
-        of.direction...);
-  }
-};
-
-template <>
 struct Description<VortexChannels> {
   static constexpr std::string_view element = "vortex";
   using Sampled = VortexForce;

@@ -106,12 +106,6 @@ struct UniformChannels {
   Channel<3> direction = Value<3>{0, 1, 0};  ///< world; normalised
 };
 
-/// Pushes along the normal of a plane, like a board or a wall that the surface meets.
-struct PlaneChannels {
-  PositionChannel center = Value<3>{0, 0, 0};  ///< a point of the plane, world [length]
-  Channel<3> direction = Value<3>{0, 1, 0};    ///< its normal, world; normalised
-};
-
 /// Turns about a line by the right-hand rule, and pulls towards it.
 struct VortexChannels {
   PositionChannel center = Value<3>{0, 0, 0};  ///< a point of the line, world [length]
@@ -168,8 +162,8 @@ struct Force {
   Falloff falloff = Falloff::Constant;
   /// A curve over s = distance / force radius, from 0 to 1, used instead of `falloff`.
   std::optional<Curve<1>> falloff_curve = {};
-  std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, PlaneChannels,
-               VortexChannels, NoiseChannels, InertiaChannels, CustomForce>
+  std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
+               NoiseChannels, InertiaChannels, CustomForce>
       kind = {};  ///< by default `PointChannels`
 };
 

@@ -178,7 +178,7 @@ class Gizmo {
     this.middle = new THREE.Mesh(dot, this.solid);
     this.middle.name = `${parameters.name} center`;
     this.course = this.inks.faint.line(segment);
-    const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, plane: 1, vortex: 4, inertia: 1 };
+    const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1 };
     for (let k = 0; k < (arrowCount[kind] ?? 0); ++k) {
       this.arrows.push(new Arrow(this.inks.arrow, this.solid));
       this.arrows[k].group.name = `${parameters.name} vector`;
@@ -233,7 +233,7 @@ class Gizmo {
     const direction = force.kind === "inertia" ? toVector(push ?? [0, 0, 0]) : vectorOf(force.direction);
     if (direction.lengthSq() > 0) direction.normalize();
     this.course.visible = false;
-    if (force.kind === "point" || force.kind === "plane" || force.kind === "uniform" || force.kind === "inertia" || force.direction) {
+    if (force.kind === "point" || force.kind === "uniform" || force.kind === "inertia" || force.direction) {
       this.showCourse(center, direction, 1.15 * size);
       this.arrows[0].point(center, direction.multiplyScalar(length), headSize);
       for (const arrow of this.arrows.slice(1)) arrow.group.visible = false;
