@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 
 namespace pliant::cli {
 

@@ -4,8 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "info_json.hpp"
-#include "info_text.hpp"
+#include "info_formats.hpp"
 #include "interrupt.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"

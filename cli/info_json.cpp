@@ -1,9 +1,8 @@
-#include "info_json.hpp"
-
 #include <algorithm>
 #include <array>
 #include <variant>
 
+#include "info_formats.hpp"
 #include "json.hpp"
 
 namespace pliant::cli {

@@ -1,5 +1,3 @@
-#include "info_text.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -8,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "counted.hpp"
+#include "info_formats.hpp"
 
 namespace pliant::cli {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "ffmpeg.hpp"
 #include "interrupt.hpp"
-#include "pliant/core/file_ending.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 
 namespace pliant::cli {

@@ -10,7 +10,7 @@
 #include "counted.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/pliant.hpp"
 #include "progress.hpp"
 #include "report.hpp"

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "interrupt.hpp"
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 
 namespace pliant::cli {
 namespace {

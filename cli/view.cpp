@@ -11,14 +11,13 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
-#include "view_movie.hpp"
+#include "view_outputs.hpp"
 #include "view_picture.hpp"
 #include "view_scene.hpp"
-#include "view_serve.hpp"
 #include "viewer/page.hpp"
 
 namespace pliant::cli {

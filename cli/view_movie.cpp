@@ -1,5 +1,3 @@
-#include "view_movie.hpp"
-
 #include <chrono>
 #include <utility>
 
@@ -15,6 +13,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
+#include "view_outputs.hpp"
 #include "view_picture.hpp"
 #include "view_scene.hpp"
 

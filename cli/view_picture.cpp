@@ -24,7 +24,7 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"

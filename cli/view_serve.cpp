@@ -1,5 +1,3 @@
-#include "view_serve.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -20,6 +18,7 @@
 #include "pliant/scene/inputs.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
+#include "view_outputs.hpp"
 #include "view_scene.hpp"
 #include "viewer/server.hpp"
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "pliant/core/read_file.hpp"
-#include "pliant/mesh/mesh_reader.hpp"
+#include "pliant/mesh/boxed_reader.hpp"
 
 namespace pliant::testing {
 

@@ -1,5 +1,3 @@
-#include "pliant/mesh/read_boxed.hpp"
-
 #include <random>
 
 #include <fcntl.h>
@@ -8,6 +6,7 @@
 #include "mesh/boxed_programs.hpp"
 #include "mesh/mesh_files.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/mesh/boxed_reader.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -1,5 +1,3 @@
-#include "pliant/output/gltf.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,6 +14,7 @@
 #include "pliant/core/hash.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/read_assimp.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -1,8 +1,8 @@
-#include "pliant/output/npy.hpp"
+#include "support/npy.hpp"
 
 #include "pliant/mesh/grid_sheet.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
-#include "support/npy.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace pliant;

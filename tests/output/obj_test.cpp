@@ -1,12 +1,10 @@
-#include "pliant/output/obj.hpp"
-
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 
 #include "output/animated_meshes.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/read_obj.hpp"
-#include "pliant/output/ply.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

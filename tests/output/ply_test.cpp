@@ -1,11 +1,10 @@
-#include "pliant/output/ply.hpp"
-
 #include <cstring>
 #include <sstream>
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/read_ply.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -1,11 +1,10 @@
-#include "pliant/output/point_cache.hpp"
-
 #include <bit>
 #include <cstdint>
 
 #include "output/animated_meshes.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/read_obj.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -6,8 +6,7 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
-#include "pliant/output/npy.hpp"
-#include "pliant/output/point_cache.hpp"
+#include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
 #include "support/npy.hpp"
 #include "support/scratch_folder.hpp"

@@ -1,10 +1,9 @@
-#include "pliant/output/usda.hpp"
-
 #include <regex>
 #include <sstream>
 
 #include "output/animated_meshes.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/usda_names.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"

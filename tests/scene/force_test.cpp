@@ -1,7 +1,6 @@
-#include "pliant/scene/force.hpp"
-
 #include <string>
 
+#include "pliant/scene/read_elements.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

@@ -1,8 +1,7 @@
-#include "pliant/scene/keys.hpp"
-
 #include <string>
 #include <vector>
 
+#include "pliant/scene/read_elements.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

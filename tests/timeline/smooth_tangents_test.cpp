@@ -1,8 +1,7 @@
-#include "pliant/timeline/smooth_tangents.hpp"
-
 #include <algorithm>
 #include <cmath>
 
+#include "pliant/timeline/tangents.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"

@@ -159,14 +159,14 @@ struct InertiaKernel : Everywhere {
 };
 inline InertiaKernel kernel(const InertiaForce& force) { return {{}, force}; }
 
-struct FunctionKernel {
+struct CustomKernel {
   const SampledCustomForce& force;
 
   double distance(const Triple& p) const { return force.distance(p); }
   Triple unit_force(const Triple& p) const { return force.unit_force(p); }
   double least_distance(const Triple&, const Triple&) const { return 0; }
 };
-inline FunctionKernel kernel(const SampledCustomForce& force) { return {force}; }
+inline CustomKernel kernel(const SampledCustomForce& force) { return {force}; }
 
 // The result of `use`, called with the kernel of a force.
 template <class Force, class Use>

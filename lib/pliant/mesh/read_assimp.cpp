@@ -20,14 +20,13 @@
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/file_ending.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/mesh/boxed_reader.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh_message.hpp"
-#include "pliant/mesh/mesh_reader.hpp"
 #include "pliant/mesh/normals.hpp"
-#include "pliant/mesh/read_boxed.hpp"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pliant/core/file_ending.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/read_assimp.hpp"
 #include "pliant/mesh/read_gltf.hpp"

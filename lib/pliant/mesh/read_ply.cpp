@@ -15,9 +15,8 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/number.hpp"
 #include "pliant/core/read_file.hpp"
-#include "pliant/core/trim.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
 

@@ -1,5 +1,3 @@
-#include "pliant/output/gltf.hpp"
-
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -11,9 +9,10 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/file_ending.hpp"
 #include "pliant/core/hash_stream.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/gltf_buffer.hpp"
 #include "pliant/output/gltf_numbers.hpp"
 #include "pliant/output/gltf_surface.hpp"

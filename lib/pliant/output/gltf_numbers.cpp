@@ -6,9 +6,9 @@
 #include <system_error>
 #include <vector>
 
-#include "pliant/core/file_ending.hpp"
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 
 namespace pliant {
 namespace {

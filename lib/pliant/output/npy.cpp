@@ -1,5 +1,3 @@
-#include "pliant/output/npy.hpp"
-
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -9,6 +7,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/row_order.hpp"
 
 namespace pliant {

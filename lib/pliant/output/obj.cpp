@@ -1,5 +1,4 @@
-#include "pliant/output/obj.hpp"
-
+#include "pliant/output/formats.hpp"
 #include "pliant/output/obj_text.hpp"
 #include "pliant/output/sequence.hpp"
 

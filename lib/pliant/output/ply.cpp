@@ -1,5 +1,3 @@
-#include "pliant/output/ply.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -10,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pliant/mesh/normals.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/sequence.hpp"
 
 namespace pliant {

@@ -1,5 +1,3 @@
-#include "pliant/output/point_cache.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/obj_text.hpp"
 #include "pliant/output/row_order.hpp"
 #include "pliant/output/single_precision.hpp"

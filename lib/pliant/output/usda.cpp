@@ -1,5 +1,3 @@
-#include "pliant/output/usda.hpp"
-
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +6,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/usda_names.hpp"
 #include "pliant/output/usda_surface.hpp"
 

@@ -7,16 +7,11 @@
 #include <fmt/ranges.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/file_ending.hpp"
-#include "pliant/output/gltf.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/output/formats.hpp"
 #include "pliant/output/gltf_numbers.hpp"
-#include "pliant/output/npy.hpp"
-#include "pliant/output/obj.hpp"
 #include "pliant/output/output_place.hpp"
-#include "pliant/output/ply.hpp"
-#include "pliant/output/point_cache.hpp"
 #include "pliant/output/sequence.hpp"
-#include "pliant/output/usda.hpp"
 
 namespace pliant {
 namespace {

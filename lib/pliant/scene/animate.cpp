@@ -1,5 +1,3 @@
-#include "pliant/scene/animate.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -7,8 +5,8 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include "pliant/scene/keys.hpp"
 #include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -1,13 +1,10 @@
-#include "pliant/scene/force.hpp"
-
 #include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include "pliant/scene/animate.hpp"
-#include "pliant/scene/keys.hpp"
 #include "pliant/scene/path.hpp"
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {

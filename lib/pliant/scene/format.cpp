@@ -4,9 +4,9 @@
 #include <utility>
 #include <variant>
 
-#include "pliant/scene/force.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/path.hpp"
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant {
 

@@ -1,11 +1,11 @@
-#include "pliant/scene/keys.hpp"
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
+
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include "pliant/scene/animate.hpp"
 #include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -15,11 +15,10 @@
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
-#include "pliant/scene/force.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/rules.hpp"
-#include "pliant/scene/surface.hpp"
 
 namespace pliant {
 

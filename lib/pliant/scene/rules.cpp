@@ -15,8 +15,8 @@
 
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
-#include "pliant/scene/force.hpp"
 #include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::xml {

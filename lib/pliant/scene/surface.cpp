@@ -1,11 +1,9 @@
-#include "pliant/scene/surface.hpp"
-
 #include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include "pliant/scene/animate.hpp"
+#include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/trim.hpp"
+#include "pliant/core/text.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
-#include "pliant/scene/force.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/path.hpp"
+#include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/slot.hpp"
 
 namespace pliant {

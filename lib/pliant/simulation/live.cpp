@@ -23,11 +23,10 @@
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/text.hpp"
 #include "pliant/simulation/bodies.hpp"
+#include "pliant/timeline/checks.hpp"
 
 namespace pliant {
 namespace {
-
-constexpr double largest_value = 1e150;  // of a key
 
 // A value that holds from a frame on.
 struct Held {
@@ -74,7 +73,7 @@ Result<void> key_rates(Scene& scene) {
     auto* const noise = std::get_if<NoiseChannels>(&force.kind);
     if (!noise || noise->rate.is_animated()) continue;
     const Value<1> rate = noise->rate.at(scene.start);
-    if (!(std::abs(rate[0]) <= largest_value)) {
+    if (!(std::abs(rate[0]) <= timeline::largest_number)) {
       return fail(
           ErrorCode::InvalidInput,
           fmt::format("{}.rate is {}, but a live run takes at most 1e150", force.name, rate[0]),
@@ -203,7 +202,7 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
     return refuse(fmt::format("must be {} number{}", count, count == 1 ? "" : "s"));
   }
   for (const double number : value) {
-    if (!(std::abs(number) <= largest_value)) {
+    if (!(std::abs(number) <= timeline::largest_number)) {
       return refuse("must be finite, and at most 1e150 from 0");
     }
   }

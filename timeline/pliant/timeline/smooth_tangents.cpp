@@ -1,8 +1,8 @@
-#include "pliant/timeline/smooth_tangents.hpp"
-
 #include <cmath>
 #include <cstddef>
 #include <optional>
+
+#include "pliant/timeline/tangents.hpp"
 
 namespace pliant::timeline {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "pliant/timeline/key_polyline.hpp"
-#include "pliant/timeline/smooth_tangents.hpp"
 
 namespace pliant::timeline {
 

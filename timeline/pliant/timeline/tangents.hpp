@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "pliant/timeline/key.hpp"
+#include "pliant/timeline/key_polyline.hpp"
 
 namespace pliant::timeline {
 
@@ -24,5 +25,17 @@ extern template Slopes tangent_slopes(const std::vector<Key<1>>&, const Extrapol
                                       const Extrapolation<1>&, int);
 extern template Slopes tangent_slopes(const std::vector<Key<3>>&, const Extrapolation<3>&,
                                       const Extrapolation<3>&, int);
+
+/// The role of a side of a key in the system for continuous acceleration.
+enum class SmoothKind { None, Free, Capped };
+
+struct SmoothSides {
+  std::vector<SmoothKind> in;
+  std::vector<SmoothKind> out;
+};
+
+/// Replaces the slopes of `smooth` (Capped) and `free` sides by those that make the acceleration
+/// continuous (docs/timeline.md, eq. 11 to 13); reads the slopes of the other sides.
+void solve_smooth_tangents(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes);
 
 }  // namespace pliant::timeline

@@ -6,6 +6,10 @@
 
 namespace pliant::cli {
 
+/// The output of `pliant info --json`: docs/info.md. In text that is not UTF-8, such as some file
+/// names, invalid bytes become U+FFFD.
+std::string info_json(const SceneFacts& facts);
+
 /// The text that `pliant info` prints about a scene.
 std::string info_text(const SceneFacts& facts);
 

@@ -1,4 +1,4 @@
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -34,6 +34,12 @@ std::optional<int> to_integer(std::string_view text) {
   const auto [last, error] = std::from_chars(digits->data(), end, number);
   if (error != std::errc{} || last != end) return std::nullopt;
   return number;
+}
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return ending;
 }
 
 }  // namespace pliant

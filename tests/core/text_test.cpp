@@ -1,4 +1,4 @@
-#include "pliant/core/number.hpp"
+#include "pliant/core/text.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -44,4 +44,19 @@ TEST_CASE("whole numbers are whole and in range", "[core][number]") {
     CAPTURE(text);
     CHECK_FALSE(to_integer(text));
   }
+}
+
+TEST_CASE("trimming takes blanks from the ends only", "[core][trim]") {
+  CHECK(trim(" \ta b\t ", " \t") == "a b");
+  CHECK(trim("a", " ") == "a");
+  CHECK(trim(" \t ", " \t").empty());
+  CHECK(trim("", " ").empty());
+  CHECK(trim("\na ", " ") == "\na");
+}
+
+TEST_CASE("an ending is that of the name, in lower case", "[core][file_ending]") {
+  CHECK(ending_of("Head.OBJ") == ".obj");
+  CHECK(ending_of("a.b/c.0001.Ply") == ".ply");
+  CHECK(ending_of("a.obj/c").empty());
+  CHECK(ending_of(".npy").empty());  // a hidden file's name
 }

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 
 #include "pliant/mesh/read_assimp.hpp"
 #include "pliant/mesh/run_boxed.hpp"
 
 namespace pliant {
+
+/// The executable file of the program `mesh/reader`.
+extern const std::span<const unsigned char> mesh_reader_program;
 
 /// `read_assimp` with another program than the embedded one: for tests of programs that crash, hang
 /// or lie. Runs the program twice, at the same time and with different bytes in uninitialised

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pliant {
+
+/// The number that the whole text spells in the C locale, decimal and finite; nullopt for `1,5`,
+/// `0x10`, `nan`, `1e999`, `1e-999`, `1.5abc` and the empty text. A leading `+` is accepted.
+/// Correctly rounded.
+std::optional<double> to_number(std::string_view text);
+
+/// The integer that the whole text spells; nullopt for other texts and outside the range of int.
+std::optional<int> to_integer(std::string_view text);
+
+/// The characters that separate the words of a text file.
+inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
+
+/// The text without the characters of `blanks` at both its ends.
+inline std::string_view trim(std::string_view text, std::string_view blanks) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The ending of a file's name with its dot, in lower case: `.obj` for `Head.OBJ`; empty: no
+/// ending.
+std::string ending_of(const std::filesystem::path& file);
+
+}  // namespace pliant
