@@ -23,21 +23,23 @@ constexpr int frame_count = 9;
 /// Two surfaces, and forces of every kind, in and without a group, with constant and keyed
 /// channels.
 Scene of_everything() {
-  const auto text = R"(<scene start="1" end="9">
+  const auto text = R"(<scene start="-2" end="9" fps="30000/1001">
     <surface name="sheet"><grid columns="11" rows="12" width="10" depth="10"/>
       <transform translate="1 0 0" rotate="5 10 15"/><material density="0.02" damping="0.05"/>
       <tangents su0="0.1" sv1="0.1 0.2 0"/></surface>
     <surface name="other"><grid columns="9" rows="9" width="8" depth="8"/>
       <transform><animate attribute="translate"><key frame="-3" value="0 3 0"/>
         <key frame="9" value="1 2 1"/></animate></transform>
-      <solver dt="0.02" release="recover"/></surface>
+      <solver dt="0.02" release="recover" startFrame="0" combine="islands"/></surface>
     <point name="poke" magnitude="400" center="1 0.5 0" deformationRadius="4" forceRadius="4"/>
     <radial name="swell" deformationRadius="3" forceRadius="3" center="2 1 0">
       <animate attribute="magnitude"><key frame="1" value="100"/><key frame="6" value="300"/>
       </animate></radial>
     <line name="ridge" magnitude="200" from="-2 0.5 0" to="2 0.5 1" direction="0 1 1"
       deformationRadius="2" forceRadius="2"/>
-    <uniform name="weight" magnitude="-5" deformationRadius="1"/>
+    <uniform name="weight" magnitude="-5" deformationRadius="1">
+      <animate attribute="enabled"><key frame="0" value="true"/><key frame="5" value="false"/>
+      </animate></uniform>
     <vortex name="turn" magnitude="50" center="0 0.5 0" pull="0.5" deformationRadius="3"
       forceRadius="3"/>
     <noise name="wind" magnitude="80" frequency="0.5" rate="2" deformationRadius="5"
@@ -121,6 +123,7 @@ void check_against_performance(const Scene& scene, int frames, const IsSet& is_s
     }
     REQUIRE(live->advance());
   }
+  played.push_back(live->positions().value());
   const auto performance = live->performance();
   REQUIRE(performance);
   CHECK(performance->end == scene.start + frames);
@@ -277,4 +280,74 @@ TEST_CASE("a live frame that fails changes nothing, on any surface", "[simulatio
     CHECK(live.positions().value().surface(name).positions() ==
           whole.at(8).value().surface(name).positions());
   }
+}
+
+TEST_CASE("a live frame with an invalid custom force changes nothing", "[simulation][live]") {
+  const int surfaces = GENERATE(1, 2);
+  bool is_faulty = false;
+  Scene s = scene({sheet("a")}, {poke("poke", {0, 0, 0})});
+  if (surfaces == 2) s.surfaces.push_back(sheet("b"));
+  Force own{.name = "own", .targets = {}, .magnitude = 1};
+  own.kind = CustomForce{.unit_force = [&is_faulty](const Vector3d&, const ForceTime&) {
+    return Vector3d(0, is_faulty ? std::nan("") : 1, 0);
+  }};
+  s.forces.push_back(own);
+  auto live = LiveSimulation::make(s).value();
+  auto whole = Simulation::make(s).value();
+  for (int frame = 1; frame < 4; ++frame) REQUIRE(live.advance());
+  is_faulty = true;
+  const auto failed = live.advance();
+  REQUIRE_FALSE(failed);
+  CHECK(failed.error().code == ErrorCode::NotFinite);
+  is_faulty = false;
+  CHECK(live.frame() == 4);
+  for (const int frame : {4, 5, 6}) {
+    CHECK(live.positions().value().surface("a").positions() ==
+          whole.at(frame).value().surface("a").positions());
+    REQUIRE(live.advance());
+  }
+}
+
+TEST_CASE("a live run that is interrupted goes on", "[simulation][live]") {
+  bool stops = false;
+  const Scene s = scene({sheet("a"), sheet("b")}, {poke("poke", {0, 0, 0})});
+  LiveOptions options;
+  options.simulation.should_stop = [&stops] { return stops; };
+  auto live = LiveSimulation::make(s, options).value();
+  REQUIRE(live.advance());
+  stops = true;
+  const auto stopped = live.advance();
+  REQUIRE_FALSE(stopped);
+  CHECK(stopped.error().code == ErrorCode::Interrupted);
+  stops = false;
+  CHECK(live.frame() == 2);
+  REQUIRE(live.advance());
+  CHECK(live.positions().value().surface("b").positions() == baked(s, "b")[2]);
+}
+
+TEST_CASE("a transform that cannot be used is refused while it can still be set",
+          "[simulation][live]") {
+  Scene s = scene({sheet("sheet")}, {poke("poke", {0, 0, 0})});
+  s.surfaces[0].transform.translate = Value<3>{1e200, 0, 0};
+  auto far = LiveSimulation::make(s).value();
+  const auto refused = far.set("sheet.translate", Value<3>{0, 0, 0});
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message, Contains("no key can have"));
+
+  s.surfaces[0].transform.translate = Value<3>{0, 0, 0};
+  auto live = LiveSimulation::make(s, {.records = true}).value();
+  REQUIRE(live.set("sheet.scale", Value<3>{1e-310, 1, 1}));
+  const auto told = live.advance();
+  REQUIRE_FALSE(told);
+  CHECK_THAT(told.error().message, Contains("sheet.scale"));
+  CHECK(live.frame() == 1);
+  REQUIRE(live.set("sheet.scale", Value<3>{1, 2, 1}));
+  REQUIRE(live.advance());
+  REQUIRE(live.advance());
+
+  // A scene that its rules forbid is no performance.
+  REQUIRE(live.set("sheet.c", -3));
+  CHECK_FALSE(live.performance());
+  REQUIRE(live.set("sheet.c", 2));
+  CHECK(Simulation::make(live.performance().value()));
 }

@@ -206,7 +206,9 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& sim
                 log_file, 1);
   }
   const Scene& scene = simulation.scene();
-  const std::filesystem::path folder = std::filesystem::path(log_file).parent_path();
+  // Files are named relative to the scene, if it is in a file.
+  const std::filesystem::path folder =
+      (std::filesystem::path(log_file).parent_path() / then.scene_file).parent_path();
   ReplayHeader now = header_of(scene, written_by_program(scene, folder), log_file, *solver);
   complete(now, simulation, then.end);
   ReplayVerdict verdict;

@@ -17,7 +17,8 @@ class NoiseClock {
   explicit NoiseClock(int start) : start_(start) {}
 
   /// rate(start) * start + rate(start) + rate(start + 1) + … + rate(frame - 1), added in this
-  /// order. Requires: frame >= start; `rate` is the same function at each call.
+  /// order. Requires: frame >= start; `rate` is the same at each call for the
+  /// frames before `frame`, or frames never decrease and it is the same for those not summed yet.
   template <class Rate>
   double sum(int frame, const Rate& rate) {
     const std::lock_guard lock(mutex_);

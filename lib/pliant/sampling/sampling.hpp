@@ -53,8 +53,8 @@ struct SurfaceInputs {
 std::unique_ptr<NoiseClock> clock_of(const Force& force, int start);
 
 /// Data for sampling that are the same at all frames of a scene: which forces act on which surface,
-/// and the clocks of noises with a keyed rate. Stores only indices, so the scene may move, but not
-/// change. Thread-safe.
+/// and the clocks of noises with a keyed rate. Stores only indices, so the scene may move, but its
+/// surfaces, forces, groups and targets must not change. Thread-safe.
 class SceneSampling {
  public:
   explicit SceneSampling(const Scene& scene);

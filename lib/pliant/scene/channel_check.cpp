@@ -182,10 +182,10 @@ std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_ch
   return checker.take_errors();
 }
 
-std::vector<Error> check_channels_at(const Scene& scene, int frame) {
-  const ChannelFilter all;
+std::vector<Error> check_channels_at(const Scene& scene, int frame,
+                                     const ChannelFilter& is_checked) {
   const StopRequest never;
-  ChannelChecker checker(scene, frame, frame, all, never);
+  ChannelChecker checker(scene, frame, frame, is_checked, never);
   checker.check_all();
   return checker.take_errors();
 }

@@ -25,6 +25,7 @@ std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_ch
                                   const StopRequest& should_stop = {});
 
 /// The same at one frame only.
-std::vector<Error> check_channels_at(const Scene& scene, int frame);
+std::vector<Error> check_channels_at(const Scene& scene, int frame,
+                                     const ChannelFilter& is_checked = {});
 
 }  // namespace pliant

@@ -414,7 +414,7 @@ struct Description<Group> {
 };
 
 // The kinds of forces. `Sampled` is the kind at one frame: its members have the same names. Kinds
-// without it are sampled in simulation/sampling.cpp.
+// without it are sampled in sampling/sampling.cpp.
 
 inline constexpr std::string_view push_direction =
     "direction of the push; its length does not matter";

@@ -31,7 +31,7 @@ namespace {
 // A value that holds from a frame on.
 struct Held {
   int frame = 0;
-  std::vector<double> value;
+  Value<3> value = {};  // of a single number the first
 };
 
 // A channel that can be set.
@@ -41,6 +41,7 @@ struct Input {
   std::string path;
   Range range;
   Of channel;
+  bool changes = false;  // by a curve of the author, which may break a rule at any frame
   bool is_transform = false;
   const Force* noise = nullptr;  // the noise whose rate it is
   std::vector<Held> held = {};   // recorded, in the order of frames
@@ -84,13 +85,17 @@ Result<void> key_rates(Scene& scene) {
   return {};
 }
 
+bool is_of_transform(const std::string&, std::string_view attribute) {
+  return attribute == "translate" || attribute == "rotate" || attribute == "scale";
+}
+
 std::vector<Input> inputs_that_can_be_set(Scene& scene) {
   std::vector<Input> inputs;
   const auto add_all = [&](auto& thing) {
-    for_each_channel(thing,
-                     [&](const std::string& name, const Attribute& attribute, auto& channel) {
-                       inputs.push_back({thing.name + '.' + name, attribute.range, &channel});
-                     });
+    for_each_channel(thing, [&](const std::string& name, const Attribute& attribute,
+                                auto& channel) {
+      inputs.push_back({thing.name + '.' + name, attribute.range, &channel, channel.is_animated()});
+    });
   };
   for (Surface& surface : scene.surfaces) {
     const std::size_t first = inputs.size();
@@ -106,7 +111,9 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
     add_all(force);
     auto* const noise = std::get_if<NoiseChannels>(&force.kind);
     for (std::size_t k = first; noise && k < inputs.size(); ++k) {
-      if (inputs[k].channel == Input::Of(&noise->rate)) inputs[k].noise = &force;
+      if (inputs[k].channel != Input::Of(&noise->rate)) continue;
+      inputs[k].noise = &force;
+      inputs[k].changes = false;  // any rate keeps the rules
     }
   }
   for (Group& group : scene.groups) add_all(group);
@@ -127,7 +134,9 @@ std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
   } else if (first > start) {
     keys.push_back(step_key<D>(start, authored.at(start)));
   }
-  for (const Held& one : held) keys.push_back(step_key<D>(one.frame, value_of<D>(one.value)));
+  for (const Held& one : held) {
+    keys.push_back(step_key<D>(one.frame, value_of<D>(std::span(one.value))));
+  }
   auto curve = Curve<D>::make({.keys = std::move(keys)});
   if (!curve) return {};
   return *std::move(curve);
@@ -147,6 +156,11 @@ class LiveSimulation::Run {
         inputs_(inputs_that_can_be_set(scene_)),
         frame_(scene_.start) {
     for (std::size_t k = 0; k < inputs_.size(); ++k) places_.emplace(inputs_[k].path, k);
+    const auto is_own = [](const Force& force) {
+      return std::holds_alternative<CustomForce>(force.kind);
+    };
+    may_step_in_part_ = scene_.surfaces.size() > 1 ||
+                        std::any_of(scene_.forces.begin(), scene_.forces.end(), is_own);
   }
 
   Result<void> make_bodies() { return bodies_.make_all(); }
@@ -162,13 +176,14 @@ class LiveSimulation::Run {
 
  private:
   tl::unexpected<Error> no_channel(std::string_view channel) const;
+  std::optional<std::string> rule_of_keys(const Input& input) const;
   void apply(Input& input, std::span<const double> value);
   template <int D>
   void hold(const Input& input, Channel<D>& channel, const Value<D>& value);
   Result<void> check();
   Result<void> step();
 
-  bool records_;
+  bool records_;    // before the scenes, which are made by it
   Scene scene_;     // with the present values
   Scene authored_;  // if it records
   SceneSampling sampling_;
@@ -177,7 +192,8 @@ class LiveSimulation::Run {
   std::map<std::string_view, std::size_t> places_;  // in `inputs_`, by path
   int frame_;
   bool is_checked_ = false;        // the present values, at this frame
-  std::vector<BodyState> before_;  // the states before a step; reused
+  bool may_step_in_part_ = false;  // whether a step that fails may have moved a body
+  std::vector<BodyState> before_;  // the states before such a step; reused
 };
 
 tl::unexpected<Error> LiveSimulation::Run::no_channel(std::string_view channel) const {
@@ -210,12 +226,29 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
   if (std::holds_alternative<Switch*>(input.channel) && value[0] != 0 && value[0] != 1) {
     return refuse("must be 0 or 1");
   }
+  if (const auto rule = rule_of_keys(input)) return refuse(*rule);
   apply(input, value);
+  input.changes = false;
   is_checked_ = false;
   if (!records_) return {};
   const int from = input.is_transform ? frame_ + 1 : frame_;
   if (!input.held.empty() && input.held.back().frame == from) input.held.pop_back();
-  input.held.push_back({from, {value.begin(), value.end()}});
+  Held& held = input.held.emplace_back();
+  held.frame = from;
+  std::copy(value.begin(), value.end(), held.value.begin());
+  return {};
+}
+
+// A transform becomes keys of three frames, two of which it has now.
+std::optional<std::string> LiveSimulation::Run::rule_of_keys(const Input& input) const {
+  if (!input.is_transform) return {};
+  const Channel<3>& channel = *std::get<Channel<3>*>(input.channel);
+  for (const int frame : {frame_ - 1, frame_}) {
+    for (const double number : channel.at(frame)) {
+      if (std::abs(number) <= timeline::largest_number) continue;
+      return fmt::format("the channel is {} at frame {}, which no key can have", number, frame);
+    }
+  }
   return {};
 }
 
@@ -251,10 +284,12 @@ void LiveSimulation::Run::hold(const Input& input, Channel<D>& channel, const Va
   }
 }
 
-// The rules of single channels and those between them.
+// The rules of single channels and those between them; of transforms those of the next frame too,
+// since once that is the present frame, no value can be set for it.
 Result<void> LiveSimulation::Run::check() {
   if (is_checked_) return {};
   std::vector<Error> errors = check_channels_at(scene_, frame_);
+  if (errors.empty()) errors = check_channels_at(scene_, frame_ + 1, is_of_transform);
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
   is_checked_ = true;
   return {};
@@ -274,10 +309,11 @@ Result<void> LiveSimulation::Run::advance() {
                 fmt::format("a recorded scene has at most {} frames", max_frames));
   }
   if (auto sound = check(); !sound) return sound;
-  // If one body fails, the others may have stepped; one alone is unchanged.
-  if (bodies_.size() > 1) before_ = bodies_.states(std::move(before_));
+  // If one body fails, the others may have stepped, and after an invalid result of a custom force
+  // even that body has.
+  if (may_step_in_part_) before_ = bodies_.states(std::move(before_));
   const auto take_back = [&] {
-    if (bodies_.size() > 1) bodies_.restore(before_);
+    if (may_step_in_part_) bodies_.restore(before_);
   };
   Result<void> stepped;
   try {
@@ -291,10 +327,8 @@ Result<void> LiveSimulation::Run::advance() {
     return stepped;
   }
   ++frame_;
-  const auto is_animated = [](const Input& input) {
-    return std::visit([](const auto* channel) { return channel->is_animated(); }, input.channel);
-  };
-  is_checked_ = std::none_of(inputs_.begin(), inputs_.end(), is_animated);
+  is_checked_ = std::none_of(inputs_.begin(), inputs_.end(),
+                             [](const Input& input) { return input.changes; });
   return {};
 }
 
@@ -308,6 +342,8 @@ Result<void> LiveSimulation::Run::step() {
 
 Result<Scene> LiveSimulation::Run::performance() const {
   PLIANT_EXPECTS(records_);
+  std::vector<Error> errors = check_channels_at(scene_, frame_);
+  if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
   Scene scene = authored_;
   scene.end = frame_;
   const std::vector<Input> authored = inputs_that_can_be_set(scene);

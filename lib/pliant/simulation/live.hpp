@@ -11,10 +11,10 @@ namespace pliant {
 
 /// Options of a live run.
 struct LiveOptions {
-  /// Kept states and the store are not used: a live run only goes forward.
+  /// Kept states, the store and the profile are not used: a live run only goes forward.
   SimulationOptions simulation = {};
 
-  /// Whether the values set are recorded for `performance`: some bytes for each.
+  /// Whether the values set are recorded for `performance`: 32 bytes for each.
   bool records = false;
 };
 
@@ -25,10 +25,12 @@ struct LiveOptions {
 /// Each frame has the bits of the scene that has the same values as keys: `performance`. A value
 /// set at a frame holds from this frame on, so the solve that leads to the next frame uses it. A
 /// transform set at a frame is that of the next frame: the surface gets there while the frame is
-/// solved, so that its inertia is known. May be used by one thread at a time.
+/// solved, so that its inertia is known. The rate of a noise counts as keyed, also if nothing sets
+/// it. May be used by one thread at a time.
 class LiveSimulation {
  public:
-  /// The scene at its first frame, at rest. Errors: as `Simulation::make`.
+  /// The scene at its first frame, at rest. Errors: as `Simulation::make`; InvalidInput for the
+  /// rate of a noise beyond 1e150.
   static Result<LiveSimulation> make(Scene scene, const LiveOptions& options = {});
 
   LiveSimulation(LiveSimulation&&) noexcept;
@@ -41,14 +43,16 @@ class LiveSimulation {
   /// Sets a channel by its path, as in `channels_of`: `poke.magnitude`, `poke.center`. `value` has
   /// as many numbers as the channel; of a switch, 0 is off and 1 is on. It replaces the channel's
   /// curve, if it has one. Errors, with nothing changed: InvalidInput for an unknown channel, with
-  /// the nearest name, another count of numbers, and a number that is not finite or out of range.
+  /// the nearest name, another count of numbers, and a number that is out of range or beyond 1e150.
   Result<void> set(std::string_view channel, std::span<const double> value);
   Result<void> set(std::string_view channel, double value);
   Result<void> set(std::string_view channel, const Value<3>& value);
 
   /// Solves the present frame and goes on to the next one. Errors, with nothing changed but what
   /// was set: those of `Simulation::at`; InvalidInput if channels break a rule together, such as c
-  /// > -2 sqrt(b d), or if a recorded scene would have too many frames. Cost: one frame.
+  /// > -2 sqrt(b d), if a transform of the next frame cannot be inverted, or if a recorded scene
+  /// would have too many frames. Cost: one frame, and with several surfaces or a custom force a
+  /// copy of their states.
   Result<void> advance();
 
   /// The surfaces at the present frame; reuses the memory of `reuse`. Errors: NotFinite.
@@ -59,7 +63,8 @@ class LiveSimulation {
 
   /// The scene with everything set so far as keys, from its start to the present frame. A
   /// `Simulation` of it has the same bits at each frame, and `to_xml` writes it. Requires:
-  /// `LiveOptions::records`. Errors: InvalidInput for a constant beyond 1e150, which no key can
+  /// `LiveOptions::records`. Errors: InvalidInput if a
+  /// value at the present frame breaks a rule, or for a constant beyond 1e150, which no key can
   /// have.
   Result<Scene> performance() const;
 

@@ -154,7 +154,8 @@ class Simulation {
   std::unique_ptr<Player> player_;  // null once moved from
 };
 
-/// The same for the scene and the rest shapes of a simulation, within `options.max_memory`.
+/// Previews the forces of a simulation, as `preview_forces` of feedback/preview.hpp, within
+/// `options.max_memory`. Errors: further OutOfMemory.
 Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options = {});
 

@@ -55,7 +55,6 @@ class FrameCache {
   };
 
   bool is_checkpoint(int frame) const { return (frame - first_frame_) % interval_ == 0; }
-  bool make_room(std::size_t bytes);
   void limit_room(std::size_t count);
   void widen();
 
