@@ -60,14 +60,24 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
   return FoundScene{*std::move(written)};
 }
 
-// The solver that a log was recorded with.
-Result<SolverChoice> solver_of(const ReplayHeader& header, const std::filesystem::path& log_file) {
-  const auto choice = solver_choice(header.solver);
-  if (choice && is_available(*choice)) return *choice;
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("recorded with the solver {}, which this build does not have",
-                          printable(header.solver)),
-              log_file.string(), 1);
+// A recorded run, open at its first frame.
+struct RecordedRun {
+  ReplayLogReader log;
+  SolverChoice solver;
+};
+
+Result<RecordedRun> open_run(const std::string& log_file) {
+  auto log = ReplayLogReader::open(log_file);
+  if (!log) return fail(log.error());
+  const std::string& name = log->header().solver;
+  const auto solver = solver_choice(name);
+  if (!solver || !is_available(*solver)) {
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("recorded with the solver {}, which this build does not have", printable(name)),
+        log_file, 1);
+  }
+  return RecordedRun{*std::move(log), *solver};
 }
 
 // The error for a scene that fails now but did not when it was recorded, with the causes.
@@ -168,25 +178,24 @@ Result<ReplayHeader> record_replay(Simulation& simulation, const std::string& lo
 Result<ReplayVerdict> verify_replay(const std::string& log_file,
                                     const std::optional<std::string>& scene_file,
                                     const ReplayOptions& options) {
-  auto log = ReplayLogReader::open(log_file);
-  if (!log) return fail(log.error());
-  const ReplayHeader& then = log->header();
-  const auto solver = solver_of(then, log_file);
-  if (!solver) return fail(solver.error());
+  auto recorded = open_run(log_file);
+  if (!recorded) return fail(recorded.error());
+  auto& [log, solver] = *recorded;
+  const ReplayHeader& then = log.header();
   const auto found = find_scene(log_file, then, scene_file, options.root);
   if (!found) return fail(found.error());
   ReplayVerdict verdict;
   if (found->remark) verdict.causes.push_back(*found->remark);
 
-  auto now = header_of_text(found->written, log_file, *solver);
+  auto now = header_of_text(found->written, log_file, solver);
   if (!now) return fail(now.error());
   for (std::string& cause : causes_in(then, *now)) verdict.causes.push_back(std::move(cause));
   SimulationOptions run = options.simulation;
-  run.solver = *solver;
+  run.solver = solver;
   auto simulation = simulation_of(found->written, run);
   if (!simulation) return fail_because(simulation.error(), verdict.causes, log_file);
   complete(*now, *simulation, then.end);
-  if (auto compared = compare(*log, *now, *simulation, options, verdict); !compared) {
+  if (auto compared = compare(log, *now, *simulation, options, verdict); !compared) {
     return fail(compared.error());
   }
   return verdict;
@@ -194,28 +203,27 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file,
 
 Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& simulation,
                                     const ReplayOptions& options) {
-  auto log = ReplayLogReader::open(log_file);
-  if (!log) return fail(log.error());
-  const ReplayHeader& then = log->header();
-  const auto solver = solver_of(then, log_file);
-  if (!solver) return fail(solver.error());
-  if (*solver != simulation.solver()) {
+  auto recorded = open_run(log_file);
+  if (!recorded) return fail(recorded.error());
+  auto& [log, solver] = *recorded;
+  const ReplayHeader& then = log.header();
+  if (solver != simulation.solver()) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("recorded with the solver {}, but the simulation uses {}",
-                            name_of(*solver), name_of(simulation.solver())),
+                            name_of(solver), name_of(simulation.solver())),
                 log_file, 1);
   }
   const Scene& scene = simulation.scene();
   // Files are named relative to the scene, if it is in a file.
   const std::filesystem::path folder =
       (std::filesystem::path(log_file).parent_path() / then.scene_file).parent_path();
-  ReplayHeader now = header_of(scene, written_by_program(scene, folder), log_file, *solver);
+  ReplayHeader now = header_of(scene, written_by_program(scene, folder), log_file, solver);
   complete(now, simulation, then.end);
   ReplayVerdict verdict;
   // The text of a scene file may say the same in other words.
   if (!then.scene_file.empty()) now.scene_text = then.scene_text;
   verdict.causes = causes_in(then, now);
-  if (auto compared = compare(*log, now, simulation, options, verdict); !compared) {
+  if (auto compared = compare(log, now, simulation, options, verdict); !compared) {
     return fail(compared.error());
   }
   return verdict;
