@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/solver_factories.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
 
 namespace pliant {
 
@@ -42,12 +42,12 @@ std::optional<SolverChoice> solver_choice(std::string_view name) {
   return {};
 }
 
-std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice, const RunContext& context) {
+std::unique_ptr<SparseFactor> make_sparse_factor(SolverChoice choice) {
 #ifdef PLIANT_WITH_CHOLMOD
-  if (choice == SolverChoice::Cholmod) return make_cholmod_solver(context);
+  if (choice == SolverChoice::Cholmod) return make_cholmod_factor();
 #endif
   PLIANT_EXPECTS(choice == SolverChoice::Eigen);
-  return make_eigen_solver(context);
+  return make_eigen_factor();
 }
 
 }  // namespace pliant

@@ -8,10 +8,7 @@ namespace pliant {
 
 // The implementations behind `make_plate_solver`. Internal to plate.
 
-std::unique_ptr<PlateSolver> make_cholmod_solver(const RunContext& context);
-std::unique_ptr<PlateSolver> make_eigen_solver(const RunContext& context);
-
-/// One of the two above. Requires: it is available.
+/// Factors a sparse matrix, by the library of `choice`. Requires: it is available.
 std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice = available_solvers().front(),
                                                 const RunContext& context = {});
 

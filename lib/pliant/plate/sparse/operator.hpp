@@ -1,12 +1,9 @@
 #pragma once
 
-#include <Eigen/SparseCore>
-
 #include "pliant/plate/plate_problem.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
 
 namespace pliant {
-
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The upper triangle of the system's matrix (#unknowns x #unknowns), by columns, rows ascending.
 /// Its pattern depends only on the outline's nodes: entries that happen to be 0 are kept.

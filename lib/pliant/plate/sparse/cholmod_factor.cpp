@@ -3,16 +3,16 @@
 
 #include <cholmod.h>
 
-#include "pliant/plate/solver_factories.hpp"
-#include "pliant/plate/sparse/direct_solver.hpp"
+#include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
 
 namespace pliant {
 namespace {
 
 /// CHOLMOD's workspace and settings, and everything allocated with them.
-class CholmodFactorization {
+class CholmodFactor final : public SparseFactor {
  public:
-  CholmodFactorization() {
+  CholmodFactor() {
     cholmod_start(&common_);
     // Simplicial LDL^T in one order: no BLAS (whose kernels change with the CPU), no METIS (which
     // uses the process-wide rand), no choice by trial. Bit-identical everywhere. SPEC 10.
@@ -24,9 +24,7 @@ class CholmodFactorization {
     common_.print = 0;
     common_.try_catch = 1;
   }
-  CholmodFactorization(const CholmodFactorization&) = delete;
-  CholmodFactorization& operator=(const CholmodFactorization&) = delete;
-  ~CholmodFactorization() {
+  ~CholmodFactor() override {
     cholmod_free_factor(&factor_, &common_);
     for (cholmod_dense* dense : {solution_, workspace_y_, workspace_e_}) {
       cholmod_free_dense(&dense, &common_);
@@ -34,17 +32,16 @@ class CholmodFactorization {
     cholmod_finish(&common_);
   }
 
-  Result<void> analyze(const SparseMatrix& matrix) {
+  Result<void> analyze(const SparseMatrix& matrix) override {
     cholmod_free_factor(&factor_, &common_);
     cholmod_sparse view = view_of(matrix);
     factor_ = cholmod_analyze(&view, &common_);
     return check(matrix.rows());
   }
 
-  // Entries of the factor of the analysed matrix.
-  std::size_t factor_entries() const { return static_cast<std::size_t>(common_.lnz); }
+  std::size_t entries() const override { return static_cast<std::size_t>(common_.lnz); }
 
-  Result<void> factorize(const SparseMatrix& matrix) {
+  Result<void> factorize(const SparseMatrix& matrix) override {
     cholmod_sparse view = view_of(matrix);
     cholmod_factorize(&view, factor_, &common_);
     if (auto checked = check(matrix.rows()); !checked) return checked;
@@ -58,7 +55,7 @@ class CholmodFactorization {
     return {};
   }
 
-  Result<Field> solve(const Field& right_hand_sides) {
+  Result<Field> solve(const Field& right_hand_sides) override {
     cholmod_dense view = {};
     view.nrow = view.d = static_cast<std::size_t>(right_hand_sides.rows());
     view.ncol = static_cast<std::size_t>(right_hand_sides.cols());
@@ -110,8 +107,6 @@ class CholmodFactorization {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_cholmod_solver(const RunContext& context) {
-  return std::make_unique<DirectSolver<CholmodFactorization>>(context);
-}
+std::unique_ptr<SparseFactor> make_cholmod_factor() { return std::make_unique<CholmodFactor>(); }
 
 }  // namespace pliant

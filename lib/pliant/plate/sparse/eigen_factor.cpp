@@ -1,22 +1,21 @@
 #include <Eigen/SparseCholesky>
 
-#include "pliant/plate/solver_factories.hpp"
-#include "pliant/plate/sparse/direct_solver.hpp"
+#include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
 
 namespace pliant {
 namespace {
 
-class EigenFactorization {
+class EigenFactor final : public SparseFactor {
  public:
-  Result<void> analyze(const SparseMatrix& matrix) {
+  Result<void> analyze(const SparseMatrix& matrix) override {
     ldlt_.analyzePattern(matrix);
     return {};
   }
 
-  // Entries of the factor of the analysed matrix.
-  std::size_t factor_entries() const { return ldlt_.factor_entries(); }
+  std::size_t entries() const override { return ldlt_.factor_entries(); }
 
-  Result<void> factorize(const SparseMatrix& matrix) {
+  Result<void> factorize(const SparseMatrix& matrix) override {
     ldlt_.factorize(matrix);
     // Eigen reports zero pivots only; it factors an indefinite matrix as LDL^T without an error.
     Eigen::Index pivot = 0;
@@ -26,7 +25,7 @@ class EigenFactorization {
     return fail(not_positive_definite(matrix.rows(), pivot));
   }
 
-  Result<Field> solve(const Field& right_hand_sides) {
+  Result<Field> solve(const Field& right_hand_sides) override {
     return Field(ldlt_.solve(right_hand_sides));
   }
 
@@ -43,8 +42,6 @@ class EigenFactorization {
 
 }  // namespace
 
-std::unique_ptr<PlateSolver> make_eigen_solver(const RunContext& context) {
-  return std::make_unique<DirectSolver<EigenFactorization>>(context);
-}
+std::unique_ptr<SparseFactor> make_eigen_factor() { return std::make_unique<EigenFactor>(); }
 
 }  // namespace pliant

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
+
+namespace pliant {
+
+/// A sparse matrix that is factored again and again: keeps what depends on its pattern only, and
+/// reserves memory before it is used. Internal to plate.
+class FactoredMatrix {
+ public:
+  /// Requires: the choice is available; `memory`, from which it reserves, outlives it; null: no
+  /// limit.
+  FactoredMatrix(SolverChoice choice, MemoryBudget* memory) : choice_(choice), memory_(memory) {}
+
+  /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
+  /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
+  /// OutOfMemory; SolverFailed if it is not positive definite.
+  Result<void> factor(long size, bool has_same_pattern,
+                      const std::function<SparseMatrix()>& assemble);
+
+  /// Solves for three right-hand sides (#rows x 3). Requires: `factor` succeeded last.
+  Result<Field> solve(const Field& right_hand_sides);
+
+  SolverCounts counts() const { return counts_; }
+  void count_solve() { ++counts_.solves; }
+  std::size_t memory() const { return memory_.bytes(); }
+
+ private:
+  Result<void> take(long size, std::size_t bytes);
+
+  SolverChoice choice_;
+  MemoryShare memory_;
+  std::unique_ptr<SparseFactor> factor_;
+  SolverCounts counts_;
+};
+
+}  // namespace pliant

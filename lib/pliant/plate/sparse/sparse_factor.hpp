@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include <Eigen/SparseCore>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/plate/solver_choice.hpp"
+
+namespace pliant {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// The factor L D L^T of a symmetric, positive definite matrix, of which the upper triangle is
+/// given, in the order of AMD: the interface of the libraries that compute it. Internal to plate.
+class SparseFactor {
+ public:
+  SparseFactor() = default;
+  SparseFactor(const SparseFactor&) = delete;
+  SparseFactor& operator=(const SparseFactor&) = delete;
+  virtual ~SparseFactor() = default;
+
+  /// Orders a matrix and finds the pattern of its factor.
+  virtual Result<void> analyze(const SparseMatrix& matrix) = 0;
+
+  /// Entries of the factor of the analysed matrix.
+  virtual std::size_t entries() const = 0;
+
+  /// Factors a matrix with the pattern of the analysed one.
+  virtual Result<void> factorize(const SparseMatrix& matrix) = 0;
+
+  /// Solves for three right-hand sides (#rows x 3).
+  virtual Result<Field> solve(const Field& right_hand_sides) = 0;
+};
+
+std::unique_ptr<SparseFactor> make_cholmod_factor();
+std::unique_ptr<SparseFactor> make_eigen_factor();
+
+/// One of the two above. Requires: it is available.
+std::unique_ptr<SparseFactor> make_sparse_factor(SolverChoice choice);
+
+}  // namespace pliant
