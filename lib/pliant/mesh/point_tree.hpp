@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "pliant/core/field.hpp"
+
+namespace pliant {
+
+/// Points in a balanced binary tree of boxes, so that a search visits few of them. The tree depends
+/// on the points and their order only.
+class PointTree {
+ public:
+  /// The most points of a leaf.
+  static constexpr int leaf_size = 32;
+
+  /// The points [first, first + count) of `points`, in their smallest box.
+  struct Part {
+    Vector3d low = {0, 0, 0};   ///< the least of their x, y and z [length]
+    Vector3d high = {0, 0, 0};  ///< the largest
+    int first = 0;
+    int count = 0;
+    int child = -1;  ///< index of the first of its two halves, which are neighbours; -1: a leaf
+
+    bool is_leaf() const { return child < 0; }
+  };
+
+  PointTree() = default;
+
+  /// Requires: `points` is #points x 3, finite. Cost: O(#points log #points).
+  explicit PointTree(const Field& points);
+
+  /// The whole first; empty without points.
+  const std::vector<Part>& parts() const { return parts_; }
+
+  /// The points in the order of the leaves, #points x 3 [length].
+  const Field& points() const { return points_; }
+
+  /// The row in the constructor's field of each of `points()`.
+  const std::vector<int>& rows() const { return rows_; }
+
+ private:
+  std::vector<Part> parts_;
+  Field points_;
+  std::vector<int> rows_;
+};
+
+}  // namespace pliant

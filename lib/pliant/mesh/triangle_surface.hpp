@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/triangle_cells.hpp"
+#include "pliant/mesh/mesh.hpp"
+
+namespace pliant {
+
+/// How a mesh is read as a surface.
+struct SurfaceReading {
+  /// Vertices joined by steps of this length are one node [length], >= 0; none: 1e-6 of the
+  /// diagonal of the bounding box of all vertices in faces.
+  std::optional<double> weld = {};
+
+  /// The direction that u follows, projected into each triangle; none: that of the UVs.
+  std::optional<Vector3d> axis = {};
+
+  /// The lengths that count as 1 along u and along v [length/uv], > 0; none: the root of the
+  /// surface's area, for both.
+  std::optional<std::array<double, 2>> unit = {};
+};
+
+/// A mesh as the triangles of a plate that bends along it, at rest: its vertices joined to nodes,
+/// its faces cut into triangles, each with its directions u and v. docs/model.md, "Surfaces".
+///
+/// A face of three corners is one triangle. A face of n > 3 corners has a centre, the mean of its
+/// corners, and n triangles (corner, next corner, centre).
+struct TriangleSurface {
+  std::vector<int> vertex_nodes;  ///< #vertices: the node of each; -1: it is in no face
+  Field rest;                     ///< #nodes x 3: of the lowest vertex, object space [length]
+
+  // The faces that take part, in their order in the mesh.
+  std::vector<int> face_starts;      ///< #faces + 1: its first corner, counted over all faces
+  std::vector<int> triangle_starts;  ///< #faces + 1: its first triangle
+  std::vector<int> corner_nodes;     ///< #corners
+  std::vector<int> corner_edges;     ///< #corners: the edge from a corner to the next
+  std::vector<int> edge_sides;       ///< #edges: the sides of faces that lie there
+  std::vector<FlatTriangle> triangles;
+
+  // The faces around each node, ascending: node_faces[node_starts[k]] to the start of the next.
+  std::vector<int> node_starts;  ///< #nodes + 1
+  std::vector<int> node_faces;
+
+  std::array<double, 2> unit = {1, 1};  ///< as in `SurfaceReading` [length/uv]
+  int faces_left_out = 0;               ///< that take no part
+
+  int node_count() const { return static_cast<int>(rest.rows()); }
+  int face_count() const { return static_cast<int>(face_starts.size()) - 1; }
+  int edge_count() const { return static_cast<int>(edge_sides.size()); }
+
+  int size_of(int face) const { return face_starts[face + 1] - face_starts[face]; }
+  bool has_centre(int face) const { return size_of(face) > 3; }
+  std::span<const int> nodes_of(int face) const {
+    return {corner_nodes.data() + face_starts[face], static_cast<std::size_t>(size_of(face))};
+  }
+  std::span<const int> edges_of(int face) const {
+    return {corner_edges.data() + face_starts[face], static_cast<std::size_t>(size_of(face))};
+  }
+  std::span<const int> faces_of(int node) const {
+    return {node_faces.data() + node_starts[node],
+            static_cast<std::size_t>(node_starts[node + 1] - node_starts[node])};
+  }
+};
+
+/// Reads a mesh as a surface. A face takes no part if fewer than three of its corners are left once
+/// repeated ones are dropped, if it has a node twice, or the nodes of an earlier face. Requires:
+/// `check_mesh` accepts the mesh; `reading` has the ranges of its comments. Errors: no face takes
+/// part; the surface has no area, or lengths that are not finite.
+Result<TriangleSurface> make_surface(const Mesh& mesh, const SurfaceReading& reading = {});
+
+}  // namespace pliant

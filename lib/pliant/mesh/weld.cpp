@@ -1,0 +1,123 @@
+#include "pliant/mesh/weld.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pliant/mesh/point_tree.hpp"
+
+namespace pliant {
+namespace {
+
+// Sets of points; the first of a set stands for it.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parents_(count) {
+    std::iota(parents_.begin(), parents_.end(), 0);
+  }
+
+  int first_of(int point) {
+    while (parents_[point] != point) {
+      parents_[point] = parents_[parents_[point]];
+      point = parents_[point];
+    }
+    return point;
+  }
+
+  void join(int a, int b) {
+    a = first_of(a), b = first_of(b);
+    parents_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parents_;
+};
+
+double squared(const Vector3d& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
+
+// Joins the points of a tree by pairs of its parts that are near to each other.
+class Welding {
+ public:
+  Welding(const PointTree& tree, double distance)
+      : tree_(tree),
+        squared_distance_(distance * distance),
+        distance_(distance),
+        sets_(tree.rows().size()) {}
+
+  void run() {
+    if (!tree_.parts().empty()) within(tree_.parts()[0]);
+  }
+
+  int first_of(int row) { return sets_.first_of(row); }
+
+ private:
+  using Part = PointTree::Part;
+
+  const Part& half(const Part& part, int k) const { return tree_.parts()[part.child + k]; }
+  int row(int point) const { return tree_.rows()[point]; }
+  bool is_one(const Part& part) const { return are_near(part.high - part.low); }
+  bool are_near(const Vector3d& apart) const {
+    // The square of a tiny distance may underflow.
+    return squared(apart) <= squared_distance_ && apart.cwiseAbs().maxCoeff() <= distance_;
+  }
+  bool are_near(int a, int b) const {
+    return are_near((tree_.points().row(a) - tree_.points().row(b)).transpose());
+  }
+
+  void within(const Part& part) {
+    const int end = part.first + part.count;
+    if (is_one(part)) {
+      for (int a = part.first + 1; a < end; ++a) sets_.join(row(part.first), row(a));
+      return;
+    }
+    if (part.is_leaf()) {
+      for (int a = part.first; a < end; ++a) {
+        for (int b = a + 1; b < end; ++b) {
+          if (are_near(a, b)) sets_.join(row(a), row(b));
+        }
+      }
+      return;
+    }
+    within(half(part, 0));
+    within(half(part, 1));
+    between(half(part, 0), half(part, 1));
+  }
+
+  void between(const Part& a, const Part& b) {
+    const Vector3d gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
+    if (!are_near(gap)) return;
+    if (is_one(a) && is_one(b) && sets_.first_of(row(a.first)) == sets_.first_of(row(b.first))) {
+      return;
+    }
+    if (a.is_leaf() && b.is_leaf()) {
+      for (int i = a.first; i < a.first + a.count; ++i) {
+        for (int j = b.first; j < b.first + b.count; ++j) {
+          if (are_near(i, j)) sets_.join(row(i), row(j));
+        }
+      }
+      return;
+    }
+    const bool is_a_split = !a.is_leaf() && (b.is_leaf() || a.count >= b.count);
+    const Part& split = is_a_split ? a : b;
+    const Part& other = is_a_split ? b : a;
+    between(half(split, 0), other);
+    between(half(split, 1), other);
+  }
+
+  const PointTree& tree_;
+  double squared_distance_, distance_;
+  Sets sets_;
+};
+
+}  // namespace
+
+std::vector<int> welded(const Field& points, double distance) {
+  const PointTree tree(points);
+  Welding welding(tree, distance);
+  welding.run();
+  std::vector<int> first(static_cast<std::size_t>(points.rows()));
+  for (std::size_t k = 0; k < first.size(); ++k) first[k] = welding.first_of(static_cast<int>(k));
+  return first;
+}
+
+}  // namespace pliant

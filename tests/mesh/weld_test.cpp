@@ -1,0 +1,64 @@
+#include "pliant/mesh/weld.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "support/catch.hpp"
+
+using namespace pliant;
+
+namespace {
+
+// By all pairs, again and again until nothing changes.
+std::vector<int> welded_slowly(const Field& points, double distance) {
+  std::vector<int> first(static_cast<std::size_t>(points.rows()));
+  std::iota(first.begin(), first.end(), 0);
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (int a = 0; a < points.rows(); ++a) {
+      for (int b = 0; b < points.rows(); ++b) {
+        if ((points.row(a) - points.row(b)).norm() > distance || first[a] == first[b]) continue;
+        first[a] = first[b] = std::min(first[a], first[b]);
+        changes = true;
+      }
+    }
+  }
+  return first;
+}
+
+}  // namespace
+
+TEST_CASE("points are welded as by looking at all pairs", "[mesh][weld]") {
+  std::mt19937 random(7);
+  for (const double distance : {0.0, 0.01, 0.05, 0.2, 5.0}) {
+    Field points = Field::Random(300, 3);
+    points.col(2) *= 0.1;
+    for (int k = 0; k < 60; ++k) {
+      points.row(static_cast<int>(random() % 300)) = points.row(static_cast<int>(random() % 300));
+    }
+    CHECK(welded(points, distance) == welded_slowly(points, distance));
+  }
+}
+
+TEST_CASE("a chain of points is one, however long", "[mesh][weld]") {
+  Field points = Field::Zero(2000, 3);
+  for (int k = 0; k < 2000; ++k) points(k, 0) = (k * 1237) % 2000;
+  CHECK(welded(points, 1.0) == std::vector<int>(2000, 0));
+  std::vector<int> apart(2000);
+  std::iota(apart.begin(), apart.end(), 0);
+  CHECK(welded(points, 0.999) == apart);
+}
+
+TEST_CASE("only equal points are welded at a distance of 0", "[mesh][weld]") {
+  Field points(5, 3);
+  points << 0, 0, 0, 1e-300, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1 + 1e-15;
+  CHECK(welded(points, 0) == std::vector{0, 1, 0, 3, 4});
+}
+
+TEST_CASE("many points in little room are welded in little time", "[mesh][weld]") {
+  // By all pairs these are 4e10 distances.
+  Field points = Field::Random(200'000, 3);
+  const std::vector<int> all = welded(points, 0.3);
+  CHECK(std::all_of(all.begin(), all.end(), [](int first) { return first == 0; }));
+}
