@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/run_context.hpp"
+#include "pliant/core/triangle_cells.hpp"
+#include "pliant/plate/plate.hpp"
+#include "pliant/plate/sparse/factored_matrix.hpp"
+#include "pliant/plate/time_steps.hpp"
+#include "pliant/plate/triangles/morley_cell.hpp"
+
+namespace pliant {
+
+/// Everything that stays the same while the steps of an interval run.
+struct TriangleProblem {
+  Bending bending;
+  Dynamics dynamics;
+  std::array<Vector3d, 4> slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
+                                    Vector3d::Zero()};  ///< along -u, +u, -v, +v [1]
+  Field load;  ///< #masses x 3: integrated over the plate [length b length^2/uv^4]
+};
+
+/// Displacement of all points, and velocity of those with a mass.
+struct TriangleState {
+  Field displacement;  ///< #points x 3 [length]
+  Field velocity;      ///< #masses x 3 [length/s]
+};
+
+/// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
+/// cells' bending energy and M has the masses of the first points on its diagonal. Slopes, and
+/// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
+class TrianglePlate {
+ public:
+  /// Requires: the first #masses points are free. `choice` is Cholmod or Eigen.
+  TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
+                const RunContext& context);
+
+  /// Prepares to solve K + shift M. Reuse: does nothing if both are those of the last call. Errors:
+  /// SolverFailed if the matrix is not positive definite; OutOfMemory.
+  Result<void> prepare(const Bending& bending, double shift);
+
+  /// Solves for forces on the points with a mass (#masses x 3) on a plate whose held points and
+  /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
+  Result<Field> solve(const Field& forces);
+
+  /// Advances by backward Euler, as `advance_backward_euler`. What is held keeps its displacement.
+  /// Errors: those of `prepare`; Interrupted.
+  Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
+                                TriangleState state);
+
+  const TriangleCells& cells() const { return cells_; }
+  const std::vector<double>& masses() const { return masses_; }
+  SolverCounts counts() const { return matrix_.counts(); }
+  std::size_t memory() const { return matrix_.memory(); }
+
+ private:
+  SparseMatrix assemble() const;
+  Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
+  Field residual(const Field& solution, const Field& right_hand_sides) const;
+  Result<Field> solve_refined(const Field& right_hand_sides);
+  Result<void> choose_passes();
+
+  TriangleCells cells_;
+  std::vector<double> masses_;
+  RunContext context_;
+  FactoredMatrix matrix_;
+  SparseMatrix pattern_;  // of the upper triangle, once it is known
+  bool is_factored_ = false;
+  Bending bending_;  // of the factored matrix
+  double shift_ = 0;
+  int refinement_passes_ = 0;  // needed for it
+};
+
+}  // namespace pliant
