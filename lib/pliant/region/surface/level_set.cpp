@@ -1,0 +1,275 @@
+#include "pliant/region/surface/level_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/forces/batch.hpp"
+
+namespace pliant {
+namespace {
+
+// A program's own force may say that it is infinitely far away.
+constexpr double deepest = 1e150;
+
+// The share of an edge within which the rim moves to its end.
+constexpr double snapping_share = 0.1;
+
+bool selects(std::span<const int> selectors, std::size_t k) {
+  return selectors.empty() || selectors[k] == static_cast<int>(k);
+}
+
+// The box in world space of a box in object space, a little larger.
+std::pair<Vector3d, Vector3d> placed_box(const Transform& transform, const PointTree::Part& part) {
+  const Vector3d middle = to_world(transform, Vector3d(0.5 * (part.low + part.high)));
+  const Vector3d half = 0.5 * (part.high - part.low);
+  Vector3d reach;
+  for (int k = 0; k < 3; ++k) {
+    reach[k] = std::abs(transform.linear(k, 0)) * half[0] +
+               std::abs(transform.linear(k, 1)) * half[1] +
+               std::abs(transform.linear(k, 2)) * half[2];
+    const double size = std::abs(transform.translation[k]) + std::abs(middle[k]) + reach[k];
+    reach[k] += 1e-12 * size;  // rounding
+  }
+  return {middle - reach, middle + reach};
+}
+
+Batch placed(const Transform& transform, const Field& points, std::span<const int> rows) {
+  Batch batch;
+  batch.count = static_cast<int>(rows.size());
+  for (int k = 0; k < batch.count; ++k) {
+    const Vector3d p = to_world(transform, Vector3d(points.row(rows[k]).transpose()));
+    batch.x[k] = p[0], batch.y[k] = p[1], batch.z[k] = p[2];
+  }
+  return batch;
+}
+
+// Calls f(rows, distances) for the nodes of each leaf that may be nearer than the radius, until f
+// returns false.
+template <class F>
+void visit_near(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
+                const SampledForce& force, double radius, const F& f) {
+  const bool is_custom = std::holds_alternative<SampledCustomForce>(force.kind);
+  std::vector<int> open;
+  if (!tree.parts().empty()) open.push_back(0);
+  while (!open.empty()) {
+    const PointTree::Part& part = tree.parts()[open.back()];
+    open.pop_back();
+    if (!is_custom) {
+      const auto [low, high] = placed_box(transform, part);
+      if (!(least_distance(force.kind, low, high) < radius)) continue;
+    }
+    if (!part.is_leaf()) {
+      open.insert(open.end(), {part.child + 1, part.child});
+      continue;
+    }
+    const std::span<const int> rows(tree.rows().data() + part.first,
+                                    static_cast<std::size_t>(part.count));
+    if (!f(rows, distances(force.kind, placed(transform, surface.rest, rows)))) return;
+  }
+}
+
+// Whether phi changes its sign between two ends of an edge, within a small share of it from the
+// first one.
+bool is_near_rim(double end, double other) {
+  if (end > 0 && other < 0) return end / (end - other) < snapping_share;
+  if (end < 0 && other > 0) return 1 - other / (other - end) < snapping_share;
+  return false;
+}
+
+std::vector<double> depths_at(const TriangleSurface& surface, std::span<const int> nodes,
+                              const Transform& transform, std::span<const SampledForce> forces,
+                              std::span<const int> selectors, std::vector<double> reuse) {
+  reuse.assign(nodes.size(), -deepest);
+  for (std::size_t first = 0; first < nodes.size(); first += batch_size) {
+    const std::size_t count = std::min<std::size_t>(batch_size, nodes.size() - first);
+    const Batch points = placed(transform, surface.rest, nodes.subspan(first, count));
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      if (!selects(selectors, k)) continue;
+      const BatchNumbers distance = distances(forces[k].kind, points);
+      for (std::size_t n = 0; n < count; ++n) {
+        const double depth = forces[k].deformation_radius - distance.of[n];
+        reuse[first + n] = std::clamp(depth, reuse[first + n], deepest);
+      }
+    }
+  }
+  return reuse;
+}
+
+std::vector<int> sorted_once(std::vector<int> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+// Lists the corners of the level set's faces.
+void list_corners(const TriangleSurface& surface, LevelSet& level_set) {
+  std::vector<int>& all = level_set.nodes;
+  all.clear();
+  for (const int face : level_set.faces) {
+    const std::span<const int> nodes = surface.nodes_of(face);
+    all.insert(all.end(), nodes.begin(), nodes.end());
+  }
+  all = sorted_once(std::move(all));
+  level_set.corner_starts = {0};
+  level_set.corners.clear();
+  for (const int face : level_set.faces) {
+    for (const int node : surface.nodes_of(face)) {
+      const auto place = std::lower_bound(all.begin(), all.end(), node);
+      level_set.corners.push_back(static_cast<int>(place - all.begin()));
+    }
+    level_set.corner_starts.push_back(static_cast<int>(level_set.corners.size()));
+  }
+}
+
+void add_faces_of(const TriangleSurface& surface, std::span<const int> nodes, LevelSet& level_set) {
+  for (const int node : nodes) {
+    const std::span<const int> faces = surface.faces_of(node);
+    level_set.faces.insert(level_set.faces.end(), faces.begin(), faces.end());
+  }
+  level_set.faces = sorted_once(std::move(level_set.faces));
+}
+
+}  // namespace
+
+LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
+                        const Transform& transform, std::span<const SampledForce> forces,
+                        std::span<const int> selectors, LevelSet reuse) {
+  LevelSet found = std::move(reuse);
+  std::vector<int>& inside = found.nodes;
+  inside.clear();
+  found.faces.clear();
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (!selects(selectors, k)) continue;
+    const double radius = forces[k].deformation_radius;
+    visit_near(surface, tree, transform, forces[k], radius,
+               [&](std::span<const int> rows, const BatchNumbers& distance) {
+                 for (std::size_t n = 0; n < rows.size(); ++n) {
+                   if (distance.of[n] < radius) inside.push_back(rows[n]);
+                 }
+                 return true;
+               });
+  }
+  inside = sorted_once(std::move(inside));
+  add_faces_of(surface, inside, found);
+  list_corners(surface, found);
+  found.at_nodes =
+      depths_at(surface, found.nodes, transform, forces, selectors, std::move(found.at_nodes));
+  found.at_centres = means_at_centres(found, found.at_nodes, std::move(found.at_centres));
+  return found;
+}
+
+int count_inside(const TriangleSurface& surface, const LevelSet& level_set,
+                 const Transform& transform, const SampledForce& force) {
+  int count = 0;
+  for (std::size_t first = 0; first < level_set.nodes.size(); first += batch_size) {
+    const std::size_t size = std::min<std::size_t>(batch_size, level_set.nodes.size() - first);
+    const std::span<const int> nodes = std::span(level_set.nodes).subspan(first, size);
+    const BatchNumbers distance = distances(force.kind, placed(transform, surface.rest, nodes));
+    count += static_cast<int>(std::count_if(distance.of, distance.of + size, [&](double each) {
+      return each < force.deformation_radius;
+    }));
+  }
+  return count;
+}
+
+bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
+             const SampledForce& force, double radius, bool with_faces) {
+  bool is_found = false;
+  // A distance changes by no more than the way to another position.
+  const auto radius_of_ball = [&](int node) {
+    double largest = 0;
+    for (const int face : surface.faces_of(node)) {
+      for (const int other : surface.nodes_of(face)) {
+        const Vector3d way = (surface.rest.row(other) - surface.rest.row(node)).transpose();
+        largest = std::max(largest, (transform.linear * way).norm());
+      }
+    }
+    return largest;
+  };
+  visit_near(surface, tree, transform, force, radius,
+             [&](std::span<const int> rows, const BatchNumbers& distance) {
+               for (std::size_t n = 0; n < rows.size() && !is_found; ++n) {
+                 const double reach = with_faces ? radius + radius_of_ball(rows[n]) : radius;
+                 is_found = distance.of[n] < reach;
+               }
+               return !is_found;
+             });
+  return is_found;
+}
+
+double LevelSet::at_node(int node) const {
+  const auto place = std::lower_bound(nodes.begin(), nodes.end(), node);
+  return place != nodes.end() && *place == node ? at_nodes[place - nodes.begin()] : -1;
+}
+
+LevelSet with_inside(const TriangleSurface& surface, const LevelSet& level_set,
+                     std::span<const int> nodes) {
+  constexpr double inside = 1;
+  LevelSet result;
+  result.faces = level_set.faces;
+  add_faces_of(surface, nodes, result);
+  list_corners(surface, result);
+  for (const int node : result.nodes) result.at_nodes.push_back(level_set.at_node(node));
+  const auto is_added = [&](int node) {
+    return std::binary_search(nodes.begin(), nodes.end(), node);
+  };
+  std::size_t earlier = 0;  // among the faces of `level_set`
+  for (std::size_t k = 0; k < result.faces.size(); ++k) {
+    const bool is_old =
+        earlier < level_set.faces.size() && level_set.faces[earlier] == result.faces[k];
+    result.at_centres.push_back(is_old ? level_set.at_centres[earlier++] : 0);
+    const std::span<const int> corners = result.corners_of(k);
+    if (std::none_of(corners.begin(), corners.end(),
+                     [&](int corner) { return is_added(result.nodes[corner]); })) {
+      continue;
+    }
+    if (surface.has_centre(result.faces[k])) result.at_centres[k] = inside;
+    for (const int corner : corners) {
+      double& phi = result.at_nodes[corner];
+      phi = is_added(result.nodes[corner]) ? inside : std::max(phi, 0.0);
+    }
+  }
+  return result;
+}
+
+std::vector<double> means_at_centres(const LevelSet& level_set, std::span<const double> at_nodes,
+                                     std::vector<double> reuse) {
+  reuse.assign(level_set.faces.size(), 0);
+  for (std::size_t k = 0; k < level_set.faces.size(); ++k) {
+    const std::span<const int> corners = level_set.corners_of(k);
+    if (corners.size() == 3) continue;
+    double sum = 0;
+    for (const int corner : corners) sum += at_nodes[corner];
+    reuse[k] = sum / static_cast<double>(corners.size());
+  }
+  return reuse;
+}
+
+void snap(LevelSet& level_set) {
+  std::vector<bool> is_node_moved(level_set.nodes.size()), is_centre_moved(level_set.faces.size());
+  for (std::size_t k = 0; k < level_set.faces.size(); ++k) {
+    const std::span<const int> corners = level_set.corners_of(k);
+    const double centre = level_set.at_centres[k];
+    for (std::size_t n = 0; n < corners.size(); ++n) {
+      const int here = corners[n], next = corners[(n + 1) % corners.size()];
+      const double phi = level_set.at_nodes[here];
+      if (is_near_rim(phi, level_set.at_nodes[next])) is_node_moved[here] = true;
+      if (is_near_rim(level_set.at_nodes[next], phi)) is_node_moved[next] = true;
+      if (corners.size() == 3) continue;
+      if (is_near_rim(phi, centre)) is_node_moved[here] = true;
+      if (is_near_rim(centre, phi)) is_centre_moved[k] = true;
+    }
+  }
+  for (std::size_t k = 0; k < is_node_moved.size(); ++k) {
+    if (is_node_moved[k]) level_set.at_nodes[k] = 0;
+  }
+  for (std::size_t k = 0; k < is_centre_moved.size(); ++k) {
+    if (is_centre_moved[k]) level_set.at_centres[k] = 0;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pliant/core/transform.hpp"
+#include "pliant/forces/force.hpp"
+#include "pliant/mesh/point_tree.hpp"
+#include "pliant/mesh/triangle_surface.hpp"
+
+namespace pliant {
+
+/// How deep the nodes around a region lie in the forces' spheres: phi, the largest of deformation
+/// radius - distance over the forces [length], linear on each triangle. The region is where it is
+/// not negative. docs/model.md, "Surfaces".
+struct LevelSet {
+  std::vector<int> faces;          ///< those with a corner where phi > 0, ascending
+  std::vector<int> nodes;          ///< their corners, ascending
+  std::vector<int> corner_starts;  ///< #faces + 1: the first corner of each in `corners`
+  std::vector<int> corners;        ///< index into `nodes` of each corner of `faces`
+  std::vector<double> at_nodes;    ///< phi of each of `nodes`
+  std::vector<double> at_centres;  ///< phi at the centre of each of `faces`; 0 for a triangle
+
+  /// Indices into `nodes` of the corners of faces[k].
+  std::span<const int> corners_of(std::size_t k) const {
+    return std::span(corners).subspan(corner_starts[k], corner_starts[k + 1] - corner_starts[k]);
+  }
+
+  /// phi of a node of the surface; negative if it is not among `nodes`.
+  double at_node(int node) const;
+
+  friend bool operator==(const LevelSet&, const LevelSet&) = default;
+};
+
+/// Finds phi of the forces that select, on the rest positions under `transform`. `tree` is of the
+/// surface's nodes; `selectors` as in `BodyInputs`: a force that another one selects for does not
+/// count. A program's own function is called for every node. The result reuses the memory of
+/// `reuse`. Cost: that of the nodes within reach, not of all.
+LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
+                        const Transform& transform, std::span<const SampledForce> forces,
+                        std::span<const int> selectors, LevelSet reuse = {});
+
+/// How many nodes of a level set are nearer to a force than its deformation radius, at rest under
+/// `transform`.
+int count_inside(const TriangleSurface& surface, const LevelSet& level_set,
+                 const Transform& transform, const SampledForce& force);
+
+/// Whether any node at rest is nearer to a force than `radius`, or, with `with_faces`, a face may
+/// be: by a ball around its corners.
+bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
+             const SampledForce& force, double radius, bool with_faces);
+
+/// A snapped level set in which `nodes` (ascending) count as inside too, and with them the centres
+/// of their faces; the other corners of these faces are held if they were outside.
+LevelSet with_inside(const TriangleSurface& surface, const LevelSet& level_set,
+                     std::span<const int> nodes);
+
+/// Values on `nodes` (#nodes of the level set) as their means at the centres of its faces; 0 for a
+/// triangle.
+std::vector<double> means_at_centres(const LevelSet& level_set, std::span<const double> at_nodes,
+                                     std::vector<double> reuse = {});
+
+/// Lets the rim pass through a node or centre wherever it would pass very close to one, so that no
+/// cell becomes a sliver: phi becomes 0 there.
+void snap(LevelSet& level_set);
+
+}  // namespace pliant

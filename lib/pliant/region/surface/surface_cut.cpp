@@ -1,0 +1,384 @@
+#include "pliant/region/surface/surface_cut.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+
+namespace pliant {
+namespace {
+
+using Place = std::array<double, 2>;
+
+Place on_the_way(const Place& a, const Place& b, double t) {
+  return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+}
+
+// A side of a cell that may share its slope with others. Those with the same line do: an edge of
+// faces, the way from a corner to the centre of its face, or one inside a triangle.
+struct Joint {
+  int line = 0;
+  int cell = 0;
+  int side = 0;
+};
+
+// Of a side on the rim of the region: its slope is given.
+constexpr int no_line = -1;
+
+struct Point {
+  int node = -1;  // index into the level set's nodes; -1: none
+  CutPoint cut = {};
+  bool is_free = false;
+};
+
+// The cells of a region, before they are separated into pieces. Points are numbered in the order
+// in which cells meet them.
+class Cutting {
+ public:
+  Cutting(const TriangleSurface& surface, const LevelSet& level_set,
+          const std::vector<bool>& is_border, Border border)
+      : surface_(surface),
+        level_set_(level_set),
+        is_border_(is_border),
+        border_(border),
+        node_points_(level_set.nodes.size(), -1) {
+    for (const int face : level_set.faces) {
+      const std::span<const int> edges = surface.edges_of(face);
+      edges_.insert(edges_.end(), edges.begin(), edges.end());
+    }
+    std::sort(edges_.begin(), edges_.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    // One line for each edge and each corner's way to the centre.
+    rim_points_.assign(edges_.size() + level_set.corners.size(), -1);
+    inner_lines_ = static_cast<int>(rim_points_.size());
+  }
+
+  void run() {
+    for (std::size_t k = 0; k < level_set_.faces.size(); ++k) {
+      centre_point_ = -1;
+      const int face = level_set_.faces[k];
+      const int first = surface_.triangle_starts[face];
+      const int count = surface_.triangle_starts[face + 1] - first;
+      for (int n = 0; n < count; ++n) cut(k, n, surface_.triangles[first + n]);
+    }
+    std::sort(joints.begin(), joints.end(), [](const Joint& a, const Joint& b) {
+      return std::tie(a.line, a.cell, a.side) < std::tie(b.line, b.cell, b.side);
+    });
+  }
+
+  std::vector<Point> points;
+  std::vector<TriangleCell> cells;
+  std::vector<Joint> joints;  // by line, then by cell
+
+  // How many sides of cells lie on a line if all its triangles have a part in the region there.
+  int sides_on(int line) const {
+    return line < static_cast<int>(edges_.size()) ? surface_.edge_sides[edges_[line]] : 2;
+  }
+
+ private:
+  // A triangle while it is cut. Side k goes from corner k to the next.
+  struct Triangle {
+    std::array<int, 3> ends = {};  // as in CutPoint::of
+    std::array<double, 3> phi = {};
+    std::array<Place, 3> places = {};
+    std::array<int, 3> lines = {};  // of the sides
+  };
+
+  struct Corner {
+    int point;
+    Place place;
+  };
+
+  void cut(std::size_t k, int n, const FlatTriangle& shape) {
+    const std::span<const int> corners = level_set_.corners_of(k);
+    const std::span<const int> edges = surface_.edges_of(level_set_.faces[k]);
+    const int size = static_cast<int>(corners.size()), next = (n + 1) % size;
+    const int centre = -1 - static_cast<int>(k);
+    const int ways = static_cast<int>(edges_.size()) + level_set_.corner_starts[k];
+    Triangle triangle;
+    if (size == 3) {
+      triangle.ends = {corners[0], corners[1], corners[2]};
+      triangle.lines = {line_of(edges[0]), line_of(edges[1]), line_of(edges[2])};
+    } else {
+      triangle.ends = {corners[n], corners[next], centre};
+      triangle.lines = {line_of(edges[n]), ways + next, ways + n};
+    }
+    for (int c = 0; c < 3; ++c) triangle.phi[c] = phi_at(triangle.ends[c]);
+    triangle.places = {Place{0, 0}, shape.b, shape.c};
+
+    const auto is_positive = [](double phi) { return phi > 0; };
+    const auto is_negative = [](double phi) { return phi < 0; };
+    const auto& phi = triangle.phi;
+    if (std::none_of(phi.begin(), phi.end(), is_positive)) return;
+    const auto negatives = std::count_if(phi.begin(), phi.end(), is_negative);
+    if (negatives == 0) {
+      add_cell({corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)}, triangle.lines);
+    } else if (negatives == 1) {
+      cut_off_one(triangle, static_cast<int>(std::find_if(phi.begin(), phi.end(), is_negative) -
+                                             phi.begin()));
+    } else {
+      keep_one(triangle,
+               static_cast<int>(std::find_if(phi.begin(), phi.end(), is_positive) - phi.begin()));
+    }
+  }
+
+  // Only `corner` lies outside.
+  void cut_off_one(const Triangle& triangle, int outer) {
+    const int a = (outer + 1) % 3, b = (outer + 2) % 3;
+    const Corner at_a = corner(triangle, a), at_b = corner(triangle, b);
+    const int ab = triangle.lines[a], from_b = triangle.lines[b], to_a = triangle.lines[outer];
+    if (triangle.phi[b] == 0) {
+      add_cell({at_a, at_b, rim(triangle, a, outer)}, {ab, no_line, to_a});
+    } else if (triangle.phi[a] == 0) {
+      add_cell({at_a, at_b, rim(triangle, b, outer)}, {ab, from_b, no_line});
+    } else {
+      const Corner from = rim(triangle, b, outer), to = rim(triangle, a, outer);
+      Place mean;
+      for (int k = 0; k < 2; ++k) {
+        mean[k] = 0.25 * (at_a.place[k] + at_b.place[k] + from.place[k] + to.place[k]);
+      }
+      points.push_back({.cut = {.kind = CutPoint::Kind::Part,
+                                .of = {at_a.point, at_b.point, from.point, to.point}},
+                        .is_free = true});
+      const Corner middle{static_cast<int>(points.size()) - 1, mean};
+      const int to_b = inner_lines_, to_from = to_b + 1, to_to = to_b + 2, to_the_a = to_b + 3;
+      inner_lines_ += 4;
+      add_cell({at_a, at_b, middle}, {ab, to_b, to_the_a});
+      add_cell({at_b, from, middle}, {from_b, to_from, to_b});
+      add_cell({from, to, middle}, {no_line, to_to, to_from});
+      add_cell({to, at_a, middle}, {to_a, to_the_a, to_to});
+    }
+  }
+
+  // Only `inner` lies inside, and the others outside.
+  void keep_one(const Triangle& triangle, int inner) {
+    const int next = (inner + 1) % 3, last = (inner + 2) % 3;
+    add_cell({corner(triangle, inner), rim(triangle, inner, next), rim(triangle, inner, last)},
+             {triangle.lines[inner], no_line, triangle.lines[last]});
+  }
+
+  void add_cell(const std::array<Corner, 3>& corners, const std::array<int, 3>& lines) {
+    const int cell = static_cast<int>(cells.size());
+    const auto& [a, b, c] = corners;
+    cells.push_back({.points = {a.point, b.point, c.point},
+                     .shape = {{b.place[0] - a.place[0], b.place[1] - a.place[1]},
+                               {c.place[0] - a.place[0], c.place[1] - a.place[1]}}});
+    for (int side = 0; side < 3; ++side) {
+      if (lines[side] != no_line) joints.push_back({lines[side], cell, side});
+    }
+  }
+
+  int line_of(int edge) const {
+    return static_cast<int>(std::lower_bound(edges_.begin(), edges_.end(), edge) - edges_.begin());
+  }
+
+  double phi_at(int end) const {
+    return end >= 0 ? level_set_.at_nodes[end] : level_set_.at_centres[-1 - end];
+  }
+
+  Corner corner(const Triangle& triangle, int k) {
+    const int end = triangle.ends[k];
+    int& point = end >= 0 ? node_points_[end] : centre_point_;
+    if (point < 0) {
+      point = static_cast<int>(points.size());
+      Point made{.node = std::max(end, -1), .is_free = triangle.phi[k] > 0};
+      if (end < 0) made.cut = {.kind = CutPoint::Kind::Centre, .face = -1 - end};
+      const bool is_held = end >= 0 && border_ != Border::Free && is_border_[level_set_.nodes[end]];
+      made.is_free = made.is_free && !is_held;
+      points.push_back(made);
+    }
+    return {point, triangle.places[k]};
+  }
+
+  // The point of the rim between a corner inside and one outside.
+  Corner rim(const Triangle& triangle, int inner, int outer) {
+    const int side = outer == (inner + 1) % 3 ? inner : outer;
+    const double t = triangle.phi[inner] / (triangle.phi[inner] - triangle.phi[outer]);
+    int& point = rim_points_[triangle.lines[side]];
+    if (point < 0) {
+      point = static_cast<int>(points.size());
+      points.push_back({.cut = {.kind = CutPoint::Kind::Rim,
+                                .of = {triangle.ends[inner], triangle.ends[outer]},
+                                .t = t}});
+    }
+    return {point, on_the_way(triangle.places[inner], triangle.places[outer], t)};
+  }
+
+  const TriangleSurface& surface_;
+  const LevelSet& level_set_;
+  const std::vector<bool>& is_border_;
+  Border border_;
+  std::vector<int> edges_;        // of all faces, ascending
+  std::vector<int> node_points_;  // the point of each node, -1: none yet
+  std::vector<int> rim_points_;   // the point on each line, likewise
+  int centre_point_ = -1;         // of the present face
+  int inner_lines_ = 0;           // the next line inside a triangle
+};
+
+// The piece of each cell, in the order of their first cells.
+std::vector<int> pieces_of(const Cutting& cutting, int& count) {
+  std::vector<int> parents(cutting.points.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto first_of = [&](int point) {
+    while (parents[point] != point) point = parents[point] = parents[parents[point]];
+    return point;
+  };
+  for (const TriangleCell& cell : cutting.cells) {
+    const int first = first_of(cell.points[0]);
+    for (const int other : {cell.points[1], cell.points[2]}) parents[first_of(other)] = first;
+  }
+  std::vector<int> numbers(parents.size(), -1), pieces;
+  count = 0;
+  for (const TriangleCell& cell : cutting.cells) {
+    int& number = numbers[first_of(cell.points[0])];
+    if (number < 0) number = count++;
+    pieces.push_back(number);
+  }
+  return pieces;
+}
+
+// The order of a piece's points: free nodes, all else that is free, held nodes, and the rest.
+int rank_of(const Point& point) { return (point.is_free ? 0 : 2) + (point.node < 0 ? 1 : 0); }
+
+// Separates the cells of a cutting into pieces.
+class Separating {
+ public:
+  Separating(const Cutting& cutting, Border border) : cutting_(cutting), border_(border) {
+    int count = 0;
+    cell_pieces_ = pieces_of(cutting, count);
+    pieces.resize(count);
+  }
+
+  void run() {
+    number_points();
+    cell_places_.reserve(cutting_.cells.size());
+    for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
+      TriangleCells& cells = pieces[cell_pieces_[k]].cells;
+      cell_places_.push_back(static_cast<int>(cells.cells.size()));
+      cells.cells.push_back(cutting_.cells[k]);
+      for (int& point : cells.cells.back().points) point = places_[point];
+    }
+    const std::vector<Joint>& joints = cutting_.joints;
+    for (std::size_t k = 0, end = 0; k < joints.size(); k = end) {
+      while (end < joints.size() && joints[end].line == joints[k].line) ++end;
+      join(std::span(joints).subspan(k, end - k));
+    }
+  }
+
+  std::vector<SurfacePiece> pieces;
+
+ private:
+  void number_points() {
+    std::vector<int> point_pieces(cutting_.points.size(), -1);
+    for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
+      for (const int point : cutting_.cells[k].points) point_pieces[point] = cell_pieces_[k];
+    }
+    std::vector<int> order(cutting_.points.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      const Point &p = cutting_.points[a], &q = cutting_.points[b];
+      return std::tuple(rank_of(p), p.node, a) < std::tuple(rank_of(q), q.node, b);
+    });
+    places_.resize(cutting_.points.size());
+    for (const int k : order) {
+      const Point& point = cutting_.points[k];
+      SurfacePiece& piece = pieces[point_pieces[k]];
+      places_[k] = piece.cells.point_count++;
+      piece.cells.free_points += point.is_free ? 1 : 0;
+      piece.free_nodes += rank_of(point) == 0 ? 1 : 0;
+      if (point.node >= 0) {
+        piece.points.push_back(point.node);
+        continue;
+      }
+      piece.points.push_back(-1 - static_cast<int>(piece.cut_points.size()));
+      piece.cut_points.push_back(point.cut);
+    }
+    for (SurfacePiece& piece : pieces) {
+      for (CutPoint& point : piece.cut_points) {
+        if (point.kind != CutPoint::Kind::Part) continue;
+        for (int& corner : point.of) corner = places_[corner];
+      }
+    }
+  }
+
+  // Gives the sides on one line their slopes.
+  void join(std::span<const Joint> joints) {
+    const int count = static_cast<int>(joints.size());
+    const int whole = cutting_.sides_on(joints[0].line);
+    const bool is_given = count < whole || (whole == 1 && border_ == Border::Clamped);
+    if (is_given) return;
+    TriangleCells& cells = pieces[cell_pieces_[joints[0].cell]].cells;
+    const int first = cells.slope_count;
+    cells.slope_count += std::max(count - 1, 1);
+    for (int k = 0; k < count; ++k) {
+      const bool is_last = k > 0 && k == count - 1;
+      slope_of(joints[k]) = is_last ? SideSlope{first, count - 1, -1} : SideSlope{first + k, 1, 1};
+    }
+  }
+
+  SideSlope& slope_of(const Joint& joint) {
+    TriangleCells& cells = pieces[cell_pieces_[joint.cell]].cells;
+    return cells.cells[cell_places_[joint.cell]].slopes[joint.side];
+  }
+
+  const Cutting& cutting_;
+  Border border_;
+  std::vector<int> cell_pieces_;  // the piece of each cell
+  std::vector<int> cell_places_;  // its place among the cells of its piece
+  std::vector<int> places_;       // the place of each point among those of its piece
+};
+
+}  // namespace
+
+int SurfacePiece::held_nodes() const {
+  const auto held = points.begin() + cells.free_points;
+  return static_cast<int>(std::count_if(held, points.end(), [](int point) { return point >= 0; }));
+}
+
+std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
+                                  const std::vector<bool>& is_border, Border border) {
+  Cutting cutting(surface, level_set, is_border, border);
+  cutting.run();
+  Separating separating(cutting, border);
+  separating.run();
+  for (SurfacePiece& piece : separating.pieces) {
+    std::vector<double> areas(static_cast<std::size_t>(piece.cells.point_count), 0);
+    for (const TriangleCell& cell : piece.cells.cells) {
+      const double third = std::abs(cell.shape.signed_area()) / 3;
+      for (const int point : cell.points) areas[point] += third;
+    }
+    piece.masses = shared_out(piece, level_set, std::move(areas));
+  }
+  return std::move(separating.pieces);
+}
+
+std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_set,
+                               std::vector<double> at_points) {
+  const auto each_cut_point = [&](CutPoint::Kind kind, const auto& hand_on) {
+    for (std::size_t k = 0; k < piece.points.size(); ++k) {
+      if (piece.points[k] >= 0) continue;
+      const CutPoint& point = piece.cut_points[-1 - piece.points[k]];
+      if (point.kind == kind) hand_on(point, at_points[k]);
+    }
+  };
+  each_cut_point(CutPoint::Kind::Part, [&](const CutPoint& point, double share) {
+    for (const int corner : point.of) at_points[corner] += 0.25 * share;
+  });
+  // A corner's place among the free nodes, which are in ascending order.
+  const auto nodes = std::span(piece.points).first(static_cast<std::size_t>(piece.free_nodes));
+  each_cut_point(CutPoint::Kind::Centre, [&](const CutPoint& point, double share) {
+    const std::span<const int> corners = level_set.corners_of(static_cast<std::size_t>(point.face));
+    for (const int corner : corners) {
+      const auto place = std::lower_bound(nodes.begin(), nodes.end(), corner);
+      if (place == nodes.end() || *place != corner) continue;
+      at_points[place - nodes.begin()] += share / static_cast<double>(corners.size());
+    }
+  });
+  at_points.resize(static_cast<std::size_t>(piece.free_nodes));
+  return at_points;
+}
+
+}  // namespace pliant

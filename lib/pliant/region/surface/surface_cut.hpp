@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "pliant/core/triangle_cells.hpp"
+#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/region/border.hpp"
+#include "pliant/region/surface/level_set.hpp"
+
+namespace pliant {
+
+/// A corner of cells that is no node.
+struct CutPoint {
+  enum class Kind {
+    Centre,  ///< of a face
+    Rim,     ///< where phi is 0 on an edge
+    Part,    ///< the mean of the corners of a part of a triangle
+  };
+
+  Kind kind = Kind::Centre;
+  int face = -1;  ///< of a centre: index into the level set's faces
+
+  /// Of a point on the rim: the ends of its edge, the first of them inside. An end is an index
+  /// into the level set's nodes, or -1 - k for the centre of faces[k]. Of the mean of a part: its
+  /// four corners, as points of the piece.
+  std::array<int, 4> of = {};
+  double t = 0;  ///< on the rim: its share of the way from the first end to the second
+};
+
+/// A connected part of a region: its cells, and what its points are. Free nodes come first, then
+/// all other free points, then what is held.
+struct SurfacePiece {
+  TriangleCells cells;
+
+  /// #points: the index of a node in the level set's `nodes`, or -1 - k for `cut_points[k]`.
+  std::vector<int> points;
+  std::vector<CutPoint> cut_points;
+  int free_nodes = 0;
+  std::vector<double> masses;  ///< #free_nodes: its share of the area [length^2]
+
+  /// Whether it is solved: it has a free node, and something is held.
+  bool moves() const { return free_nodes > 0 && cells.free_points < cells.point_count; }
+
+  int held_nodes() const;
+};
+
+/// Hands what lies on the points of a piece (#points) to its free nodes (#free_nodes): the mean of
+/// a part hands its share on in equal parts to its corners, then a centre to the corners of its
+/// face; what then lies on anything but a free node is dropped.
+std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_set,
+                               std::vector<double> at_points);
+
+/// Cuts the region phi >= 0 out of the triangles. `is_border` (#nodes of the surface) marks the
+/// nodes of edges with one face. The pieces are in the order of their first cells. Requires:
+/// `level_set` is snapped. Cost: proportional to the region.
+std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
+                                  const std::vector<bool>& is_border, Border border);
+
+}  // namespace pliant

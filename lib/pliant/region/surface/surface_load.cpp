@@ -1,0 +1,115 @@
+#include "pliant/region/surface/surface_load.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// A program's own force may say that it is infinitely far away.
+constexpr double farthest = 1e150;
+
+// The integrals of a triangle's hats over the part of it where a linear function, given at its
+// corners, is positive; in units of its area.
+std::array<double, 3> hats_where_positive(const std::array<double, 3>& at) {
+  constexpr std::array<double, 3> whole = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  const auto positives = std::count_if(at.begin(), at.end(), [](double g) { return g > 0; });
+  if (positives == 0) return {0, 0, 0};
+  if (positives == 3) return whole;
+  // The corner that is alone, and how far its part reaches towards the others.
+  const bool is_positive = positives == 1;
+  int alone = 0;
+  while ((at[alone] > 0) != is_positive) ++alone;
+  const int next = (alone + 1) % 3, last = (alone + 2) % 3;
+  const double to_next = at[alone] / (at[alone] - at[next]);
+  const double to_last = at[alone] / (at[alone] - at[last]);
+  const double third = to_next * to_last / 3;
+  std::array<double, 3> part;
+  part[alone] = third * (1 + (1 - to_next) + (1 - to_last));
+  part[next] = third * to_next;
+  part[last] = third * to_last;
+  if (is_positive) return part;
+  return {whole[0] - part[0], whole[1] - part[1], whole[2] - part[2]};
+}
+
+}  // namespace
+
+bool SurfaceLoads::compute(const SampledForce& force) {
+  loads_.resize(pieces_.size());
+  bool reaches = false;
+  if (force.force_radius > 0) {
+    at_nodes_.resize(level_set_.nodes.size());
+    for (std::size_t k = 0; k < at_nodes_.size(); ++k) {
+      const double apart = distance(force.kind, measured_.at(level_set_.nodes[k]));
+      at_nodes_[k] = std::max(force.force_radius - apart, -farthest);
+      reaches = reaches || at_nodes_[k] > 0;
+    }
+  }
+  if (reaches) at_centres_ = means_at_centres(level_set_, at_nodes_, std::move(at_centres_));
+  bool is_any = false;
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const SurfacePiece& piece = pieces_[k];
+    loads_[k] = Field::Zero(piece.free_nodes, 3);
+    if (!reaches) continue;
+    const std::vector<double> areas = areas_on(piece);
+    for (int n = 0; n < piece.free_nodes; ++n) {
+      if (areas[n] == 0) continue;
+      const int node = level_set_.nodes[piece.points[n]];
+      loads_[k].row(n) = (areas[n] * force_at(force, measured_.at(node))).transpose();
+      is_any = is_any || !loads_[k].row(n).isZero(0);
+    }
+  }
+  return is_any;
+}
+
+// The area on which the force acts, shared out to the free nodes.
+std::vector<double> SurfaceLoads::areas_on(const SurfacePiece& piece) const {
+  const auto at_end = [&](int end) { return end >= 0 ? at_nodes_[end] : at_centres_[-1 - end]; };
+  std::vector<double> at_points(piece.points.size());
+  const auto each_point = [&](const auto& f) {
+    for (std::size_t k = 0; k < piece.points.size(); ++k) f(k, piece.points[k]);
+  };
+  each_point([&](std::size_t k, int point) {
+    if (point >= 0) {
+      at_points[k] = at_nodes_[point];
+      return;
+    }
+    const CutPoint& cut = piece.cut_points[-1 - point];
+    if (cut.kind == CutPoint::Kind::Centre) {
+      at_points[k] = at_centres_[cut.face];
+    } else if (cut.kind == CutPoint::Kind::Rim) {
+      const double from = at_end(cut.of[0]), to = at_end(cut.of[1]);
+      at_points[k] = from + cut.t * (to - from);
+    }
+  });
+  each_point([&](std::size_t k, int point) {
+    if (point >= 0 || piece.cut_points[-1 - point].kind != CutPoint::Kind::Part) return;
+    const std::array<int, 4>& of = piece.cut_points[-1 - point].of;
+    at_points[k] =
+        0.25 * (at_points[of[0]] + at_points[of[1]] + at_points[of[2]] + at_points[of[3]]);
+  });
+  std::vector<double> areas(piece.points.size(), 0);
+  for (const TriangleCell& cell : piece.cells.cells) {
+    const auto& [a, b, c] = cell.points;
+    const std::array<double, 3> hats =
+        hats_where_positive({at_points[a], at_points[b], at_points[c]});
+    const double area = std::abs(cell.shape.signed_area());
+    for (int k = 0; k < 3; ++k) areas[cell.points[k]] += area * hats[k];
+  }
+  return shared_out(piece, level_set_, std::move(areas));
+}
+
+Push SurfaceLoads::push() const {
+  Push push;
+  for (const Field& loads : loads_) {
+    for (Eigen::Index n = 0; n < loads.rows(); ++n) {
+      if (loads.row(n).isZero(0)) continue;
+      push.sum += loads.row(n).transpose();
+      ++push.node_count;
+    }
+  }
+  return push;
+}
+
+}  // namespace pliant

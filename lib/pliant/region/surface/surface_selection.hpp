@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/region/selection.hpp"
+#include "pliant/region/surface/level_set.hpp"
+#include "pliant/region/surface/surface_cut.hpp"
+
+namespace pliant {
+
+/// One force in the selection of a frame on a surface.
+struct SurfaceForceSelection {
+  bool selects = false;       ///< whether it has a region of its own
+  bool is_near = false;       ///< whether its sphere reaches a face, with or without a node in it
+  int inside_nodes = 0;       ///< nodes nearer than its deformation radius
+  bool acts_inside = false;   ///< whether it acts on the area of a node that moves
+  bool acts_outside = false;  ///< whether any node is nearer than its force radius, if not inside
+  bool is_lost = false;       ///< whether it acts on the surface at rest, but not now
+  Push push;                  ///< its effect on the nodes that move
+};
+
+/// The region of a frame on a surface.
+struct SurfaceSelection {
+  LevelSet level_set;  ///< snapped, and extended to nodes that recover
+  std::vector<SurfacePiece> pieces;
+  std::vector<Field> loads;  ///< of each piece (#free_nodes x 3, world): see `SurfaceLoads`
+  std::vector<SurfaceForceSelection> forces;  ///< in the order of the forces
+};
+
+}  // namespace pliant
