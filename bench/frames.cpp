@@ -33,6 +33,7 @@
 #include <fmt/format.h>
 
 #include "measuring.hpp"
+#include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/region/region.hpp"
 

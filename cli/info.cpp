@@ -28,9 +28,9 @@ Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
   if (!rest) return fail(rest.error());
   for (std::size_t k = 0; k < facts.scene.surfaces.size(); ++k) {
     const RestShape& shape = simulation.rest_shapes()[k];
-    facts.surfaces.push_back(
-        {shape.mapping.grid, static_cast<std::size_t>(shape.mesh.vertex_count()),
-         bounding_box(rest->surfaces()[k].positions()), bounding_box(shape.mapping.rest)});
+    facts.surfaces.push_back({*shape.grid, static_cast<std::size_t>(shape.mesh.vertex_count()),
+                              bounding_box(rest->surfaces()[k].positions()),
+                              bounding_box(shape.rest)});
   }
   facts.surface_memory = simulation.surface_memory();
   for (const Preview& preview : facts.previews) {

@@ -116,7 +116,7 @@ class SurfaceView {
       : shape_(shape),
         surface_(surface),
         fps_(fps),
-        motion_(shape.mesh.positions, node_order(shape.mapping.vertex_nodes)) {}
+        motion_(shape.mesh.positions, node_order(shape.vertex_nodes)) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
     transforms_.push_back(transform_json(frame.transform()));
@@ -146,8 +146,8 @@ class SurfaceView {
     return {{"name", shape_.name},
             {"enabled", surface_.enabled},
             {"vertices", mesh.vertex_count()},
-            {"columns", shape_.mapping.grid.columns},
-            {"rows", shape_.mapping.grid.rows},
+            {"columns", shape_.grid->columns},
+            {"rows", shape_.grid->rows},
             {"origin", to_json(origin)},
             {"low", to_json(low_)},
             {"high", to_json(high_)},
@@ -158,7 +158,7 @@ class SurfaceView {
             {"transforms", same_or_all()},
             {"rest", arrays.add(relative_rest(origin))},
             {"uvs", arrays.add(vertex_uvs(mesh))},
-            {"nodes", arrays.add(std::span<const int>(shape_.mapping.vertex_nodes))},
+            {"nodes", arrays.add(std::span<const int>(shape_.vertex_nodes))},
             {"triangles", arrays.add(triangle_vertices(mesh))},
             {"edges", arrays.add(edge_vertices(mesh))},
             {"predictors", arrays.add(motion.predictors)},

@@ -11,9 +11,9 @@ using namespace pliant::testing;
 
 namespace {
 
-Body body_with(const NodeSheet& s, Release release, Combine how = Combine::Box,
-               Measure measure = Measure::Rest) {
-  return Body(s.grid, s.rest, {.measure = measure, .combine = how, .release = release});
+GridBody body_with(const NodeSheet& s, Release release, Combine how = Combine::Box,
+                   Measure measure = Measure::Rest) {
+  return GridBody(s.grid, s.rest, {.measure = measure, .combine = how, .release = release});
 }
 
 bool is_inside(const Region& inner, const std::vector<Region>& outer) {
@@ -28,8 +28,8 @@ TEST_CASE("what a force leaves recovers to rest, to the bit; frozen it stays", "
   const NodeSheet s = hilly_sheet(31, 21);
   const Combine how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
   const Dynamics dynamics{4000, 40000};
-  Body recovering = body_with(s, Release::Recover, how),
-       frozen = body_with(s, Release::Freeze, how);
+  GridBody recovering = body_with(s, Release::Recover, how),
+           frozen = body_with(s, Release::Freeze, how);
   for (int frame = 0; frame < 10; ++frame) {
     BodyInputs in = inputs_of({press(frame - 8, 0, 2e5), press(frame - 8, 8, 1e5, 2.5)});
     in.dynamics = dynamics;
@@ -55,7 +55,7 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
   const NodeSheet s = hilly_sheet(31, 31);
   const Combine how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
   // Little damping, so that it rings and nodes pass 0 again and again.
-  Body body = body_with(s, Release::Recover, how);
+  GridBody body = body_with(s, Release::Recover, how);
   BodyInputs in = inputs_of({press(-6, -5, 2e5), press(-1, 1, -3e5, 4.5), press(9, 9, 1e5)});
   in.dynamics = {4000, 8000};
   for (int frame = 0; frame < 6; ++frame) REQUIRE(step(body, in)->solves());
@@ -87,7 +87,7 @@ TEST_CASE("without forces regions never grow, and nodes outside them are at rest
 
 TEST_CASE("recovery ends without damping and without inertia too", "[body][recover]") {
   const NodeSheet s = flat_sheet(15, 15);
-  Body body = body_with(s, Release::Recover);
+  GridBody body = body_with(s, Release::Recover);
   BodyInputs in = inputs_of({press(0, 0, 2e5)});
   in.dynamics = GENERATE(Dynamics{0, 0}, Dynamics{40, 0}, Dynamics{0, 4000});
   for (int frame = 0; frame < 5; ++frame) REQUIRE(step(body, in)->solves());
@@ -99,7 +99,7 @@ TEST_CASE("recovery ends without damping and without inertia too", "[body][recov
 
 TEST_CASE("a node that leaves and is at rest already is let go at once", "[body][recover]") {
   const NodeSheet s = flat_sheet(21, 21);
-  Body body = body_with(s, Release::Recover);
+  GridBody body = body_with(s, Release::Recover);
   REQUIRE(step(body, inputs_of({press(0, 0, 0)}))->solves());
   const auto report = step(body, inputs_of({})).value();
   CHECK_FALSE(report.solves());
@@ -116,7 +116,7 @@ TEST_CASE("a node that leaves and is at rest already is let go at once", "[body]
 
 TEST_CASE("a recovering node counts as selected, with its neighbours", "[body][recover]") {
   const NodeSheet s = flat_sheet(31, 21);
-  Body body = body_with(s, Release::Recover);
+  GridBody body = body_with(s, Release::Recover);
   const auto pressed = step(body, inputs_of({press(-8, 0, 2e5)})).value();
   const Box first = pressed.selection.box();
   REQUIRE(first == Box{4, 10, 7, 13});
@@ -128,10 +128,10 @@ TEST_CASE("a recovering node counts as selected, with its neighbours", "[body][r
 
 TEST_CASE("the state that is restored goes on in the same way", "[body][recover]") {
   const NodeSheet s = hilly_sheet(21, 21);
-  Body body = body_with(s, Release::Recover, Combine::Islands, Measure::Current);
+  GridBody body = body_with(s, Release::Recover, Combine::Islands, Measure::Current);
   for (int frame = 0; frame < 5; ++frame) REQUIRE(step(body, inputs_of({press(-3, 0, 2e5)})));
   const BodyState kept = body.state();
-  Body other = body_with(s, Release::Recover, Combine::Islands, Measure::Current);
+  GridBody other = body_with(s, Release::Recover, Combine::Islands, Measure::Current);
   other.restore(kept);
   for (int frame = 0; frame < 20; ++frame) {
     REQUIRE(step(body, inputs_of({press(4, 2, 1e5, 2.5)})));
@@ -144,7 +144,7 @@ TEST_CASE("the state that is restored goes on in the same way", "[body][recover]
 
 TEST_CASE("a step that fails leaves what would have settled as it was", "[body][recover]") {
   const NodeSheet s = flat_sheet(21, 21);
-  Body body = body_with(s, Release::Recover);
+  GridBody body = body_with(s, Release::Recover);
   REQUIRE(step(body, inputs_of({press(0, 0, 1e-3)})));
   const BodyState before = body.state();
   BodyInputs in = inputs_of({press(6, 6, 1e308)});

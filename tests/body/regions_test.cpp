@@ -9,8 +9,8 @@ using namespace pliant::testing;
 namespace {
 
 // Boxes are measured at rest, so that they stay in place for any force.
-Body body_with(const NodeSheet& s, Combine how) {
-  return Body(s.grid, s.rest, {.measure = Measure::Rest, .combine = how});
+GridBody body_with(const NodeSheet& s, Combine how) {
+  return GridBody(s.grid, s.rest, {.measure = Measure::Rest, .combine = how});
 }
 
 BodyInputs with_tangents(BodyInputs in) {
@@ -25,8 +25,8 @@ BodyInputs with_tangents(BodyInputs in) {
 TEST_CASE("islands that do not meet are as if each were alone, to the bit", "[body][islands]") {
   const NodeSheet s = hilly_sheet(41, 21);
   const SampledForce a = press(-10, 0, 3e4), b = press(9, 2, -5e4, 4.5);
-  Body both = body_with(s, Combine::Islands), first = body_with(s, Combine::Box),
-       second = body_with(s, Combine::Box);
+  GridBody both = body_with(s, Combine::Islands), first = body_with(s, Combine::Box),
+           second = body_with(s, Combine::Box);
   for (int frame = 0; frame < 12; ++frame) {
     const auto report = step(both, with_tangents(inputs_of({a, b}))).value();
     REQUIRE(report.selection.regions.size() == 2);
@@ -44,7 +44,7 @@ TEST_CASE("islands that do not meet are as if each were alone, to the bit", "[bo
 
 TEST_CASE("islands of one size share a factor", "[body][islands]") {
   const NodeSheet s = flat_sheet(41, 21);
-  Body body = body_with(s, Combine::Islands);
+  GridBody body = body_with(s, Combine::Islands);
   for (int frame = 0; frame < 6; ++frame) {
     const auto report = step(body, inputs_of({press(-10, 0, 3e4), press(10, 0, 3e4)})).value();
     REQUIRE(report.unknown_count() == 2 * 5 * 5);
@@ -55,7 +55,7 @@ TEST_CASE("islands of one size share a factor", "[body][islands]") {
 TEST_CASE("boxes that meet are one island, solved as a box", "[body][islands]") {
   const NodeSheet s = hilly_sheet(31, 31);
   const std::vector<SampledForce> forces{press(-3, 0, 3e4), press(2, 4, -5e4, 4.5)};
-  Body islands = body_with(s, Combine::Islands), box = body_with(s, Combine::Box);
+  GridBody islands = body_with(s, Combine::Islands), box = body_with(s, Combine::Box);
   for (int frame = 0; frame < 8; ++frame) {
     REQUIRE(step(islands, with_tangents(inputs_of(forces)))->solves());
     REQUIRE(step(box, with_tangents(inputs_of(forces)))->solves());
@@ -65,7 +65,7 @@ TEST_CASE("boxes that meet are one island, solved as a box", "[body][islands]") 
 
 TEST_CASE("an island that is too small is skipped alone", "[body][islands]") {
   const NodeSheet s = flat_sheet(41, 21);
-  Body both = body_with(s, Combine::Islands), alone = body_with(s, Combine::Islands);
+  GridBody both = body_with(s, Combine::Islands), alone = body_with(s, Combine::Islands);
   const SampledForce large = press(-10, 0, 3e4), small = press(10, 0, 3e4, 1);
   const auto report = step(both, inputs_of({large, small})).value();
   CHECK(report.solves());
@@ -78,12 +78,12 @@ TEST_CASE("an island that is too small is skipped alone", "[body][islands]") {
 TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
   const NodeSheet s = flat_sheet(41, 21);
   const SampledForce a = press(-10, 0, 3e4), b = press(10, 0, -5e4);
-  Body body = body_with(s, Combine::Islands);
+  GridBody body = body_with(s, Combine::Islands);
   REQUIRE(step(body, inputs_of({a, b})));
   const BodyState after = body.state();
   // A solve of one island continues with its velocity, and resets the velocity of the other island.
   REQUIRE(step(body, inputs_of({b})));
-  Body expected = body_with(s, Combine::Islands);
+  GridBody expected = body_with(s, Combine::Islands);
   BodyState start = after;
   for (int node = 0; node < s.grid.node_count(); ++node) {
     if (s.rest(node, 0) < 0) start.velocities.row(node).setZero();
@@ -98,7 +98,7 @@ TEST_CASE("velocity is carried per node over all islands", "[body][islands]") {
 TEST_CASE("a union that is a box is solved as that box, to the bit", "[body][union]") {
   const NodeSheet s = hilly_sheet(31, 21);
   const std::vector<SampledForce> forces{press(-2, 0, 3e4), press(1, 0, -5e4)};  // adjacent
-  Body one = body_with(s, Combine::Union), box = body_with(s, Combine::Box);
+  GridBody one = body_with(s, Combine::Union), box = body_with(s, Combine::Box);
   for (int frame = 0; frame < 8; ++frame) {
     REQUIRE(step(one, with_tangents(inputs_of(forces)))->solves());
     REQUIRE(step(box, with_tangents(inputs_of(forces)))->solves());
@@ -108,7 +108,7 @@ TEST_CASE("a union that is a box is solved as that box, to the bit", "[body][uni
 
 TEST_CASE("only the interior of a union moves", "[body][union]") {
   const NodeSheet s = hilly_sheet(31, 31);
-  Body body = body_with(s, Combine::Union);
+  GridBody body = body_with(s, Combine::Union);
   const auto report = step(body, inputs_of({press(-4, -4, 3e4, 5), press(3, 4, 5e4, 6)})).value();
   REQUIRE(report.selection.regions.size() == 1);
   REQUIRE(report.selection.regions[0].patches.size() == 1);
@@ -129,8 +129,8 @@ TEST_CASE("parts of a union that do not touch are solved as boxes, with tangents
   const SampledForce left = press(-10, 0, 3e4), right = press(10, 3, -5e4);
   BodyInputs in = inputs_of({left, right});
   in.tangents.su0 = {0, 30, 0};
-  Body both = body_with(s, Combine::Union), first = body_with(s, Combine::Box),
-       second = body_with(s, Combine::Box);
+  GridBody both = body_with(s, Combine::Union), first = body_with(s, Combine::Box),
+           second = body_with(s, Combine::Box);
   REQUIRE(step(both, in));
   in.forces = {left};
   REQUIRE(step(first, in));
@@ -148,7 +148,7 @@ TEST_CASE("the order of forces changes nothing but last bits", "[body]") {
   const Combine how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
   std::vector<SampledForce> forces{press(-4, -4, 3e4, 5), press(3, 4, 5e4, 6), press(11, -9, 2e4),
                                    press(-3, -5, -2e4, 2)};
-  Body body = body_with(s, how), other = body_with(s, how);
+  GridBody body = body_with(s, how), other = body_with(s, how);
   for (int frame = 0; frame < 6; ++frame) {
     REQUIRE(step(body, inputs_of(forces)));
     auto turned = forces;
@@ -162,7 +162,7 @@ TEST_CASE("the order of forces changes nothing but last bits", "[body]") {
 TEST_CASE("a node beyond double in world space is an error, not a force that selects nothing",
           "[body]") {
   const NodeSheet s = flat_sheet(9, 9);
-  Body body = body_with(s, Combine::Box);
+  GridBody body = body_with(s, Combine::Box);
   BodyInputs in = inputs_of({press(0, 0, 1)});
   in.transform.linear(0, 0) = 1e308;
   const auto report = step(body, in);
@@ -182,11 +182,11 @@ TEST_CASE("a frame is taken whole or not at all", "[body][islands]") {
   const BodySettings settings{
       .measure = Measure::Rest, .combine = Combine::Islands, .release = release};
   int patience = -1, asked = 0;
-  Body body(s.grid, s.rest, settings, SolverChoice::Auto,
-            {.should_stop = [&] { return asked++ == patience; }});
+  GridBody body(s.grid, s.rest, settings, SolverChoice::Auto,
+                {.should_stop = [&] { return asked++ == patience; }});
   REQUIRE(step(body, inputs_of(wide)));
   REQUIRE(step(body, inputs_of(wide)));
-  Body uninterrupted(s.grid, s.rest, settings);
+  GridBody uninterrupted(s.grid, s.rest, settings);
   uninterrupted.restore(body.state());
   REQUIRE(step(uninterrupted, inputs_of(narrow)));
 
@@ -220,13 +220,13 @@ TEST_CASE("a step in the memory of an earlier one is the same step", "[body][isl
   const auto how = GENERATE(Combine::Box, Combine::Islands, Combine::Union);
   const auto release = GENERATE(Release::Freeze, Release::Recover);
   const BodySettings settings{.combine = how, .release = release};
-  Body body(s.grid, s.rest, settings);
+  GridBody body(s.grid, s.rest, settings);
   for (int frame = 0; frame < 24; ++frame) {
     // Appears, stays, moves and disappears; sometimes with a second one.
     std::vector<SampledForce> forces;
     if (frame % 8 < 5) forces.push_back(press(-10 + frame / 4, 0, 3e4));
     if (frame % 6 < 4) forces.push_back(press(-4, 2, -2e4, 4.5));
-    Body fresh(s.grid, s.rest, settings);  // has no memory of earlier frames
+    GridBody fresh(s.grid, s.rest, settings);  // has no memory of earlier frames
     fresh.restore(body.state());
     const auto expected = step(fresh, inputs_of(forces)).value();
     const auto former = step(body, inputs_of(forces)).value();
@@ -246,13 +246,13 @@ TEST_CASE("a step after one that a force's function ended selects anew", "[body]
                                        return (p - Vector3d(0, 0, 4)).norm();
                                      },
                                      [](const Vector3d&) { return Vector3d(0, 1, 0); }};
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   REQUIRE(step(body, inputs_of({press(-10, 0, 3e4), function})));
   const BodyInputs moved = inputs_of({press(10, 0, 3e4), function});
   throws = true;
   CHECK_THROWS(step(body, moved));  // after it selected for the first force
   throws = false;
-  Body fresh(s.grid, s.rest, {});
+  GridBody fresh(s.grid, s.rest, {});
   fresh.restore(body.state());
   const auto expected = step(fresh, moved).value();
   CHECK(step(body, moved)->selection == expected.selection);

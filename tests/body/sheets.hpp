@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/body/body.hpp"
+#include "pliant/body/grid_body.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 

@@ -129,7 +129,7 @@ Result<int> last_frame(const Golden& golden) {
   const auto simulation = Simulation::make(*std::move(scene));
   if (!simulation) return fail(simulation.error());
   long nodes = 0;
-  for (const RestShape& shape : simulation->rest_shapes()) nodes += shape.mapping.rest.rows();
+  for (const RestShape& shape : simulation->rest_shapes()) nodes += shape.rest.rows();
   const int frames = nodes > most_nodes ? most_frames_of_large_surfaces : most_frames;
   return std::min(simulation->scene().end, simulation->scene().start + frames - 1);
 }

@@ -30,8 +30,7 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][
   const GridSheet sheet{.columns = 4, .rows = 3, .width = 3, .depth = 2};
   const RestShape from_sheet = make_rest_shape(with_shape(sheet), {})->shape;
   CHECK(from_sheet.name == "s");
-  CHECK(make_rest_shape(with_shape(make_mesh(sheet)), {})->shape.mapping.rest ==
-        from_sheet.mapping.rest);
+  CHECK(make_rest_shape(with_shape(make_mesh(sheet)), {})->shape.rest == from_sheet.rest);
 
   const ScratchFolder folder;
   std::string obj;
@@ -49,7 +48,7 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][
   }
   const auto from_file = make_rest_shape(with_shape(MeshFile{folder.write("m.obj", obj)}), {});
   REQUIRE(from_file);
-  CHECK(from_file->shape.mapping.rest == from_sheet.mapping.rest);
+  CHECK(from_file->shape.rest == from_sheet.rest);
 }
 
 TEST_CASE("the memory of a shape is reserved as long as it is held", "[simulation][rest_shape]") {

@@ -19,11 +19,11 @@ std::size_t bytes_of_state() {
   auto simulation = Simulation::make(moving_scene()).value();
   std::size_t bytes = 0;
   for (const RestShape& shape : simulation.rest_shapes()) {
-    const auto nodes = static_cast<std::size_t>(shape.mapping.grid.node_count());
+    const auto nodes = static_cast<std::size_t>(shape.grid->node_count());
     bytes += nodes * 6 * sizeof(double);
   }
-  return bytes + static_cast<std::size_t>(
-                     simulation.rest_shapes()[1].mapping.grid.node_count());  // it recovers
+  return bytes +
+         static_cast<std::size_t>(simulation.rest_shapes()[1].grid->node_count());  // it recovers
 }
 
 }  // namespace

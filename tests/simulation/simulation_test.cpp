@@ -496,13 +496,13 @@ TEST_CASE("a profile tells where the time of frames goes, when asked for",
 TEST_CASE("a state is that of the frame that was reported last", "[simulation]") {
   const Scene s = scene({sheet("s"), sheet("t")}, {travelling()});
   auto simulation = Simulation::make(s).value();
-  CHECK(simulation.state(1).positions == simulation.rest_shapes()[1].mapping.rest);
+  CHECK(simulation.state(1).positions == simulation.rest_shapes()[1].rest);
   CHECK(simulation.state(1).velocities.isZero(0));
   for (const int frame : {7, 3, 12}) {
     REQUIRE(simulation.report(frame));
     const BodyState state = simulation.state(0);
     const auto positions = simulation.at(frame).value().surface("s").object_positions();
-    CHECK(simulation.rest_shapes()[0].mapping.to_vertices(state.positions) == positions);
+    CHECK(simulation.rest_shapes()[0].to_vertices(state.positions) == positions);
     CHECK_FALSE(state.velocities.isZero(0));
   }
 }

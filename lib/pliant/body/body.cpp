@@ -1,293 +1,39 @@
 #include "pliant/body/body.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <span>
 #include <utility>
 
-#include "pliant/body/field_rows.hpp"
-#include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
-#include "pliant/core/stage_timer.hpp"
-#include "pliant/region/region.hpp"
 
 namespace pliant {
-namespace {
 
-double length(const Eigen::RowVector3d& a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
-// Tangents apply to the sides at the ends of the whole region; SPEC 5.
-EdgeTangents tangents_of(const Patch& patch, const Region& region, EdgeTangents tangents) {
-  if (patch.box.i0 != region.box.i0) tangents.su0.setZero();
-  if (patch.box.i1 != region.box.i1) tangents.su1.setZero();
-  if (patch.box.j0 != region.box.j0) tangents.sv0.setZero();
-  if (patch.box.j1 != region.box.j1) tangents.sv1.setZero();
-  return tangents;
-}
-
-// Whether a force has a box on the rest mesh, deformation or force box, that is empty now.
-bool is_lost(const ForceSelection& at_rest, const ForceSelection& now) {
-  return (now.deformation.is_empty() && !at_rest.deformation.is_empty()) ||
-         (now.force.is_empty() && !at_rest.force.is_empty());
-}
-
-// The rectangle, if a frame solves nothing else; an empty box: there are several patches, or the
-// patch has another outline.
-Box lone_rectangle(std::span<const Region> regions) {
-  const Patch* lone = nullptr;
-  for (const Region& region : regions) {
-    for (const Patch& patch : region.patches) {
-      if (lone || !patch.is_rectangle()) return {};
-      lone = &patch;
-    }
-  }
-  return lone ? lone->box : Box{};
-}
-
-bool is_outline_of(const Outline& outline, const Patch& patch) {
-  return outline.grid().columns == patch.box.columns() && outline.grid().rows == patch.box.rows() &&
-         outline.mask() == patch.interior;
-}
-
-}  // namespace
-
-bool StepPlan::solves() const {
-  return std::any_of(selection.regions.begin(), selection.regions.end(),
-                     [](const Region& region) { return region.is_solved(); });
-}
+bool StepPlan::solves() const { return unknown_count() > 0; }
 
 int StepPlan::unknown_count() const {
   int count = 0;
   for (const Region& region : selection.regions) {
     for (const Patch& patch : region.patches) count += patch.interior_count();
   }
+  for (const SurfacePiece& piece : surface.pieces) {
+    if (piece.moves()) count += piece.free_nodes;
+  }
   return count;
 }
 
-Body::Body(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
-           RunContext context)
-    : grid_(grid),
-      rest_(std::move(rest)),
-      settings_(settings),
-      profile_(context.profile),
-      solvers_(solver, std::move(context)) {
-  PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
-  reset();
-}
-
-void Body::reset() { state_ = rest_state(); }
+Body::Body(Field rest, const BodySettings& settings)
+    : rest_(std::move(rest)), settings_(settings), state_(rest_state()) {}
 
 BodyState Body::rest_state() const {
-  BodyState state{rest_, Field::Zero(grid_.node_count(), 3)};
-  if (recovers()) state.unsettled.assign(static_cast<std::size_t>(grid_.node_count()), 0);
+  BodyState state{rest_, Field::Zero(rest_.rows(), 3)};
+  if (recovers()) state.unsettled.assign(static_cast<std::size_t>(rest_.rows()), 0);
   return state;
 }
 
 void Body::restore(BodyState state) {
-  PLIANT_EXPECTS(state.positions.rows() == grid_.node_count());
-  PLIANT_EXPECTS(state.velocities.rows() == grid_.node_count());
+  PLIANT_EXPECTS(state.positions.rows() == rest_.rows());
+  PLIANT_EXPECTS(state.velocities.rows() == rest_.rows());
   PLIANT_EXPECTS(state.unsettled.size() == state_.unsettled.size());
   state_ = std::move(state);
-}
-
-Field Body::measured_nodes(const Transform& transform) const {
-  return to_world(transform, settings_.measure == Measure::Rest ? rest_ : state_.positions);
-}
-
-Result<StepPlan> Body::look(const BodyInputs& inputs) const {
-  BodyWorkspace work;
-  if (auto planned = plan(inputs, work); !planned) return fail(planned.error());
-  return std::move(work.plan);
-}
-
-Result<void> Body::plan(const BodyInputs& inputs, BodyWorkspace& work) const {
-  StepPlan& plan = work.plan;
-  Selection& selection = plan.selection;
-  work.tiles.update(grid_, {measured(), inputs.transform});
-  if (!work.tiles.are_finite()) {
-    return fail(ErrorCode::NotFinite, "a position in world space is not finite");
-  }
-  plan.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
-  selection = reselected(std::move(selection), work.tiles, inputs.forces, settings_.combine,
-                         inputs.selectors);
-  if (settings_.measure == Measure::Current) find_lost(inputs, work);
-  if (recovers()) {
-    plan.recovering = recovering_nodes(grid_, state_.unsettled, selection.regions, work.marks,
-                                       std::move(plan.recovering));
-    if (!plan.recovering.empty()) {
-      selection =
-          recombined(std::move(selection), settings_.combine, boxes_around(grid_, plan.recovering));
-    }
-    plan.settling = settling_nodes(grid_, rest_, state_.positions, state_.velocities,
-                                   selection.regions, work.marks, std::move(plan.settling));
-  }
-  for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
-    ForceSelection& force = selection.forces[k];
-    force.pushes = pushes(grid_, work.tiles.nodes(), inputs.forces[k], force.force,
-                          selection.patches_of_force(k));
-  }
-  return {};
-}
-
-// Finds the forces that lost their nodes. Selects on the rest mesh only for forces with an empty
-// box.
-void Body::find_lost(const BodyInputs& inputs, BodyWorkspace& work) const {
-  bool has_rest_tiles = false;
-  for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
-    const SampledForce& force = inputs.forces[k];
-    ForceSelection& now = work.plan.selection.forces[k];
-    const bool holds_region = force.deformation_radius == 0 || !now.deformation.is_empty();
-    const bool holds_load = force.force_radius == 0 || !now.force.is_empty();
-    if (holds_region && holds_load) continue;
-    if (!has_rest_tiles) work.rest_tiles.update(grid_, {rest_, inputs.transform});
-    has_rest_tiles = true;
-    now.is_lost = is_lost(boxes_of(work.rest_tiles, force), now);
-  }
-}
-
-Result<void> Body::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && !recovers()) {
-    work_.plan = {};
-    return {};
-  }
-  StageTimer planning(profile_, Stage::Selection);
-  if (auto planned = plan(inputs, work_); !planned) return planned;
-  planning.stop();
-  if (!work_.plan.solves()) {
-    settle(work_.plan.settling);
-    return {};
-  }
-  // Builds the next state beside the current one, which is kept until the next one is complete.
-  StageTimer beginning(profile_, Stage::StateOut);
-  begin_next();
-  beginning.stop();
-  if (auto solved = solve(inputs); !solved) return solved;
-  const StageTimer ending(profile_, Stage::StateOut);
-  return take();
-}
-
-void Body::settle(const std::vector<int>& nodes) {
-  for (const int node : nodes) {
-    state_.positions.row(node) = rest_.row(node);
-    state_.velocities.row(node).setZero();
-    state_.unsettled[static_cast<std::size_t>(node)] = 0;
-  }
-}
-
-// Nodes that no solve moves: they stay in place or are put at rest, without velocity.
-void Body::begin_next() {
-  const StepPlan& plan = work_.plan;
-  const Box hole = plan.settling.empty() ? lone_rectangle(plan.selection.regions) : Box{};
-  copy_around(grid_, hole, state_.positions, work_.next_positions);
-  clear_around(grid_, hole, work_.next_velocities);
-  for (const int node : plan.settling) work_.next_positions.row(node) = rest_.row(node);
-}
-
-// Destroys the solvers that the frame does not need.
-void Body::keep_solvers() {
-  const std::vector<Region>& regions = work_.plan.selection.regions;
-  std::vector<PatchSolve>& solves = work_.solves;
-  std::size_t count = 0;
-  bool are_same = true;
-  for (const Region& region : regions) {
-    for (const Patch& patch : region.patches) {
-      are_same =
-          are_same && count < solves.size() && is_outline_of(solves[count].problem.outline, patch);
-      ++count;
-    }
-  }
-  if (are_same && count == solves.size()) return;
-  std::vector<Outline> outlines;
-  for (const Region& region : regions) {
-    for (const Patch& patch : region.patches) {
-      const Grid grid{patch.box.columns(), patch.box.rows(), grid_.hu, grid_.hv};
-      outlines.emplace_back(grid, patch.interior);
-    }
-  }
-  solvers_.keep_only(outlines);
-  solves.resize(count);
-  for (std::size_t k = 0; k < count; ++k) solves[k].problem.outline = std::move(outlines[k]);
-}
-
-Result<void> Body::solve(const BodyInputs& inputs) {
-  const StepPlan& plan = work_.plan;
-  keep_solvers();
-  const bool from_rest = settings_.reference == Reference::Rest;
-  // Nodes that settle are put at rest before the solve.
-  const Field& positions = plan.settling.empty() ? state_.positions : work_.next_positions;
-  const Matrix3d to_object = inverse_linear(inputs.transform);
-  std::size_t place = 0;
-  for (std::size_t k = 0; k < plan.selection.regions.size(); ++k) {
-    const Region& region = plan.selection.regions[k];
-    if (!region.is_solved()) continue;
-    const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
-    for (const Patch& patch : region.patches) {
-      PatchSolve& one = work_.solves[place++];
-      PlateProblem& problem = one.problem;
-      const Box& box = patch.box;
-      one.patch = &patch;
-      one.settling_length = length;
-      problem.stiffness = inputs.stiffness;
-      problem.dynamics = inputs.dynamics;
-      problem.tangents = tangents_of(patch, region, inputs.tangents);
-      {
-        const StageTimer timer(profile_, Stage::Load);
-        problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, plan.selection, k,
-                                     box, to_object, std::move(problem.load));
-      }
-      {
-        const StageTimer timer(profile_, Stage::StateIn);
-        Field& displacement = one.plate.displacement;
-        displacement = from_rest
-                           ? difference_of(grid_, box, positions, rest_, std::move(displacement))
-                           : rows_of(grid_, box, positions, std::move(displacement));
-        one.plate.velocity = rows_of(grid_, box, state_.velocities, std::move(one.plate.velocity));
-      }
-      PlateSolver& solver = solvers_.solver_of(problem.outline);
-      auto next = solver.advance(problem, plan.steps, std::move(one.plate));
-      if (!next) return fail(next.error());
-      one.plate = *std::move(next);
-    }
-  }
-  return {};
-}
-
-// Makes the solution the state, all of it or nothing. The rim is not written: rest + (position -
-// rest) may round.
-Result<void> Body::take() {
-  const Field* const reference = settings_.reference == Reference::Rest ? &rest_ : nullptr;
-  for (const PatchSolve& one : work_.solves) {
-    if (!put_interior(grid_, *one.patch, one.plate.displacement, one.plate.velocity, reference,
-                      work_.next_positions, work_.next_velocities)) {
-      return fail(ErrorCode::NotFinite, "the state stopped being finite");
-    }
-  }
-  if (recovers()) mark_unsettled();
-  state_.positions.swap(work_.next_positions);
-  state_.velocities.swap(work_.next_velocities);
-  return {};
-}
-
-// Requires: the next positions are complete, but not yet in the state.
-void Body::mark_unsettled() {
-  std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  for (const PatchSolve& one : work_.solves) {
-    const Box& box = one.patch->box;
-    for (int j = box.j0 + 1; j < box.j1; ++j) {
-      for (int i = box.i0 + 1; i < box.i1; ++i) {
-        if (!one.patch->holds(i, j)) continue;
-        const int node = grid_.node(i, j);
-        const auto position = work_.next_positions.row(node);
-        const double displacement = length(position - rest_.row(node));
-        const double motion = length(position - state_.positions.row(node));
-        const double larger = std::max(displacement, motion);
-        state_.unsettled[static_cast<std::size_t>(node)] =
-            larger > 0 && larger >= one.settling_length;
-      }
-    }
-  }
 }
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pliant/plate/time_steps.hpp"
+#include "pliant/region/border.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace pliant {
@@ -31,6 +32,7 @@ struct BodySettings {
   Measure measure = Measure::Current;
   Combine combine = Combine::Box;
   Release release = Release::Freeze;
+  Border border = Border::Clamped;  ///< of a surface of triangles
 };
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/region/selection.hpp"
+#include "pliant/region/surface/surface_selection.hpp"
 
 namespace pliant {
 
@@ -11,6 +12,7 @@ namespace pliant {
 /// tell of it.
 struct StepPlan {
   Selection selection;          ///< of the forces, in the order of the inputs, and of `recovering`
+  SurfaceSelection surface;     ///< the same of a surface of triangles; empty for a grid
   TimeSteps steps;              ///< of the solve
   std::vector<int> recovering;  ///< nodes solved because they are not back at rest, ascending
   std::vector<int> settling;    ///< nodes put at rest before the solve, ascending

@@ -17,14 +17,10 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   report.recovering = static_cast<int>(step->recovering.size());
   report.settled = static_cast<int>(step->settling.size());
   report.regions = step->selection.regions;
-  const Field nodes = body.measured_nodes(inputs.body.transform);
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
-    const SampledForce& force = inputs.body.forces[k];
-    const ForceSelection& selection = step->selection.forces[k];
-    report.forces.push_back(
-        {std::string(inputs.sources[k].name), inputs.sources[k].kind,
-         std::make_shared<SampledForce>(force), selection,
-         push_of(body.grid(), nodes, force, selection.force, step->selection.patches_of_force(k))});
+    report.forces.push_back({std::string(inputs.sources[k].name), inputs.sources[k].kind,
+                             std::make_shared<SampledForce>(inputs.body.forces[k]),
+                             step->selection.forces[k], body.push_of(inputs.body, *step, k)});
   }
   if (std::string fault = inputs.faults->first(); !fault.empty()) {
     return fail(ErrorCode::NotFinite, std::move(fault));

@@ -33,7 +33,7 @@ class SurfacePreviewer {
                    double most_searched, const RunContext& context)
       : scene_(scene),
         surface_(surface),
-        body_(rest_shape.mapping, surface_.solver, context),
+        body_(rest_shape, surface_.solver, context),
         first_(first_solved_frame(scene_, surface_)),
         last_(std::max(first_, scene_.end - 1)),
         most_frames_(std::max(4.0, most_searched / body_.node_count())) {}

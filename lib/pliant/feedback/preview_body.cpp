@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "pliant/body/grid_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
 
@@ -28,18 +29,14 @@ double seen_lambda(std::span<const ExcitedMode> modes) {
 
 }  // namespace
 
-PreviewBody::PreviewBody(const GridMapping& mapping, const SolverSettings& settings,
-                         RunContext context)
-    : mapping_(mapping),
-      settings_(settings),
-      context_(std::move(context)),
-      share_(context_.memory) {}
+PreviewBody::PreviewBody(const RestShape& shape, const SolverSettings& settings, RunContext context)
+    : shape_(shape), settings_(settings), context_(std::move(context)), share_(context_.memory) {}
 
-Body PreviewBody::make(Reference reference) const {
-  return Body(
-      mapping_.grid, mapping_.rest,
-      {settings_.stepping, reference, settings_.measure, settings_.combine, settings_.release},
-      SolverChoice::Auto, context_);
+std::unique_ptr<Body> PreviewBody::make(Reference reference) const {
+  BodySettings settings = body_settings(settings_);
+  settings.reference = reference;
+  return std::make_unique<GridBody>(*shape_.grid, shape_.rest, settings, SolverChoice::Auto,
+                                    context_);
 }
 
 Result<void> PreviewBody::reserve() {
@@ -52,8 +49,8 @@ Result<void> PreviewBody::reserve() {
   if (!share_.try_resize(bytes)) {
     return fail(ErrorCode::OutOfMemory, "previewing its forces " + share_.complaint(bytes));
   }
-  real_.emplace(make(settings_.reference));
-  if (has_two) plain_.emplace(make(Reference::Rest));
+  real_ = make(settings_.reference);
+  if (has_two) plain_ = make(Reference::Rest);
   return {};
 }
 
@@ -64,7 +61,7 @@ Result<void> PreviewBody::check_faults() const {
 }
 
 Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
-  PLIANT_EXPECTS(real_.has_value());
+  PLIANT_EXPECTS(real_ != nullptr);
   if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   body(is_plain).reset();
   auto plan = body(is_plain).look(inputs);
@@ -73,7 +70,7 @@ Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
 }
 
 Result<void> PreviewBody::settle(BodyInputs inputs, bool is_plain) {
-  PLIANT_EXPECTS(real_.has_value());
+  PLIANT_EXPECTS(real_ != nullptr);
   inputs.dynamics = {0, 0};
   inputs.dt = inputs.frame_length;
   begin(is_plain);
@@ -106,7 +103,7 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
 
 // The displacements of a box's nodes, row by row; object space.
 Field PreviewBody::displacements(const Box& box) const {
-  const Grid& grid = mapping_.grid;
+  const Grid& grid = *shape_.grid;
   Field ways(Eigen::Index{box.columns()} * box.rows(), 3);
   for (int j = box.j0; j <= box.j1; ++j) {
     const int node = grid.node(box.i0, j), count = box.columns();
@@ -119,7 +116,7 @@ Field PreviewBody::displacements(const Box& box) const {
 
 PreviewBody::Peak PreviewBody::peak(const Transform& transform,
                                     const std::optional<Box>& box) const {
-  const Grid& grid = mapping_.grid;
+  const Grid& grid = *shape_.grid;
   const Box within = box.value_or(grid.box());
   const Field way = vectors_to_world(transform, displacements(within));
   Eigen::Index row = 0;
@@ -138,7 +135,7 @@ Vector3d PreviewBody::displacement(const Transform& transform, int node) const {
 
 std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
                                                  const SampledForce& force) const {
-  const Field nodes = to_world(inputs.transform, mapping_.rest);
+  const Field nodes = to_world(inputs.transform, shape_.rest);
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
     nearest = std::min(nearest, distance(force.kind, nodes.row(node).transpose()));
@@ -162,7 +159,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
     moved = &patch;
   }
   const Box& box = moved->box;
-  const Grid grid{box.columns(), box.rows(), mapping_.grid.hu, mapping_.grid.hv};
+  const Grid grid{box.columns(), box.rows(), shape_.grid->hu, shape_.grid->hv};
   const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
   if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
 

@@ -19,12 +19,12 @@ namespace pliant {
 class PreviewBody {
  public:
   /// Requires: mapping and settings outlive it.
-  PreviewBody(const GridMapping& mapping, const SolverSettings& settings, RunContext context);
+  PreviewBody(const RestShape& shape, const SolverSettings& settings, RunContext context);
 
   /// Makes the bodies, unless they exist. Errors: OutOfMemory.
   Result<void> reserve();
 
-  int node_count() const { return mapping_.grid.node_count(); }
+  int node_count() const { return static_cast<int>(shape_.rest.rows()); }
   const std::shared_ptr<ForceFaults>& faults() const { return faults_; }
 
   /// Checks that custom forces have returned only valid values so far. Errors: NotFinite.
@@ -66,15 +66,15 @@ class PreviewBody {
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
-  Body make(Reference reference) const;
+  std::unique_ptr<Body> make(Reference reference) const;
   Field displacements(const Box& box) const;
 
-  const GridMapping& mapping_;
+  const RestShape& shape_;
   const SolverSettings& settings_;
   RunContext context_;
   MemoryShare share_;
-  std::optional<Body> real_;   // as in the scene
-  std::optional<Body> plain_;  // if `real_` is not elastic about its rest shape
+  std::unique_ptr<Body> real_;   // as in the scene
+  std::unique_ptr<Body> plain_;  // if `real_` is not elastic about its rest shape
   const Body* current_ = nullptr;
   bool is_plain_ = true;     // whether the animation is of the plain body
   bool is_at_rest_ = false;  // nothing has moved yet

@@ -164,17 +164,6 @@ std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
 
 }  // namespace
 
-Field GridMapping::to_vertices(const Field& nodes, Field reuse) const {
-  reuse.resize(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
-  for (int component = 0; component < 3; ++component) {
-    const double* const from = nodes.col(component).data();
-    double* const to = reuse.col(component).data();
-    for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex)
-      to[vertex] = from[vertex_nodes[vertex]];
-  }
-  return reuse;
-}
-
 Result<GridMapping> find_grid(const Mesh& mesh) {
   // The first corner with a (u,v) gives the place of its vertex; the others must agree.
   const int vertex_count = mesh.vertex_count();

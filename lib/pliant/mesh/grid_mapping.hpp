@@ -17,10 +17,6 @@ struct GridMapping {
   Grid grid;
   std::vector<int> vertex_nodes;  ///< #vertices: the node of each vertex
   Field rest;                     ///< #nodes x 3: rest positions, object space [length]
-
-  /// A field on the nodes (#nodes x 3) copied to the vertices (#vertices x 3), in the memory of
-  /// `reuse`.
-  Field to_vertices(const Field& nodes, Field reuse = {}) const;
 };
 
 /// Largest distance of a u (v) from its lattice value, in spacings, for a lattice to be uniform.

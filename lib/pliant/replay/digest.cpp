@@ -44,7 +44,7 @@ Result<ReplayFrame> digest(Simulation& simulation, int frame, ThreadPool& thread
   if (with_states) digests.states.resize(count);
   threads.for_each(count, [&](std::size_t k) {
     const BodyState& state = simulation.state(k);
-    const Field& rest = simulation.rest_shapes()[k].mapping.rest;
+    const Field& rest = simulation.rest_shapes()[k].rest;
     digests.surfaces[k] = {hash_of(state.positions), hash_of(state.velocities),
                            hash_of(region_text(report->surfaces[k], state)),
                            peak_displacement(state.positions, rest)};

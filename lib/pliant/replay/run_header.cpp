@@ -91,7 +91,7 @@ void complete(ReplayHeader& header, const Simulation& simulation, std::optional<
   header.start = scene.start;
   header.end = std::min(scene.end, last_frame.value_or(scene.end));
   for (const RestShape& shape : simulation.rest_shapes()) {
-    header.surfaces.push_back({shape.name, shape.mapping.grid.columns, shape.mapping.grid.rows});
+    header.surfaces.push_back({shape.name, shape.grid->columns, shape.grid->rows});
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/read_mesh.hpp"
 #include "pliant/sampling/memory.hpp"
@@ -71,6 +72,26 @@ Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& 
 
 }  // namespace
 
+Field RestShape::to_vertices(const Field& nodes, Field reuse) const {
+  reuse.resize(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
+  for (int component = 0; component < 3; ++component) {
+    const double* const from = nodes.col(component).data();
+    double* const to = reuse.col(component).data();
+    if (grid) {
+      for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex)
+        to[vertex] = from[vertex_nodes[vertex]];
+      continue;
+    }
+    const double* const at_rest = rest.col(component).data();
+    const double* const vertices = mesh.positions.col(component).data();
+    for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex) {
+      const int node = vertex_nodes[vertex];
+      to[vertex] = vertices[vertex] + (node < 0 ? 0 : from[node] - at_rest[node]);
+    }
+  }
+  return reuse;
+}
+
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context) {
   const auto at_scene = [&](Error error) {
@@ -107,7 +128,12 @@ Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin&
                                 file ? ", mesh " + file->path : "", error.message);
     return at_scene(std::move(error));
   }
-  return ReservedShape{{surface.name, *std::move(mesh), *std::move(mapping)}, std::move(memory)};
+  return ReservedShape{{.name = surface.name,
+                        .mesh = *std::move(mesh),
+                        .vertex_nodes = std::move(mapping->vertex_nodes),
+                        .rest = std::move(mapping->rest),
+                        .grid = mapping->grid},
+                       std::move(memory)};
 }
 
 Result<MemoryShare> check_rest_shape(const Surface& surface, const SceneOrigin& origin,

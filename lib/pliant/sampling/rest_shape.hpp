@@ -1,21 +1,37 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "pliant/core/field.hpp"
+#include "pliant/core/grid.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
-#include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
 
-/// A surface before any force acts on it.
+struct TriangleSurface;
+
+/// A surface before any force acts on it: its mesh, and the nodes that are simulated.
 struct RestShape {
   std::string name;  ///< of the surface
   Mesh mesh;
-  GridMapping mapping;
+  std::vector<int> vertex_nodes;  ///< #vertices: the node of each; -1: it never moves
+  Field rest;                     ///< #nodes x 3: rest positions, object space [length]
+
+  /// The grid of the nodes; none: they are a surface of triangles.
+  std::optional<Grid> grid = {};
+  std::shared_ptr<const TriangleSurface> surface = {};  ///< null: a grid
+  std::string note = {};  ///< a remark for the author on how the mesh was read; may be empty
+
+  /// The vertices for positions of the nodes (#nodes x 3 -> #vertices x 3), in the memory of
+  /// `reuse`. Vertices of one node keep their offsets from each other.
+  Field to_vertices(const Field& nodes, Field reuse = {}) const;
 };
 
 /// A rest shape with the memory that it and its body need, reserved from the run's.

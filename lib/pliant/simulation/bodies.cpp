@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/body/grid_body.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
@@ -99,11 +100,11 @@ Result<void> Bodies::make_all() {
 }
 
 void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share) {
-  const GridMapping& mapping = rest_shape.mapping;
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
-  bodies_.emplace_back(mapping.grid, mapping.rest, body_settings(surface.solver), solver_,
-                       std::move(context));
+  bodies_.push_back(std::make_unique<GridBody>(*rest_shape.grid, rest_shape.rest,
+                                               body_settings(surface.solver), solver_,
+                                               std::move(context)));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
 }
@@ -129,7 +130,7 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   step.is_solved_now = is_solved_at(scene_, surface, frame);
   step.is_read = false;
   if (!step.is_solved_now) return;
-  Body& body = bodies_[index];
+  Body& body = *bodies_[index];
   {
     const StageTimer timer(profile_of(index), Stage::Sampling);
     step.inputs = sample_inputs(scene_, sampling_, index, frame, std::move(step.inputs));
@@ -175,9 +176,9 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const StageTimer timer(profile_of(k), Stage::Output);
     const Surface& surface = scene_.surfaces[k];
-    const Field& nodes = bodies_[k].state().positions;
+    const Field& nodes = bodies_[k]->state().positions;
     const Transform transform = sample_transform(surface.transform, frame);
-    const Extent extent = extent_of(transform, nodes, bodies_[k].rest());
+    const Extent extent = extent_of(transform, nodes, bodies_[k]->rest());
     if (!extent.is_finite) {
       return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
                           surface, frame));
@@ -187,7 +188,7 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
     shown.transform_ = transform;
     shown.peak_displacement_ = extent.peak_displacement;
     shown.object_positions_ =
-        rest_shapes_[k].mapping.to_vertices(nodes, std::move(shown.object_positions_));
+        rest_shapes_[k].to_vertices(nodes, std::move(shown.object_positions_));
   }
   return reuse;
 }
@@ -196,7 +197,7 @@ Result<FrameReport> Bodies::report(int frame) {
   std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
   threads_.for_each(bodies_.size(), [&](std::size_t k) {
     if (!is_solved_at(scene_, scene_.surfaces[k], frame)) return;
-    surfaces[k] = report_of(bodies_[k], sample_inputs(scene_, sampling_, k, frame));
+    surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame));
   });
   FrameReport report{frame, {}};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -207,16 +208,16 @@ Result<FrameReport> Bodies::report(int frame) {
 }
 
 void Bodies::reset() {
-  for (Body& body : bodies_) body.reset();
+  for (const auto& body : bodies_) body->reset();
 }
 
 void Bodies::restore(std::vector<BodyState> states) {
-  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].restore(std::move(states[k]));
+  for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k]->restore(std::move(states[k]));
 }
 
 std::vector<BodyState> Bodies::states(std::vector<BodyState> reuse) const {
   reuse.resize(bodies_.size());
-  for (std::size_t k = 0; k < bodies_.size(); ++k) reuse[k] = bodies_[k].state();
+  for (std::size_t k = 0; k < bodies_.size(); ++k) reuse[k] = bodies_[k]->state();
   return reuse;
 }
 
@@ -249,7 +250,7 @@ std::size_t Bodies::surface_memory() const {
 
 SolverCounts Bodies::solver_counts() const {
   SolverCounts total;
-  for (const Body& body : bodies_) total = total + body.solver_counts();
+  for (const auto& body : bodies_) total = total + body->solver_counts();
   return total;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -65,7 +66,7 @@ class Bodies {
   std::vector<BodyState> states(std::vector<BodyState> reuse = {}) const;
 
   std::size_t size() const { return bodies_.size(); }
-  std::span<const Body> all() const { return bodies_; }
+  std::span<const std::unique_ptr<Body>> all() const { return bodies_; }
   std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
   MemoryBudget& memory() { return memory_; }
   SolverChoice solver() const { return solver_; }
@@ -85,7 +86,7 @@ class Bodies {
   ThreadPool threads_;
   std::vector<MemoryShare> shares_;  // one a surface, as the following
   std::vector<RestShape> rest_shapes_;
-  std::vector<Body> bodies_;
+  std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<Step> steps_;
   SolverChoice solver_;
   RunContext context_;             // of the bodies, each with a profile of its own

@@ -22,9 +22,7 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
 Result<void> Simulation::Player::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    const Body& body = bodies_.all()[k];
-    kept_.add(rest_key(body.grid(), body.rest(), body_settings(scene_.surfaces[k].solver),
-                       bodies_.solver()));
+    kept_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
   }
   return {};
 }

@@ -53,7 +53,7 @@ Result<FrameReport> Simulation::report(int frame) { return player_->report(frame
 
 const BodyState& Simulation::state(std::size_t surface) const {
   PLIANT_EXPECTS(surface < player_->bodies().size());
-  return player_->bodies().all()[surface].state();
+  return player_->bodies().all()[surface]->state();
 }
 
 Result<std::string> Simulation::state_bytes(int frame) { return player_->state_bytes(frame); }

@@ -51,7 +51,8 @@ void KeptStates::write(std::size_t surface, int frame, const Body& body, const S
   if (after) store_->write(*after, to_bytes(*after, body.state(), facts, body.rest()));
 }
 
-std::optional<FrameStates> KeptStates::states_at(int frame, std::span<const Body> bodies) {
+std::optional<FrameStates> KeptStates::states_at(int frame,
+                                                 std::span<const std::unique_ptr<Body>> bodies) {
   const auto is_rest = [&](std::size_t k) { return key(k, frame) == keys_[k].rest(); };
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (!key(k, frame) || (!is_rest(k) && !store_->holds(*key(k, frame)))) return {};
@@ -59,23 +60,23 @@ std::optional<FrameStates> KeptStates::states_at(int frame, std::span<const Body
   FrameStates found{frame, {}};
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (is_rest(k)) {
-      found.states.push_back(bodies[k].rest_state());
+      found.states.push_back(bodies[k]->rest_state());
       continue;
     }
-    auto stored = read_stored(*store_, *key(k, frame), bodies[k].rest(), has_marks(bodies[k]));
+    auto stored = read_stored(*store_, *key(k, frame), bodies[k]->rest(), has_marks(*bodies[k]));
     if (!stored) return {};
     found.states.push_back(std::move(stored->state));
   }
   return found;
 }
 
-std::string KeptStates::checkpoint(int frame, std::span<const Body> bodies) {
+std::string KeptStates::checkpoint(int frame, std::span<const std::unique_ptr<Body>> bodies) {
   std::string bytes(checkpoint_magic);
   append(bytes, static_cast<std::uint64_t>(std::int64_t{frame}));
   append(bytes, bodies.size());
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const std::string state =
-        to_bytes(sealing_key(k, frame), bodies[k].state(), {}, bodies[k].rest());
+        to_bytes(sealing_key(k, frame), bodies[k]->state(), {}, bodies[k]->rest());
     append(bytes, state.size());
     bytes += state;
   }
@@ -84,7 +85,7 @@ std::string KeptStates::checkpoint(int frame, std::span<const Body> bodies) {
 }
 
 Result<FrameStates> KeptStates::read_checkpoint(std::string_view bytes,
-                                                std::span<const Body> bodies) {
+                                                std::span<const std::unique_ptr<Body>> bodies) {
   const auto refuse = [](std::string message) {
     return fail(ErrorCode::InvalidInput, "cannot restore the state: " + std::move(message));
   };
@@ -106,7 +107,7 @@ Result<FrameStates> KeptStates::read_checkpoint(std::string_view bytes,
     const std::string_view state = reader.take(reader.number());
     if (!reader.is_sound()) return refuse("it is damaged");
     const Hash of_scene = sealing_key(k, found.frame);
-    auto stored = from_bytes(state, of_scene, bodies[k].rest(), has_marks(bodies[k]));
+    auto stored = from_bytes(state, of_scene, bodies[k]->rest(), has_marks(*bodies[k]));
     if (!stored) {
       return refuse(fmt::format(
           "surface \"{}\", its channels or forces before frame {}, or the engine is not the same",

@@ -46,14 +46,15 @@ class KeptStates {
   void write(std::size_t surface, int frame, const Body& body, const StepFacts& facts);
 
   /// The states of all surfaces at a frame; null if the store lacks any of them.
-  std::optional<FrameStates> states_at(int frame, std::span<const Body> bodies);
+  std::optional<FrameStates> states_at(int frame, std::span<const std::unique_ptr<Body>> bodies);
 
   /// The present states as the bytes of a checkpoint at `frame`.
-  std::string checkpoint(int frame, std::span<const Body> bodies);
+  std::string checkpoint(int frame, std::span<const std::unique_ptr<Body>> bodies);
 
   /// The states of a checkpoint. Errors: InvalidInput if the bytes are damaged, or not of this
   /// scene, at that frame, under this engine and solver.
-  Result<FrameStates> read_checkpoint(std::string_view bytes, std::span<const Body> bodies);
+  Result<FrameStates> read_checkpoint(std::string_view bytes,
+                                      std::span<const std::unique_ptr<Body>> bodies);
 
  private:
   const std::optional<Hash>& key(std::size_t surface, int frame);

@@ -2,10 +2,13 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
 
+#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/states/engine.hpp"
 
@@ -77,9 +80,16 @@ class HashedValues {
     const auto& [columns, rows, hu, hv] = grid;
     add_all(columns, rows, hu, hv);
   }
+  // What of a surface the states depend on, besides the rest positions: all else follows from it.
+  void add(const TriangleSurface& surface) {
+    add_bytes(surface.face_starts);
+    add_bytes(surface.corner_nodes);
+    add_bytes(surface.triangles);
+    add(surface.unit);
+  }
   void add(const BodySettings& settings) {
-    const auto& [stepping, reference, measure, combine, release] = settings;
-    add_all(stepping, reference, measure, combine, release);
+    const auto& [stepping, reference, measure, combine, release, border] = settings;
+    add_all(stepping, reference, measure, combine, release, border);
   }
 
   void add(const Interpolation& interpolation) {
@@ -124,9 +134,9 @@ class HashedValues {
     if (falloff_curve) add(falloff_curve->keys());
   }
   void add(const BodyInputs& inputs) {
-    const auto& [transform, stiffness, dynamics, tangents, frame_length, dt, forces, selectors] =
-        inputs;
-    add_all(transform, stiffness, dynamics, tangents, frame_length, dt, forces, selectors);
+    const auto& [transform, stiffness, dynamics, tangents, poisson, frame_length, dt, forces,
+                 selectors] = inputs;
+    add_all(transform, stiffness, dynamics, tangents, poisson, frame_length, dt, forces, selectors);
   }
 
   Hash hash() const { return hash_of(std::string_view(bytes_)); }
@@ -137,17 +147,23 @@ class HashedValues {
     (add(values), ...);
   }
 
+  template <class T>
+  void add_bytes(const std::vector<T>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    add(hash_of(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())));
+  }
+
   std::string bytes_;
 };
 
 }  // namespace
 
-Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
-              SolverChoice solver) {
+Hash rest_key(const RestShape& shape, const BodySettings& settings, SolverChoice solver) {
   HashedValues values;
   values.add(engine_name());
-  values.add(grid);
-  values.add(hash_of(rest));
+  if (shape.grid) values.add(*shape.grid);
+  values.add(hash_of(shape.rest));
+  if (shape.surface) values.add(*shape.surface);
   values.add(settings);
   values.add(solver);
   // The available solvers decide which sparse solver a choice means.

@@ -5,20 +5,20 @@
 #include <vector>
 
 #include "pliant/body/settings.hpp"
-#include "pliant/core/grid.hpp"
 #include "pliant/core/hash.hpp"
 #include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
 
+struct RestShape;
 struct SurfaceInputs;
 
 // Keys for states, computed from everything that determines a state. Not for programs.
 
-/// The key of a surface at rest under this engine: from its grid and rest positions, the settings
-/// of its body and the solver. An engine whose sources differ in any byte gives other keys.
-Hash rest_key(const Grid& grid, const Field& rest, const BodySettings& settings,
-              SolverChoice solver);
+/// The key of a surface at rest under this engine: from its nodes at rest and how they are
+/// joined, the settings of its body and the solver. An engine whose sources differ in any byte
+/// gives other keys.
+Hash rest_key(const RestShape& shape, const BodySettings& settings, SolverChoice solver);
 
 /// The key of a state of a surface that has no key of its own; see `next_key`.
 Hash unnamed_key(const Hash& rest);

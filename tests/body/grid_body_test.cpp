@@ -1,4 +1,4 @@
-#include "pliant/body/body.hpp"
+#include "pliant/body/grid_body.hpp"
 
 #include <cmath>
 #include <limits>
@@ -54,7 +54,7 @@ double peak(const Body& body) {
 
 TEST_CASE("nothing moves without a force", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   const auto report = step(body, inputs({})).value();
   CHECK_FALSE(report.solves());
   CHECK(body.state().positions == s.rest);
@@ -62,7 +62,7 @@ TEST_CASE("nothing moves without a force", "[body]") {
 
 TEST_CASE("a force of magnitude 0 leaves the rest shape to the bit", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   for (int frame = 0; frame < 5; ++frame) CHECK(step(body, inputs({poke(0, 0, 0)}))->solves());
   CHECK(body.state().positions == s.rest);
   CHECK(body.state().velocities.isZero(0));
@@ -70,7 +70,7 @@ TEST_CASE("a force of magnitude 0 leaves the rest shape to the bit", "[body]") {
 
 TEST_CASE("only the interior of the region moves, and only it carries velocity", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   const auto report = step(body, inputs({poke(1, 2)})).value();
   REQUIRE(report.solves());
   const Box region = report.selection.box();
@@ -86,7 +86,7 @@ TEST_CASE("only the interior of the region moves, and only it carries velocity",
 
 TEST_CASE("velocity is carried by node from the last solve, across frames without one", "[body]") {
   const Sheet s = sheet();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   REQUIRE(step(body, inputs({poke(-2, 0)}))->solves());
   const BodyState after = body.state();
 
@@ -100,7 +100,7 @@ TEST_CASE("velocity is carried by node from the last solve, across frames withou
   const auto second = step(body, inputs({poke(2, 0, 0)})).value();
   REQUIRE(second.solves());
   const Box& region = second.selection.box();
-  Body expected(s.grid, s.rest, {});
+  GridBody expected(s.grid, s.rest, {});
   BodyState start = after;
   for (int j = 0; j < s.grid.rows; ++j) {
     for (int i = 0; i < s.grid.columns; ++i) {
@@ -127,7 +127,7 @@ TEST_CASE("velocity is carried by node from the last solve, across frames withou
 
 TEST_CASE("a body released under reference=\"rest\" comes back to rest", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   for (int frame = 0; frame < 10; ++frame) REQUIRE(step(body, inputs({poke(0, 0, 200)}))->solves());
   const double pressed = peak(body);
   CHECK(pressed > 1e-4);
@@ -145,14 +145,14 @@ TEST_CASE("a body released under reference=\"rest\" comes back to rest", "[body]
 
 TEST_CASE("reference=\"none\" smooths relief away without any load", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {.reference = Reference::None});
+  GridBody body(s.grid, s.rest, {.reference = Reference::None});
   BodyInputs in = inputs({poke(0, 0, 0)});
   in.dynamics = {0, 0};
   REQUIRE(step(body, in)->solves());
   CHECK(peak(body) > 0.1);
   // On a flat sheet with its own slopes as tangents there is nothing to smooth.
   const Sheet flat = sheet();
-  Body flat_body(flat.grid, flat.rest, {.reference = Reference::None});
+  GridBody flat_body(flat.grid, flat.rest, {.reference = Reference::None});
   in.tangents.su0 = in.tangents.su1 = {16, 0, 0};  // x runs over 16 while u runs over 1
   in.tangents.sv0 = in.tangents.sv1 = {0, 0, 16};
   REQUIRE(step(flat_body, in)->solves());
@@ -164,7 +164,7 @@ TEST_CASE("superposition holds on a fixed region", "[body]") {
   // A force of magnitude 0 selects the region; measure="rest" keeps every box in place.
   const auto moved = [&](std::vector<SampledForce> forces) {
     forces.push_back(poke(0, 0, 0, 100));
-    Body body(s.grid, s.rest, {.measure = Measure::Rest});
+    GridBody body(s.grid, s.rest, {.measure = Measure::Rest});
     for (int frame = 0; frame < 6; ++frame) REQUIRE(step(body, inputs(forces))->solves());
     return Field(body.state().positions - s.rest);
   };
@@ -189,7 +189,7 @@ TEST_CASE("swapping u with v and b with d mirrors the motion", "[body]") {
   };
   const Sheet s = relief();
   const Sheet m{s.grid, mirrored(s.rest, s.grid)};
-  Body body(s.grid, s.rest, {}), image(m.grid, m.rest, {});
+  GridBody body(s.grid, s.rest, {}), image(m.grid, m.rest, {});
   BodyInputs in = inputs({{PointForce{{1, 0, -2}, {0.3, 1, -0.2}}, 2000, 5.5, 3, Falloff::Smooth}});
   in.stiffness = {1.5, 0.5, 3};
   in.tangents.su0 = {1, 2, 3};
@@ -210,7 +210,7 @@ TEST_CASE("swapping u with v and b with d mirrors the motion", "[body]") {
 TEST_CASE("rest measure keeps hold of nodes that a strong force pushes away", "[body]") {
   const Sheet s = sheet();
   const SampledForce strong = poke(0, 0, 1e7);
-  Body current(s.grid, s.rest, {}), rest(s.grid, s.rest, {.measure = Measure::Rest});
+  GridBody current(s.grid, s.rest, {}), rest(s.grid, s.rest, {.measure = Measure::Rest});
   bool was_lost = false;
   for (int frame = 0; frame < 6; ++frame) {
     const auto report = step(current, inputs({strong})).value();
@@ -223,7 +223,7 @@ TEST_CASE("rest measure keeps hold of nodes that a strong force pushes away", "[
 
 TEST_CASE("a force beyond the surface is not one that lost its nodes", "[body]") {
   const Sheet s = sheet();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   const auto report = step(body, inputs({poke(0, 0), poke(100, 0)})).value();
   CHECK(report.solves());
   for (const ForceSelection& force : report.selection.forces) CHECK_FALSE(force.is_lost);
@@ -231,7 +231,7 @@ TEST_CASE("a force beyond the surface is not one that lost its nodes", "[body]")
 
 TEST_CASE("reset clears what was carried", "[body]") {
   const Sheet s = relief();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   REQUIRE(step(body, inputs({poke(0, 0)}))->solves());
   const BodyState first = body.state();
   REQUIRE(step(body, inputs({poke(1, 0)}))->solves());
@@ -244,7 +244,7 @@ TEST_CASE("reset clears what was carried", "[body]") {
 
 TEST_CASE("a state that stops being finite is an error, not a state", "[body]") {
   const Sheet s = sheet();
-  Body body(s.grid, s.rest, {});
+  GridBody body(s.grid, s.rest, {});
   BodyInputs in = inputs({poke(0, 0, 1e308)});
   in.dynamics = {0, 0};
   in.stiffness = {1e-10, 2e-10, 1e-10};
@@ -256,7 +256,7 @@ TEST_CASE("a state that stops being finite is an error, not a state", "[body]") 
 
 TEST_CASE("one factorization serves all frames of one material and region", "[body]") {
   const Sheet s = sheet();
-  Body body(s.grid, s.rest, {.measure = Measure::Rest});
+  GridBody body(s.grid, s.rest, {.measure = Measure::Rest});
   BodyInputs in = inputs({poke(0, 0, 10)});
   for (int frame = 0; frame < 240; ++frame) {
     in.forces[0].magnitude = frame;

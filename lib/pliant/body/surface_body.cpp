@@ -1,0 +1,275 @@
+#include "pliant/body/surface_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
+
+namespace pliant {
+namespace {
+
+std::vector<bool> border_nodes(const TriangleSurface& surface) {
+  std::vector<bool> is_border(static_cast<std::size_t>(surface.node_count()));
+  for (int face = 0; face < surface.face_count(); ++face) {
+    const std::span<const int> nodes = surface.nodes_of(face), edges = surface.edges_of(face);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (surface.edge_sides[edges[k]] != 1) continue;
+      is_border[nodes[k]] = is_border[nodes[(k + 1) % nodes.size()]] = true;
+    }
+  }
+  return is_border;
+}
+
+double length_of(const Eigen::RowVector3d& a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+SolverChoice factor_of(SolverChoice choice) {
+  const bool is_factor = choice == SolverChoice::Cholmod || choice == SolverChoice::Eigen;
+  return is_factor ? choice : available_solvers().front();
+}
+
+}  // namespace
+
+SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface,
+                         const BodySettings& settings, SolverChoice solver, RunContext context)
+    : Body(surface->rest, settings),
+      surface_(std::move(surface)),
+      tree_(rest_),
+      is_border_(border_nodes(*surface_)),
+      settling_length_(1e-6 * length_of(rest_.colwise().maxCoeff() - rest_.colwise().minCoeff())),
+      solver_(factor_of(solver)),
+      context_(std::move(context)) {
+  PLIANT_EXPECTS(settings.reference == Reference::Rest);
+}
+
+SolverCounts SurfaceBody::solver_counts() const {
+  SolverCounts counts = past_counts_;
+  for (const PieceSolve& one : solves_) counts = counts + one.plate->counts();
+  return counts;
+}
+
+Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
+  StepPlan fresh;
+  if (auto planned = plan(inputs, fresh); !planned) return fail(planned.error());
+  return fresh;
+}
+
+Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
+  SurfaceSelection& selection = plan.surface;
+  plan.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
+  LevelSet level_set =
+      find_level_set(*surface_, tree_, inputs.transform, inputs.forces, inputs.selectors);
+  snap(level_set);
+  plan.recovering.clear();
+  plan.settling.clear();
+  if (recovers()) {
+    for (int node = 0; node < surface_->node_count(); ++node) {
+      if (state_.unsettled[node] && !(level_set.at_node(node) > 0)) plan.recovering.push_back(node);
+    }
+    if (!plan.recovering.empty()) level_set = with_inside(*surface_, level_set, plan.recovering);
+    for (int node = 0; node < surface_->node_count(); ++node) {
+      const bool is_at_rest =
+          state_.positions.row(node) == rest_.row(node) && state_.velocities.row(node).isZero(0);
+      if (!is_at_rest && !(level_set.at_node(node) > 0)) plan.settling.push_back(node);
+    }
+  }
+  if (selection.pieces.empty() || !(selection.level_set == level_set)) {
+    selection.level_set = std::move(level_set);
+    selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
+  }
+  return weigh(inputs, selection);
+}
+
+// Computes the loads, and what each force does.
+Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& selection) const {
+  const PlacedNodes nodes(measured(), inputs.transform), rest_nodes(rest_, inputs.transform);
+  for (const int node : selection.level_set.nodes) {
+    if (!nodes.at(node).allFinite()) {
+      return fail(ErrorCode::NotFinite, "a position in world space is not finite");
+    }
+  }
+  selection.loads.clear();
+  for (const SurfacePiece& piece : selection.pieces) {
+    selection.loads.push_back(Field::Zero(piece.free_nodes, 3));
+  }
+  selection.forces.assign(inputs.forces.size(), {});
+  SurfaceLoads loads(selection.level_set, selection.pieces, nodes);
+  for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
+    const SampledForce& force = inputs.forces[k];
+    SurfaceForceSelection& told = selection.forces[k];
+    const auto reach = [&](double radius, bool with_faces) {
+      return reaches(*surface_, tree_, inputs.transform, force, radius, with_faces);
+    };
+    told.selects = inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
+    told.inside_nodes = count_inside(*surface_, selection.level_set, inputs.transform, force);
+    told.is_near = told.inside_nodes > 0 || (told.selects && reach(force.deformation_radius, true));
+    told.acts_inside = loads.compute(force);
+    told.acts_outside = !told.acts_inside && reach(force.force_radius, false);
+    if (!told.acts_inside && settings_.measure == Measure::Current) {
+      SurfaceLoads at_rest(selection.level_set, selection.pieces, rest_nodes);
+      told.is_lost = at_rest.compute(force);
+    }
+    for (std::size_t n = 0; n < selection.pieces.size(); ++n) {
+      if (!selection.pieces[n].moves()) continue;
+      selection.loads[n] += loads.loads(n);
+    }
+    told.push = loads.push();
+  }
+  return {};
+}
+
+Result<void> SurfaceBody::step(const BodyInputs& inputs) {
+  if (inputs.forces.empty() && !recovers()) {
+    plan_ = {};
+    return {};
+  }
+  StageTimer planning(context_.profile, Stage::Selection);
+  if (auto planned = plan(inputs, plan_); !planned) return planned;
+  planning.stop();
+  if (!plan_.solves()) {
+    for (const int node : plan_.settling) {
+      state_.positions.row(node) = rest_.row(node);
+      state_.velocities.row(node).setZero();
+      state_.unsettled[static_cast<std::size_t>(node)] = 0;
+    }
+    return {};
+  }
+  // Builds the next state beside the current one, which is kept until the next one is complete.
+  next_positions_ = state_.positions;
+  for (const int node : plan_.settling) next_positions_.row(node) = rest_.row(node);
+  next_velocities_.setZero(rest_.rows(), 3);
+  keep_plates();
+  if (auto solved = solve(inputs); !solved) return solved;
+  const StageTimer ending(context_.profile, Stage::StateOut);
+  return take();
+}
+
+// Makes a plate of each piece that moves; one whose cells are those of an earlier plate keeps it.
+void SurfaceBody::keep_plates() {
+  std::vector<PieceSolve> earlier = std::exchange(solves_, {});
+  for (const SurfacePiece& piece : plan_.surface.pieces) {
+    if (!piece.moves()) continue;
+    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const PieceSolve& one) {
+      return one.plate && one.plate->cells() == piece.cells && one.plate->masses() == piece.masses;
+    });
+    solves_.push_back(same != earlier.end() ? std::move(*same) : PieceSolve{});
+  }
+  // Plates that are gone make room for new ones.
+  for (PieceSolve& one : earlier) {
+    if (one.plate) past_counts_ = past_counts_ + one.plate->counts();
+    one.plate.reset();
+  }
+  std::size_t place = 0;
+  for (const SurfacePiece& piece : plan_.surface.pieces) {
+    if (!piece.moves()) continue;
+    std::unique_ptr<TrianglePlate>& plate = solves_[place++].plate;
+    if (plate) continue;
+    plate = std::make_unique<TrianglePlate>(piece.cells, piece.masses, solver_, context_);
+  }
+}
+
+Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
+  const SurfaceSelection& selection = plan_.surface;
+  const auto& [unit_u, unit_v] = surface_->unit;
+  const EdgeTangents& tangents = inputs.tangents;
+  std::size_t place = 0;
+  for (std::size_t k = 0; k < selection.pieces.size(); ++k) {
+    const SurfacePiece& piece = selection.pieces[k];
+    if (!piece.moves()) continue;
+    PieceSolve& one = solves_[place++];
+    const std::optional<double> poisson =
+        settings_.border == Border::Free ? std::optional(inputs.poisson) : std::nullopt;
+    one.problem.bending = bending_of(inputs.stiffness, surface_->unit, poisson);
+    one.problem.dynamics = inputs.dynamics;
+    one.problem.slopes = {tangents.su0 / unit_u, tangents.su1 / unit_u, tangents.sv0 / unit_v,
+                          tangents.sv1 / unit_v};
+    one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
+    one.state = state_of(piece);
+    auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
+    if (!next) return fail(next.error());
+    one.state = *std::move(next);
+  }
+  return {};
+}
+
+// Displacement and velocity of a piece's points.
+TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
+  const LevelSet& level_set = plan_.surface.level_set;
+  const auto at_node = [&](int k) -> Eigen::RowVector3d {
+    const int node = level_set.nodes[k];
+    return next_positions_.row(node) - rest_.row(node);
+  };
+  // The mean over those corners of a face that are not inside.
+  const auto at_centre = [&](int face) -> Eigen::RowVector3d {
+    Eigen::RowVector3d sum(0, 0, 0);
+    int count = 0;
+    for (const int corner : level_set.corners_of(static_cast<std::size_t>(face))) {
+      if (level_set.at_nodes[corner] > 0) continue;
+      sum += at_node(corner);
+      ++count;
+    }
+    return count > 0 ? Eigen::RowVector3d(sum / count) : sum;
+  };
+  TriangleState state{Field::Zero(piece.cells.point_count, 3), Field(piece.free_nodes, 3)};
+  for (std::size_t k = 0; k < piece.points.size(); ++k) {
+    auto row = state.displacement.row(static_cast<Eigen::Index>(k));
+    if (piece.points[k] >= 0) {
+      row = at_node(piece.points[k]);
+      continue;
+    }
+    const CutPoint& point = piece.cut_points[-1 - piece.points[k]];
+    if (point.kind == CutPoint::Kind::Rim) {
+      row = point.of[1] >= 0 ? at_node(point.of[1]) : at_centre(-1 - point.of[1]);
+    } else if (point.kind == CutPoint::Kind::Centre &&
+               static_cast<int>(k) >= piece.cells.free_points) {
+      row = at_centre(point.face);
+    }
+  }
+  for (int k = 0; k < piece.free_nodes; ++k) {
+    state.velocity.row(k) = state_.velocities.row(level_set.nodes[piece.points[k]]);
+  }
+  return state;
+}
+
+// Makes the solution the state, all of it or nothing.
+Result<void> SurfaceBody::take() {
+  const std::vector<int>& nodes = plan_.surface.level_set.nodes;
+  std::size_t place = 0;
+  for (const SurfacePiece& piece : plan_.surface.pieces) {
+    if (!piece.moves()) continue;
+    const TriangleState& state = solves_[place++].state;
+    for (int k = 0; k < piece.free_nodes; ++k) {
+      const int node = nodes[piece.points[k]];
+      next_positions_.row(node) = rest_.row(node) + state.displacement.row(k);
+      next_velocities_.row(node) = state.velocity.row(k);
+      if (!next_positions_.row(node).allFinite() || !next_velocities_.row(node).allFinite()) {
+        return fail(ErrorCode::NotFinite, "the state stopped being finite");
+      }
+    }
+  }
+  if (recovers()) mark_unsettled();
+  state_.positions.swap(next_positions_);
+  state_.velocities.swap(next_velocities_);
+  return {};
+}
+
+// Requires: the next positions are complete, but not yet in the state.
+void SurfaceBody::mark_unsettled() {
+  std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
+  for (const SurfacePiece& piece : plan_.surface.pieces) {
+    if (!piece.moves()) continue;
+    for (int k = 0; k < piece.free_nodes; ++k) {
+      const int node = plan_.surface.level_set.nodes[piece.points[k]];
+      const auto position = next_positions_.row(node);
+      const double larger = std::max(length_of(position - rest_.row(node)),
+                                     length_of(position - state_.positions.row(node)));
+      state_.unsettled[static_cast<std::size_t>(node)] = larger > 0 && larger >= settling_length_;
+    }
+  }
+}
+
+}  // namespace pliant
