@@ -316,8 +316,10 @@ int run_bake(const BakeOptions& options) {
   run.solver = *solver;
   run.profile = options.is_profiled;
   run.store = store->get();
+  const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
+  print_notes(simulation->scene(), note_count);
   auto output = open_output(*simulation, options, *frames);
   if (!output) return report(output.error());
 

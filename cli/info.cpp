@@ -28,9 +28,9 @@ Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
   if (!rest) return fail(rest.error());
   for (std::size_t k = 0; k < facts.scene.surfaces.size(); ++k) {
     const RestShape& shape = simulation.rest_shapes()[k];
-    facts.surfaces.push_back({*shape.grid, static_cast<std::size_t>(shape.mesh.vertex_count()),
-                              bounding_box(rest->surfaces()[k].positions()),
-                              bounding_box(shape.rest)});
+    facts.surfaces.push_back(
+        {shape.grid, summary_of(shape), static_cast<std::size_t>(shape.mesh.vertex_count()),
+         bounding_box(rest->surfaces()[k].positions()), bounding_box(shape.rest)});
   }
   facts.surface_memory = simulation.surface_memory();
   for (const Preview& preview : facts.previews) {
@@ -80,8 +80,10 @@ int run_info(const InfoOptions& options) {
     }
     return tell({.file = options.scene, .scene = *scene}, options);
   }
+  const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
+  print_notes(simulation->scene(), note_count);
   SceneFacts facts{.file = options.scene, .scene = simulation->scene()};
   if (const auto looked = look_at_surfaces(facts, *simulation, run); !looked) {
     return report(looked.error());

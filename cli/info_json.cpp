@@ -16,8 +16,18 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
   Json json = {{"name", surface.name}, {"enabled", surface.enabled}};
   const auto* file = std::get_if<MeshFile>(&surface.shape);
   json["mesh"] = file ? Json(file->path) : Json(nullptr);
-  json["columns"] = facts.grid.columns;
-  json["rows"] = facts.grid.rows;
+  if (facts.grid) {
+    json["columns"] = facts.grid->columns;
+    json["rows"] = facts.grid->rows;
+  } else {
+    const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
+    json["grid"] = nullptr;
+    json["nodes"] = nodes;
+    json["faces"] = faces;
+    json["pieces"] = pieces;
+    json["borderEdges"] = border_edges;
+    json["unit"] = unit;
+  }
   json["vertices"] = facts.vertex_count;
   json["boundingBox"] = bounds_json(facts.placed);
   json["ownBoundingBox"] = bounds_json(facts.own);
@@ -27,10 +37,14 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
 Json region_json(const RegionPreview& region) {
   Json parts = Json::array();
   for (const Box& part : region.region.parts) parts.push_back(to_json(part));
-  Json json = {{"box", to_json(region.region.box)},
-               {"parts", parts},
-               {"solvable", region.is_solvable},
-               {"staticPeak", region.static_peak}};
+  Json json;
+  if (region.counts.cells > 0) {
+    json = to_json(region.counts);
+  } else {
+    json = {{"box", to_json(region.region.box)}, {"parts", parts}};
+  }
+  json["solvable"] = region.is_solvable;
+  json["staticPeak"] = region.static_peak;
   if (!region.has_vibration) {
     json["vibration"] = nullptr;
     return json;
@@ -56,7 +70,7 @@ Json preview_json(const Preview& preview, const Scene& scene) {
   json["frame"] = preview.frame ? Json(*preview.frame) : Json(nullptr);
   json["everyFrame"] = preview.is_every_frame;
   if (is_force) json["magnitude"] = preview.magnitude;
-  json["selected"] = to_json(preview.selected);
+  json["selected"] = preview.counts.cells > 0 ? to_json(preview.counts) : to_json(preview.selected);
   if (preview.of == Preview::Of::All) json["apart"] = preview.is_apart;
   json["solvable"] = preview.is_solvable;
   json["staticPeak"] = preview.is_solved ? Json(preview.static_peak) : Json(nullptr);

@@ -32,12 +32,22 @@ std::string box_text(const BoundingBox& box) {
   return corner(box.low) + " to " + corner(box.high);
 }
 
+// `grid 61 x 61`, or `surface of 507 nodes in 500 faces, …`.
+std::string nodes_text(const SceneFacts::SurfaceFacts& facts) {
+  if (facts.grid) return fmt::format("grid {} x {}", facts.grid->columns, facts.grid->rows);
+  const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
+  const std::string lengths = unit[0] == unit[1] ? fmt::format("{:.5g}", unit[0])
+                                                 : fmt::format("{:.5g} {:.5g}", unit[0], unit[1]);
+  return fmt::format("surface of {} in {}, {}, {}, unit {}", counted(nodes, "node"),
+                     counted(faces, "face"), counted(pieces, "piece"),
+                     counted(border_edges, "border edge"), lengths);
+}
+
 std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
-  std::string text =
-      fmt::format("  {}  {}, grid {} x {}, {}{}\n    bounding box {}\n", surface.name,
-                  shape_text(surface.shape), facts.grid.columns, facts.grid.rows,
-                  counted(facts.vertex_count, "vertex", "vertices"),
-                  surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
+  std::string text = fmt::format(
+      "  {}  {}, {}, {}{}\n    bounding box {}\n", surface.name, shape_text(surface.shape),
+      nodes_text(facts), counted(facts.vertex_count, "vertex", "vertices"),
+      surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
   if (facts.own.low != facts.placed.low || facts.own.high != facts.placed.high) {
     text += fmt::format("    {} before its transform\n", box_text(facts.own));
   }
@@ -71,7 +81,13 @@ std::string vibration_text(const RegionPreview& region, double fps) {
   return text;
 }
 
+std::string cut_text(const CutCounts& counts) {
+  return fmt::format("{} inside, {}", counted(counts.inside_nodes, "node"),
+                     counted(counts.cells, "cell"));
+}
+
 std::string region_text(const RegionPreview& region) {
+  if (region.counts.cells > 0) return cut_text(region.counts);
   const Box& box = region.region.box;
   return fmt::format("{} x {} nodes, columns {} to {}, rows {} to {}", box.columns(), box.rows(),
                      box.i0, box.i1, box.j0, box.j1);
@@ -93,7 +109,8 @@ std::string regions_text(const Preview& preview, double fps) {
     text += fmt::format("    region of {}: {}\n", region_text(*regions[k]),
                         regions[k]->is_solvable
                             ? fmt::format("static peak {:.4g}", regions[k]->static_peak)
-                            : "too few nodes to solve");
+                        : regions[k]->counts.cells > 0 ? "nothing holds it"
+                                                       : "too few nodes to solve");
     if (regions[k]->has_vibration) text += vibration_text(*regions[k], fps);
   }
   if (regions.size() > most) text += fmt::format("    and {} more\n", regions.size() - most);
@@ -145,11 +162,14 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
                               preview.largest_magnitude, preview.largest_magnitude_frame);
   }
   const Box& box = preview.selected;
-  text += fmt::format("at frame {}{} {} {} x {} nodes, columns {} to {}, rows {} to {}\n",
-                      *preview.frame,
+  const std::string selected =
+      preview.counts.cells > 0
+          ? cut_text(preview.counts)
+          : fmt::format("{} x {} nodes, columns {} to {}, rows {} to {}", box.columns(), box.rows(),
+                        box.i0, box.i1, box.j0, box.j1);
+  text += fmt::format("at frame {}{} {} {}\n", *preview.frame,
                       is_force ? fmt::format(", at magnitude {:g},", preview.magnitude) : "",
-                      preview.of == Preview::Of::All ? "they select" : "it selects", box.columns(),
-                      box.rows(), box.i0, box.i1, box.j0, box.j1);
+                      preview.of == Preview::Of::All ? "they select" : "it selects", selected);
   if (!preview.is_every_frame)
     text += "    not every frame was examined, because the range is long\n";
   if (preview.is_apart) {
@@ -158,7 +178,8 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
         "force moves the surface more than alone; combine=\"islands\" solves each box by itself\n";
   }
   if (!preview.is_solvable) {
-    text += "    fewer than 3 x 3 nodes: too few to solve\n";
+    text += preview.counts.cells > 0 ? "    none of them can move\n"
+                                     : "    fewer than 3 x 3 nodes: too few to solve\n";
   } else if (!preview.is_solved) {
     text += "    too many nodes to preview the static peak and the natural frequency\n";
   } else {

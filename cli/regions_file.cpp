@@ -14,8 +14,8 @@ namespace pliant::cli {
 namespace {
 
 // `force` is the force of the report; null: a group.
-Json force_json(const ForceReport& report, const Force* force, int frame) {
-  const auto& [name, kind, sampled, selection, push] = report;
+Json force_json(const ForceReport& report, bool is_surface, const Force* force, int frame) {
+  const auto& [name, kind, sampled, selection, push, counts] = report;
   Json json = {{"name", name},
                {"kind", kind},
                {"magnitude", sampled->magnitude},
@@ -29,9 +29,13 @@ Json force_json(const ForceReport& report, const Force* force, int frame) {
   } else {
     json["center"] = to_json(std::get<PointForce>(sampled->kind).center);
   }
-  json["deformationBox"] = to_json(selection.deformation);
-  json["forceBox"] = to_json(selection.force);
-  json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);
+  if (is_surface) {
+    json.update(to_json(counts));
+  } else {
+    json["deformationBox"] = to_json(selection.deformation);
+    json["forceBox"] = to_json(selection.force);
+    json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);
+  }
   json["pushedNodes"] = push.node_count;
   json["load"] = to_json(push.sum);
   return json;
@@ -52,23 +56,30 @@ Json surface_json(const Scene& scene, int frame, std::size_t surface, const Surf
   auto next = scene.forces.begin();  // reports are in the order of the scene
   for (const ForceReport& force : report.forces) {
     if (force.kind == "group") {
-      forces.push_back(force_json(force, nullptr, frame));
+      forces.push_back(force_json(force, report.is_surface, nullptr, frame));
       continue;
     }
     next = std::find_if(next, scene.forces.end(),
                         [&](const Force& each) { return each.name == force.name; });
-    forces.push_back(force_json(force, &*next, frame));
+    forces.push_back(force_json(force, report.is_surface, &*next, frame));
   }
-  return {{"name", scene.surfaces[surface].name},
-          {"solved", report.is_solved},
-          {"selected", to_json(selected)},
-          {"steps", report.is_solved ? report.steps.count : 0},
-          {"dt", report.is_solved ? Json(report.steps.length) : Json(nullptr)},
-          {"unknowns", report.unknown_count},
-          {"recovering", report.recovering},
-          {"settled", report.settled},
-          {"regions", regions},
-          {"forces", forces}};
+  Json json = {{"name", scene.surfaces[surface].name},
+               {"solved", report.is_solved},
+               {"selected", to_json(selected)},
+               {"steps", report.is_solved ? report.steps.count : 0},
+               {"dt", report.is_solved ? Json(report.steps.length) : Json(nullptr)},
+               {"unknowns", report.unknown_count},
+               {"recovering", report.recovering},
+               {"settled", report.settled},
+               {"regions", regions},
+               {"forces", forces}};
+  if (!report.is_surface) return json;
+  for (const char* of_grid : {"selected", "regions"}) json.erase(of_grid);
+  json["grid"] = nullptr;
+  json["cut"] = to_text(report.cut);
+  json["pieces"] = Json::array();
+  for (const CutCounts& piece : report.pieces) json["pieces"].push_back(to_json(piece));
+  return json;
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ int report(const Error& error) {
   return exit_code(error);
 }
 
-void print_notes(const Scene& scene) {
-  for (const SceneNote& note : scene.notes) {
+void print_notes(const Scene& scene, std::size_t first) {
+  for (const SceneNote& note : std::span(scene.notes).subspan(first)) {
     print(stderr, fmt::format("{}:{}: note: {}\n", printable(scene.origin.file), note.line,
                               printable(note.message)));
   }

@@ -32,7 +32,7 @@ int exit_code_after_output(int code);
 int report(const Error& error);
 
 /// Prints the notes of a scene: remarks on valid content.
-void print_notes(const Scene& scene);
+void print_notes(const Scene& scene, std::size_t first = 0);
 
 /// Prints the warnings of a run, each with its line.
 void print_warnings(const Simulation& simulation);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct SceneFacts {
 
   /// One for each surface, in the order of the scene.
   struct SurfaceFacts {
-    Grid grid;
+    std::optional<Grid> grid;  ///< null: a surface of triangles
+    std::optional<SurfaceSummary> triangles;
     std::size_t vertex_count = 0;
     BoundingBox placed;  ///< in the world, at the first frame
     BoundingBox own;     ///< before its transform

@@ -63,18 +63,17 @@ int tell(const Error& error, const std::string& file, Findings* findings) {
 
 // `findings`: receives the results instead of the streams; null: prints them.
 int validate(const std::string& file, const ValidateOptions& options, Findings* findings) {
-  const auto scene = read_scene(file, options.root);
+  auto scene = read_scene(file, options.root);
   if (!scene) return tell(scene.error(), file, findings);
+  auto checked = Simulation::check(*scene, simulation_options(options.resources));
+  if (checked) scene->notes.insert(scene->notes.end(), checked->begin(), checked->end());
   if (!findings) print_notes(*scene);
   if (findings) {
     for (const SceneNote& note : scene->notes) {
       add_problem(*findings, scene->origin.file, note.line, "note", note.message);
     }
   }
-  if (const auto checked = Simulation::check(*scene, simulation_options(options.resources));
-      !checked) {
-    return tell(checked.error(), file, findings);
-  }
+  if (!checked) return tell(checked.error(), file, findings);
   if (!options.is_quiet && !findings) {
     print(stdout, fmt::format("{}: valid: {}, {}, frames {} to {}\n", printable(scene->origin.file),
                               counted(scene->surfaces.size(), "surface"),

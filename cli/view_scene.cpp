@@ -34,8 +34,10 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   run.should_stop = should_stop;
   run.store = store;
   if (store != nullptr) run.max_memory -= std::min(run.max_memory, store->byte_budget());
+  const std::size_t note_count = scene.notes.size();
   auto simulation = Simulation::make(std::move(scene), run);
   if (!simulation) return fail(simulation.error());
+  print_notes(simulation->scene(), note_count);
   auto baked = [&] {
     Progress progress(frames->last - simulation->scene().start + 1, options.is_quiet);
     return viewer::view_bake(*simulation, *frames, {run.max_memory, should_stop},

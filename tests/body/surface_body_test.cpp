@@ -40,7 +40,7 @@ BodyInputs moving_inputs(std::vector<SampledForce> forces) {
 
 constexpr BodySettings at_rest_measured = {.measure = Measure::Rest};
 
-SurfaceBody body_of(const Mesh& mesh, const SurfaceReading& reading = {},
+SurfaceBody body_of(const Mesh& mesh, const MeshReading& reading = {},
                     const BodySettings& settings = at_rest_measured) {
   return SurfaceBody(std::make_shared<TriangleSurface>(make_surface(mesh, reading).value()),
                      settings);
@@ -123,7 +123,8 @@ TEST_CASE("the unit carries a grid's numbers over to its remesh", "[body][surfac
   Mesh mesh = square(64, 1, 0.25);
   mesh.positions.col(0) *= 2;
   mesh.positions.col(2) *= 3;
-  SurfaceBody remesh = body_of(mesh, {.axis = Vector3d(1, 0, 0), .unit = std::array{2.0, 3.0}});
+  SurfaceBody remesh =
+      body_of(mesh, {.unit = std::array{2.0, 3.0}, .axis = std::array{1.0, 0.0, 0.0}});
   BodyInputs in = static_inputs({load_on({0, 0, 0}, 9, 9)});
   in.stiffness = {1.5, 0.7, 0.4};
   REQUIRE(sheet.step(in));
@@ -136,10 +137,10 @@ TEST_CASE("b and d change places with an axis turned by 90 degrees", "[body][sur
   BodyInputs in = static_inputs({load_on({0.1, 0, 0}, 0.35, 0.2)});
   in.stiffness = {2, 1, 0.5};
   in.tangents = {{0, 0.1, 0}, {0, 0.2, 0}, {0, -0.3, 0}, {0, 0.4, 0}};
-  SurfaceBody along_x = body_of(mesh, {.axis = Vector3d(1, 0, 0)});
+  SurfaceBody along_x = body_of(mesh, {.axis = std::array{1.0, 0.0, 0.0}});
   REQUIRE(along_x.step(in));
   // v = n x u: with u along z and n up, v runs along x.
-  SurfaceBody along_z = body_of(mesh, {.axis = Vector3d(0, 0, 1)});
+  SurfaceBody along_z = body_of(mesh, {.axis = std::array{0.0, 0.0, 1.0}});
   std::swap(in.stiffness.b, in.stiffness.d);
   std::swap(in.tangents.sv0, in.tangents.su0);
   std::swap(in.tangents.sv1, in.tangents.su1);

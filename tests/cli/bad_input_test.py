@@ -125,8 +125,11 @@ class BadInput(Command):
                 place = f":{line}" if line else ""
                 self.assertRegex(lines[0], rf"^\S*m\.obj{place}: error: ")
                 self.assertIn(words, lines[0])
-        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")  # no (u,v): no grid
-        self.assertRegex(self.refused(scene)[0], r"s\.xml:3: error: surface \"sheet\", mesh .*no \(u,v\)")
+        # no (u,v): no grid
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")
+        scene = self.write("s.xml", SCENE.format(end=9).replace(GRID, '<mesh file="m.obj" uv="grid"/>'))
+        self.assertRegex(self.refused(scene)[0],
+                         r"s\.xml:3: error: surface \"sheet\", mesh .*: the mesh is no even grid: it has no \(u,v\)")
 
     def test_files_that_are_no_scene(self):
         for name, text in (("empty", ""), ("blank", "\n\n"), ("text", "hello"), ("root", "<a/>")):

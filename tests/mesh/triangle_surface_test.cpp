@@ -15,7 +15,7 @@ namespace {
 
 TriangleSurface surface_of(const std::vector<Vector3d>& positions,
                            const std::vector<std::vector<int>>& faces,
-                           const SurfaceReading& reading = {}) {
+                           const MeshReading& reading = {}) {
   return make_surface(mesh_of(positions, faces), reading).value();
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("a face of more than three corners is a fan round its centre", "[mesh]
 TEST_CASE("u follows the axis, another one, or the first edge", "[mesh][surface]") {
   const double root = std::sqrt(0.5);
   // In the xy-plane.
-  const auto along = [&](const Vector3d& axis) {
+  const auto along = [&](const std::array<double, 3>& axis) {
     return surface_of({{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}}, {.axis = axis}).triangles[0];
   };
   CHECK(along({5, 0, 0}).b == std::array{1.0, 1.0});
@@ -86,8 +86,8 @@ TEST_CASE("u follows the axis, another one, or the first edge", "[mesh][surface]
   CHECK(along({0.2, 0, -1}).b == std::array{1.0, 1.0});  // slanted, but long enough
   CHECK(along({0.05, 0, 1}).c[0] == 0.05 * 0 + along({1, 0.05, 0}).c[0]);  // (z, x, y)
   // Both lie across a triangle whose normal is (1, 1, 1): then the first edge.
-  const TriangleSurface slanted =
-      surface_of({{0, 0, 0}, {1, -1, 0}, {0, 1, -1}}, {{0, 1, 2}}, {.axis = Vector3d(1, 1, 1)});
+  const TriangleSurface slanted = surface_of({{0, 0, 0}, {1, -1, 0}, {0, 1, -1}}, {{0, 1, 2}},
+                                             {.axis = std::array{1.0, 1.0, 1.0}});
   CHECK(length(slanted.triangles[0].b) == slanted.triangles[0].b[0]);
   CHECK(slanted.triangles[0].b[0] == Approx(2 * root));
 }

@@ -17,7 +17,7 @@ namespace {
 double smallest(const Grid& grid, const Stiffness& stiffness,
                 SolverChoice kind = available_solvers().front()) {
   const auto solver = make_plate_solver(kind);
-  return smallest_eigenvalue(*solver, {grid, stiffness, 0}).value();
+  return smallest_eigenvalue(vibrating(*solver, {grid, stiffness, 0}).value()).value();
 }
 
 // An independent slow path: all eigenvalues of the full matrix.
@@ -79,7 +79,8 @@ TEST_CASE("a plate of another outline vibrates as its full matrix says", "[plate
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>())
           .eigenvalues()(0);
   const auto solver = make_plate_solver(available_solvers().front());
-  CHECK_THAT(smallest_eigenvalue(*solver, system).value(), WithinRel(expected, 1e-6));
+  CHECK_THAT(smallest_eigenvalue(vibrating(*solver, system).value()).value(),
+             WithinRel(expected, 1e-6));
 }
 
 TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate][vibration]") {
@@ -98,7 +99,7 @@ TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate]
     const Eigen::VectorXd shape =
         matrix.selfadjointView<Eigen::Upper>().toDenseMatrix().ldlt().solve(load);
     const Eigen::Index node = size / 3;
-    const auto modes = excited_modes(*solver, system, shape, node).value();
+    const auto modes = excited_modes(vibrating(*solver, system).value(), shape, node).value();
     double shares = 0;
     for (const ExcitedMode& mode : modes) shares += mode.share;
     CHECK_THAT(shares, WithinRel(1.0, 1e-9));
@@ -124,8 +125,8 @@ TEST_CASE("what is odd in the middle has no part in the slowest vibration", "[pl
   }
   const auto solver = make_plate_solver(available_solvers().front());
   const PlateSystem system{grid, {}, 0};
-  const auto modes = excited_modes(*solver, system, shape, 3).value();
-  const double first = smallest_eigenvalue(*solver, system).value();
+  const auto modes = excited_modes(vibrating(*solver, system).value(), shape, 3).value();
+  const double first = smallest_eigenvalue(vibrating(*solver, system).value()).value();
   for (const ExcitedMode& mode : modes) {
     if (mode.lambda < 2 * first) CHECK(std::abs(mode.share) < 1e-9);  // rounding error
   }
@@ -140,12 +141,12 @@ TEST_CASE("vibrations are no longer searched when the run is stopped", "[plate][
   const Eigen::VectorXd shape = Eigen::VectorXd::LinSpaced(unknown_count(system.outline), 1, 2);
   for (patience = 0; patience < 3; ++patience) {
     asked = 0;
-    const auto lambda = smallest_eigenvalue(*solver, system);
+    const auto lambda = smallest_eigenvalue(vibrating(*solver, system).value());
     REQUIRE_FALSE(lambda);
     CHECK(lambda.error().code == ErrorCode::Interrupted);
     CHECK(asked == patience + 1);
     asked = 0;
-    const auto modes = excited_modes(*solver, system, shape, 3);
+    const auto modes = excited_modes(vibrating(*solver, system).value(), shape, 3);
     REQUIRE_FALSE(modes);
     CHECK(modes.error().code == ErrorCode::Interrupted);
     CHECK(asked == patience + 1);

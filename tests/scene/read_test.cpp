@@ -124,7 +124,7 @@ TEST_CASE("everything that is left out has its documented default", "[scene][rea
   CHECK_FALSE(surface.solver.start_frame);
   CHECK(surface.solver.stepping == Stepping::Exact);
   CHECK(surface.solver.reference == Reference::Rest);
-  CHECK(surface.solver.measure == Measure::Current);
+  CHECK_FALSE(surface.solver.measure);
   for (const Force& force : scene.forces) {
     CAPTURE(force.name);
     CHECK(force.enabled.at(3));

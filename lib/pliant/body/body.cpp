@@ -7,6 +7,10 @@
 
 namespace pliant {
 
+bool StepPlan::selects() const {
+  return surface ? !surface->pieces.empty() : !selection.regions.empty();
+}
+
 bool StepPlan::solves() const { return unknown_count() > 0; }
 
 int StepPlan::unknown_count() const {
@@ -14,7 +18,8 @@ int StepPlan::unknown_count() const {
   for (const Region& region : selection.regions) {
     for (const Patch& patch : region.patches) count += patch.interior_count();
   }
-  for (const SurfacePiece& piece : surface.pieces) {
+  if (!surface) return count;
+  for (const SurfacePiece& piece : surface->pieces) {
     if (piece.moves()) count += piece.free_nodes;
   }
   return count;

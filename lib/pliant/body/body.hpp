@@ -20,7 +20,7 @@ struct BodyInputs {
   Stiffness stiffness;               ///< elliptic
   Dynamics dynamics;                 ///< density, damping >= 0
   EdgeTangents tangents;             ///< object space
-  double poisson = 0.3;              ///< of a plate with a free edge [1]
+  double poisson = 0.3;              ///< of a surface with a free border [1]
   double frame_length = 0;           ///< [s], > 0
   double dt = 0;                     ///< [s], accepted by `check_time_step`
   std::vector<SampledForce> forces;  ///< the enabled ones that target the body, world space

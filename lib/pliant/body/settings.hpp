@@ -1,7 +1,7 @@
 #pragma once
 
+#include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/plate/time_steps.hpp"
-#include "pliant/region/border.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace pliant {

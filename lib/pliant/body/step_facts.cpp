@@ -1,5 +1,6 @@
 #include "pliant/body/step_facts.hpp"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -59,6 +60,39 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const Selection& se
   return facts;
 }
 
+ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const SurfaceSelection& selection,
+                    bool is_solved) {
+  const SurfaceForceSelection& selected = selection.forces[k];
+  const bool has_magnitude = inputs.forces[k].magnitude != 0;
+  const bool is_inside = selected.counts.inside_nodes > 0;
+  ForceFacts facts;
+  facts.is_between_nodes = selected.selects && !is_inside && selected.is_near;
+  facts.is_too_small =
+      is_inside && std::all_of(selection.pieces.begin(), selection.pieces.end(),
+                               [](const SurfacePiece& piece) { return piece.free_nodes == 0; });
+  facts.is_outside = is_solved && has_magnitude && selected.acts_outside;
+  facts.touches = !selected.selects || is_inside || selected.acts_inside;
+  facts.is_lost = selected.is_lost;
+  facts.is_push_awaited =
+      is_solved && has_magnitude && facts.touches && !selected.acts_outside && !selected.is_lost;
+  facts.pushes = selected.push.node_count > 0;
+  return facts;
+}
+
+StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan,
+                   const SurfaceSelection& selection, StepFacts facts) {
+  facts.is_solved = plan.solves();
+  facts.is_surface = true;
+  facts.has_loose_piece =
+      std::any_of(selection.pieces.begin(), selection.pieces.end(),
+                  [](const SurfacePiece& piece) { return piece.free_nodes > 0 && !piece.moves(); });
+  facts.forces.clear();
+  for (std::size_t k = 0; k < selection.forces.size(); ++k) {
+    facts.forces.push_back(facts_of(k, inputs, selection, facts.is_solved));
+  }
+  return facts;
+}
+
 }  // namespace
 
 bool falls_apart(const Selection& selection, std::vector<Box>& room) {
@@ -88,6 +122,7 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
 
 StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combine,
                    StepFacts reuse) {
+  if (plan.surface) return facts_of(inputs, plan, *plan.surface, std::move(reuse));
   const Selection& selection = plan.selection;
   StepFacts facts = std::move(reuse);
   facts.is_solved = plan.solves();

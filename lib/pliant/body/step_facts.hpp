@@ -11,13 +11,14 @@ namespace pliant {
 
 /// The facts about one force.
 struct ForceFacts {
-  bool is_too_small = false;     ///< it selects nodes, but too few are solved
-  bool is_outside = false;       ///< its magnitude is not 0, and its force box is outside the
-                                 ///< region
-  bool touches = false;          ///< it selects a node, or its force box reaches the region
-  bool is_push_awaited = false;  ///< it is expected to move a node, at this frame or another
-  bool pushes = false;           ///< it moves a node
-  bool is_lost = false;          ///< it pushes nodes of the rest mesh, but none of the present mesh
+  bool is_too_small = false;      ///< it selects nodes, but too few are solved, or all are held
+  bool is_between_nodes = false;  ///< on a surface: it reaches a face, but no node
+  bool is_outside = false;        ///< its magnitude is not 0, and its force box is outside the
+                                  ///< region
+  bool touches = false;           ///< it selects a node, or its force box reaches the region
+  bool is_push_awaited = false;   ///< it is expected to move a node, at this frame or another
+  bool pushes = false;            ///< it moves a node
+  bool is_lost = false;  ///< it pushes nodes of the rest mesh, but none of the present mesh
 
   bool is_apart = false;  ///< boxes that do not meet form one region, and its own is one of them
 
@@ -26,11 +27,14 @@ struct ForceFacts {
 
 struct StepFacts {
   bool is_solved = false;
+  bool is_surface = false;       ///< of triangles
+  bool has_loose_piece = false;  ///< on a surface: nothing holds a piece of the region
   std::vector<ForceFacts> forces = {};
   std::vector<Box> room = {};  ///< scratch memory, not a fact
 
   friend bool operator==(const StepFacts& a, const StepFacts& b) {
-    return a.is_solved == b.is_solved && a.forces == b.forces;
+    return a.is_solved == b.is_solved && a.is_surface == b.is_surface &&
+           a.has_loose_piece == b.has_loose_piece && a.forces == b.forces;
   }
 };
 

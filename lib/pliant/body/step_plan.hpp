@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pliant/plate/time_steps.hpp"
@@ -11,12 +12,13 @@ namespace pliant {
 /// What one step of a body does, decided before it solves: for the step itself, and for all that
 /// tell of it.
 struct StepPlan {
-  Selection selection;          ///< of the forces, in the order of the inputs, and of `recovering`
-  SurfaceSelection surface;     ///< the same of a surface of triangles; empty for a grid
-  TimeSteps steps;              ///< of the solve
+  Selection selection;  ///< of the forces, in the order of the inputs, and of `recovering`
+  std::optional<SurfaceSelection> surface;  ///< the same on a surface of triangles; null: a grid
+  TimeSteps steps;                          ///< of the solve
   std::vector<int> recovering;  ///< nodes solved because they are not back at rest, ascending
   std::vector<int> settling;    ///< nodes put at rest before the solve, ascending
 
+  bool selects() const;       ///< whether there is a region, even one that is not solved
   bool solves() const;        ///< whether any node moves
   int unknown_count() const;  ///< nodes that move, of all patches
 };

@@ -59,7 +59,8 @@ Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
 }
 
 Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
-  SurfaceSelection& selection = plan.surface;
+  if (!plan.surface) plan.surface.emplace();
+  SurfaceSelection& selection = *plan.surface;
   plan.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
   LevelSet level_set =
       find_level_set(*surface_, tree_, inputs.transform, inputs.forces, inputs.selectors);
@@ -105,8 +106,13 @@ Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& sele
       return reaches(*surface_, tree_, inputs.transform, force, radius, with_faces);
     };
     told.selects = inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
-    told.inside_nodes = count_inside(*surface_, selection.level_set, inputs.transform, force);
-    told.is_near = told.inside_nodes > 0 || (told.selects && reach(force.deformation_radius, true));
+    const std::vector<bool> within =
+        nodes_within(*surface_, selection.level_set, inputs.transform, force);
+    for (const SurfacePiece& piece : selection.pieces) {
+      told.counts = told.counts + piece.counts_of(within);
+    }
+    told.is_near =
+        told.counts.inside_nodes > 0 || (told.selects && reach(force.deformation_radius, true));
     told.acts_inside = loads.compute(force);
     told.acts_outside = !told.acts_inside && reach(force.force_radius, false);
     if (!told.acts_inside && settings_.measure == Measure::Current) {
@@ -151,7 +157,7 @@ Result<void> SurfaceBody::step(const BodyInputs& inputs) {
 // Makes a plate of each piece that moves; one whose cells are those of an earlier plate keeps it.
 void SurfaceBody::keep_plates() {
   std::vector<PieceSolve> earlier = std::exchange(solves_, {});
-  for (const SurfacePiece& piece : plan_.surface.pieces) {
+  for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
     const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const PieceSolve& one) {
       return one.plate && one.plate->cells() == piece.cells && one.plate->masses() == piece.masses;
@@ -164,7 +170,7 @@ void SurfaceBody::keep_plates() {
     one.plate.reset();
   }
   std::size_t place = 0;
-  for (const SurfacePiece& piece : plan_.surface.pieces) {
+  for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
     std::unique_ptr<TrianglePlate>& plate = solves_[place++].plate;
     if (plate) continue;
@@ -172,8 +178,14 @@ void SurfaceBody::keep_plates() {
   }
 }
 
+Bending SurfaceBody::bending(const BodyInputs& inputs) const {
+  const bool is_free = settings_.border == Border::Free;
+  return bending_of(inputs.stiffness, surface_->unit,
+                    is_free ? std::optional(inputs.poisson) : std::nullopt);
+}
+
 Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
-  const SurfaceSelection& selection = plan_.surface;
+  const SurfaceSelection& selection = *plan_.surface;
   const auto& [unit_u, unit_v] = surface_->unit;
   const EdgeTangents& tangents = inputs.tangents;
   std::size_t place = 0;
@@ -181,9 +193,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     const SurfacePiece& piece = selection.pieces[k];
     if (!piece.moves()) continue;
     PieceSolve& one = solves_[place++];
-    const std::optional<double> poisson =
-        settings_.border == Border::Free ? std::optional(inputs.poisson) : std::nullopt;
-    one.problem.bending = bending_of(inputs.stiffness, surface_->unit, poisson);
+    one.problem.bending = bending(inputs);
     one.problem.dynamics = inputs.dynamics;
     one.problem.slopes = {tangents.su0 / unit_u, tangents.su1 / unit_u, tangents.sv0 / unit_v,
                           tangents.sv1 / unit_v};
@@ -198,7 +208,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
 
 // Displacement and velocity of a piece's points.
 TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
-  const LevelSet& level_set = plan_.surface.level_set;
+  const LevelSet& level_set = plan_.surface->level_set;
   const auto at_node = [&](int k) -> Eigen::RowVector3d {
     const int node = level_set.nodes[k];
     return next_positions_.row(node) - rest_.row(node);
@@ -237,9 +247,9 @@ TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
 
 // Makes the solution the state, all of it or nothing.
 Result<void> SurfaceBody::take() {
-  const std::vector<int>& nodes = plan_.surface.level_set.nodes;
+  const std::vector<int>& nodes = plan_.surface->level_set.nodes;
   std::size_t place = 0;
-  for (const SurfacePiece& piece : plan_.surface.pieces) {
+  for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
     const TriangleState& state = solves_[place++].state;
     for (int k = 0; k < piece.free_nodes; ++k) {
@@ -260,10 +270,10 @@ Result<void> SurfaceBody::take() {
 // Requires: the next positions are complete, but not yet in the state.
 void SurfaceBody::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  for (const SurfacePiece& piece : plan_.surface.pieces) {
+  for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
     for (int k = 0; k < piece.free_nodes; ++k) {
-      const int node = plan_.surface.level_set.nodes[piece.points[k]];
+      const int node = plan_.surface->level_set.nodes[piece.points[k]];
       const auto position = next_positions_.row(node);
       const double larger = std::max(length_of(position - rest_.row(node)),
                                      length_of(position - state_.positions.row(node)));

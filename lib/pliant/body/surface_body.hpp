@@ -24,11 +24,19 @@ class SurfaceBody final : public Body {
   Result<void> step(const BodyInputs& inputs) override;
   const StepPlan& last_step() const override { return plan_; }
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
-    return plan.surface.forces[force].push;
+    return plan.surface->forces[force].push;
   }
   SolverCounts solver_counts() const override;
 
+  std::size_t plate_memory() const {
+    std::size_t b = 0;
+    for (auto& o : solves_) b += o.plate->memory();
+    return b;
+  }
   const TriangleSurface& surface() const { return *surface_; }
+
+  /// The bending form of its plates.
+  Bending bending(const BodyInputs& inputs) const;
 
  private:
   // A piece while it is solved.

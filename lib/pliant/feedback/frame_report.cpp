@@ -1,11 +1,35 @@
 #include "pliant/feedback/frame_report.hpp"
 
+#include <cstddef>
+#include <span>
 #include <utility>
+#include <vector>
 
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/region/region.hpp"
 #include "pliant/sampling/sampling.hpp"
 
 namespace pliant {
+namespace {
+
+// Of the nodes in and around the region, and of what is held of each piece.
+Hash hash_of_cut(const SurfaceSelection& selection) {
+  HashStream stream;
+  const auto add = [&]<class T>(const std::vector<T>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    stream.add({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  };
+  add(selection.level_set.nodes);
+  add(selection.level_set.at_nodes);
+  add(selection.level_set.at_centres);
+  for (const SurfacePiece& piece : selection.pieces) {
+    const auto held = piece.points.begin() + piece.cells.free_points;
+    add(std::vector(held, piece.points.end()));
+  }
+  return stream.hash();
+}
+
+}  // namespace
 
 Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   const auto step = body.look(inputs.body);
@@ -17,10 +41,24 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   report.recovering = static_cast<int>(step->recovering.size());
   report.settled = static_cast<int>(step->settling.size());
   report.regions = step->selection.regions;
+  if (step->surface) {
+    report.is_surface = true;
+    report.cut = hash_of_cut(*step->surface);
+    for (const SurfacePiece& piece : step->surface->pieces) {
+      report.pieces.push_back(piece.counts(step->surface->level_set));
+    }
+  }
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
-    report.forces.push_back({std::string(inputs.sources[k].name), inputs.sources[k].kind,
-                             std::make_shared<SampledForce>(inputs.body.forces[k]),
-                             step->selection.forces[k], body.push_of(inputs.body, *step, k)});
+    ForceReport& force = report.forces.emplace_back();
+    force.name = inputs.sources[k].name;
+    force.kind = inputs.sources[k].kind;
+    force.sampled = std::make_shared<SampledForce>(inputs.body.forces[k]);
+    force.push = body.push_of(inputs.body, *step, k);
+    if (step->surface) {
+      force.counts = step->surface->forces[k].counts;
+    } else {
+      force.selection = step->selection.forces[k];
+    }
   }
   if (std::string fault = inputs.faults->first(); !fault.empty()) {
     return fail(ErrorCode::NotFinite, std::move(fault));

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/region/selection.hpp"
@@ -24,6 +25,7 @@ struct ForceReport {
   std::shared_ptr<const SampledForce> sampled;
   ForceSelection selection;  ///< its boxes in nodes, and the index of its region
   Push push;                 ///< its effect on the nodes that move
+  CutCounts counts = {};     ///< on a surface of triangles: of its own sphere
 };
 
 /// The solve at a frame, on one surface. SPEC 5, 6.
@@ -35,6 +37,11 @@ struct SurfaceReport {
   int settled = 0;                  ///< nodes set to rest before the solve
   std::vector<Region> regions;      ///< also those too small to solve
   std::vector<ForceReport> forces;  ///< in the order of the scene, then those of groups
+
+  /// On a surface of triangles, which has pieces in place of regions.
+  bool is_surface = false;
+  std::vector<CutCounts> pieces = {};
+  Hash cut = {};  ///< of phi at the nodes in and around the region, and of what is held
 };
 
 /// The solve of a body in its present state with these inputs. Errors: as `Body::look`; NotFinite

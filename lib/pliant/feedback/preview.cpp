@@ -33,7 +33,7 @@ class SurfacePreviewer {
                    double most_searched, const RunContext& context)
       : scene_(scene),
         surface_(surface),
-        body_(rest_shape, surface_.solver, context),
+        body_(rest_shape, surface_, context),
         first_(first_solved_frame(scene_, surface_)),
         last_(std::max(first_, scene_.end - 1)),
         most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
@@ -131,7 +131,7 @@ class SurfacePreviewer {
     const bool is_plain = preview.of != Preview::Of::All;
     const auto step = body_.look(inputs, is_plain);
     if (!step) return fail(step.error());
-    if (step->selection.regions.empty()) return {};
+    if (!step->selects()) return {};
     double peak = 0;
     const int unknowns = step->unknown_count();
     if (unknowns > 0 && unknowns <= most_previewed_unknowns) {
@@ -166,16 +166,14 @@ class SurfacePreviewer {
     if (preview.is_solved) {
       if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
     }
-    for (const Region& selected : step->selection.regions) {
-      RegionPreview region;
-      region.region = selected;
-      region.is_solvable = region.region.is_solved();
-      if (preview.is_solved && region.is_solvable) {
-        auto vibrations = body_.vibrations(inputs, std::move(region));
-        if (!vibrations) return fail(vibrations.error());
-        region = *std::move(vibrations);
-      }
-      preview.regions.push_back(std::move(region));
+    preview.regions = regions_of(*step);
+    for (std::size_t k = 0; k < preview.regions.size(); ++k) {
+      RegionPreview& region = preview.regions[k];
+      preview.counts = preview.counts + region.counts;
+      if (!preview.is_solved || !region.is_solvable) continue;
+      auto vibrations = body_.vibrations(inputs, *step, k, std::move(region));
+      if (!vibrations) return fail(vibrations.error());
+      region = *std::move(vibrations);
     }
     if (preview.is_solved && preview.of != Preview::Of::Force) {
       return share(one, inputs, unknowns);

@@ -9,7 +9,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/swing.hpp"
-#include "pliant/region/combine.hpp"
+#include "pliant/region/selection.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
 
@@ -18,6 +18,7 @@ namespace pliant {
 /// The response of one region alone to a load that is applied and then constant.
 struct RegionPreview {
   Region region;                  ///< in nodes
+  CutCounts counts = {};          ///< of a piece of a surface of triangles, in place of `region`
   bool is_solvable = false;       ///< whether any of its nodes can move
   double static_peak = 0;         ///< as in `Preview`
   double first_frequency = 0;     ///< of its slowest vibration, undamped [Hz]; 0 without density
@@ -74,7 +75,8 @@ struct Preview {
   std::optional<int> frame;
   bool is_every_frame = true;  ///< whether all frames were examined; false: the range is too long
   double magnitude = 0;        ///< of a force, at that frame [length b/uv^4]
-  Box selected;                ///< nodes, the box around all regions
+  Box selected;                ///< nodes, the box around all regions; empty on a surface
+  CutCounts counts = {};       ///< on a surface of triangles: of all pieces
   bool is_apart = false;       ///< for `All`: boxes that do not all meet form one region, since
                                ///< `combine` is box by default, not given in the scene
   bool is_solvable = false;    ///< whether any node can move

@@ -5,15 +5,16 @@
 #include <limits>
 #include <utility>
 
-#include "pliant/body/grid_body.hpp"
+#include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
 
 namespace pliant {
 namespace {
 
-// Patches whose outline is not a rectangle need a sparse factor, which is slow for many nodes.
-constexpr int most_masked_unknowns = 50'000;
+// Surfaces, and patches whose outline is not a rectangle, need a sparse factor, which is slow for
+// many nodes.
+constexpr int most_factored_unknowns = 50'000;
 
 // The vibration of a node that is most visible: the one with the largest product of share and
 // period. By share alone it might be one of a bundle of fast ones, which fade at once.
@@ -29,27 +30,26 @@ double seen_lambda(std::span<const ExcitedMode> modes) {
 
 }  // namespace
 
-PreviewBody::PreviewBody(const RestShape& shape, const SolverSettings& settings, RunContext context)
-    : shape_(shape), settings_(settings), context_(std::move(context)), share_(context_.memory) {}
+PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, RunContext context)
+    : shape_(shape), surface_(surface), context_(std::move(context)), share_(context_.memory) {}
 
 std::unique_ptr<Body> PreviewBody::make(Reference reference) const {
-  BodySettings settings = body_settings(settings_);
+  BodySettings settings = body_settings(surface_, shape_.grid.has_value());
   settings.reference = reference;
-  return std::make_unique<GridBody>(*shape_.grid, shape_.rest, settings, SolverChoice::Auto,
-                                    context_);
+  return make_body(shape_, settings, SolverChoice::Auto, context_);
 }
 
 Result<void> PreviewBody::reserve() {
   if (real_) return {};
   // A field has three numbers per node; a body keeps five fields of all nodes, and four of the
   // solved ones.
-  const bool has_two = settings_.reference != Reference::Rest;
+  const bool has_two = surface_.solver.reference != Reference::Rest;
   const std::size_t bytes =
       static_cast<std::size_t>(node_count()) * 9 * 3 * sizeof(double) * (has_two ? 2 : 1);
   if (!share_.try_resize(bytes)) {
     return fail(ErrorCode::OutOfMemory, "previewing its forces " + share_.complaint(bytes));
   }
-  real_ = make(settings_.reference);
+  real_ = make(surface_.solver.reference);
   if (has_two) plain_ = make(Reference::Rest);
   return {};
 }
@@ -114,15 +114,32 @@ Field PreviewBody::displacements(const Box& box) const {
   return ways;
 }
 
+// Those of some nodes.
+Field PreviewBody::displacements(std::span<const int> nodes) const {
+  Field ways(static_cast<Eigen::Index>(nodes.size()), 3);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    ways.row(static_cast<Eigen::Index>(k)) =
+        current_->state().positions.row(nodes[k]) - current_->rest().row(nodes[k]);
+  }
+  return ways;
+}
+
 PreviewBody::Peak PreviewBody::peak(const Transform& transform,
                                     const std::optional<Box>& box) const {
+  Peak peak;
+  Eigen::Index row = 0;
+  const auto find_in = [&](const Field& way) {
+    peak.size = std::sqrt(way.rowwise().squaredNorm().maxCoeff(&row));
+    peak.way = way.row(row).transpose();
+  };
+  if (!shape_.grid) {
+    find_in(vectors_to_world(transform, current_->state().positions - current_->rest()));
+    peak.node = static_cast<int>(row);
+    return peak;
+  }
   const Grid& grid = *shape_.grid;
   const Box within = box.value_or(grid.box());
-  const Field way = vectors_to_world(transform, displacements(within));
-  Eigen::Index row = 0;
-  Peak peak;
-  peak.size = std::sqrt(way.rowwise().squaredNorm().maxCoeff(&row));
-  peak.way = way.row(row).transpose();
+  find_in(vectors_to_world(transform, displacements(within)));
   const int column = static_cast<int>(row % within.columns());
   peak.node = grid.node(within.i0 + column, within.j0 + static_cast<int>(row / within.columns()));
   return peak;
@@ -145,8 +162,30 @@ std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
   return {nearest, distance(force.kind, middle)};
 }
 
-Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
-                                              RegionPreview region) const {
+std::vector<RegionPreview> regions_of(const StepPlan& plan) {
+  std::vector<RegionPreview> regions;
+  for (const Region& selected : plan.selection.regions) {
+    RegionPreview& region = regions.emplace_back();
+    region.region = selected;
+    region.is_solvable = selected.is_solved();
+  }
+  if (!plan.surface) return regions;
+  for (const SurfacePiece& piece : plan.surface->pieces) {
+    RegionPreview& region = regions.emplace_back();
+    region.counts = piece.counts(plan.surface->level_set);
+    region.is_solvable = piece.moves();
+  }
+  return regions;
+}
+
+Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
+                                              std::size_t k, RegionPreview region) const {
+  if (plan.surface) return piece_vibrations(inputs, *plan.surface, k, std::move(region));
+  return patch_vibrations(inputs, std::move(region));
+}
+
+Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
+                                                    RegionPreview region) const {
   const std::vector<Patch>& patches = region.region.patches;
   const Patch* moved = &patches[0];
   int most = 0;
@@ -161,25 +200,55 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
   const Box& box = moved->box;
   const Grid grid{box.columns(), box.rows(), shape_.grid->hu, shape_.grid->hv};
   const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
-  if (!moved->is_rectangle() && moved->interior_count() > most_masked_unknowns) return region;
-
+  if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) return region;
   const auto solver = make_plate_solver(SolverChoice::Auto, context_);
-  const auto lambda = smallest_eigenvalue(*solver, system);
+  const auto plate = vibrating(*solver, system);
+  if (!plate) return fail(plate.error());
+  const Field ways = interior_of(system.outline, displacements(box));
+  if (auto added = add_vibrations(inputs, *plate, ways, region); !added) return fail(added.error());
+  region.solver_memory = solver->memory();
+  return region;
+}
+
+Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
+                                                    const SurfaceSelection& selection,
+                                                    std::size_t k, RegionPreview region) const {
+  const SurfacePiece& piece = selection.pieces[k];
+  std::vector<int> nodes;
+  for (int n = 0; n < piece.free_nodes; ++n) {
+    nodes.push_back(selection.level_set.nodes[piece.points[n]]);
+  }
+  const Field ways = displacements(nodes);
+  const Field world = vectors_to_world(inputs.transform, ways);
+  region.static_peak = std::sqrt(world.rowwise().squaredNorm().maxCoeff());
+  if (piece.free_nodes > most_factored_unknowns) return region;
+  TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_);
+  const auto* const body = static_cast<const SurfaceBody*>(current_);
+  const auto plate = vibrating(triangles, body->bending(inputs));
+  if (!plate) return fail(plate.error());
+  if (auto added = add_vibrations(inputs, *plate, ways, region); !added) return fail(added.error());
+  region.solver_memory = triangles.memory();
+  return region;
+}
+
+// `ways`: the displacement of each unknown, object space.
+Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
+                                         const Field& ways, RegionPreview& region) const {
+  const auto lambda = smallest_eigenvalue(plate);
   if (!lambda) return fail(lambda.error());
   std::vector<ExcitedMode> modes = {{*lambda, 1}};
-  const Field ways = interior_of(system.outline, displacements(box));
   Eigen::Index node = 0;
   const Field world = vectors_to_world(inputs.transform, ways);
   const double size = std::sqrt(world.rowwise().squaredNorm().maxCoeff(&node));
   if (size > 0) {
     const Eigen::VectorXd along =
         ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));
-    auto excited = excited_modes(*solver, system, along, node);
+    auto excited = excited_modes(plate, along, node);
     if (!excited) return fail(excited.error());
     modes = *std::move(excited);
   }
   const Dynamics& dynamics = inputs.dynamics;
-  const TimeSteps steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
+  const TimeSteps steps = divide_interval(inputs.frame_length, inputs.dt, surface_.solver.stepping);
   if (dynamics.density > 0) {
     const Swing natural = natural_swing(*lambda, dynamics);
     region.first_frequency = natural.frequency;
@@ -188,8 +257,7 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs,
   region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, inputs.frame_length);
   region.settling = settling_of(modes, dynamics, steps, inputs.frame_length);
   region.has_vibration = true;
-  region.solver_memory = solver->memory();
-  return region;
+  return {};
 }
 
 }  // namespace pliant

@@ -2,24 +2,29 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "pliant/body/body.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/feedback/preview.hpp"
-#include "pliant/mesh/grid_mapping.hpp"
+#include "pliant/plate/vibration.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
+
+/// The regions of a plan, or its pieces, without their vibrations. Internal to feedback.
+std::vector<RegionPreview> regions_of(const StepPlan& plan);
 
 // A body for trying forces, for `preview_forces`; internal to feedback. It is the engine's own
 // `Body`, so that a preview and a bake agree. *Plain* means: elastic about its rest shape and
 // without tangents, so that only forces move it.
 class PreviewBody {
  public:
-  /// Requires: mapping and settings outlive it.
-  PreviewBody(const RestShape& shape, const SolverSettings& settings, RunContext context);
+  /// Requires: shape and surface outlive it.
+  PreviewBody(const RestShape& shape, const Surface& surface, RunContext context);
 
   /// Makes the bodies, unless they exist. Errors: OutOfMemory.
   Result<void> reserve();
@@ -60,17 +65,25 @@ class PreviewBody {
   /// space. [length]
   std::pair<double, double> distances(const BodyInputs& inputs, const SampledForce& force) const;
 
-  /// The vibrations of a settled region when it is released, for its patch with the peak. Requires:
-  /// it is settled under `inputs`; there are patches.
-  Result<RegionPreview> vibrations(const BodyInputs& inputs, RegionPreview region) const;
+  /// The vibrations of a settled region when it is released, for its patch with the peak: those of
+  /// region or piece `k` of `plan`. Requires: it is settled under `inputs`; `region.is_solvable`.
+  Result<RegionPreview> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
+                                   RegionPreview region) const;
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   std::unique_ptr<Body> make(Reference reference) const;
   Field displacements(const Box& box) const;
+  Field displacements(std::span<const int> nodes) const;
+  Result<RegionPreview> patch_vibrations(const BodyInputs& inputs, RegionPreview region) const;
+  Result<RegionPreview> piece_vibrations(const BodyInputs& inputs,
+                                         const SurfaceSelection& selection, std::size_t k,
+                                         RegionPreview region) const;
+  Result<void> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
+                              const Field& ways, RegionPreview& region) const;
 
   const RestShape& shape_;
-  const SolverSettings& settings_;
+  const Surface& surface_;
   RunContext context_;
   MemoryShare share_;
   std::unique_ptr<Body> real_;   // as in the scene

@@ -61,7 +61,10 @@ void add_facts(WarningLog& log, std::string_view surface, int frame, const Surfa
     const ForceSource& source = inputs.sources[k];
     const std::string_view force = source.name;
     const ForceFacts& of_force = facts.forces[k];
-    if (of_force.is_too_small) log.add(RegionTooSmall, surface, force, frame);
+    if (of_force.is_too_small) {
+      log.add(facts.is_surface ? AllHeld : RegionTooSmall, surface, force, frame);
+    }
+    if (of_force.is_between_nodes) log.add(BetweenNodes, surface, force, frame);
     if (of_force.is_outside) log.add(OutsideRegion, surface, force, frame);
     if (of_force.is_lost) log.add(LostNodes, surface, force, frame);
     if (of_force.is_apart) log.add(ForcesApart, surface, force, frame);
@@ -77,6 +80,7 @@ void add_facts(WarningLog& log, std::string_view surface, int frame, const Surfa
       if (of_force.pushes) log.happened(PushesNothing, place, force);
     }
   }
+  if (facts.has_loose_piece) log.add(LoosePiece, surface, {}, frame);
   if (!inputs.body.tangents.are_zero()) {
     log.expect(TangentsUnused, surface, {}, frame);
     if (facts.is_solved) log.happened(TangentsUnused, surface, {});

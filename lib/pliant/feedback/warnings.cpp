@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/mesh/triangle_surface.hpp"
+
 namespace pliant {
 
 namespace {
@@ -63,12 +65,47 @@ std::string Warning::message() const {
           "solves each box by itself, combine=\"box\" in the scene keeps one region without this "
           "warning",
           names_text(force, others), surface, when);
+    case Kind::AllHeld:
+      return fmt::format("all nodes of \"{}\" that {} \"{}\" selects {} are held: none can move",
+                         surface, noun, force, when);
+    case Kind::BetweenNodes:
+      return fmt::format(
+          "{} \"{}\" reaches \"{}\" {}, but no node is nearer than its deformationRadius: the mesh "
+          "is "
+          "too coarse for it; subdivide the mesh, or let a finer one drive it",
+          noun, force, surface, when);
+    case Kind::LoosePiece:
+      return fmt::format(
+          "a piece of \"{}\" lies wholly in the forces' spheres {}: nothing holds it, so it does "
+          "not "
+          "move",
+          surface, when);
+    case Kind::FacesLeftOut:
+      return fmt::format(
+          "{} face{} of \"{}\" take{} no part: fewer than three different corners, a corner twice, "
+          "or the corners of another face",
+          faces, faces == 1 ? "" : "s", surface, faces == 1 ? "s" : "");
   }
   return {};
 }
 
+std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes) {
+  std::vector<Warning> warnings;
+  for (const RestShape& shape : rest_shapes) {
+    if (!shape.surface || shape.surface->faces_left_out == 0) continue;
+    Warning& warning = warnings.emplace_back();
+    warning.kind = Warning::Kind::FacesLeftOut;
+    warning.surface = shape.name;
+    warning.faces = shape.surface->faces_left_out;
+  }
+  return warnings;
+}
+
 int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (!warning.force.empty()) return origin.line_of(warning.force);
+  if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::LoosePiece) {
+    return origin.line_of(warning.surface, "file");
+  }
   if (warning.kind == Warning::Kind::NeverStarts) {
     return origin.line_of(warning.surface, "startFrame");
   }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pliant/feedback/frame_ranges.hpp"
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -19,6 +21,10 @@ struct Warning {
     NeverStarts,     ///< the surface's start frame is after the last solved frame
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
     ForcesApart,     ///< boxes that do not meet form one region, since `combine` is box
+    AllHeld,         ///< all nodes that a force selects on a surface are held
+    BetweenNodes,    ///< a force reaches a surface, but no node of it
+    LoosePiece,      ///< nothing holds a piece of a surface's region
+    FacesLeftOut,    ///< faces of a mesh that its surface does not have
   };
   Kind kind = Kind::RegionTooSmall;
   std::string surface;  ///< empty: all, for a force that selects nothing on any surface
@@ -26,10 +32,14 @@ struct Warning {
   FrameRanges frames;
   std::vector<std::string> others = {};  ///< for ForcesApart: the forces besides `force`
   bool is_group = false;                 ///< whether `force` is the region of a group
+  int faces = 0;                         ///< for FacesLeftOut
 
   /// One line for an author, frames included.
   std::string message() const;
 };
+
+/// The warnings about meshes, known before any frame.
+std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes);
 
 /// The line of a warning's cause: the force, or the tangents or start frame of its surface.
 int line_of(const Warning& warning, const SceneOrigin& origin);

@@ -15,28 +15,17 @@
 namespace pliant {
 namespace {
 
-constexpr std::string_view what_is_needed =
-    "; the (u,v) must form an even grid, one pair per vertex (docs/your-mesh.md)";
-constexpr std::string_view no_seams =
-    "; a surface that is closed or meets itself is not supported (docs/your-mesh.md)";
-
 // Border nodes nearer to each other than this times the diagonal of the bounding box count as one
 // place.
 constexpr double one_place = 1e-6;
-
-tl::unexpected<Error> not_a_grid(const std::string& reason) {
-  return fail(ErrorCode::InvalidInput, reason + std::string(what_is_needed));
-}
 
 // The error for a mesh in which some corner has no (u,v); `vertex` is that of the first one.
 tl::unexpected<Error> without_uvs(const Mesh& mesh, int vertex) {
   const auto missing = std::count(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), -1);
   if (missing == static_cast<std::ptrdiff_t>(mesh.corner_uvs.size())) {
-    return not_a_grid(
-        "the mesh has no (u,v) (UVs); unwrap it in the program that it comes from, "
-        "and export it with its UVs");
+    return invalid("it has no (u,v) (UVs)");
   }
-  return not_a_grid(
+  return invalid(
       fmt::format("vertex {} has no (u,v) (UVs); {} of the {} corners of faces have none",
                   mesh.number_of(vertex), missing, mesh.corner_uvs.size()));
 }
@@ -69,10 +58,6 @@ Axis find_axis(std::vector<double> values) {
   for (std::size_t k = 1; k < values.size(); ++k) count += values[k] - values[k - 1] > 0.5 * widest;
   const double extent = values.back() - values.front();
   return {values.front(), count > 1 ? extent / (count - 1) : 0, count};
-}
-
-tl::unexpected<Error> seam(const std::string& reason) {
-  return fail(ErrorCode::InvalidInput, reason + ": a seam" + std::string(no_seams));
 }
 
 using NodePair = std::array<int, 2>;
@@ -181,8 +166,8 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
   vs.reserve(vertex_count);
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
     if (vertex_uvs[vertex] < 0) {
-      return fail(ErrorCode::InvalidInput,
-                  fmt::format("vertex {} has no (u,v): no face uses it", mesh.number_of(vertex)));
+      return invalid(
+          fmt::format("vertex {} has no (u,v): no face uses it", mesh.number_of(vertex)));
     }
     us.push_back(mesh.uvs[vertex_uvs[vertex]][0]);
     vs.push_back(mesh.uvs[vertex_uvs[vertex]][1]);
@@ -195,7 +180,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     for (const auto& [axis, value, name] :
          {std::tuple{&u_axis, us[vertex], 'u'}, std::tuple{&v_axis, vs[vertex], 'v'}}) {
       if (axis->count > 1 && !axis->is_even(value)) {
-        return not_a_grid(fmt::format(
+        return invalid(fmt::format(
             "vertex {} has {} = {}, which is more than {} of a spacing away from the even lattice "
             "of {} values {} apart",
             mesh.number_of(vertex), name, value, lattice_tolerance, axis->count, axis->spacing));
@@ -203,12 +188,11 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     }
   }
   if (u_axis.count < 3 || v_axis.count < 3) {
-    return not_a_grid(
-        fmt::format("the (u,v) values make a grid of {} x {} nodes, smaller than 3 x 3",
-                    u_axis.count, v_axis.count));
+    return invalid(fmt::format("the (u,v) values make a grid of {} x {} nodes, smaller than 3 x 3",
+                               u_axis.count, v_axis.count));
   }
   if (std::int64_t{u_axis.count} * v_axis.count > vertex_count) {
-    return not_a_grid(
+    return invalid(
         fmt::format("the (u,v) values make a grid of {} x {} nodes, more than the {} "
                     "vertices",
                     u_axis.count, v_axis.count, vertex_count));
@@ -222,13 +206,12 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     const auto& [u, v] = mesh.uvs[mesh.corner_uvs[corner]];
     if (u_axis.nearest(u) != u_axis.nearest(us[vertex]) ||
         v_axis.nearest(v) != v_axis.nearest(vs[vertex])) {
-      return seam(fmt::format("vertex {} has several (u,v), ({}, {}) and ({}, {})",
-                              mesh.number_of(vertex), us[vertex], vs[vertex], u, v));
+      return invalid(fmt::format("vertex {} has several (u,v), ({}, {}) and ({}, {}): a seam",
+                                 mesh.number_of(vertex), us[vertex], vs[vertex], u, v));
     }
     if (!u_axis.is_even(u) || !v_axis.is_even(v)) {
-      return not_a_grid(
-          fmt::format("vertex {} has (u,v) = ({}, {}), which is not on the even lattice",
-                      mesh.number_of(vertex), u, v));
+      return invalid(fmt::format("vertex {} has (u,v) = ({}, {}), which is not on the even lattice",
+                                 mesh.number_of(vertex), u, v));
     }
   }
 
@@ -243,7 +226,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
       node_vertices[node] = vertex;
       mapping.rest.row(node) = mesh.positions.row(vertex);
     } else if (mesh.positions.row(vertex) != mesh.positions.row(first)) {
-      return not_a_grid(
+      return invalid(
           fmt::format("vertices {} and {} share the (u,v) ({}, {}) but not the rest "
                       "position",
                       mesh.number_of(first), mesh.number_of(vertex), us[vertex], vs[vertex]));
@@ -252,15 +235,16 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
   for (int node = 0; node < grid.node_count(); ++node) {
     if (node_vertices[node] < 0) {
       const int i = node % grid.columns, j = node / grid.columns;
-      return not_a_grid(fmt::format(
+      return invalid(fmt::format(
           "there is no vertex at (u,v) = ({}, {}), node ({}, {}) of the grid of {} x {}",
           u_axis.least + i * grid.hu, v_axis.least + j * grid.hv, i, j, grid.columns, grid.rows));
     }
   }
   if (const auto pair = nodes_in_one_place(mapping)) {
     const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
-    return seam(fmt::format(
-        "vertices {} and {} are at the same position, but have the (u,v) ({}, {}) and ({}, {})",
+    return invalid(fmt::format(
+        "vertices {} and {} are at the same position, but have the (u,v) ({}, {}) and ({}, {}): a "
+        "seam",
         mesh.number_of(first), mesh.number_of(second), us[first], vs[first], us[second],
         vs[second]));
   }

@@ -42,7 +42,7 @@ Sorted sorted_by(std::size_t item_count, int key_count, const KeyOf& key_of) {
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const Mesh& mesh, const SurfaceReading& reading) : mesh_(mesh), reading_(reading) {}
+  SurfaceMaker(const Mesh& mesh, const MeshReading& reading) : mesh_(mesh), reading_(reading) {}
 
   Result<TriangleSurface> make() {
     join_vertices();
@@ -213,8 +213,11 @@ class SurfaceMaker {
   }
 
   void lay_flat() {
-    std::optional<Vector3d> axis = reading_.axis;
-    if (axis) *axis /= axis->cwiseAbs().maxCoeff();
+    std::optional<Vector3d> axis;
+    if (reading_.axis) {
+      axis.emplace((*reading_.axis)[0], (*reading_.axis)[1], (*reading_.axis)[2]);
+      *axis /= axis->cwiseAbs().maxCoeff();  // its length does not matter
+    }
     surface_.triangle_starts = {0};
     for (int face = 0; face < surface_.face_count(); ++face) {
       const int start = surface_.face_starts[face], size = surface_.size_of(face);
@@ -266,14 +269,14 @@ class SurfaceMaker {
   }
 
   const Mesh& mesh_;
-  const SurfaceReading& reading_;
+  const MeshReading& reading_;
   TriangleSurface surface_;
   std::vector<std::size_t> corners_;  // the mesh's corner of each corner that takes part
 };
 
 }  // namespace
 
-Result<TriangleSurface> make_surface(const Mesh& mesh, const SurfaceReading& reading) {
+Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading) {
   return SurfaceMaker(mesh, reading).make();
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,22 +9,9 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/triangle_cells.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/mesh/mesh_reading.hpp"
 
 namespace pliant {
-
-/// How a mesh is read as a surface.
-struct SurfaceReading {
-  /// Vertices joined by steps of this length are one node [length], >= 0; none: 1e-6 of the
-  /// diagonal of the bounding box of all vertices in faces.
-  std::optional<double> weld = {};
-
-  /// The direction that u follows, projected into each triangle; none: that of the UVs.
-  std::optional<Vector3d> axis = {};
-
-  /// The lengths that count as 1 along u and along v [length/uv], > 0; none: the root of the
-  /// surface's area, for both.
-  std::optional<std::array<double, 2>> unit = {};
-};
 
 /// A mesh as the triangles of a plate that bends along it, at rest: its vertices joined to nodes,
 /// its faces cut into triangles, each with its directions u and v. docs/model.md, "Surfaces".
@@ -48,7 +34,7 @@ struct TriangleSurface {
   std::vector<int> node_starts;  ///< #nodes + 1
   std::vector<int> node_faces;
 
-  std::array<double, 2> unit = {1, 1};  ///< as in `SurfaceReading` [length/uv]
+  std::array<double, 2> unit = {1, 1};  ///< as in `MeshReading` [length/uv]
   int faces_left_out = 0;               ///< that take no part
 
   int node_count() const { return static_cast<int>(rest.rows()); }
@@ -73,6 +59,6 @@ struct TriangleSurface {
 /// repeated ones are dropped, if it has a node twice, or the nodes of an earlier face. Requires:
 /// `check_mesh` accepts the mesh; `reading` has the ranges of its comments. Errors: no face takes
 /// part; the surface has no area, or lengths that are not finite.
-Result<TriangleSurface> make_surface(const Mesh& mesh, const SurfaceReading& reading = {});
+Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading = {});
 
 }  // namespace pliant

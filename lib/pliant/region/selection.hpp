@@ -24,6 +24,18 @@ struct ForceSelection {
   friend bool operator==(const ForceSelection&, const ForceSelection&) = default;
 };
 
+/// A part of a region that is cut out of a surface, counted.
+struct CutCounts {
+  int inside_nodes = 0;
+  int held_nodes = 0;
+  int cells = 0;
+
+  friend bool operator==(const CutCounts&, const CutCounts&) = default;
+  friend CutCounts operator+(const CutCounts& a, const CutCounts& b) {
+    return {a.inside_nodes + b.inside_nodes, a.held_nodes + b.held_nodes, a.cells + b.cells};
+  }
+};
+
 /// The region selection of thesis 5.3, fig. 5; SPEC 5: which nodes a frame solves, and which forces
 /// act on them.
 struct Selection {

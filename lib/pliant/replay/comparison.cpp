@@ -23,8 +23,10 @@ long first_other_line(std::string_view a, std::string_view b) {
 std::string list_of(const std::vector<ReplaySurface>& surfaces) {
   std::string text;
   for (const ReplaySurface& surface : surfaces) {
-    text += fmt::format("{}\"{}\" ({} x {})", text.empty() ? "" : ", ", printable(surface.name),
-                        surface.columns, surface.rows);
+    const std::string size = surface.columns == 0
+                                 ? fmt::format("{} nodes", surface.nodes)
+                                 : fmt::format("{} x {}", surface.columns, surface.rows);
+    text += fmt::format("{}\"{}\" ({})", text.empty() ? "" : ", ", printable(surface.name), size);
   }
   return text;
 }
@@ -54,7 +56,8 @@ void measure(const Field& a, const Field& b, int columns, ReplayDifference& diff
     const double size = std::hypot(gap[0], gap[1], gap[2]);
     if (difference.node && !(size > difference.size)) continue;
     const int node = static_cast<int>(row);
-    difference.node = {node % columns, node / columns};
+    difference.node =
+        columns == 0 ? std::array{node, -1} : std::array{node % columns, node / columns};
     difference.size = size;
   }
 }
@@ -78,7 +81,11 @@ std::string ReplayDifference::message() const {
     text += fmt::format("; their peak displacement of {:.6g} differs by {:.3g}", (*peaks)[0],
                         std::abs((*peaks)[1] - (*peaks)[0]));
   }
-  if (node) text += fmt::format(", most at node ({},{}), by {:.3g}", (*node)[0], (*node)[1], size);
+  if (node) {
+    const std::string place = (*node)[1] < 0 ? std::to_string((*node)[0])
+                                             : fmt::format("({},{})", (*node)[0], (*node)[1]);
+    text += fmt::format(", most at node {}, by {:.3g}", place, size);
+  }
   return text;
 }
 

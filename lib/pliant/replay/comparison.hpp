@@ -15,9 +15,9 @@ struct ReplayDifference {
   std::string surface;
   std::string field;  ///< positions, velocities or region
 
-  /// If both states are known, the node (i, j) whose vectors differ most, the first of several, and
-  /// the length of the difference [unit of the field]; 0 if only a sign of zero differs. nullopt if
-  /// a state is not known, and for a region.
+  /// If both states are known, the node (i, j) whose vectors differ most, the first of several; of
+  /// a surface of triangles (node, -1). And the length of the difference [unit of the field]; 0 if
+  /// only a sign of zero differs. nullopt if a state is not known, and for a region.
   std::optional<std::array<int, 2>> node = {};
   double size = 0;
 

@@ -18,6 +18,7 @@ std::string region_text(const SurfaceReport& report, const BodyState& state) {
                           part.i1, part.j0, part.j1);
     }
   }
+  if (report.is_surface) text += fmt::format("{}\n", to_text(report.cut));
   text.append(state.unsettled.begin(), state.unsettled.end());
   return text;
 }

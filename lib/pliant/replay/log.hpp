@@ -38,8 +38,11 @@ struct ReplayFile {
 /// A surface that was simulated.
 struct ReplaySurface {
   std::string name;
-  int columns = 0;  ///< of its grid
+  int columns = 0;  ///< of its grid; 0: a surface of triangles
   int rows = 0;
+  int nodes = 0;  ///< of a surface of triangles
+
+  int node_count() const { return columns == 0 ? nodes : columns * rows; }
 
   friend bool operator==(const ReplaySurface&, const ReplaySurface&) = default;
 };

@@ -71,7 +71,9 @@ bool read(const Json* json, Hash& hash) {
 }
 
 bool read(const Json* json, const ReplaySurface& surface, Field& field) {
-  const std::size_t rows = std::size_t(surface.columns) * std::size_t(surface.rows);
+  const std::size_t rows = surface.columns == 0
+                               ? std::size_t(surface.nodes)
+                               : std::size_t(surface.columns) * std::size_t(surface.rows);
   if (!json || !json->is_array() || json->size() != 3 * rows) return false;
   field.resize(static_cast<Eigen::Index>(rows), 3);
   std::size_t k = 0;
@@ -115,8 +117,15 @@ std::string to_json(const ReplayHeader& header) {
   json["end"] = header.end;
   json["surfaces"] = Json::array();
   for (const ReplaySurface& surface : header.surfaces) {
-    json["surfaces"].push_back(
-        {{"name", surface.name}, {"columns", surface.columns}, {"rows", surface.rows}});
+    Json& written = json["surfaces"].emplace_back();
+    written["name"] = surface.name;
+    if (surface.columns == 0) {
+      written["grid"] = nullptr;
+      written["nodes"] = surface.nodes;
+    } else {
+      written["columns"] = surface.columns;
+      written["rows"] = surface.rows;
+    }
   }
   return to_line(json);
 }
@@ -172,8 +181,11 @@ std::optional<ReplayHeader> read_header(std::string_view line) {
     return read(member(element, "name"), file.name) && read(member(element, "hash"), file.hash);
   };
   const auto read_surface = [](const Json& element, ReplaySurface& surface) {
-    return read(member(element, "name"), surface.name) &&
-           read(member(element, "columns"), surface.columns) &&
+    if (!read(member(element, "name"), surface.name)) return false;
+    if (member(element, "grid")) {
+      return read(member(element, "nodes"), surface.nodes) && surface.nodes >= 0;
+    }
+    return read(member(element, "columns"), surface.columns) &&
            read(member(element, "rows"), surface.rows) && surface.columns >= 0 && surface.rows >= 0;
   };
   const bool is_header = read(member(json, "version"), header.version) &&

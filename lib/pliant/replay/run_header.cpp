@@ -91,7 +91,14 @@ void complete(ReplayHeader& header, const Simulation& simulation, std::optional<
   header.start = scene.start;
   header.end = std::min(scene.end, last_frame.value_or(scene.end));
   for (const RestShape& shape : simulation.rest_shapes()) {
-    header.surfaces.push_back({shape.name, shape.grid->columns, shape.grid->rows});
+    ReplaySurface& surface = header.surfaces.emplace_back();
+    surface.name = shape.name;
+    if (shape.grid) {
+      surface.columns = shape.grid->columns;
+      surface.rows = shape.grid->rows;
+    } else {
+      surface.nodes = static_cast<int>(shape.rest.rows());
+    }
   }
 }
 

@@ -28,6 +28,18 @@ std::size_t bytes_of(const GridSheet& sheet) {
                        (sheet.triangles ? 6 : 4) * quads);
 }
 
+std::size_t bytes_as_surface(const Mesh& mesh) {
+  // A corner: its node, edge and origin, twice while edges are numbered, its face at its node, and,
+  // as a triangle of a face, what is laid flat, and two cells of a region with their points,
+  // slopes, and sides.
+  constexpr std::size_t bytes_of_corner = 40 + 60 + 8 + 32 + 2 * 250;
+  // A vertex: in the trees for welding and for selecting, its rest position twice, its place in the
+  // region.
+  constexpr std::size_t bytes_of_vertex = 300;
+  return mesh.corner_vertices.size() * bytes_of_corner +
+         static_cast<std::size_t>(mesh.vertex_count()) * bytes_of_vertex;
+}
+
 std::size_t bytes_to_run(std::size_t vertex_count) {
   // Vectors per node: rest in the mapping and in the body; position and velocity, present and new;
   // load, displacement and velocity of the plate, twice as many in a solver with sparse factors;

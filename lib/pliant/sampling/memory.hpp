@@ -20,4 +20,8 @@ std::size_t bytes_of(const GridSheet& sheet);
 /// selects the whole surface. [bytes]
 std::size_t bytes_to_run(std::size_t vertex_count);
 
+/// What reading a mesh as a surface of triangles, and cutting its regions, takes besides. An upper
+/// bound. [bytes]
+std::size_t bytes_as_surface(const Mesh& mesh);
+
 }  // namespace pliant

@@ -1,20 +1,24 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "pliant/body/settings.hpp"
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/plate/solver_choice.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
 
+class Body;
 struct TriangleSurface;
 
 /// A surface before any force acts on it: its mesh, and the nodes that are simulated.
@@ -34,21 +38,47 @@ struct RestShape {
   Field to_vertices(const Field& nodes, Field reuse = {}) const;
 };
 
+/// What a mesh that is read as a surface of triangles consists of.
+struct SurfaceSummary {
+  int nodes = 0;
+  int faces = 0;                        ///< that take part
+  int pieces = 0;                       ///< faces joined by shared corners
+  int border_edges = 0;                 ///< edges of one face
+  std::array<double, 2> unit = {1, 1};  ///< the lengths that count as 1 along u and v [length/uv]
+};
+
+/// Of a shape that is a surface; null: it is a grid.
+std::optional<SurfaceSummary> summary_of(const RestShape& shape);
+
+/// The body of a rest shape, at rest. `solver` and `context` are those of its plates.
+std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
+                                SolverChoice solver = SolverChoice::Auto, RunContext context = {});
+
 /// A rest shape with the memory that it and its body need, reserved from the run's.
 struct ReservedShape {
   RestShape shape;
   MemoryShare memory;
 };
 
-/// Makes or reads a surface's mesh and finds its grid. Reserves memory before a sheet is made and
-/// after a file is read. Errors: those of `read_mesh` and `check_mesh`; those of `find_grid`, with
-/// the surface's line in the scene; OutOfMemory; Interrupted, while assimp reads.
+/// Makes or reads a surface's mesh, and finds its grid or reads it as a surface of triangles.
+/// Reserves memory before a sheet is made and after a file is read. Errors: those of `read_mesh`
+/// and `check_mesh`; those of `find_grid` and `make_surface`, with the surface's line in the scene;
+/// what a surface cannot do; OutOfMemory; Interrupted, while assimp reads.
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context = {});
 
-/// Checks that `make_rest_shape` would succeed, without making sheets. Returns the memory that it
-/// would reserve.
-Result<MemoryShare> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
-                                     const RunContext& context);
+/// The memory that a rest shape would reserve, and its note.
+struct CheckedShape {
+  MemoryShare memory;
+  std::string note = {};
+};
+
+/// Checks that `make_rest_shape` would succeed, without making sheets.
+Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                      const RunContext& context);
+
+/// The note on a surface's shape as one of the scene; none if it is empty.
+std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,
+                                 const SceneOrigin& origin);
 
 }  // namespace pliant

@@ -199,8 +199,14 @@ Transform sample_transform(const TransformChannels& channels, int frame) {
                         channels.rotate_order);
 }
 
-BodySettings body_settings(const SolverSettings& solver) {
-  return {solver.stepping, solver.reference, solver.measure, solver.combine, solver.release};
+BodySettings body_settings(const Surface& surface, bool is_grid) {
+  const SolverSettings& solver = surface.solver;
+  return {.stepping = solver.stepping,
+          .reference = solver.reference,
+          .measure = solver.measure.value_or(is_grid ? Measure::Current : Measure::Rest),
+          .combine = solver.combine,
+          .release = solver.release,
+          .border = surface.reading.border.value_or(Border::Clamped)};
 }
 
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
@@ -211,6 +217,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
           .dynamics = {material.density.at(frame)[0], material.damping.at(frame)[0]},
           .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
                        sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
+          .poisson = material.poisson.at(frame)[0],
           .frame_length = 1 / scene.fps,
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {}};

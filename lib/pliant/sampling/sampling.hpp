@@ -69,8 +69,8 @@ class SceneSampling {
   std::vector<std::unique_ptr<NoiseClock>> clocks_;  // one per force
 };
 
-/// The choices of a surface's body.
-BodySettings body_settings(const SolverSettings& solver);
+/// The choices of a surface's body; `is_grid`: whether its nodes form a grid.
+BodySettings body_settings(const Surface& surface, bool is_grid);
 
 /// The inputs of a surface without forces.
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);

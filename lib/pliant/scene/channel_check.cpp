@@ -62,7 +62,10 @@ class ChannelChecker {
   void check(const Surface& surface) {
     check_channels(surface, surface.transform);
     check_channels(surface, surface.material);
-    if (kept_.contains("b") && kept_.contains("d")) check_ellipticity(surface);
+    const bool has_stiffness = kept_.contains("b") && kept_.contains("d");
+    if (has_stiffness && check_ellipticity(surface) && kept_.contains("poisson")) {
+      check_free_border(surface);
+    }
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
   }
@@ -134,20 +137,45 @@ class ChannelChecker {
     return true;
   }
 
-  void check_ellipticity(const Surface& surface) {
-    if (!is_checked(surface.name, "c")) return;
-    const auto& [density, damping, b, c, d] = surface.material;
+  // Whether it holds.
+  bool check_ellipticity(const Surface& surface) {
+    if (!is_checked(surface.name, "c")) return false;
+    const auto& [density, damping, b, c, d, poisson] = surface.material;
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
     const int last = is_animated ? last_ : first_;
     for (int frame = first_; frame <= last; ++frame) {
       const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
       if (!stiffness.is_elliptic() || !std::isfinite(stiffness.c)) {
-        return add_error(surface.name, "c", is_animated, frame,
-                         fmt::format("is {}, but must be greater than -2 sqrt(b d) = {} (b = {}, "
-                                     "d = {}); otherwise the plate has no stable shape",
-                                     stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d),
-                         scene_.origin.last_line_of(surface.name, {"b", "c", "d"}));
+        add_error(surface.name, "c", is_animated, frame,
+                  fmt::format("is {}, but must be greater than -2 sqrt(b d) = {} (b = {}, d = {}); "
+                              "otherwise the plate has no stable shape",
+                              stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d),
+                  scene_.origin.last_line_of(surface.name, {"b", "c", "d"}));
+        return false;
       }
+    }
+    return true;
+  }
+
+  // Requires: the stiffness is elliptic.
+  void check_free_border(const Surface& surface) {
+    if (surface.reading.border != Border::Free) return;
+    const auto& [density, damping, b, c, d, poisson] = surface.material;
+    const bool is_animated =
+        b.is_animated() || c.is_animated() || d.is_animated() || poisson.is_animated();
+    const int last = is_animated ? last_ : first_;
+    for (int frame = first_; frame <= last; ++frame) {
+      const double ratio = poisson.at(frame)[0];
+      const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
+      // -least_c() = 2 sqrt(b d).
+      const double least_c = -ratio * stiffness.least_c();
+      if (std::abs(ratio) < 1 && stiffness.c > least_c) continue;
+      return add_error(surface.name, "poisson", is_animated, frame,
+                       fmt::format("is {}, but with a free border it must be between -1 and 1, and "
+                                   "c = {} must be greater than 2 poisson sqrt(b d) = {}; a "
+                                   "smaller poisson helps",
+                                   ratio, stiffness.c, least_c),
+                       scene_.origin.last_line_of(surface.name, {"poisson", "b", "c", "d"}));
     }
   }
 

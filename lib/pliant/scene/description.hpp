@@ -78,6 +78,7 @@ struct Attribute {
   Range range = {};
   std::span<const std::string_view> words = {};  ///< of a word, in the order of its values
   std::span<const std::string_view> later = {};  ///< words that a later version will support
+  std::string_view instead = {};                 ///< what to use instead of what is not supported
   std::string_view absent = {};                  ///< what its absence means, if that is not a value
   Need need = Need::Optional;
   Syntax syntax = Syntax::Plain;
@@ -117,9 +118,12 @@ inline constexpr std::string_view release_words[] = {"freeze", "recover"};
 inline constexpr std::string_view measure_words[] = {"current", "rest"};
 inline constexpr std::string_view falloff_words[] = {"constant", "linear", "smooth", "gaussian"};
 
-// Choices that have one word so far, and the words that a later version will support.
-inline constexpr std::string_view uv_words[] = {"grid"};
+inline constexpr std::string_view uv_words[] = {"auto", "grid", "surface"};
 inline constexpr std::string_view later_uv_words[] = {"virtual"};
+inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the mesh's own triangles";
+inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
+
+// Choices that have one word so far, and the words that a later version will support.
 inline constexpr std::string_view wrap_words[] = {"none"};
 inline constexpr std::string_view later_wrap_words[] = {"u", "v", "uv"};
 inline constexpr std::string_view integrator_words[] = {"backwardEuler"};
@@ -224,18 +228,55 @@ struct Description<MeshFile> {
                   .absent = "the only one"},
         of.object...);
     row(Attribute{.name = "uvSet",
-                  .meaning = "the set of UVs that forms the grid, if the file contains several",
+                  .meaning = "the set of UVs to read, if the file contains several",
                   .range = {.least = 0, .most = max_uv_sets - 1}},
         of.uv_set...);
-    row(Attribute{.name = "uv",
-                  .meaning = "the UVs themselves form the grid",
-                  .words = uv_words,
-                  .later = later_uv_words});
-    row(Attribute{.name = "resolution", .need = Need::Later});
     row(Attribute{.name = "wrap",
                   .meaning = "no direction is closed",
                   .words = wrap_words,
                   .later = later_wrap_words});
+  }
+};
+
+/// The attributes of a mesh, from a file or of a program, that say how it is read.
+template <>
+struct Description<MeshReading> {
+  static constexpr std::string_view element = "mesh";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "uv",
+                  .meaning = "`grid`: the UVs, which form an even grid; `surface`: lengths along "
+                             "the surface of any mesh; `auto`: the grid if there is one",
+                  .words = uv_words,
+                  .later = later_uv_words,
+                  .instead = use_surface},
+        of.uv...);
+    row(Attribute{.name = "resolution", .instead = use_surface, .need = Need::Later});
+    row(Attribute{.name = "unit",
+                  .meaning = "length that counts as 1 in u and v, or two of them, along u and v; "
+                             "only of a surface",
+                  .unit = "length/uv",
+                  .range = positive,
+                  .absent = "the root of its area"},
+        of.unit...);
+    row(Attribute{.name = "axis",
+                  .meaning = "direction that u follows along the surface, in the mesh's own "
+                             "coordinates; only of a surface",
+                  .unit = "1",
+                  .absent = "that of the UVs, or x"},
+        of.axis...);
+    row(Attribute{.name = "border",
+                  .meaning = "what the mesh's own border does; only of a surface",
+                  .words = border_words,
+                  .absent = "clamped"},
+        of.border...);
+    row(Attribute{.name = "weld",
+                  .meaning = "vertices that are not farther apart move together; only of a surface",
+                  .unit = "length",
+                  .range = not_negative,
+                  .absent = "10⁻⁶ of the mesh's diagonal"},
+        of.weld...);
   }
 };
 
@@ -284,7 +325,11 @@ struct Description<MaterialChannels> {
         of.d...);
     row(Attribute{.name = "yield", .need = Need::Later});
     row(Attribute{.name = "hardening", .need = Need::Later});
-    row(Attribute{.name = "poisson", .need = Need::Later});
+    row(Attribute{.name = "poisson",
+                  .meaning = "ν: how much bending along one direction bends the other; acts on a "
+                             "surface with a free border, and must be between −1 and 1 there",
+                  .unit = "1"},
+        of.poisson...);
   }
 };
 
@@ -347,7 +392,8 @@ struct Description<SolverSettings> {
         of.release...);
     row(Attribute{.name = "measure",
                   .meaning = "measures distances to the moving mesh, or to the mesh at rest",
-                  .words = measure_words},
+                  .words = measure_words,
+                  .absent = "current; rest on a surface"},
         of.measure...);
     row(Attribute{.name = "integrator",
                   .meaning = "time integration",

@@ -54,7 +54,7 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
     row.is_sound = false;
     return findings.add_problem(
         row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.Name()), tag(element),
-                              not_supported()));
+                              not_supported(row.attribute.instead)));
   }
   if (const Reading<void> read = row.read(given.Value()); !read) {
     row.is_sound = false;

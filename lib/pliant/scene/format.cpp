@@ -49,6 +49,15 @@ std::vector<std::string_view> with_groups(std::vector<std::string_view> parents)
   return parents;
 }
 
+ElementFormat mesh_element() {
+  MeshFile mesh;
+  MeshReading reading;
+  return {Description<MeshFile>::element,
+          {"surface"},
+          Need::Optional,
+          formats_of(table_of(mesh, reading))};
+}
+
 ElementFormat later_element(std::string_view name, std::vector<std::string_view> parents) {
   return {name, std::move(parents), Need::Later, {}};
 }
@@ -78,7 +87,7 @@ std::vector<ElementFormat> scene_format() {
       element<Scene>({}, Need::Required),
       element<Surface>({"scene"}),
       element<GridSheet>({"surface"}),
-      element<MeshFile>({"surface"}),
+      mesh_element(),
       later_element("nurbs", {"surface"}),
       later_element("subdivision", {"surface"}),
       element<TransformChannels>({"surface"}),

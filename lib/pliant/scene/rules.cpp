@@ -1,6 +1,7 @@
 #include "pliant/scene/rules.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -72,6 +73,11 @@ class WholeChecker {
                  fmt::format("{} is {}, but {}", path_of(name, attribute.name), member, *rule));
     }
   }
+  template <std::size_t D>
+  void check_range(const std::string& name, const Attribute& attribute,
+                   const std::array<double, D>& member) {
+    for (const double number : member) check_range(name, attribute, number);
+  }
   template <class T>
   void check_range(const std::string& name, const Attribute& attribute,
                    const std::optional<T>& member) {
@@ -97,6 +103,7 @@ class WholeChecker {
     check_ranges(surface.name, surface.solver);
     if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape))
       check_ranges(surface.name, *mesh);
+    check_reading(surface);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
     if (!sheet) return;
     check_ranges(surface.name, *sheet);
@@ -107,6 +114,26 @@ class WholeChecker {
           scene_.origin.last_line_of(surface.name, {"columns", "rows"}),
           fmt::format("surface \"{}\" has {} x {} = {} vertices; at most {} are allowed",
                       surface.name, sheet->columns, sheet->rows, vertices, max_sheet_vertices));
+  }
+
+  void check_reading(const Surface& surface) {
+    const MeshReading& reading = surface.reading;
+    check_ranges(surface.name, reading);
+    if (reading.axis == std::array{0.0, 0.0, 0.0})
+      complain(surface.name, "axis",
+               fmt::format("{}.axis is 0 0 0, but must have a direction", surface.name));
+    if (reading.uv != UvReading::Grid) return;
+    const auto refuse = [&](const char* attribute, bool is_given) {
+      if (!is_given) return;
+      complain(surface.name, attribute,
+               fmt::format("{}.{} is for a mesh that is read as a surface, but uv=\"grid\" reads "
+                           "this one as a grid",
+                           surface.name, attribute));
+    };
+    refuse("unit", reading.unit.has_value());
+    refuse("axis", reading.axis.has_value());
+    refuse("border", reading.border.has_value());
+    refuse("weld", reading.weld.has_value());
   }
 
   void check(const Force& force) {

@@ -14,6 +14,7 @@
 #include "pliant/forces/falloff.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/timeline/channel.hpp"
 #include "pliant/timeline/curve.hpp"
 #include "pliant/timeline/position.hpp"
@@ -24,7 +25,7 @@ namespace pliant {
 struct MeshFile {
   std::string path = {};    ///< as passed to open; its extension selects the format
   std::string object = {};  ///< the object to read; empty: the only one in the file
-  int uv_set = 0;           ///< which set of (u,v) is the grid, counted from 0, < max_uv_sets
+  int uv_set = 0;           ///< which set of (u,v) is read, counted from 0, < max_uv_sets
   /// Files that it refers to are read only from this folder and below; empty: the file's own
   /// folder.
   std::string root = {};
@@ -43,11 +44,12 @@ struct TransformChannels {
 
 /// The coefficients of the plate equation. SPEC 2; thesis 5.2.1.2.
 struct MaterialChannels {
-  Channel<1> density = 1;  ///< rho >= 0
-  Channel<1> damping = 1;  ///< eta >= 0
-  Channel<1> b = 1;        ///< along u, > 0
-  Channel<1> c = 2;        ///< mixed, > -2 sqrt(b d)
-  Channel<1> d = 1;        ///< along v, > 0
+  Channel<1> density = 1;    ///< rho >= 0
+  Channel<1> damping = 1;    ///< eta >= 0
+  Channel<1> b = 1;          ///< along u, > 0
+  Channel<1> c = 2;          ///< mixed, > -2 sqrt(b d)
+  Channel<1> d = 1;          ///< along v, > 0
+  Channel<1> poisson = 0.3;  ///< nu: acts if a border is free, then > -1 and < 1
 };
 
 /// A boundary tangent: one number for all of x, y, z, 0 by default, or three numbers. [length/uv]
@@ -67,16 +69,17 @@ struct SolverSettings {
   std::optional<int> start_frame = {};  ///< absent: the scene's start
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
-  Measure measure = Measure::Current;
+  std::optional<Measure> measure = {};  ///< absent: current on a grid, rest on a surface
   Combine combine = Combine::Box;
   Release release = Release::Freeze;  ///< Recover only with tangents of 0
 };
 
 /// One elastic surface.
 struct Surface {
-  std::string name;         ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
-  bool enabled = true;      ///< false: written at rest, not solved
-  SurfaceShape shape = {};  ///< by default a `GridSheet`
+  std::string name;          ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  bool enabled = true;       ///< false: written at rest, not solved
+  SurfaceShape shape = {};   ///< by default a `GridSheet`
+  MeshReading reading = {};  ///< of a shape that is a mesh
   TransformChannels transform = {};
   MaterialChannels material = {};
   TangentChannels tangents = {};

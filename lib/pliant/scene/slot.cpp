@@ -37,6 +37,7 @@ struct TypeName {
     return attribute.syntax == Syntax::Path ? "path" : "text";
   }
   std::string_view operator()(const std::vector<std::string>*) const { return "names"; }
+  std::string_view operator()(const Value<2>*) const { return "one or two numbers"; }
   std::string_view operator()(const Value<3>*) const { return "vector"; }
   std::string_view operator()(const Channel<1>*) const { return "number"; }
   std::string_view operator()(const Channel<3>*) const { return "vector"; }
@@ -88,11 +89,15 @@ struct ValueText {
   std::string operator()(const std::uint64_t* place) const { return std::to_string(*place); }
   std::string operator()(const bool* place) const { return *place ? "true" : "false"; }
   std::string operator()(const Choice& choice) const {
-    return std::string(attribute.words[static_cast<std::size_t>(choice.get(choice.place))]);
+    const int value = choice.get(choice.place);
+    return value < 0 ? "" : std::string(attribute.words[static_cast<std::size_t>(value)]);
   }
   std::string operator()(const std::string* place) const { return *place; }
   std::string operator()(const std::vector<std::string>* place) const {
     return fmt::format("{}", fmt::join(*place, " "));
+  }
+  std::string operator()(const Value<2>* place) const {
+    return to_text(std::span(*place).first((*place)[0] == (*place)[1] ? 1 : 2));
   }
   std::string operator()(const Value<3>* place) const { return to_text(*place); }
   std::string operator()(const PositionChannel* place) const {
@@ -193,6 +198,16 @@ struct ReadValue {
     place->assign(words.begin(), words.end());
     return {};
   }
+  /// One number for both, or two.
+  Reading<void> operator()(Value<2>* place) const {
+    const std::size_t count = words_of(text).size();
+    if (count != 1 && count != 2) return complaint("one or two numbers are required");
+    Value<1> one{};
+    Reading<void> read = count == 1 ? parse_numbers(text, one) : parse_numbers(text, *place);
+    if (!read) return read;
+    if (count == 1) place->fill(one[0]);
+    return broken(attribute.range, *place);
+  }
   Reading<void> operator()(Value<3>* place) const { return read_numbers(*place); }
   Reading<void> operator()(Channel<1>* place) const { return read_numbers<1>(*place); }
   Reading<void> operator()(Channel<3>* place) const { return read_numbers<3>(*place); }
@@ -233,7 +248,7 @@ struct ReadValue {
       return static_cast<int>(found - words.begin());
     const auto later = attribute.later;
     if (std::find(later.begin(), later.end(), chosen) != later.end())
-      return tl::unexpected(not_supported() + "; allowed: " + listed(words));
+      return tl::unexpected(not_supported(attribute.instead) + "; allowed: " + listed(words));
     return tl::unexpected("unknown word" + hint(chosen, words));
   }
 
@@ -305,7 +320,17 @@ AttributeFormat format_of(const Slot& slot) {
           .is_keyable = is_channel(slot.place)};
 }
 
-std::string not_supported() { return "is not supported by this version of pliant"; }
+std::string not_supported(std::string_view instead) {
+  return fmt::format("is not supported by this version of pliant{}{}", instead.empty() ? "" : "; ",
+                     instead);
+}
+
+Table table_of(MeshFile& mesh, MeshReading& reading) {
+  SlotMaker maker;
+  describe(maker, mesh);
+  describe(maker, reading);
+  return maker.take();
+}
 
 Table table_of(Force& force) {
   SlotMaker maker;

@@ -16,10 +16,10 @@
 
 namespace pliant::xml {
 
-/// An enumeration or a boolean with words of its own.
+/// An enumeration, which may be absent, or a boolean with words of its own.
 struct Choice {
   void* place = nullptr;
-  int (*get)(const void* place) = nullptr;
+  int (*get)(const void* place) = nullptr;  ///< -1: absent
   void (*set)(void* place, int value) = nullptr;
 };
 
@@ -27,8 +27,9 @@ struct Choice {
 using Place =
     std::variant<std::monostate, double*, std::optional<double>*, int*, std::optional<int>*,
                  std::uint64_t*, std::optional<std::uint64_t>*, bool*, Choice, std::string*,
-                 std::vector<std::string>*, Value<3>*, Channel<1>*, Channel<3>*,
-                 std::optional<Channel<3>>*, PositionChannel*, TangentChannel*, Switch*>;
+                 std::vector<std::string>*, Value<3>*, std::optional<Value<3>>*,
+                 std::optional<Value<2>>*, Channel<1>*, Channel<3>*, std::optional<Channel<3>>*,
+                 PositionChannel*, TangentChannel*, Switch*>;
 
 /// The place of an enumeration or boolean with words.
 template <class T>
@@ -36,6 +37,17 @@ Place choice(T& place) {
   return Choice{&place,
                 [](const void* from) { return static_cast<int>(*static_cast<const T*>(from)); },
                 [](void* to, int value) { *static_cast<T*>(to) = static_cast<T>(value); }};
+}
+
+template <class T>
+Place choice(std::optional<T>& place) {
+  return Choice{
+      &place,
+      [](const void* from) {
+        const auto& value = *static_cast<const std::optional<T>*>(from);
+        return value ? static_cast<int>(*value) : -1;
+      },
+      [](void* to, int value) { *static_cast<std::optional<T>*>(to) = static_cast<T>(value); }};
 }
 
 /// Whether the place is a channel, so that an <animate> may name it.
@@ -75,8 +87,14 @@ Slot custom(const Attribute& attribute, std::string_view type, std::string_view 
 /// The row of the tables in docs/scene-format.md.
 AttributeFormat format_of(const Slot& slot);
 
-/// "is not supported by this version of pliant".
-std::string not_supported();
+/// "is not supported by this version of pliant", and what to use instead, if anything.
+std::string not_supported(std::string_view instead = {});
+
+/// Whether a member is an enumeration, or one that may be absent.
+template <class T>
+inline constexpr bool is_choice = std::is_enum_v<T>;
+template <class T>
+inline constexpr bool is_choice<std::optional<T>> = std::is_enum_v<T>;
 
 /// Makes a slot of each row that describes a thing.
 class SlotMaker {
@@ -85,7 +103,7 @@ class SlotMaker {
 
   template <class T>
   void operator()(const Attribute& attribute, T& member) {
-    if constexpr (std::is_enum_v<T>) {
+    if constexpr (is_choice<T>) {
       table_.push_back(slot(attribute, choice(member)));
     } else if constexpr (std::is_same_v<T, bool>) {
       table_.push_back(slot(attribute, attribute.words.empty() ? Place(&member) : choice(member)));
@@ -107,6 +125,9 @@ Table table_of(T& thing) {
   describe(maker, thing);
   return maker.take();
 }
+
+/// The slots of a mesh file: its own, then those of how it is read.
+Table table_of(MeshFile& mesh, MeshReading& reading);
 
 /// The slots of a force: those of every kind, then those of its kind.
 Table table_of(Force& force);

@@ -107,7 +107,8 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
   mesh.root = file_.root;
-  Table table = table_of(mesh);
+  MeshReading reading;
+  Table table = table_of(mesh, reading);
   read_attributes(element, table, file_.findings);
   if (!mesh.path.empty()) mesh.path = (file_.folder / mesh.path).string();
   read_children(element, {}, file_.findings);
@@ -115,6 +116,7 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
     file_.meshes.push_back({surface_.name, mesh.path, path->line});
   if (!is_first) return;
   surface_.shape = mesh;
+  surface_.reading = reading;
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 

@@ -222,10 +222,14 @@ void SceneWriter::write_shape(const Surface& surface) {
     element("grid", [&] { write_attributes(table_of(own), table_of(standard)); });
   } else if (auto mesh = std::get_if<MeshFile>(&surface.shape)) {
     MeshFile own = *mesh;
+    MeshReading reading = surface.reading;
     MeshFile standard;
+    MeshReading standard_reading;
     if (!folder_.empty())
       own.path = std::filesystem::path(own.path).lexically_proximate(folder_).string();
-    element("mesh", [&] { write_attributes(table_of(own), table_of(standard)); });
+    element("mesh", [&] {
+      write_attributes(table_of(own, reading), table_of(standard, standard_reading));
+    });
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/body/grid_body.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
@@ -102,9 +101,8 @@ Result<void> Bodies::make_all() {
 void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share) {
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
-  bodies_.push_back(std::make_unique<GridBody>(*rest_shape.grid, rest_shape.rest,
-                                               body_settings(surface.solver), solver_,
-                                               std::move(context)));
+  const BodySettings settings = body_settings(surface, rest_shape.grid.has_value());
+  bodies_.push_back(make_body(rest_shape, settings, solver_, std::move(context)));
   rest_shapes_.push_back(std::move(rest_shape));
   shares_.push_back(std::move(share));
 }

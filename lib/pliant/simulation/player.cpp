@@ -22,6 +22,8 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
 Result<void> Simulation::Player::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const std::string& note = bodies_.rest_shapes()[k].note;
+    if (auto told = note_on(scene_.surfaces[k], note, scene_.origin)) scene_.notes.push_back(*told);
     kept_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
   }
   return {};
@@ -145,7 +147,11 @@ std::vector<Warning> Simulation::Player::warnings() const {
   const bool is_complete =
       scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
                                      ranges.front().second == scene_.end - 1);
-  return warnings_.warnings(scene_, is_complete);
+  std::vector<Warning> warnings = warnings_about(bodies_.rest_shapes());
+  for (Warning& warning : warnings_.warnings(scene_, is_complete)) {
+    warnings.push_back(std::move(warning));
+  }
+  return warnings;
 }
 
 }  // namespace pliant

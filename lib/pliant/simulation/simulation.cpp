@@ -20,22 +20,29 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
   return Simulation(std::move(player));
 }
 
-Result<void> Simulation::check(const Scene& scene, const SimulationOptions& options) {
+Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
+                                                 const SimulationOptions& options) {
   std::vector<Error> errors = check_scene(scene);
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
 
   errors = check_channels(scene, {}, options.should_stop);
   MemoryBudget memory(options.max_memory);
   const RunContext context{.memory = &memory, .should_stop = options.should_stop};
-  std::vector<MemoryShare> shares;  // of all surfaces together
+  std::vector<CheckedShape> shapes;  // of all surfaces together
+  std::vector<SceneNote> notes;
   for (const Surface& surface : scene.surfaces) {
     if (context.is_stopped()) return interrupted_at_start();
     auto checked = check_rest_shape(surface, scene.origin, context);
-    checked ? shares.push_back(*std::move(checked)) : errors.push_back(std::move(checked.error()));
+    if (!checked) {
+      errors.push_back(std::move(checked.error()));
+      continue;
+    }
+    if (auto note = note_on(surface, checked->note, scene.origin)) notes.push_back(*note);
+    shapes.push_back(*std::move(checked));
   }
   if (context.is_stopped()) return interrupted_at_start();
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
-  return {};
+  return notes;
 }
 
 Simulation::Simulation(std::unique_ptr<Player> player) : player_(std::move(player)) {}

@@ -84,8 +84,10 @@ class Simulation {
   ~Simulation();
 
   /// Checks that `make` would succeed, as far as possible without making the scene's sheets: reads
-  /// its mesh files and checks all channels. A scene without a surface is valid. Errors: as `make`.
-  static Result<void> check(const Scene& scene, const SimulationOptions& options = {});
+  /// its mesh files and checks all channels. A scene without a surface is valid. Returns notes on
+  /// how its meshes are read. Errors: as `make`.
+  static Result<std::vector<SceneNote>> check(const Scene& scene,
+                                              const SimulationOptions& options = {});
 
   /// The scene's frames, start to end.
   FrameSequence frames() const;
@@ -121,6 +123,7 @@ class Simulation {
   /// it. Warnings then lack those of frames that were not computed here.
   Result<int> restore(std::string_view state_bytes);
 
+  /// Its notes tell also how its meshes are read.
   const Scene& scene() const;
 
   /// The surfaces at rest, in the order of the scene.

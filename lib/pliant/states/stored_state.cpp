@@ -68,11 +68,11 @@ std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) 
 }
 
 unsigned char bits_of(const ForceFacts& facts) {
-  const auto& [is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost, is_apart] =
-      facts;
+  const auto& [is_too_small, is_between_nodes, is_outside, touches, is_push_awaited, pushes,
+               is_lost, is_apart] = facts;
   unsigned bits = 0;
-  for (const bool fact :
-       {is_apart, is_too_small, is_outside, touches, is_push_awaited, pushes, is_lost}) {
+  for (const bool fact : {is_between_nodes, is_apart, is_too_small, is_outside, touches,
+                          is_push_awaited, pushes, is_lost}) {
     bits = bits << 1 | (fact ? 1u : 0u);
   }
   return static_cast<unsigned char>(bits);
@@ -80,7 +80,7 @@ unsigned char bits_of(const ForceFacts& facts) {
 
 ForceFacts facts_of(unsigned bits) {
   const auto bit = [bits](int place) { return (bits >> place & 1u) != 0; };
-  return {bit(5), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
+  return {bit(5), bit(7), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
 }
 
 // Reads runs. Null if they are not within the nodes or not ascending.
@@ -147,7 +147,8 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   append(bytes, key);
   append(bytes, static_cast<std::uint64_t>(rest.rows()));
   append(bytes, std::uint64_t{state.unsettled.empty() ? 0u : 1u});
-  append(bytes, std::uint64_t{facts.is_solved ? 1u : 0u});
+  append(bytes, std::uint64_t{(facts.is_solved ? 1u : 0u) | (facts.is_surface ? 2u : 0u) |
+                              (facts.has_loose_piece ? 4u : 0u)});
   append(bytes, std::uint64_t{facts.forces.size()});
   for (const ForceFacts& of_force : facts.forces) {
     bytes += static_cast<char>(bits_of(of_force));
@@ -176,7 +177,10 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   const auto node_count = static_cast<std::uint64_t>(rest.rows());
   if (reader.number() != node_count || reader.number() != (has_marks ? 1u : 0u)) return {};
   StoredState stored;
-  stored.facts.is_solved = reader.number() != 0;
+  const std::uint64_t flags = reader.number();
+  stored.facts.is_solved = (flags & 1) != 0;
+  stored.facts.is_surface = (flags & 2) != 0;
+  stored.facts.has_loose_piece = (flags & 4) != 0;
   const std::uint64_t force_count = reader.number();
   if (force_count > reader.left()) return {};
   for (std::uint64_t k = 0; k < force_count; ++k) {

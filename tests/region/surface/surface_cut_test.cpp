@@ -82,7 +82,7 @@ TEST_CASE("a region that is the whole surface is all of its triangles", "[region
           cut.surface.edge_count() + (has_quads ? 4 * cut.surface.face_count() : 0));
     const Cut held(square(9, 1, 0.3, has_quads), {ball({0, 0, 0}, 5)});
     CHECK(held.pieces[0].free_nodes == 64);
-    CHECK(held.pieces[0].held_nodes() == 36);
+    CHECK(held.pieces[0].counts(held.level_set).held_nodes == 36);
     CHECK(held.pieces[0].moves());
     CHECK(held.pieces[0].cells.slope_count == piece.cells.slope_count - 36);
   }

@@ -55,6 +55,7 @@ class TrianglePlate {
 
   const TriangleCells& cells() const { return cells_; }
   const std::vector<double>& masses() const { return masses_; }
+  const RunContext& context() const { return context_; }
   SolverCounts counts() const { return matrix_.counts(); }
   std::size_t memory() const { return matrix_.memory(); }
 
@@ -69,7 +70,6 @@ class TrianglePlate {
   std::vector<double> masses_;
   RunContext context_;
   FactoredMatrix matrix_;
-  SparseMatrix pattern_;  // of the upper triangle, once it is known
   bool is_factored_ = false;
   Bending bending_;  // of the factored matrix
   double shift_ = 0;

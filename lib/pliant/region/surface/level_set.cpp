@@ -162,18 +162,18 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
   return found;
 }
 
-int count_inside(const TriangleSurface& surface, const LevelSet& level_set,
-                 const Transform& transform, const SampledForce& force) {
-  int count = 0;
+std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& level_set,
+                               const Transform& transform, const SampledForce& force) {
+  std::vector<bool> is_within(level_set.nodes.size());
   for (std::size_t first = 0; first < level_set.nodes.size(); first += batch_size) {
     const std::size_t size = std::min<std::size_t>(batch_size, level_set.nodes.size() - first);
     const std::span<const int> nodes = std::span(level_set.nodes).subspan(first, size);
     const BatchNumbers distance = distances(force.kind, placed(transform, surface.rest, nodes));
-    count += static_cast<int>(std::count_if(distance.of, distance.of + size, [&](double each) {
-      return each < force.deformation_radius;
-    }));
+    for (std::size_t n = 0; n < size; ++n) {
+      is_within[first + n] = distance.of[n] < force.deformation_radius;
+    }
   }
-  return count;
+  return is_within;
 }
 
 bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,

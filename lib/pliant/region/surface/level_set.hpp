@@ -40,10 +40,10 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
                         std::span<const int> selectors, LevelSet reuse = {});
 
-/// How many nodes of a level set are nearer to a force than its deformation radius, at rest under
-/// `transform`.
-int count_inside(const TriangleSurface& surface, const LevelSet& level_set,
-                 const Transform& transform, const SampledForce& force);
+/// For each of the level set's nodes, whether it is nearer to a force than its deformation radius,
+/// at rest under `transform`.
+std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& level_set,
+                               const Transform& transform, const SampledForce& force);
 
 /// Whether any node at rest is nearer to a force than `radius`, or, with `with_faces`, a face may
 /// be: by a ball around its corners.

@@ -333,9 +333,28 @@ class Separating {
 
 }  // namespace
 
-int SurfacePiece::held_nodes() const {
-  const auto held = points.begin() + cells.free_points;
-  return static_cast<int>(std::count_if(held, points.end(), [](int point) { return point >= 0; }));
+CutCounts SurfacePiece::counts(const LevelSet& level_set) const {
+  CutCounts counts{.cells = static_cast<int>(cells.cells.size())};
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (points[k] < 0) continue;
+    counts.inside_nodes += level_set.at_nodes[points[k]] > 0 ? 1 : 0;
+    counts.held_nodes += static_cast<int>(k) >= cells.free_points ? 1 : 0;
+  }
+  return counts;
+}
+
+CutCounts SurfacePiece::counts_of(const std::vector<bool>& within) const {
+  const auto is_within = [&](int point) { return points[point] >= 0 && within[points[point]]; };
+  CutCounts counts;
+  for (int point = 0; point < cells.point_count; ++point) {
+    if (!is_within(point)) continue;
+    ++counts.inside_nodes;
+    counts.held_nodes += point >= cells.free_points ? 1 : 0;
+  }
+  for (const TriangleCell& cell : cells.cells) {
+    counts.cells += std::any_of(cell.points.begin(), cell.points.end(), is_within) ? 1 : 0;
+  }
+  return counts;
 }
 
 std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet& level_set,

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "pliant/core/triangle_cells.hpp"
+#include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
-#include "pliant/region/border.hpp"
+#include "pliant/region/selection.hpp"
 #include "pliant/region/surface/level_set.hpp"
 
 namespace pliant {
@@ -43,7 +44,10 @@ struct SurfacePiece {
   /// Whether it is solved: it has a free node, and something is held.
   bool moves() const { return free_nodes > 0 && cells.free_points < cells.point_count; }
 
-  int held_nodes() const;
+  CutCounts counts(const LevelSet& level_set) const;
+
+  /// The same of the nodes (#nodes of the level set) that are `within`, and the cells at them.
+  CutCounts counts_of(const std::vector<bool>& within) const;
 };
 
 /// Hands what lies on the points of a piece (#points) to its free nodes (#free_nodes): the mean of

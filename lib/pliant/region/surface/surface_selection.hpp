@@ -13,7 +13,7 @@ namespace pliant {
 struct SurfaceForceSelection {
   bool selects = false;       ///< whether it has a region of its own
   bool is_near = false;       ///< whether its sphere reaches a face, with or without a node in it
-  int inside_nodes = 0;       ///< nodes nearer than its deformation radius
+  CutCounts counts;           ///< nodes nearer than its deformation radius, cells at them
   bool acts_inside = false;   ///< whether it acts on the area of a node that moves
   bool acts_outside = false;  ///< whether any node is nearer than its force radius, if not inside
   bool is_lost = false;       ///< whether it acts on the surface at rest, but not now
