@@ -1,5 +1,7 @@
 #include "pliant/sampling/rest_shape.hpp"
 
+#include <algorithm>
+
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -77,6 +79,68 @@ TEST_CASE("the memory of a shape is reserved as long as it is held", "[simulatio
         ErrorCode::OutOfMemory);
   CHECK(make_rest_shape(surface, origin, {.memory = &little}).error().code ==
         ErrorCode::OutOfMemory);
+}
+
+TEST_CASE("a mesh is read in the way that suits it, or that the scene asks for",
+          "[sampling][rest_shape]") {
+  const Mesh sheet = make_mesh({.columns = 4, .rows = 3, .width = 3, .depth = 2});
+  Mesh bare = sheet;  // without UVs
+  std::fill(bare.corner_uvs.begin(), bare.corner_uvs.end(), -1);
+  const auto shape_of = [&](const Mesh& mesh, const MeshReading& reading) {
+    Surface surface = with_shape(mesh);
+    surface.reading = reading;
+    return make_rest_shape(surface, origin).value().shape;
+  };
+  const RestShape grid = shape_of(sheet, {});
+  CHECK(grid.grid);
+  CHECK_FALSE(grid.surface);
+  CHECK(grid.note.empty());
+  const RestShape surface = shape_of(bare, {});
+  CHECK_FALSE(surface.grid);
+  REQUIRE(surface.surface);
+  CHECK_THAT(
+      surface.note,
+      StartsWith("s: the mesh is read as a surface, since it is no even grid: it has no (u,v)"));
+  CHECK(surface.rest == sheet.positions);
+  // Asked for, so that there is nothing to note.
+  for (const MeshReading& reading :
+       {MeshReading{.uv = UvReading::Surface}, MeshReading{.unit = {{1, 2}}},
+        MeshReading{.axis = {{0, 0, 1}}}, MeshReading{.border = Border::Free},
+        MeshReading{.weld = 0}}) {
+    const RestShape asked = shape_of(sheet, reading);
+    CHECK(asked.surface);
+    CHECK(asked.note.empty());
+  }
+  Surface refused = with_shape(bare);
+  refused.reading.uv = UvReading::Grid;
+  CHECK_THAT(make_rest_shape(refused, origin).error().message,
+             Contains("the mesh is no even grid: it has no (u,v)") && Contains("uv=\"surface\""));
+  refused = with_shape(bare);
+  refused.solver.reference = Reference::None;
+  CHECK_THAT(make_rest_shape(refused, origin).error().message,
+             Contains("reference=\"none\" needs a grid"));
+}
+
+TEST_CASE("vertices of one node keep their offsets, those in no face their place",
+          "[sampling][rest_shape]") {
+  Mesh mesh;
+  mesh.positions.resize(5, 3);
+  mesh.positions << 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 1e-7, 0, 7, 7, 7;
+  mesh.face_sizes = {3, 3};
+  mesh.corner_vertices = {0, 1, 2, 0, 2, 3};
+  mesh.corner_uvs.assign(6, -1);
+  mesh.positions.row(3) << 1e-7, 0, 0;  // beside vertex 0: a twin
+  mesh.corner_vertices = {0, 1, 2, 3, 2, 1};
+  const RestShape shape = make_rest_shape(with_shape(mesh), origin).value().shape;
+  REQUIRE(shape.rest.rows() == 3);
+  CHECK(shape.vertex_nodes == std::vector{0, 1, 2, 0, -1});
+  CHECK(shape.to_vertices(shape.rest) == mesh.positions);
+  Field nodes = shape.rest;
+  nodes.row(0) += Eigen::RowVector3d(0, 2, 0);
+  const Field vertices = shape.to_vertices(nodes);
+  CHECK(vertices.row(3) - vertices.row(0) == Eigen::RowVector3d(1e-7, 0, 0));
+  CHECK(vertices(3, 1) == 2);
+  CHECK(vertices.row(4) == mesh.positions.row(4));
 }
 
 TEST_CASE("a shape that cannot be had is the scene's error or the file's",

@@ -71,7 +71,7 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const SurfaceSelect
       is_inside && std::all_of(selection.pieces.begin(), selection.pieces.end(),
                                [](const SurfacePiece& piece) { return piece.free_nodes == 0; });
   facts.is_outside = is_solved && has_magnitude && selected.acts_outside;
-  facts.touches = !selected.selects || is_inside || selected.acts_inside;
+  facts.touches = !selected.selects || is_inside || facts.is_between_nodes || selected.acts_inside;
   facts.is_lost = selected.is_lost;
   facts.is_push_awaited =
       is_solved && has_magnitude && facts.touches && !selected.acts_outside && !selected.is_lost;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
@@ -194,20 +195,28 @@ Field TrianglePlate::residual(const Field& solution, const Field& right_hand_sid
   return result;
 }
 
-// How often a solution must be corrected, from the error of one that presses evenly on the plate.
+// How often a solution must be corrected, from the errors of one that presses evenly on the plate.
 Result<void> TrianglePlate::choose_passes() {
+  constexpr int most_passes = 10;
+  constexpr double largest_error = 1e-10;  // of the peak
   refinement_passes_ = 0;
+  const auto points = static_cast<Eigen::Index>(masses_.size());
+  const auto peak = [&](const Field& w) { return w.col(0).head(points).cwiseAbs().maxCoeff(); };
   Field pressure = Field::Zero(cells_.unknown_count(), 3);
-  for (std::size_t k = 0; k < masses_.size(); ++k)
-    pressure(static_cast<Eigen::Index>(k), 0) = masses_[k];
+  pressure.col(0).head(points) = Eigen::Map<const Eigen::VectorXd>(masses_.data(), points);
   auto solution = matrix_.solve(pressure);
   if (!solution) return fail(solution.error());
-  auto correction = matrix_.solve(residual(*solution, pressure));
-  if (!correction) return fail(correction.error());
-  const auto points = static_cast<Eigen::Index>(masses_.size());
-  const double size = solution->col(0).head(points).cwiseAbs().maxCoeff();
-  const double error = correction->col(0).head(points).cwiseAbs().maxCoeff();
-  if (!(error <= 1e-11 * size)) refinement_passes_ = error <= 1e-6 * size ? 1 : 2;
+  double before = std::numeric_limits<double>::infinity();
+  while (refinement_passes_ < most_passes) {
+    auto correction = matrix_.solve(residual(*solution, pressure));
+    if (!correction) return fail(correction.error());
+    *solution += *correction;
+    const double error = peak(*correction) / peak(*solution);
+    // The corrections become as small as rounding lets them.
+    if (!(error > largest_error) || !(error < 0.5 * before)) break;
+    before = error;
+    ++refinement_passes_;
+  }
   return {};
 }
 

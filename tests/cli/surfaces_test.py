@@ -1,0 +1,179 @@
+"""Meshes that are no even grid, from scene to files: every command, every format."""
+
+import json
+import math
+
+import numpy as np
+
+from command import Command, main
+
+RADIUS = 0.7
+
+
+def ball(around=24, down=16):
+    """A sphere of quads with a pole of triangles at each end: vertices and faces."""
+    vertices = [(0, 1, 0)]
+    for j in range(1, down):
+        for i in range(around):
+            t, p = math.pi * j / down, 2 * math.pi * i / around
+            vertices.append((math.sin(t) * math.cos(p), math.cos(t), math.sin(t) * math.sin(p)))
+    vertices.append((0, -1, 0))
+    faces, last = [], 2 + (down - 2) * around
+    for i in range(around):
+        following = (i + 1) % around
+        faces.append((1, 2 + following, 2 + i))
+        for j in range(down - 2):
+            a, b = 2 + j * around + i, 2 + j * around + following
+            faces.append((a, b, b + around, a + around))
+        faces.append((len(vertices), last + i, last + following))
+    return vertices, faces
+
+
+SCENE = """<scene version="1" start="1" end="{end}">
+  <surface name="ball"><mesh file="{file}"{mesh}/>{parts}<material density="20" damping="40"/></surface>
+  {force}
+</scene>
+"""
+FORCE = ('<point name="poke" center="0 1 0" direction="0 -1 0" deformationRadius="0.7" forceRadius="0.4" '
+         'magnitude="8000"/>')
+
+
+class Surfaces(Command):
+    def setUp(self):
+        super().setUp()
+        self.vertices, self.faces = ball()
+        self.write("ball.obj", "".join("v %.17g %.17g %.17g\n" % v for v in self.vertices) +
+                   "".join("f " + " ".join(map(str, f)) + "\n" for f in self.faces))
+
+    def scene_of(self, file="ball.obj", mesh="", parts="", force=FORCE, end=6, name="s.xml"):
+        return self.write(name, SCENE.format(file=file, mesh=mesh, parts=parts, force=force, end=end))
+
+    def bake(self, scene, out, *arguments):
+        return self.run_pliant("bake", scene, "-o", self.path(out), *arguments)
+
+    def test_a_mesh_without_uvs_works_with_one_note(self):
+        done = self.bake(self.scene_of(), "a.npy")
+        self.assertRegex(done.stderr, r"^\S*s\.xml:2: note: ball: the mesh \S*ball\.obj is read as a surface, "
+                                      r"since it is no even grid: it has no \(u,v\) \(UVs\)\n$")
+        frames = np.load(self.path("a.npy"))
+        rest = np.array(self.vertices)
+        self.assertTrue((frames[0] == rest).all())
+        moved = (frames[5] != rest).any(axis=1)
+        far = np.linalg.norm(rest - [0, 1, 0], axis=1) >= RADIUS
+        self.assertFalse((moved & far).any())
+        self.assertGreater(moved.sum(), 50)
+        self.assertGreater(np.abs(frames - rest).max(), 0.01)
+        for command in ("info", "validate"):
+            self.assertIn("is read as a surface", self.run_pliant(command, self.scene_of()).stderr)
+        # Asked for, there is nothing to note.
+        self.assertEqual(self.bake(self.scene_of(mesh=' uv="surface"'), "b.npy").stderr, "")
+        self.assertTrue((np.load(self.path("b.npy")) == frames).all())
+
+    def test_every_format_has_the_same_motion(self):
+        scene = self.scene_of(mesh=' uv="surface"')
+        self.bake(scene, "a.npy")
+        for out in ("a.glb", "a.gltf", "a.usda", "a.pc2", "a.mdd", "a.ply"):
+            self.bake(scene, out)
+        self.bake(scene, "a.obj")
+        with open(self.path("a.0006.obj"), encoding="utf-8") as file:
+            written = [list(map(float, line.split()[1:])) for line in file if line.startswith("v ")]
+        self.assertTrue((np.array(written) == np.load(self.path("a.npy"))[5]).all())
+        # Its own exports are meshes that it reads, also those with vertices split by normals.
+        for again in ("a.0001.ply", "a.0001.obj"):
+            self.bake(self.scene_of(file=again, mesh=' uv="surface"', name="again.xml"), "again.npy")
+            self.assertTrue((np.load(self.path("again.npy")) == np.load(self.path("a.npy"))).all())
+        self.bake(self.scene_of(file="a.glb", name="again.xml"), "again.npy")
+        again = np.load(self.path("again.npy"))
+        peak = np.abs(np.load(self.path("a.npy"))[5] - np.array(self.vertices)).max()
+        # glTF has two triangles for a quad, which are stiffer.
+        self.assertLess(abs(np.abs(again[5] - again[0]).max() - peak), 0.15 * peak)
+
+    def test_threads_caches_and_replays_keep_its_bits(self):
+        scene = self.scene_of(end=10)
+        self.bake(scene, "a.npy")
+        self.bake(scene, "b.npy", "--threads", "4")
+        self.bake(scene, "c.npy", "--cache", self.path("states"))
+        self.bake(scene, "d.npy", "--cache", self.path("states"))
+        for name in ("b.npy", "c.npy", "d.npy"):
+            self.assertEqual(self.read(name), self.read("a.npy"))
+        self.run_pliant("replay", "record", scene, "-o", self.path("a.replay"), "--states", "1")
+        self.assertIn("all as recorded", self.run_pliant("replay", "verify", self.path("a.replay")).stdout)
+        with open(self.path("a.replay"), encoding="utf-8") as file:
+            surface = json.loads(file.readline())["surfaces"][0]
+        self.assertEqual(surface, {"name": "ball", "grid": None, "nodes": len(self.vertices)})
+        # A log that a node differs from names it.
+        other = self.scene_of(end=10, force=FORCE.replace("8000", "8001"))
+        self.run_pliant("replay", "record", other, "-o", self.path("b.replay"), "--states", "1")
+        told = self.run_pliant("replay", "diff", self.path("a.replay"), self.path("b.replay"), code=1)
+        self.assertRegex(told.stdout, r"positions differ, most at node \d+, by ")
+
+    def test_regions_and_info_count_nodes_and_cells(self):
+        scene = self.scene_of(end=3)
+        self.bake(scene, "a.npy", "--regions", self.path("r.json"))
+        surface = json.loads(self.read("r.json"))["frames"][1]["surfaces"][0]
+        self.assertIsNone(surface["grid"])
+        self.assertNotIn("regions", surface)
+        piece, = surface["pieces"]
+        self.assertEqual(piece["insideNodes"], surface["unknowns"])
+        self.assertGreater(piece["cells"], 2 * piece["insideNodes"])
+        force, = surface["forces"]
+        self.assertEqual(force["insideNodes"] - force["heldNodes"], piece["insideNodes"])
+        self.assertEqual(len(surface["cut"]), 32)
+
+        told = self.run_pliant("info", scene).stdout
+        self.assertRegex(told, r"surface of \d+ nodes in \d+ faces, 1 piece, 0 border edges, unit 3\.5")
+        self.assertRegex(told, r"it selects \d+ nodes inside, \d+ cells")
+        self.assertIn("first natural frequency", told)
+        told = json.loads(self.run_pliant("info", scene, "--json").stdout)
+        self.assertEqual((told["surfaces"][0]["nodes"], told["surfaces"][0]["pieces"]), (len(self.vertices), 1))
+
+    def test_a_force_that_moves_on_leaves_it_as_it_was(self):
+        force = FORCE.replace("/>", '><animate attribute="center"><key frame="1" value="0 1 0"/>'
+                                    '<key frame="6" value="0 3 0"/></animate></point>').replace(
+                                        ' center="0 1 0"', "")
+        scene = self.scene_of(end=400, force=force, parts='<solver release="recover"/>')
+        self.bake(scene, "a.npy")
+        frames = np.load(self.path("a.npy"))
+        self.assertGreater(np.abs(frames[3] - frames[0]).max(), 1e-3)
+        self.assertTrue((frames[-1] == frames[0]).all())
+
+    def test_warnings_name_what_is_odd(self):
+        with open(self.path("ball.obj"), "a", encoding="utf-8") as file:
+            file.write("f 1 2 2\nf 2 1 3\n")
+        told = self.bake(self.scene_of(), "a.npy").stderr
+        self.assertIn("s.xml:2: warning: 2 faces of \"ball\" take no part: ", told)
+        told = self.bake(self.scene_of(force=FORCE.replace('"0.7"', '"9"').replace('"0.4"', '"9"')), "a.npy").stderr
+        self.assertIn("a piece of \"ball\" lies wholly in the forces' spheres", told)
+        told = self.bake(self.scene_of(force=FORCE.replace("0 1 0", "0.05 1 0.05").replace('"0.7"', '"0.02"')),
+                         "a.npy").stderr
+        self.assertNotIn("selects no node", told)
+        self.assertIn('force "poke" reaches "ball" at frames 1-5, but no node is nearer', told)
+
+    def test_errors_name_line_and_rule(self):
+        def refused(words, **changes):
+            lines = self.run_pliant("bake", self.scene_of(**changes), "-o", self.path("no.npy"), code=2).stderr
+            line, = [line for line in lines.splitlines() if "error" in line]
+            self.assertRegex(line, r"^\S*s\.xml:2: error: ")
+            for word in words:
+                self.assertIn(word, line)
+            self.assertNotIn("no.npy", self.files())
+
+        refused(["ball.unit", "uv=\"grid\""], mesh=' uv="grid" unit="2"')
+        refused(["the mesh is no even grid: it has no (u,v)", 'uv="surface"'], mesh=' uv="grid"')
+        refused(["virtual", "uv=\"surface\""], mesh=' uv="virtual"')
+        refused(["resolution", "uv=\"surface\""], mesh=' resolution="9"')
+        refused(["unit", "0"], mesh=' unit="0"')
+        refused(["unit", "one or two numbers"], mesh=' unit="1 2 3"')
+        refused(["unit"], mesh=' unit="1 -2"')
+        refused(["axis"], mesh=' axis="0 0 0"')
+        refused(["weld"], mesh=' weld="-1"')
+        refused(["border", "clamped"], mesh=' border="clampd"')
+        refused(['reference="none" needs a grid'], parts='<solver reference="none"/>')
+        text = SCENE.format(file="ball.obj", mesh=' border="free"', parts="", force=FORCE, end=3).replace(
+            '<material ', '<material poisson="0.9" c="0.5" ')
+        lines = self.run_pliant("validate", self.write("p.xml", text), code=2).stderr
+        self.assertIn("ball.poisson is 0.9, but with a free border", lines)
+
+
+if __name__ == "__main__":
+    main()
