@@ -39,10 +39,16 @@ struct TriangleCell {
 /// held.
 struct TriangleCells {
   std::vector<TriangleCell> cells;
+
+  /// Cells that are one after the other may form a block, such as a whole face round its centre:
+  /// unknowns within it are eliminated by themselves. #blocks + 1: the first cell of each.
+  std::vector<int> block_starts = {0};
+
   int free_points = 0;
   int point_count = 0;
   int slope_count = 0;  ///< unknown slopes
 
+  int block_count() const { return static_cast<int>(block_starts.size()) - 1; }
   int unknown_count() const { return free_points + slope_count; }
 
   friend bool operator==(const TriangleCells&, const TriangleCells&) = default;

@@ -33,6 +33,27 @@ Bending bending_of(const Stiffness& stiffness, const std::array<double, 2>& unit
 /// H_uu, H_vv and H_uv of a cell. [1/length]
 using Curvature = std::array<double, 3>;
 
+/// An unknown of a plate as one of a cell's displacements and slopes.
+struct CellUnknown {
+  int index;    ///< of the plate: the free points, then the slopes
+  double sign;  ///< -1 or 1
+  int value;    ///< 0 to 2: a corner's displacement; 3 to 5: a side's slope
+};
+
+/// Calls f(unknown) for the unknowns of a cell. A slope may be a sum of several.
+template <class F>
+void for_each_unknown(const TriangleCells& cells, const TriangleCell& cell, const F& f) {
+  for (int k = 0; k < 3; ++k) {
+    if (cell.points[k] < cells.free_points) f(CellUnknown{cell.points[k], 1, k});
+  }
+  for (int k = 0; k < 3; ++k) {
+    const SideSlope& slope = cell.slopes[k];
+    for (int n = 0; n < slope.count; ++n) {
+      f(CellUnknown{cells.free_points + slope.first + n, slope.sign, 3 + k});
+    }
+  }
+}
+
 /// The geometry of a cell. A, l_k and n_k are its area, the lengths of its sides and their outward
 /// unit normals in the plane.
 struct MorleyCell {
@@ -45,6 +66,12 @@ struct MorleyCell {
 
   /// How the curvature depends on the displacement of each corner. [1/length^2]
   std::array<Curvature, 3> by_corner() const;
+
+  /// How it depends on the three displacements, then on the three slopes.
+  std::array<Curvature, 6> by_value() const {
+    const std::array<Curvature, 3> of_corners = by_corner();
+    return {of_corners[0], of_corners[1], of_corners[2], by_slope[0], by_slope[1], by_slope[2]};
+  }
 
   /// The outward slope at a side for prescribed slopes along -u, +u, -v and +v [1].
   double given_slope(int side, const std::array<double, 4>& slopes) const {

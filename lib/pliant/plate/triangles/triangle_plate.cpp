@@ -11,34 +11,6 @@
 namespace pliant {
 namespace {
 
-// The unknowns of a cell's corners and slopes, among those of the plate; each slope may be a sum.
-struct Unknown {
-  int index;
-  double sign;
-  int value;  // 0 to 2: a corner's displacement; 3 to 5: a side's slope
-};
-
-// The most unknowns that fit into one cell without a list in memory of its own.
-template <class F>
-void for_each_unknown(const TriangleCells& cells, const TriangleCell& cell, const F& f) {
-  for (int k = 0; k < 3; ++k) {
-    if (cell.points[k] < cells.free_points) f(Unknown{cell.points[k], 1, k});
-  }
-  for (int k = 0; k < 3; ++k) {
-    const SideSlope& slope = cell.slopes[k];
-    for (int n = 0; n < slope.count; ++n) {
-      f(Unknown{cells.free_points + slope.first + n, slope.sign, 3 + k});
-    }
-  }
-}
-
-// How the curvature of a cell depends on its three displacements and three slopes.
-std::array<Curvature, 6> curvature_by_value(const MorleyCell& cell) {
-  const std::array<Curvature, 3> by_corner = cell.by_corner();
-  return {by_corner[0],     by_corner[1],     by_corner[2],
-          cell.by_slope[0], cell.by_slope[1], cell.by_slope[2]};
-}
-
 double dot(const Curvature& a, const Curvature& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -50,60 +22,60 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
     : cells_(std::move(cells)),
       masses_(std::move(masses)),
       context_(context),
+      reduced_(cells_, static_cast<int>(masses_.size())),
       matrix_(choice, context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
+  for (int block = 0; block < cells_.block_count(); ++block) {
+    bool has_inner = false;
+    for (int k = cells_.block_starts[block]; k < cells_.block_starts[block + 1]; ++k) {
+      for_each_unknown(cells_, cells_.cells[k], [&](const CellUnknown& unknown) {
+        has_inner = has_inner || reduced_.places[unknown.index] < 0;
+      });
+    }
+    if (has_inner) blocks_with_inner_.push_back(block);
+  }
 }
 
 // The upper triangle, by columns, rows ascending. Contributions are gathered by columns, in the
-// order of the cells, and those of one entry are added in that order.
+// order of the blocks, and those of one entry are added in that order.
 SparseMatrix TrianglePlate::assemble() const {
-  const int size = cells_.unknown_count();
-  std::vector<int> starts(static_cast<std::size_t>(size) + 1, 0);
-  std::vector<Unknown> unknowns;
-  const auto gather = [&](const TriangleCell& cell) {
-    unknowns.clear();
-    for_each_unknown(cells_, cell, [&](const Unknown& unknown) { unknowns.push_back(unknown); });
-  };
-  const auto for_each_pair = [&](const auto& f) {
-    for (const Unknown& row : unknowns) {
-      for (const Unknown& column : unknowns) {
-        if (row.index <= column.index) f(row, column);
-      }
-    }
-  };
-  for (const TriangleCell& cell : cells_.cells) {
-    gather(cell);
-    for_each_pair([&](const Unknown&, const Unknown& column) { ++starts[column.index + 1]; });
-  }
-  for (int k = 0; k < size; ++k) starts[k + 1] += starts[k];
   struct Entry {
-    int row;
+    int row, column;
     double value;
   };
-  std::vector<Entry> entries(static_cast<std::size_t>(starts[size]));
+  std::vector<Entry> entries;
+  CellBlock<double> block;
+  for (int k = 0; k < cells_.block_count(); ++k) {
+    block.compute(cells_, k, reduced_, bending_);
+    for (int a = block.inner_count(); a < block.size(); ++a) {
+      for (int b = a; b < block.size(); ++b) {
+        const auto [row, column] =
+            std::minmax(reduced_.places[block.unknown(a)], reduced_.places[block.unknown(b)]);
+        entries.push_back({row, column, block.at(a, b)});
+      }
+    }
+  }
+  const int size = reduced_.count;
+  std::vector<int> starts(static_cast<std::size_t>(size) + 1, 0);
+  for (const Entry& entry : entries) ++starts[entry.column + 1];
+  for (int k = 0; k < size; ++k) starts[k + 1] += starts[k];
+  std::vector<int> order(entries.size());
   std::vector<int> next(starts.begin(), starts.end() - 1);
-  for (const TriangleCell& each : cells_.cells) {
-    gather(each);
-    const MorleyCell cell(each.shape);
-    const std::array<Curvature, 6> by_value = curvature_by_value(cell);
-    std::array<Curvature, 6> moment_by_value;
-    for (int k = 0; k < 6; ++k) moment_by_value[k] = moments(bending_, by_value[k]);
-    for_each_pair([&](const Unknown& row, const Unknown& column) {
-      const double value = cell.area * row.sign * column.sign *
-                           dot(by_value[row.value], moment_by_value[column.value]);
-      entries[next[column.index]++] = {row.index, value};
-    });
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    order[next[entries[k].column]++] = static_cast<int>(k);
   }
   SparseMatrix matrix(size, size);
   matrix.reserve(static_cast<Eigen::Index>(entries.size()) / 2);
   for (int column = 0; column < size; ++column) {
     matrix.startVec(column);
-    const auto begin = entries.begin() + starts[column], end = entries.begin() + starts[column + 1];
-    std::stable_sort(begin, end, [](const Entry& a, const Entry& b) { return a.row < b.row; });
-    for (auto entry = begin; entry != end;) {
-      const int row = entry->row;
+    const auto begin = order.begin() + starts[column], end = order.begin() + starts[column + 1];
+    std::sort(begin, end, [&](int a, int b) {
+      return std::pair(entries[a].row, a) < std::pair(entries[b].row, b);
+    });
+    for (auto place = begin; place != end;) {
+      const int row = entries[*place].row;
       double sum = 0;
-      for (; entry != end && entry->row == row; ++entry) sum += entry->value;
+      for (; place != end && entries[*place].row == row; ++place) sum += entries[*place].value;
       const bool has_mass = row == column && row < static_cast<int>(masses_.size());
       matrix.insertBack(row, column) = has_mass ? sum + shift_ * masses_[row] : sum;
     }
@@ -112,14 +84,36 @@ SparseMatrix TrianglePlate::assemble() const {
   return matrix;
 }
 
+// Eliminates the inner unknowns from forces on all unknowns.
+Field TrianglePlate::reduced(const Field& forces) const {
+  Field result(reduced_.count, 3);
+  for (Eigen::Index unknown = 0; unknown < forces.rows(); ++unknown) {
+    const int place = reduced_.places[unknown];
+    if (place >= 0) result.row(place) = forces.row(unknown);
+  }
+  CellBlock<double> block;
+  std::vector<double> own;
+  for (const int k : blocks_with_inner_) {
+    block.compute(cells_, k, reduced_, bending_);
+    for (int component = 0; component < 3; ++component) {
+      own.assign(static_cast<std::size_t>(block.size()), 0);
+      for (int n = 0; n < block.inner_count(); ++n) own[n] = forces(block.unknown(n), component);
+      block.reduce(own);
+      for (int n = block.inner_count(); n < block.size(); ++n) {
+        result(reduced_.places[block.unknown(n)], component) += own[n];
+      }
+    }
+  }
+  return result;
+}
+
 Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
   if (is_factored_ && bending_ == bending && shift_ == shift) return {};
   const bool has_same_pattern = is_factored_;
   is_factored_ = false;
   bending_ = bending;
   shift_ = shift;
-  auto factored =
-      matrix_.factor(cells_.unknown_count(), has_same_pattern, [&] { return assemble(); });
+  auto factored = matrix_.factor(reduced_.count, has_same_pattern, [&] { return assemble(); });
   if (!factored) return factored;
   is_factored_ = true;
   return choose_passes();
@@ -135,7 +129,7 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
     }
     if (!is_held) continue;
     const MorleyCell cell(each.shape);
-    const std::array<Curvature, 6> by_value = curvature_by_value(cell);
+    const std::array<Curvature, 6> by_value = cell.by_value();
     for (int component = 0; component < 3; ++component) {
       Curvature h = {0, 0, 0};
       const auto add = [&](int value, double amount) {
@@ -149,7 +143,7 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
       }
       if (h == Curvature{0, 0, 0}) continue;
       const Curvature moment = moments(problem.bending, h);
-      for_each_unknown(cells_, each, [&](const Unknown& unknown) {
+      for_each_unknown(cells_, each, [&](const CellUnknown& unknown) {
         forces(unknown.index, component) -=
             cell.area * unknown.sign * dot(by_value[unknown.value], moment);
       });
@@ -161,35 +155,29 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
 Field TrianglePlate::residual(const Field& solution, const Field& right_hand_sides) const {
   using Real = long double;
   Field result(right_hand_sides.rows(), 3);
-  std::vector<Real> sums(static_cast<std::size_t>(solution.rows()));
-  for (int component = 0; component < 3; ++component) {
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-      const auto row = static_cast<Eigen::Index>(k);
-      const Real mass = k < masses_.size() ? masses_[k] : 0;
-      sums[k] = right_hand_sides(row, component) - shift_ * mass * solution(row, component);
+  std::vector<std::array<Real, 3>> sums(static_cast<std::size_t>(solution.rows()));
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const Real mass = k < masses_.size() ? masses_[k] : 0;
+    for (int n = 0; n < 3; ++n) {
+      sums[k][n] = right_hand_sides(row, n) - shift_ * mass * solution(row, n);
     }
-    for (const TriangleCell& each : cells_.cells) {
-      const MorleyCell cell(each.shape);
-      std::array<Real, 6> values = {};
-      for_each_unknown(cells_, each, [&](const Unknown& unknown) {
-        values[unknown.value] += unknown.sign * Real{solution(unknown.index, component)};
-      });
-      const std::array<Curvature, 6> by_value = curvature_by_value(cell);
-      std::array<Real, 3> h = {};
-      for (int value = 0; value < 6; ++value) {
-        for (int k = 0; k < 3; ++k) h[k] += by_value[value][k] * values[value];
+  }
+  CellBlock<Real> block;
+  for (int k = 0; k < cells_.block_count(); ++k) {
+    block.compute(cells_, k, reduced_, bending_);
+    for (int a = block.inner_count(); a < block.size(); ++a) {
+      const int row = reduced_.places[block.unknown(a)];
+      for (int b = block.inner_count(); b < block.size(); ++b) {
+        const int column = reduced_.places[block.unknown(b)];
+        const Real entry = a < b ? block.at(a, b) : block.at(b, a);
+        for (int n = 0; n < 3; ++n) sums[row][n] -= entry * solution(column, n);
       }
-      const std::array<Real, 3> moment = {bending_.uu * h[0] + bending_.coupling * h[1],
-                                          bending_.coupling * h[0] + bending_.vv * h[1],
-                                          bending_.uv * h[2]};
-      for_each_unknown(cells_, each, [&](const Unknown& unknown) {
-        Real product = 0;
-        for (int k = 0; k < 3; ++k) product += by_value[unknown.value][k] * moment[k];
-        sums[unknown.index] -= cell.area * unknown.sign * product;
-      });
     }
-    for (Eigen::Index row = 0; row < result.rows(); ++row) {
-      result(row, component) = static_cast<double>(sums[static_cast<std::size_t>(row)]);
+  }
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    for (int n = 0; n < 3; ++n) {
+      result(static_cast<Eigen::Index>(k), n) = static_cast<double>(sums[k][n]);
     }
   }
   return result;
@@ -202,7 +190,7 @@ Result<void> TrianglePlate::choose_passes() {
   refinement_passes_ = 0;
   const auto points = static_cast<Eigen::Index>(masses_.size());
   const auto peak = [&](const Field& w) { return w.col(0).head(points).cwiseAbs().maxCoeff(); };
-  Field pressure = Field::Zero(cells_.unknown_count(), 3);
+  Field pressure = Field::Zero(reduced_.count, 3);
   pressure.col(0).head(points) = Eigen::Map<const Eigen::VectorXd>(masses_.data(), points);
   auto solution = matrix_.solve(pressure);
   if (!solution) return fail(solution.error());
@@ -234,7 +222,7 @@ Result<Field> TrianglePlate::solve_refined(const Field& right_hand_sides) {
 Result<Field> TrianglePlate::solve(const Field& forces) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(is_factored_ && forces.rows() == points);
-  Field right_hand_sides = Field::Zero(cells_.unknown_count(), 3);
+  Field right_hand_sides = Field::Zero(reduced_.count, 3);
   right_hand_sides.topRows(points) = forces;
   auto solution = solve_refined(right_hand_sides);
   if (!solution) return solution;
@@ -254,7 +242,7 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   set_up.stop();
   const StageTimer solving(context_.profile, Stage::Solve);
 
-  Field known = held_forces(problem, state.displacement);
+  Field known = reduced(held_forces(problem, state.displacement));
   known.topRows(points) += problem.load;
   const Eigen::Map<const Eigen::VectorXd> masses(masses_.data(), points);
   Field w = state.displacement.topRows(points);
@@ -270,10 +258,8 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
     if (!next) return fail(next.error());
     v = (next->topRows(points) - w) / dt;
     w = next->topRows(points);
-    if (step == steps.count - 1) {
-      state.displacement.topRows(cells_.free_points) = next->topRows(cells_.free_points);
-    }
   }
+  state.displacement.topRows(points) = w;
   state.velocity = std::move(v);
   return state;
 }

@@ -12,7 +12,7 @@
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
 #include "pliant/plate/time_steps.hpp"
-#include "pliant/plate/triangles/morley_cell.hpp"
+#include "pliant/plate/triangles/cell_block.hpp"
 
 namespace pliant {
 
@@ -61,6 +61,7 @@ class TrianglePlate {
 
  private:
   SparseMatrix assemble() const;
+  Field reduced(const Field& forces) const;
   Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
   Field residual(const Field& solution, const Field& right_hand_sides) const;
   Result<Field> solve_refined(const Field& right_hand_sides);
@@ -69,6 +70,8 @@ class TrianglePlate {
   TriangleCells cells_;
   std::vector<double> masses_;
   RunContext context_;
+  ReducedUnknowns reduced_;  // those of the matrix
+  std::vector<int> blocks_with_inner_;
   FactoredMatrix matrix_;
   bool is_factored_ = false;
   Bending bending_;  // of the factored matrix

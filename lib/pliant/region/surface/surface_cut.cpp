@@ -25,6 +25,9 @@ struct Joint {
   int side = 0;
 };
 
+// The most triangles of a face that form a block: eliminating within one takes the cube of that.
+constexpr int most_in_block = 8;
+
 // Of a side on the rim of the region: its slope is given.
 constexpr int no_line = -1;
 
@@ -62,7 +65,14 @@ class Cutting {
       const int face = level_set_.faces[k];
       const int first = surface_.triangle_starts[face];
       const int count = surface_.triangle_starts[face + 1] - first;
-      for (int n = 0; n < count; ++n) cut(k, n, surface_.triangles[first + n]);
+      const std::size_t cells_before = cells.size();
+      bool is_whole = 4 <= count && count <= most_in_block;
+      for (int n = 0; n < count; ++n)
+        is_whole = cut(k, n, surface_.triangles[first + n]) && is_whole;
+      for (std::size_t cell = cells_before; cell < cells.size(); ++cell) {
+        block_count_ += cell == cells_before || !is_whole ? 1 : 0;
+        blocks.push_back(block_count_);
+      }
     }
     std::sort(joints.begin(), joints.end(), [](const Joint& a, const Joint& b) {
       return std::tie(a.line, a.cell, a.side) < std::tie(b.line, b.cell, b.side);
@@ -71,6 +81,7 @@ class Cutting {
 
   std::vector<Point> points;
   std::vector<TriangleCell> cells;
+  std::vector<int> blocks;    // the block of each cell
   std::vector<Joint> joints;  // by line, then by cell
 
   // How many sides of cells lie on a line if all its triangles have a part in the region there.
@@ -92,7 +103,8 @@ class Cutting {
     Place place;
   };
 
-  void cut(std::size_t k, int n, const FlatTriangle& shape) {
+  // Whether the whole triangle is one cell.
+  bool cut(std::size_t k, int n, const FlatTriangle& shape) {
     const std::span<const int> corners = level_set_.corners_of(k);
     const std::span<const int> edges = surface_.edges_of(level_set_.faces[k]);
     const int size = static_cast<int>(corners.size()), next = (n + 1) % size;
@@ -112,7 +124,7 @@ class Cutting {
     const auto is_positive = [](double phi) { return phi > 0; };
     const auto is_negative = [](double phi) { return phi < 0; };
     const auto& phi = triangle.phi;
-    if (std::none_of(phi.begin(), phi.end(), is_positive)) return;
+    if (std::none_of(phi.begin(), phi.end(), is_positive)) return false;
     const auto negatives = std::count_if(phi.begin(), phi.end(), is_negative);
     if (negatives == 0) {
       add_cell({corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)}, triangle.lines);
@@ -123,6 +135,7 @@ class Cutting {
       keep_one(triangle,
                static_cast<int>(std::find_if(phi.begin(), phi.end(), is_positive) - phi.begin()));
     }
+    return negatives == 0;
   }
 
   // Only `corner` lies outside.
@@ -216,6 +229,7 @@ class Cutting {
   std::vector<int> rim_points_;   // the point on each line, likewise
   int centre_point_ = -1;         // of the present face
   int inner_lines_ = 0;           // the next line inside a triangle
+  int block_count_ = 0;
 };
 
 // The piece of each cell, in the order of their first cells.
@@ -257,6 +271,9 @@ class Separating {
     cell_places_.reserve(cutting_.cells.size());
     for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
       TriangleCells& cells = pieces[cell_pieces_[k]].cells;
+      const bool goes_on = k > 0 && cutting_.blocks[k] == cutting_.blocks[k - 1];
+      if (!goes_on) cells.block_starts.push_back(0);
+      cells.block_starts.back() = static_cast<int>(cells.cells.size()) + 1;
       cell_places_.push_back(static_cast<int>(cells.cells.size()));
       cells.cells.push_back(cutting_.cells[k]);
       for (int& point : cells.cells.back().points) point = places_[point];
