@@ -38,7 +38,7 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
 
 // The upper triangle, by columns, rows ascending. Contributions are gathered by columns, in the
 // order of the blocks, and those of one entry are added in that order.
-SparseMatrix TrianglePlate::assemble() const {
+SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift) const {
   struct Entry {
     int row, column;
     double value;
@@ -46,7 +46,7 @@ SparseMatrix TrianglePlate::assemble() const {
   std::vector<Entry> entries;
   CellBlock<double> block;
   for (int k = 0; k < cells_.block_count(); ++k) {
-    block.compute(cells_, k, reduced_, bending_);
+    block.compute(cells_, k, reduced_, bending);
     for (int a = block.inner_count(); a < block.size(); ++a) {
       for (int b = a; b < block.size(); ++b) {
         const auto [row, column] =
@@ -77,7 +77,7 @@ SparseMatrix TrianglePlate::assemble() const {
       double sum = 0;
       for (; place != end && entries[*place].row == row; ++place) sum += entries[*place].value;
       const bool has_mass = row == column && row < static_cast<int>(masses_.size());
-      matrix.insertBack(row, column) = has_mass ? sum + shift_ * masses_[row] : sum;
+      matrix.insertBack(row, column) = has_mass ? sum + shift * masses_[row] : sum;
     }
   }
   matrix.finalize();
@@ -113,7 +113,8 @@ Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
   is_factored_ = false;
   bending_ = bending;
   shift_ = shift;
-  auto factored = matrix_.factor(reduced_.count, has_same_pattern, [&] { return assemble(); });
+  auto factored =
+      matrix_.factor(reduced_.count, has_same_pattern, [&] { return matrix(bending_, shift_); });
   if (!factored) return factored;
   is_factored_ = true;
   return choose_passes();

@@ -53,6 +53,10 @@ class TrianglePlate {
   Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                                 TriangleState state);
 
+  /// The upper triangle of K + shift M that is factored: without unknowns that belong to one block
+  /// of cells.
+  SparseMatrix matrix(const Bending& bending, double shift) const;
+
   const TriangleCells& cells() const { return cells_; }
   const std::vector<double>& masses() const { return masses_; }
   const RunContext& context() const { return context_; }
@@ -60,7 +64,6 @@ class TrianglePlate {
   std::size_t memory() const { return matrix_.memory(); }
 
  private:
-  SparseMatrix assemble() const;
   Field reduced(const Field& forces) const;
   Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
   Field residual(const Field& solution, const Field& right_hand_sides) const;
