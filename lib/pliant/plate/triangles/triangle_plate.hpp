@@ -68,7 +68,7 @@ class TrianglePlate {
   Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
   Field residual(const Field& solution, const Field& right_hand_sides) const;
   Result<Field> solve_refined(const Field& right_hand_sides);
-  Result<void> choose_passes();
+  Result<void> choose_passes(const SparseMatrix& upper);
 
   TriangleCells cells_;
   std::vector<double> masses_;

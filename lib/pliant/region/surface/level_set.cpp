@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
@@ -114,13 +114,14 @@ void list_corners(const TriangleSurface& surface, LevelSet& level_set) {
     all.insert(all.end(), nodes.begin(), nodes.end());
   }
   all = sorted_once(std::move(all));
+  // The place of each node among `all`; of other nodes nothing is written or read.
+  const auto places =
+      std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(surface.node_count()));
+  for (std::size_t k = 0; k < all.size(); ++k) places[all[k]] = static_cast<int>(k);
   level_set.corner_starts = {0};
   level_set.corners.clear();
   for (const int face : level_set.faces) {
-    for (const int node : surface.nodes_of(face)) {
-      const auto place = std::lower_bound(all.begin(), all.end(), node);
-      level_set.corners.push_back(static_cast<int>(place - all.begin()));
-    }
+    for (const int node : surface.nodes_of(face)) level_set.corners.push_back(places[node]);
     level_set.corner_starts.push_back(static_cast<int>(level_set.corners.size()));
   }
 }

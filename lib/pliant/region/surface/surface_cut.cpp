@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -47,13 +48,21 @@ class Cutting {
         level_set_(level_set),
         is_border_(is_border),
         border_(border),
-        node_points_(level_set.nodes.size(), -1) {
-    for (const int face : level_set.faces) {
-      const std::span<const int> edges = surface.edges_of(face);
-      edges_.insert(edges_.end(), edges.begin(), edges.end());
-    }
+        node_points_(level_set.nodes.size(), -1),
+        lines_(
+            std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(surface.edge_count()))) {
+    const auto each_edge = [&](const auto& f) {
+      for (const int face : level_set.faces) {
+        for (const int edge : surface.edges_of(face)) f(edge);
+      }
+    };
+    each_edge([&](int edge) { lines_[edge] = -1; });
+    each_edge([&](int edge) {
+      if (lines_[edge] < 0) edges_.push_back(edge);
+      lines_[edge] = 0;
+    });
     std::sort(edges_.begin(), edges_.end());
-    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    for (std::size_t k = 0; k < edges_.size(); ++k) lines_[edges_[k]] = static_cast<int>(k);
     // One line for each edge and each corner's way to the centre.
     rim_points_.assign(edges_.size() + level_set.corners.size(), -1);
     inner_lines_ = static_cast<int>(rim_points_.size());
@@ -74,9 +83,7 @@ class Cutting {
         blocks.push_back(block_count_);
       }
     }
-    std::sort(joints.begin(), joints.end(), [](const Joint& a, const Joint& b) {
-      return std::tie(a.line, a.cell, a.side) < std::tie(b.line, b.cell, b.side);
-    });
+    sort_joints();
   }
 
   std::vector<Point> points;
@@ -184,8 +191,16 @@ class Cutting {
     }
   }
 
-  int line_of(int edge) const {
-    return static_cast<int>(std::lower_bound(edges_.begin(), edges_.end(), edge) - edges_.begin());
+  int line_of(int edge) const { return lines_[edge]; }
+
+  // By line; those of a line stay in the order of their cells.
+  void sort_joints() {
+    std::vector<int> starts(static_cast<std::size_t>(inner_lines_) + 1, 0);
+    for (const Joint& joint : joints) ++starts[joint.line + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::vector<Joint> sorted(joints.size());
+    for (const Joint& joint : joints) sorted[starts[joint.line]++] = joint;
+    joints.swap(sorted);
   }
 
   double phi_at(int end) const {
@@ -224,8 +239,9 @@ class Cutting {
   const LevelSet& level_set_;
   const std::vector<bool>& is_border_;
   Border border_;
-  std::vector<int> edges_;        // of all faces, ascending
+  std::vector<int> edges_;        // of each line, as far as lines are edges
   std::vector<int> node_points_;  // the point of each node, -1: none yet
+  std::unique_ptr<int[]> lines_;  // of the edges of all faces; the rest is not set
   std::vector<int> rim_points_;   // the point on each line, likewise
   int centre_point_ = -1;         // of the present face
   int inner_lines_ = 0;           // the next line inside a triangle
