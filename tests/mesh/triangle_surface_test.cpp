@@ -47,6 +47,7 @@ TEST_CASE("faces that make no sense take no part", "[mesh][surface]") {
   CHECK(s.faces_left_out == 5);
   CHECK(std::vector(s.nodes_of(1).begin(), s.nodes_of(1).end()) == std::vector{1, 4, 2});
   CHECK(std::vector(s.faces_of(1).begin(), s.faces_of(1).end()) == std::vector{0, 1});
+  CHECK(s.mesh_corners == std::vector{0, 1, 2, 16, 18, 19});
   const auto none = make_surface(mesh_of(five_places, {{0, 1, 1}, {2, 2, 2}}));
   REQUIRE_FALSE(none);
   CHECK_THAT(none.error().message, contains_text("none of the mesh's 2 faces"));

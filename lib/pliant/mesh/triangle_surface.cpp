@@ -108,14 +108,14 @@ class SurfaceMaker {
         is_taken = is_taken && last_face[node] != static_cast<int>(face);
         last_face[node] = static_cast<int>(face);
         surface_.corner_nodes.push_back(node);
-        corners_.push_back(first + k);
+        surface_.mesh_corners.push_back(static_cast<int>(first + k));
       }
       const auto start = static_cast<std::size_t>(surface_.face_starts.back());
-      if (is_taken && corners_.size() - start >= 3) {
-        surface_.face_starts.push_back(static_cast<int>(corners_.size()));
+      if (is_taken && surface_.mesh_corners.size() - start >= 3) {
+        surface_.face_starts.push_back(static_cast<int>(surface_.mesh_corners.size()));
       } else {
         surface_.corner_nodes.resize(start);
-        corners_.resize(start);
+        surface_.mesh_corners.resize(start);
         ++surface_.faces_left_out;
       }
       first += size;
@@ -162,7 +162,7 @@ class SurfaceMaker {
       if (is_out[face]) continue;
       for (int k = begin; k < end; ++k, ++corners) {
         surface_.corner_nodes[corners] = surface_.corner_nodes[k];
-        corners_[corners] = corners_[k];
+        surface_.mesh_corners[corners] = surface_.mesh_corners[k];
       }
       // Not before `starts[face + 1]` was read: faces <= face.
       starts[++faces] = corners;
@@ -170,7 +170,7 @@ class SurfaceMaker {
     surface_.faces_left_out += static_cast<int>(is_out.size()) - faces;
     starts.resize(static_cast<std::size_t>(faces) + 1);
     surface_.corner_nodes.resize(static_cast<std::size_t>(corners));
-    corners_.resize(static_cast<std::size_t>(corners));
+    surface_.mesh_corners.resize(static_cast<std::size_t>(corners));
   }
 
   // Edges in the order of their lower nodes, then of the higher ones.
@@ -251,7 +251,7 @@ class SurfaceMaker {
   Vector3d position(int corner) const {
     return surface_.rest.row(surface_.corner_nodes[corner]).transpose();
   }
-  int uv_index(int corner) const { return mesh_.corner_uvs[corners_[corner]]; }
+  int uv_index(int corner) const { return mesh_.corner_uvs[surface_.mesh_corners[corner]]; }
 
   Result<void> find_unit() {
     double area = 0;
@@ -271,7 +271,6 @@ class SurfaceMaker {
   const Mesh& mesh_;
   const MeshReading& reading_;
   TriangleSurface surface_;
-  std::vector<std::size_t> corners_;  // the mesh's corner of each corner that takes part
 };
 
 }  // namespace

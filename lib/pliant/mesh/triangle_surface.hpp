@@ -27,6 +27,7 @@ struct TriangleSurface {
   std::vector<int> triangle_starts;  ///< #faces + 1: its first triangle
   std::vector<int> corner_nodes;     ///< #corners
   std::vector<int> corner_edges;     ///< #corners: the edge from a corner to the next
+  std::vector<int> mesh_corners;     ///< #corners: the mesh's, counted over all its faces
   std::vector<int> edge_sides;       ///< #edges: the sides of faces that lie there
   std::vector<FlatTriangle> triangles;
 
