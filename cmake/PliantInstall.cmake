@@ -12,4 +12,5 @@ install(FILES
   "${PROJECT_BINARY_DIR}/pliant-config.cmake"
   "${PROJECT_BINARY_DIR}/pliant-config-version.cmake"
   cmake/PliantReplayTest.cmake cmake/FindSleef.cmake cmake/FindxxHash.cmake cmake/FindCHOLMOD.cmake
+  cmake/FindOpenSubdiv.cmake
   DESTINATION "${pliant_package_dir}")

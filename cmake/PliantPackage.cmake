@@ -14,6 +14,16 @@ if(PLIANT_WITH_CHOLMOD)
   file(READ cmake/copyright_with_cholmod.txt pliant_licence_of_binary)
   string(STRIP "${pliant_licence_of_binary}" pliant_licence_of_binary)
 endif()
+foreach(part holders licence text)
+  set(pliant_opensubdiv_${part})
+endforeach()
+if(PLIANT_WITH_OPENSUBDIV)
+  set(pliant_opensubdiv_holders "
+           2013-2022, Pixar Animation Studios (OpenSubdiv)
+           2014-2020, DreamWorks Animation LLC (OpenSubdiv)")
+  set(pliant_opensubdiv_licence " and Apache-2.0-OpenSubdiv")
+  file(READ cmake/copyright_with_opensubdiv.txt pliant_opensubdiv_text)
+endif()
 configure_file(cmake/copyright.in "${PROJECT_BINARY_DIR}/copyright" @ONLY)
 
 # Debian requires a compressed changelog. -n omits name and time, so that the file depends on the text
@@ -61,6 +71,9 @@ set(suggested chromium ffmpeg bash-completion
     cmake g++ libeigen3-dev libexpected-dev libfmt-dev libsleef-dev libtinyxml2-dev libxxhash-dev)
 if(PLIANT_WITH_CHOLMOD)
   list(APPEND suggested libsuitesparse-dev)
+endif()
+if(PLIANT_WITH_OPENSUBDIV)
+  list(APPEND suggested libosd-dev)
 endif()
 list(JOIN suggested ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
 

@@ -250,6 +250,7 @@ class Contents(unittest.TestCase):
         has_cholmod = cached("PLIANT_WITH_CHOLMOD") == "ON"
         self.assertIn(f"\nLicense: {'GPL-3+' if has_cholmod else 'Apache-2.0'}", paragraphs[0])
         self.assertEqual("libcholmod" in text, has_cholmod)
+        self.assertEqual("(OpenSubdiv)" in text, cached("PLIANT_WITH_OPENSUBDIV") == "ON")
         # Every licence that a paragraph of files names has a paragraph of its own.
         explained = {re.match(r"License: (\S+)\n ", paragraph)[1]
                      for paragraph in paragraphs if paragraph.startswith("License:")}
@@ -266,6 +267,8 @@ class Control(unittest.TestCase):
                     "libassimp"]
         if cached("PLIANT_WITH_CHOLMOD") == "ON":
             expected.append("libcholmod")
+        if cached("PLIANT_WITH_OPENSUBDIV") == "ON":
+            expected.append("libosdcpu")
         if cached("PLIANT_WITH_SECCOMP") == "ON":
             expected.append("libseccomp")
         for library in expected:
@@ -281,6 +284,7 @@ class Control(unittest.TestCase):
             with self.subTest(package):
                 self.assertIn(package, suggests)
         self.assertEqual("libsuitesparse-dev" in suggests, cached("PLIANT_WITH_CHOLMOD") == "ON")
+        self.assertEqual("libosd-dev" in suggests, cached("PLIANT_WITH_OPENSUBDIV") == "ON")
 
     def test_has_name_version_section_and_description(self):
         self.assertEqual(control("Package"), "pliant")

@@ -15,6 +15,7 @@ struct WrittenSize {
   std::int64_t weights = 0;  ///< entries of its `VertexWeights`, at most
 
   static constexpr std::int64_t most_vertices = 100'000'000;
+  static constexpr std::int64_t most_faces = 500'000'000;  ///< quads whose corners an int counts
   static constexpr std::int64_t most_weights = 2'000'000'000;
 };
 
