@@ -47,17 +47,43 @@ inline bool holds(const Box& outer, const Box& inner) {
   return intersection(outer, inner) == inner;
 }
 
+/// The closed directions of a grid: along them the first column (row) follows the last one.
+enum class Wrap { None, U, V, UV };
+
+inline bool closes_u(Wrap wrap) { return wrap == Wrap::U || wrap == Wrap::UV; }
+inline bool closes_v(Wrap wrap) { return wrap == Wrap::V || wrap == Wrap::UV; }
+
 /// A uniform lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
 /// 4.3, fig. 1, which has one spacing h instead of hu and hv.
+///
+/// Along a closed direction columns (rows) are counted round, and a box begins inside the grid and
+/// may end beyond it: in a grid of 10 columns, those of 8 to 11 are 8, 9, 0 and 1. A box of all
+/// columns begins at column 0 and has no first or last one; it is a *ring*.
 struct Grid {
   int columns = 0;  ///< M, nodes along u
   int rows = 0;     ///< N, nodes along v
   double hu = 0;    ///< spacing along u [uv]
   double hv = 0;    ///< spacing along v [uv]
 
+  bool is_closed_u = false;  ///< column 0 follows column M - 1
+  bool is_closed_v = false;  ///< row 0 follows row N - 1
+
+  bool is_open() const { return !is_closed_u && !is_closed_v; }
   int node_count() const { return columns * rows; }
   int node(int i, int j) const { return j * columns + i; }
   Box box() const { return {0, columns - 1, 0, rows - 1}; }
+
+  /// Node (i,j) counted round. Requires: along closed directions less than a lap beyond the grid,
+  /// along others inside.
+  int node_round(int i, int j) const {
+    if (is_closed_u) i += i < 0 ? columns : i >= columns ? -columns : 0;
+    if (is_closed_v) j += j < 0 ? rows : j >= rows ? -rows : 0;
+    return node(i, j);
+  }
+
+  /// Whether a box of this grid is a ring along u (v).
+  bool is_ring_u(const Box& box) const { return is_closed_u && box.columns() == columns; }
+  bool is_ring_v(const Box& box) const { return is_closed_v && box.rows() == rows; }
 
   friend bool operator==(const Grid&, const Grid&) = default;
 };

@@ -53,6 +53,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   }
 
   Way way_of(const Outline& outline, const Stiffness& stiffness) {
+    if (outline.is_periodic()) return Way::Direct;
     if (outline.is_rectangle()) {
       const bool is_worth_it = prefers_spectral_ || worth_transforming(outline.grid(), stiffness);
       return is_worth_it ? Way::Spectral : Way::Direct;

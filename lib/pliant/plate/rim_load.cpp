@@ -41,20 +41,24 @@ void subtract_rim(const Outline& outline, const Stiffness& stiffness, const Edge
   const Grid& grid = outline.grid();
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   PLIANT_EXPECTS(w.rows() == grid.node_count() && load.rows() == grid.node_count());
-  const int M = grid.columns;
   const Stencil<double> stencil(grid, stiffness);
   const EdgeGhosts ghosts[] = {{grid, tangents, 0}, {grid, tangents, 1}, {grid, tangents, 2}};
-  outline.for_each_near_rim([&](int i, int j) {
-    const Surroundings around(outline, i, j);
-    for (int component = 0; component < 3; ++component) {
-      const double* const p = w.col(component).data() + grid.node(i, j);
-      const auto near = [&](int di, int dj) { return around.is_rim(di, dj) ? p[di + dj * M] : 0; };
-      const auto far = [&](int di, int dj) {
-        if (around.is_ghost(di, dj)) return 0 + ghosts[component].at(i + di, j + dj);
-        return around.is_far_rim(di, dj) ? p[di + dj * M] : 0;
-      };
-      load.col(component)[grid.node(i, j)] -= stencil.apply(near, far);
-    }
+  with_steps(outline, [&](const auto& steps_at) {
+    outline.for_each_near_rim([&](int i, int j) {
+      const Surroundings around(outline, i, j);
+      const auto steps = steps_at(i, j);
+      for (int component = 0; component < 3; ++component) {
+        const double* const p = w.col(component).data() + grid.node(i, j);
+        const auto near = [&](int di, int dj) {
+          return around.is_rim(di, dj) ? p[steps.to(di, dj)] : 0;
+        };
+        const auto far = [&](int di, int dj) {
+          if (around.is_ghost(di, dj)) return 0 + ghosts[component].at(i + di, j + dj);
+          return around.is_far_rim(di, dj) ? p[steps.to(di, dj)] : 0;
+        };
+        load.col(component)[grid.node(i, j)] -= stencil.apply(near, far);
+      }
+    });
   });
 }
 

@@ -102,12 +102,12 @@ class EdgeGhosts {
   EdgeGhosts(const Grid& grid, const EdgeTangents& tangents, int component)
       : columns_(grid.columns),
         rows_(grid.rows),
-        u0_(-2 * grid.hu * tangents.su0[component]),
-        u1_(2 * grid.hu * tangents.su1[component]),
-        v0_(-2 * grid.hv * tangents.sv0[component]),
-        v1_(2 * grid.hv * tangents.sv1[component]) {}
+        u0_(grid.is_closed_u ? 0 : -2 * grid.hu * tangents.su0[component]),
+        u1_(grid.is_closed_u ? 0 : 2 * grid.hu * tangents.su1[component]),
+        v0_(grid.is_closed_v ? 0 : -2 * grid.hv * tangents.sv0[component]),
+        v1_(grid.is_closed_v ? 0 : 2 * grid.hv * tangents.sv1[component]) {}
 
-  /// At column i and row j; 0 inside the grid.
+  /// At column i and row j; 0 inside the grid, and beyond it along a closed direction.
   double at(int i, int j) const {
     if (i < 0) return u0_;
     if (i >= columns_) return u1_;

@@ -77,8 +77,8 @@ class HashedValues {
     add_all(su0, su1, sv0, sv1);
   }
   void add(const Grid& grid) {
-    const auto& [columns, rows, hu, hv] = grid;
-    add_all(columns, rows, hu, hv);
+    const auto& [columns, rows, hu, hv, is_closed_u, is_closed_v] = grid;
+    add_all(columns, rows, hu, hv, int{is_closed_u}, int{is_closed_v});
   }
   // What of a surface the states depend on, besides the rest positions: all else follows from it.
   void add(const TriangleSurface& surface) {

@@ -7,7 +7,9 @@
 namespace pliant {
 
 Outline::Outline(const Grid& grid) : grid_(grid) {
-  unknowns_ = std::max(0, grid.columns - 2) * std::max(0, grid.rows - 2);
+  unknowns_ = (grid.is_closed_u ? grid.columns : std::max(0, grid.columns - 2)) *
+              (grid.is_closed_v ? grid.rows : std::max(0, grid.rows - 2));
+  is_rectangle_ = grid.is_open();
 }
 
 Outline::Outline(const Grid& grid, InteriorMask mask) : Outline(grid) {
@@ -15,18 +17,26 @@ Outline::Outline(const Grid& grid, InteriorMask mask) : Outline(grid) {
   PLIANT_EXPECTS(mask.size() == static_cast<std::size_t>(grid.node_count()));
   unknowns_ = static_cast<int>(std::count(mask.begin(), mask.end(), std::uint8_t{1}));
   mask_ = std::move(mask);
+  is_rectangle_ = false;
 }
 
 bool Outline::holds_all(const Run& nodes) const {
-  if (nodes.j < 1 || nodes.j > grid_.rows - 2) return false;
-  if (is_rectangle()) return nodes.i0 >= 1 && nodes.i1 <= grid_.columns - 2;
-  const auto first = mask_.begin() + grid_.node(nodes.i0, nodes.j);
+  if (!grid_.is_closed_v && (nodes.j < 1 || nodes.j > grid_.rows - 2)) return false;
+  if (mask_.empty()) return grid_.is_closed_u || (nodes.i0 >= 1 && nodes.i1 <= grid_.columns - 2);
+  const auto first = mask_.begin() + grid_.node_round(nodes.i0, nodes.j);
   return std::find(first, first + nodes.count(), std::uint8_t{0}) == first + nodes.count();
+}
+
+bool Outline::holds_round(int i, int j) const {
+  if (!mask_.empty()) return mask_[static_cast<std::size_t>(grid_.node_round(i, j))] != 0;
+  return (grid_.is_closed_u || (i > 0 && i < grid_.columns - 1)) &&
+         (grid_.is_closed_v || (j > 0 && j < grid_.rows - 1));
 }
 
 bool have_same_nodes(const Outline& a, const Outline& b) {
   return a.grid().columns == b.grid().columns && a.grid().rows == b.grid().rows &&
-         a.mask() == b.mask();
+         a.grid().is_closed_u == b.grid().is_closed_u &&
+         a.grid().is_closed_v == b.grid().is_closed_v && a.mask() == b.mask();
 }
 
 Field interior_of(const Outline& outline, const Field& nodes) {

@@ -18,12 +18,15 @@ using InteriorMask = std::vector<std::uint8_t>;
 /// rectangle, one from the second node to the last but one; in any other outline, those of a mask.
 /// SPEC 5; docs/model.md, eq. (12) to (14).
 ///
+/// A grid that is closed along u (v) makes its outline periodic: node (i,j) is counted round, and
+/// there is no rim at those ends. docs/model.md, eq. (49).
+///
 /// Everything that depends on the shape asks the outline: which nodes are unknowns, and which are
-/// next to the rim. An outline that is periodic in u or v would answer here that it has no rim at
-/// those ends.
+/// next to the rim.
 class Outline {
  public:
-  /// Neighbouring interior nodes, (i0,j) to (i1,j), with no interior node before or after them.
+  /// Neighbouring interior nodes, (i0,j) to (i1,j), with no interior node before or after them in
+  /// the row, which is not counted round.
   struct Run {
     int j, i0, i1;
 
@@ -32,32 +35,38 @@ class Outline {
 
   Outline() = default;
 
-  /// The rectangle: all nodes but the outermost are interior. Not explicit, since most plates are
-  /// rectangles.
+  /// All nodes but the outermost are interior: a rectangle, or a ring of a closed grid. Not
+  /// explicit, since most plates are rectangles.
   Outline(const Grid& grid);  // NOLINT
 
-  /// Any other outline; an empty mask is the rectangle again. Requires: interior nodes have all
+  /// Any other outline; an empty mask is the one above again. Requires: interior nodes have all
   /// eight neighbours in the grid. If two nodes that are two steps apart along u or v are interior,
   /// so is the one between them, as for every outline that follows cells.
   Outline(const Grid& grid, InteriorMask mask);
 
   const Grid& grid() const { return grid_; }
-  bool is_rectangle() const { return mask_.empty(); }
-  const InteriorMask& mask() const { return mask_; }  ///< empty for a rectangle
+  bool is_rectangle() const { return is_rectangle_; }
+  bool is_periodic() const { return !grid_.is_open(); }
+  const InteriorMask& mask() const { return mask_; }  ///< empty for a rectangle or a ring
   int unknown_count() const { return unknowns_; }
 
-  /// Whether node (i,j) is interior. Requires: it is a node of the grid.
+  /// Whether no node is rim, so that a static plate has no solution.
+  bool is_unheld() const { return unknowns_ == grid_.node_count(); }
+
+  /// Whether node (i,j) is interior. Requires: it is a node of the grid, counted round.
   bool holds(int i, int j) const {
-    if (!is_rectangle()) return mask_[static_cast<std::size_t>(grid_.node(i, j))] != 0;
-    return i > 0 && i < grid_.columns - 1 && j > 0 && j < grid_.rows - 1;
+    if (is_rectangle_) return i > 0 && i < grid_.columns - 1 && j > 0 && j < grid_.rows - 1;
+    if (is_periodic()) return holds_round(i, j);
+    return mask_[static_cast<std::size_t>(grid_.node(i, j))] != 0;
   }
 
   /// Calls f(run) for all runs, row by row.
   template <class F>
   void for_each_run(const F& f) const {
-    for (int j = 1; j < grid_.rows - 1; ++j) {
-      if (is_rectangle()) {
-        if (grid_.columns >= 3) f(Run{j, 1, grid_.columns - 2});
+    const int rim_u = grid_.is_closed_u ? 0 : 1, rim_v = grid_.is_closed_v ? 0 : 1;
+    for (int j = rim_v; j < grid_.rows - rim_v; ++j) {
+      if (mask_.empty()) {
+        if (grid_.columns >= 3) f(Run{j, rim_u, grid_.columns - 1 - rim_u});
         continue;
       }
       const auto row = mask_.begin() + grid_.node(0, j), end = row + grid_.columns;
@@ -90,13 +99,52 @@ class Outline {
 
  private:
   bool holds_all(const Run& nodes) const;
+  bool holds_round(int i, int j) const;
 
   Grid grid_;
-  InteriorMask mask_;  // empty: a rectangle
+  InteriorMask mask_;  // empty: all but the outermost nodes
   int unknowns_ = 0;
+  bool is_rectangle_ = true;
 };
 
 inline int unknown_count(const Outline& outline) { return outline.unknown_count(); }
+
+/// The way from a node of an open grid to another, in nodes: the same everywhere.
+struct OpenSteps {
+  int columns;
+
+  int to(int di, int dj) const { return di + dj * columns; }
+};
+
+/// The way from a node of a closed grid to those near it, in nodes, counted round.
+class RoundSteps {
+ public:
+  RoundSteps(const Grid& grid, int i, int j) {
+    for (int step = -2; step <= 2; ++step) {
+      u_[step + 2] = (grid.is_closed_u ? (i + step + grid.columns) % grid.columns : i + step) - i;
+      v_[step + 2] = (grid.is_closed_v ? (j + step + grid.rows) % grid.rows : j + step) - j;
+      v_[step + 2] *= grid.columns;
+    }
+  }
+
+  /// To the node `di` columns and `dj` rows away, at most two each.
+  int to(int di, int dj) const { return u_[di + 2] + v_[dj + 2]; }
+
+ private:
+  int u_[5], v_[5];
+};
+
+/// Calls f(steps_at), where steps_at(i, j) are the steps from node (i,j). Compiles f for open grids
+/// by itself, so that these do not pay for the others.
+template <class F>
+void with_steps(const Outline& outline, const F& f) {
+  const Grid& grid = outline.grid();
+  if (outline.is_periodic()) {
+    f([&](int i, int j) { return RoundSteps(grid, i, j); });
+  } else {
+    f([&](int, int) { return OpenSteps{grid.columns}; });
+  }
+}
 
 /// Whether two outlines differ in their spacings at most, so that their matrices have one pattern.
 bool have_same_nodes(const Outline& a, const Outline& b);
