@@ -221,6 +221,7 @@ std::vector<SampledForce> strewn(int count, double extent) {
 
 Selection look_at_all(const Grid& grid, const Field& nodes, std::span<const SampledForce> forces) {
   Selection selection;
+  selection.grid = grid;
   for (const SampledForce& force : forces) {
     ForceSelection selected;
     selected.selector = static_cast<int>(selection.forces.size());

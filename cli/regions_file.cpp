@@ -42,11 +42,9 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
 }
 
 Json surface_json(const Scene& scene, int frame, std::size_t surface, const SurfaceReport& report) {
-  Box selected;
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     const Region& region = report.regions[k];
-    selected.include(region.box);
     Json parts = Json::array();
     for (const Box& part : region.parts) parts.push_back(to_json(part));
     const bool is_solved = report.regions[k].is_solved();
@@ -65,7 +63,7 @@ Json surface_json(const Scene& scene, int frame, std::size_t surface, const Surf
   }
   Json json = {{"name", scene.surfaces[surface].name},
                {"solved", report.is_solved},
-               {"selected", to_json(selected)},
+               {"selected", to_json(report.selected)},
                {"steps", report.is_solved ? report.steps.count : 0},
                {"dt", report.is_solved ? Json(report.steps.length) : Json(nullptr)},
                {"unknowns", report.unknown_count},

@@ -25,6 +25,15 @@ int StepPlan::unknown_count() const {
   return count;
 }
 
+bool StepPlan::is_held() const {
+  for (const Region& region : selection.regions) {
+    for (const Patch& patch : region.patches) {
+      if (!patch.is_held()) return false;
+    }
+  }
+  return true;
+}
+
 Body::Body(Field rest, const BodySettings& settings)
     : rest_(std::move(rest)), settings_(settings), state_(rest_state()) {}
 

@@ -2,21 +2,24 @@
 
 #include <cmath>
 
+#include "pliant/region/closed_boxes.hpp"
+
 namespace pliant {
 namespace {
 
 using RowView = Eigen::Map<Eigen::ArrayXd>;
 using ConstRowView = Eigen::Map<const Eigen::ArrayXd>;
 
-// Calls f(component, node, row, count) for the contiguous stretches of the interior of a box:
+// Calls f(component, node, row, count) for the contiguous stretches of the nodes `within` a box:
 // `node` is the first row in a field on all nodes, `row` that in a field on the box.
 template <class F>
-void for_interior_rows(const Grid& grid, const Box& box, const F& f) {
-  const Eigen::Index width = box.columns() - 2;
+void for_rows(const Grid& grid, const Box& box, const Box& within, const F& f) {
   for (int component = 0; component < 3; ++component) {
-    for (int j = 1; j + 1 < box.rows(); ++j) {
-      f(component, Eigen::Index{grid.node(box.i0 + 1, box.j0 + j)},
-        Eigen::Index{j} * box.columns() + 1, width);
+    for (int j = within.j0; j <= within.j1; ++j) {
+      const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns() + (within.i0 - box.i0);
+      for_each_stretch(grid, within.i0, within.i1, j, [&](int node, int offset, int count) {
+        f(component, Eigen::Index{node}, row + offset, Eigen::Index{count});
+      });
     }
   }
 }
@@ -44,25 +47,20 @@ double unsoundness(const RowView& numbers) {
 
 Field rows_of(const Grid& grid, const Box& box, const Field& nodes, Field reuse) {
   reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
-  for (int component = 0; component < 3; ++component) {
-    for (int j = 0; j < box.rows(); ++j) {
-      reuse.col(component).segment(Eigen::Index{j} * box.columns(), box.columns()) =
-          nodes.col(component).segment(grid.node(box.i0, box.j0 + j), box.columns());
-    }
-  }
+  for_rows(grid, box, box,
+           [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
+             reuse.col(component).segment(row, count) = nodes.col(component).segment(node, count);
+           });
   return reuse;
 }
 
 Field difference_of(const Grid& grid, const Box& box, const Field& a, const Field& b, Field reuse) {
   reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
-  for (int component = 0; component < 3; ++component) {
-    for (int j = 0; j < box.rows(); ++j) {
-      const int node = grid.node(box.i0, box.j0 + j);
-      reuse.col(component).segment(Eigen::Index{j} * box.columns(), box.columns()) =
-          a.col(component).segment(node, box.columns()) -
-          b.col(component).segment(node, box.columns());
-    }
-  }
+  for_rows(grid, box, box,
+           [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
+             reuse.col(component).segment(row, count) =
+                 a.col(component).segment(node, count) - b.col(component).segment(node, count);
+           });
   return reuse;
 }
 
@@ -82,17 +80,17 @@ bool put_interior(const Grid& grid, const Patch& patch, const Field& displacemen
     speed = ConstRowView(&velocity(row, component), count);
     unsound += unsoundness(position) + unsoundness(speed);
   };
-  for_interior_rows(grid, patch.box,
-                    [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index width) {
-                      if (patch.is_rectangle()) {
-                        put(component, node, row, width);
-                        return;
-                      }
-                      for (Eigen::Index k = 0; k < width; ++k) {
-                        if (patch.interior[static_cast<std::size_t>(row + k)])
-                          put(component, node + k, row + k, 1);
-                      }
-                    });
+  for_rows(grid, patch.box, patch.inner(),
+           [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index width) {
+             if (patch.interior.empty()) {
+               put(component, node, row, width);
+               return;
+             }
+             for (Eigen::Index k = 0; k < width; ++k) {
+               if (patch.interior[static_cast<std::size_t>(row + k)])
+                 put(component, node + k, row + k, 1);
+             }
+           });
   return unsound == 0;
 }
 

@@ -18,12 +18,18 @@ double length(const Eigen::RowVector3d& a) {
   return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-// Tangents apply to the sides at the ends of the whole region; SPEC 5.
-EdgeTangents tangents_of(const Patch& patch, const Region& region, EdgeTangents tangents) {
-  if (patch.box.i0 != region.box.i0) tangents.su0.setZero();
-  if (patch.box.i1 != region.box.i1) tangents.su1.setZero();
-  if (patch.box.j0 != region.box.j0) tangents.sv0.setZero();
-  if (patch.box.j1 != region.box.j1) tangents.sv1.setZero();
+// Tangents apply to the sides at the ends of the whole region, which a ring does not have; SPEC 5.
+EdgeTangents tangents_of(const Grid& grid, const Patch& patch, const Region& region,
+                         EdgeTangents tangents) {
+  const Box& box = patch.box;
+  const bool is_ring_u = grid.is_ring_u(region.box), is_ring_v = grid.is_ring_v(region.box);
+  const auto are_same = [](int line, int other, int count) {
+    return line % count == other % count;  // counted round
+  };
+  if (is_ring_u || !are_same(box.i0, region.box.i0, grid.columns)) tangents.su0.setZero();
+  if (is_ring_u || !are_same(box.i1, region.box.i1, grid.columns)) tangents.su1.setZero();
+  if (is_ring_v || !are_same(box.j0, region.box.j0, grid.rows)) tangents.sv0.setZero();
+  if (is_ring_v || !are_same(box.j1, region.box.j1, grid.rows)) tangents.sv1.setZero();
   return tangents;
 }
 
@@ -34,8 +40,8 @@ bool is_lost(const ForceSelection& at_rest, const ForceSelection& now) {
 }
 
 // The rectangle, if a frame solves nothing else; an empty box: there are several patches, or the
-// patch has another outline.
-Box lone_rectangle(std::span<const Region> regions) {
+// patch has another outline or crosses a seam.
+Box lone_rectangle(const Grid& grid, std::span<const Region> regions) {
   const Patch* lone = nullptr;
   for (const Region& region : regions) {
     for (const Patch& patch : region.patches) {
@@ -43,12 +49,12 @@ Box lone_rectangle(std::span<const Region> regions) {
       lone = &patch;
     }
   }
-  return lone ? lone->box : Box{};
+  return lone && holds(grid.box(), lone->box) ? lone->box : Box{};
 }
 
 bool is_outline_of(const Outline& outline, const Patch& patch) {
-  return outline.grid().columns == patch.box.columns() && outline.grid().rows == patch.box.rows() &&
-         outline.mask() == patch.interior;
+  const Grid& grid = outline.grid();
+  return grid == patch.grid(grid) && outline.mask() == patch.interior;
 }
 
 }  // namespace
@@ -151,7 +157,7 @@ void GridBody::settle(const std::vector<int>& nodes) {
 // Nodes that no solve moves: they stay in place or are put at rest, without velocity.
 void GridBody::begin_next() {
   const StepPlan& plan = work_.plan;
-  const Box hole = plan.settling.empty() ? lone_rectangle(plan.selection.regions) : Box{};
+  const Box hole = plan.settling.empty() ? lone_rectangle(grid_, plan.selection.regions) : Box{};
   copy_around(grid_, hole, state_.positions, work_.next_positions);
   clear_around(grid_, hole, work_.next_velocities);
   for (const int node : plan.settling) work_.next_positions.row(node) = rest_.row(node);
@@ -174,8 +180,7 @@ void GridBody::keep_solvers() {
   std::vector<Outline> outlines;
   for (const Region& region : regions) {
     for (const Patch& patch : region.patches) {
-      const Grid grid{patch.box.columns(), patch.box.rows(), grid_.hu, grid_.hv};
-      outlines.emplace_back(grid, patch.interior);
+      outlines.emplace_back(patch.grid(grid_), patch.interior);
     }
   }
   solvers_.keep_only(outlines);
@@ -196,6 +201,11 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
     if (!region.is_solved()) continue;
     const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
     for (const Patch& patch : region.patches) {
+      if (!patch.is_held() && !(inputs.dynamics.shift(plan.steps.length) > 0)) {
+        return fail(ErrorCode::SolverFailed,
+                    "nothing holds a static surface that is closed along u and v: the forces "
+                    "select all of it; give it a density or a damping, or select less");
+      }
       PatchSolve& one = work_.solves[place++];
       PlateProblem& problem = one.problem;
       const Box& box = patch.box;
@@ -203,7 +213,7 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
       one.settling_length = length;
       problem.stiffness = inputs.stiffness;
       problem.dynamics = inputs.dynamics;
-      problem.tangents = tangents_of(patch, region, inputs.tangents);
+      problem.tangents = tangents_of(grid_, patch, region, inputs.tangents);
       {
         const StageTimer timer(profile_, Stage::Load);
         problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, plan.selection, k,
@@ -246,11 +256,11 @@ Result<void> GridBody::take() {
 void GridBody::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
   for (const PatchSolve& one : work_.solves) {
-    const Box& box = one.patch->box;
-    for (int j = box.j0 + 1; j < box.j1; ++j) {
-      for (int i = box.i0 + 1; i < box.i1; ++i) {
+    const Box inner = one.patch->inner();
+    for (int j = inner.j0; j <= inner.j1; ++j) {
+      for (int i = inner.i0; i <= inner.i1; ++i) {
         if (!one.patch->holds(i, j)) continue;
-        const int node = grid_.node(i, j);
+        const int node = grid_.node_round(i, j);
         const auto position = work_.next_positions.row(node);
         const double displacement = length(position - rest_.row(node));
         const double motion = length(position - state_.positions.row(node));

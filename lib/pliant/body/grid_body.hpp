@@ -21,8 +21,8 @@ class GridBody final : public Body {
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 
-  /// Nothing is allocated while the regions stay the same, plates are solved in sine space and no
-  /// node recovers.
+  /// Nothing is allocated while the regions stay the same, plates are solved in sine space, no node
+  /// recovers and the grid is open.
   Result<void> step(const BodyInputs& inputs) override;
 
   const StepPlan& last_step() const override { return work_.plan; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/region/closed_boxes.hpp"
 
 namespace pliant {
 namespace {
@@ -12,9 +13,10 @@ void mark_interiors(const Grid& grid, std::span<const Region> regions, NodeMarks
   marks.assign(static_cast<std::size_t>(grid.node_count()), 0);
   for (const Region& region : regions) {
     for (const Patch& patch : region.patches) {
-      for (int j = patch.box.j0 + 1; j < patch.box.j1; ++j) {
-        for (int i = patch.box.i0 + 1; i < patch.box.i1; ++i) {
-          if (patch.holds(i, j)) marks[grid.node(i, j)] = 1;
+      const Box inner = patch.inner();
+      for (int j = inner.j0; j <= inner.j1; ++j) {
+        for (int i = inner.i0; i <= inner.i1; ++i) {
+          if (patch.holds(i, j)) marks[grid.node_round(i, j)] = 1;
         }
       }
     }
@@ -39,11 +41,14 @@ std::vector<Box> boxes_around(const Grid& grid, std::span<const int> nodes) {
   std::vector<Box> runs;  // along u
   for (const int node : nodes) {
     const int i = node % grid.columns, j = node / grid.columns;
-    const Box around = intersection({i - 1, i + 1, j - 1, j + 1}, grid.box());
+    Box around = {i - 1, i + 1, j - 1, j + 1};
+    if (!grid.is_closed_u) around = intersection(around, {0, grid.columns - 1, j - 1, j + 1});
+    if (!grid.is_closed_v) around = intersection(around, {i - 1, i + 1, 0, grid.rows - 1});
     const bool goes_on = !runs.empty() && runs.back().j1 == around.j1 && runs.back().i1 == i;
     goes_on ? runs.back().include(around) : runs.push_back(around);
   }
-  return merged(runs);
+  for (Box& run : runs) run = placed(grid, run);
+  return merged(runs, grid);
 }
 
 std::vector<int> settling_nodes(const Grid& grid, const Field& rest, const Field& positions,
@@ -65,9 +70,11 @@ double settling_length(const Grid& grid, const Field& rest, const Region& region
   Eigen::RowVector3d high = low;
   for (const Box& part : region.parts) {
     for (int j = part.j0; j <= part.j1; ++j) {
-      const auto row = rest.middleRows(grid.node(part.i0, j), part.columns());
-      low = low.cwiseMin(row.colwise().minCoeff());
-      high = high.cwiseMax(row.colwise().maxCoeff());
+      for_each_stretch(grid, part.i0, part.i1, j, [&](int node, int, int count) {
+        const auto row = rest.middleRows(node, count);
+        low = low.cwiseMin(row.colwise().minCoeff());
+        high = high.cwiseMax(row.colwise().maxCoeff());
+      });
     }
   }
   const Eigen::RowVector3d extent = high - low;

@@ -1,33 +1,36 @@
 #include "pliant/body/step_facts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
+#include "pliant/region/closed_boxes.hpp"
 #include "pliant/region/region.hpp"
 
 namespace pliant {
 namespace {
 
 // Whether any node in the box moves.
-bool moves_any(std::span<const Patch> patches, const Box& box) {
+bool moves_any(const Grid& grid, std::span<const Patch> patches, const Box& box) {
+  bool moves = false;
   for (const Patch& patch : patches) {
-    const Box inside = intersection(patch.box, box);
-    for (int j = inside.j0; j <= inside.j1; ++j) {
-      for (int i = inside.i0; i <= inside.i1; ++i) {
-        if (patch.holds(i, j)) return true;
+    for_each_shared(grid, patch.box, box, [&](const Box& inside) {
+      for (int j = inside.j0; j <= inside.j1 && !moves; ++j) {
+        for (int i = inside.i0; i <= inside.i1 && !moves; ++i) moves = patch.holds(i, j);
       }
-    }
+    });
+    if (moves) return true;
   }
   return false;
 }
 
 // Whether any two of the boxes meet; if so, merges them.
-bool merge_two(std::vector<Box>& boxes) {
+bool merge_two(const Grid& grid, std::vector<Box>& boxes) {
   for (std::size_t a = 0; a < boxes.size(); ++a) {
     for (std::size_t b = a + 1; b < boxes.size(); ++b) {
-      if (intersection(boxes[a], boxes[b]).is_empty()) continue;
-      boxes[a].include(boxes[b]);
+      if (!meet(grid, boxes[a], boxes[b])) continue;
+      boxes[a] = box_around(grid, std::array{boxes[a], boxes[b]});
       boxes[b] = boxes.back();
       boxes.pop_back();
       return true;
@@ -41,9 +44,11 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const Selection& se
   const ForceSelection& selected = selection.forces[k];
   const std::span<const Patch> patches = selection.patches_of_force(k);
   const bool is_solved = !patches.empty();
-  const bool reaches = is_solved && overlaps(selection.regions[selected.region], selected.force);
+  const bool reaches =
+      is_solved && overlaps(selection.grid, selection.regions[selected.region], selected.force);
   // The solved part of a union may be somewhere else.
-  const bool is_elsewhere = combine == Combine::Union && !moves_any(patches, selected.deformation);
+  const bool is_elsewhere =
+      combine == Combine::Union && !moves_any(selection.grid, patches, selected.deformation);
   const bool has_magnitude = inputs.forces[k].magnitude != 0;
   const bool selects_itself =
       inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
@@ -96,6 +101,7 @@ StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan,
 }  // namespace
 
 bool falls_apart(const Selection& selection, std::vector<Box>& room) {
+  const Grid& grid = selection.grid;
   // Usually all boxes meet the first one, or boxes merged with it.
   const Box all = selection.box();
   Box met;
@@ -103,9 +109,9 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
     grows = false;
     for (const ForceSelection& force : selection.forces) {
       const Box& box = force.deformation;
-      if (box.is_empty() || (!met.is_empty() && intersection(met, box).is_empty())) continue;
+      if (box.is_empty() || (!met.is_empty() && !meet(grid, met, box))) continue;
       const Box before = met;
-      met.include(box);
+      met = box_around(grid, std::array{met, box});
       grows = grows || met != before;
     }
   }
@@ -113,9 +119,9 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
   room.assign(1, met);
   for (const ForceSelection& force : selection.forces) {
     const Box& box = force.deformation;
-    if (!box.is_empty() && intersection(met, box).is_empty()) room.push_back(box);
+    if (!box.is_empty() && !meet(grid, met, box)) room.push_back(box);
   }
-  while (merge_two(room)) {
+  while (merge_two(grid, room)) {
   }
   return room.size() > 1;
 }

@@ -21,6 +21,7 @@ struct StepPlan {
   bool selects() const;       ///< whether there is a region, even one that is not solved
   bool solves() const;        ///< whether any node moves
   int unknown_count() const;  ///< nodes that move, of all patches
+  bool is_held() const;       ///< false: nothing holds a patch of a closed grid
 };
 
 }  // namespace pliant

@@ -40,6 +40,7 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
   report.unknown_count = step->unknown_count();
   report.recovering = static_cast<int>(step->recovering.size());
   report.settled = static_cast<int>(step->settling.size());
+  report.selected = step->selection.box();
   report.regions = step->selection.regions;
   if (step->surface) {
     report.is_surface = true;

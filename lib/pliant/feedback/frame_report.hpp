@@ -35,6 +35,7 @@ struct SurfaceReport {
   int unknown_count = 0;            ///< nodes that move
   int recovering = 0;               ///< nodes solved because they are not back at rest
   int settled = 0;                  ///< nodes set to rest before the solve
+  Box selected;                     ///< the smallest around all regions
   std::vector<Region> regions;      ///< also those too small to solve
   std::vector<ForceReport> forces;  ///< in the order of the scene, then those of groups
 

@@ -134,7 +134,7 @@ class SurfacePreviewer {
     if (!step->selects()) return {};
     double peak = 0;
     const int unknowns = step->unknown_count();
-    if (unknowns > 0 && unknowns <= most_previewed_unknowns) {
+    if (unknowns > 0 && unknowns <= most_previewed_unknowns && step->is_held()) {
       if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
       peak = body_.peak(inputs.transform).size;
     }
@@ -162,7 +162,9 @@ class SurfacePreviewer {
                        falls_apart(step->selection, room);
     const int unknowns = step->unknown_count();
     preview.is_solvable = unknowns > 0;
-    preview.is_solved = preview.is_solvable && unknowns <= most_previewed_unknowns;
+    preview.is_held = step->is_held();
+    preview.is_solved =
+        preview.is_solvable && preview.is_held && unknowns <= most_previewed_unknowns;
     if (preview.is_solved) {
       if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
     }

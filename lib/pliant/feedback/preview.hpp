@@ -80,10 +80,11 @@ struct Preview {
   bool is_apart = false;       ///< for `All`: boxes that do not all meet form one region, since
                                ///< `combine` is box by default, not given in the scene
   bool is_solvable = false;    ///< whether any node can move
-  bool is_solved = false;      ///< false also with too many nodes for a preview; then the following
-                               ///< members are 0
-  double static_peak = 0;      ///< largest displacement at rest under the load of that frame, world
-                               ///< [length]
+  bool is_held = true;         ///< false: nothing holds a closed surface, which has no static state
+  bool is_solved = false;  ///< false also with too many nodes for a preview, or if nothing holds
+                           ///< it; then the following members are 0
+  double static_peak = 0;  ///< largest displacement at rest under the load of that frame, world
+                           ///< [length]
   std::vector<RegionPreview> regions;  ///< in the order given by `combine`
   std::vector<ForceShare> shares;      ///< for `Group` and `All`: in the order of the scene
 

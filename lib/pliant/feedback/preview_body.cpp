@@ -8,6 +8,7 @@
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
+#include "pliant/region/closed_boxes.hpp"
 
 namespace pliant {
 namespace {
@@ -106,10 +107,11 @@ Field PreviewBody::displacements(const Box& box) const {
   const Grid& grid = *shape_.grid;
   Field ways(Eigen::Index{box.columns()} * box.rows(), 3);
   for (int j = box.j0; j <= box.j1; ++j) {
-    const int node = grid.node(box.i0, j), count = box.columns();
-    ways.middleRows(Eigen::Index{j - box.j0} * count, count) =
-        current_->state().positions.middleRows(node, count) -
-        current_->rest().middleRows(node, count);
+    const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns();
+    for_each_stretch(grid, box.i0, box.i1, j, [&](int node, int offset, int count) {
+      ways.middleRows(row + offset, count) = current_->state().positions.middleRows(node, count) -
+                                             current_->rest().middleRows(node, count);
+    });
   }
   return ways;
 }
@@ -141,7 +143,8 @@ PreviewBody::Peak PreviewBody::peak(const Transform& transform,
   const Box within = box.value_or(grid.box());
   find_in(vectors_to_world(transform, displacements(within)));
   const int column = static_cast<int>(row % within.columns());
-  peak.node = grid.node(within.i0 + column, within.j0 + static_cast<int>(row / within.columns()));
+  peak.node =
+      grid.node_round(within.i0 + column, within.j0 + static_cast<int>(row / within.columns()));
   return peak;
 }
 
@@ -198,8 +201,7 @@ Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
     moved = &patch;
   }
   const Box& box = moved->box;
-  const Grid grid{box.columns(), box.rows(), shape_.grid->hu, shape_.grid->hv};
-  const PlateSystem system{{grid, moved->interior}, inputs.stiffness, 0};
+  const PlateSystem system{{moved->grid(*shape_.grid), moved->interior}, inputs.stiffness, 0};
   if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) return region;
   const auto solver = make_plate_solver(SolverChoice::Auto, context_);
   const auto plate = vibrating(*solver, system);

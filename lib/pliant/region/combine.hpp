@@ -19,15 +19,33 @@ enum class Combine {
 /// that is connected, diagonally too.
 struct Patch {
   Box box;  ///< interior nodes and the rim around them; at least 3 x 3
-  /// 1 for the interior nodes of `box`, row by row; empty: all but its outermost ring.
+  /// 1 for the interior nodes of `box`, row by row; empty: all of `inner()`.
   std::vector<std::uint8_t> interior;
 
-  bool is_rectangle() const { return interior.empty(); }
+  bool is_ring_u = false;  ///< it goes all round a closed grid along u, and has no rim at i0 and i1
+  bool is_ring_v = false;  ///< likewise along v
 
-  /// Whether node (i,j) of the grid is interior.
+  /// Whether its plate is a rectangle with a rim all around.
+  bool is_rectangle() const { return interior.empty() && !is_ring_u && !is_ring_v; }
+
+  /// Whether a rim holds it. A static plate without one has no solution.
+  bool is_held() const { return !(interior.empty() && is_ring_u && is_ring_v); }
+
+  /// The box without its outermost columns and rows, but for those of a ring.
+  Box inner() const {
+    return {box.i0 + !is_ring_u, box.i1 - !is_ring_u, box.j0 + !is_ring_v, box.j1 - !is_ring_v};
+  }
+
+  /// Whether node (i,j) is interior; counted as in `box`.
   bool holds(int i, int j) const {
-    if (i <= box.i0 || i >= box.i1 || j <= box.j0 || j >= box.j1) return false;
-    return is_rectangle() || interior[(j - box.j0) * std::size_t(box.columns()) + (i - box.i0)];
+    if (!inner().contains(i, j)) return false;
+    return interior.empty() ||
+           interior[(j - box.j0) * std::size_t(box.columns()) + (i - box.i0)] != 0;
+  }
+
+  /// The grid of its nodes, with the spacings of `of`: closed where it is a ring.
+  Grid grid(const Grid& of) const {
+    return {box.columns(), box.rows(), of.hu, of.hv, is_ring_u, is_ring_v};
   }
 
   int interior_count() const;
@@ -52,10 +70,13 @@ struct Region {
 
 /// Replaces boxes that share a node by their common box, until none do. Removes empty boxes. The
 /// result does not depend on the order of `boxes`; it is sorted by first row, then by first column.
-std::vector<Box> merged(std::span<const Box> boxes);
+/// The grid matters only if it is closed.
+std::vector<Box> merged(std::span<const Box> boxes, const Grid& grid = {});
 
 /// The regions that `boxes` form, none of them empty; islands in the order of `merged`. A box less
-/// than two nodes wide has no cell, so it is not a part of a union.
-std::vector<Region> combine(std::span<const Box> boxes, Combine how);
+/// than two nodes wide has no cell, so it is not a part of a union. The grid matters only if it is
+/// closed: a common box is then the shortest around the others, counted round, and a region that
+/// contains all columns (rows) is a ring.
+std::vector<Region> combine(std::span<const Box> boxes, Combine how, const Grid& grid = {});
 
 }  // namespace pliant

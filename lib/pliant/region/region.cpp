@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/region/closed_boxes.hpp"
 
 namespace pliant {
 namespace {
@@ -17,7 +18,7 @@ int region_of_force(const Selection& selection, std::size_t k, Combine how) {
   if (own.is_empty()) return -1;
   const auto found =
       std::find_if(selection.regions.begin(), selection.regions.end(),
-                   [&](const Region& region) { return region.box.contains(own.i0, own.j0); });
+                   [&](const Region& region) { return holds(selection.grid, region.box, own); });
   PLIANT_EXPECTS(found != selection.regions.end());
   return static_cast<int>(found - selection.regions.begin());
 }
@@ -26,33 +27,78 @@ int region_of_force(const Selection& selection, std::size_t k, Combine how) {
 template <class F>
 void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force,
                  const Box& box, std::span<const Patch> patches, const F& f) {
+  bool goes_on = true;
   for (const Patch& patch : patches) {
-    const Box inside = intersection(patch.box, box);
-    for (int j = inside.j0; j <= inside.j1; ++j) {
-      for (int i = inside.i0; i <= inside.i1; ++i) {
-        if (!patch.holds(i, j)) continue;
-        if (!f(force_at(force, nodes.at(grid.node(i, j))))) return;
+    for_each_shared(grid, patch.box, box, [&](const Box& inside) {
+      for (int j = inside.j0; j <= inside.j1 && goes_on; ++j) {
+        for (int i = inside.i0; i <= inside.i1 && goes_on; ++i) {
+          if (!patch.holds(i, j)) continue;
+          goes_on = f(force_at(force, nodes.at(grid.node_round(i, j))));
+        }
       }
-    }
+    });
+    if (!goes_on) return;
   }
 }
 
-// Extends a box by those nodes of a row, from (i,j) on, whose distance is less than the radius.
-void include_near(const BatchNumbers& distance, int count, double radius, int i, int j, Box& box) {
-  int first = 0;
-  while (first < count && !(distance.of[first] < radius)) ++first;
-  if (first == count) return;
-  int last = count - 1;
-  while (!(distance.of[last] < radius)) --last;
-  box.include({i + first, i + last, j, j});
-}
+// The box of the nodes found so far, in an open grid.
+class OpenReach {
+ public:
+  explicit OpenReach(const Grid&) {}
+
+  const Box& box() const { return box_; }
+  bool covers(const Box& nodes) const { return holds(box_, nodes); }
+
+  // Extends it by those nodes of a row, from (i,j) on, whose distance is less than the radius.
+  void include_near(const BatchNumbers& distance, int count, double radius, int i, int j) {
+    int first = 0;
+    while (first < count && !(distance.of[first] < radius)) ++first;
+    if (first == count) return;
+    int last = count - 1;
+    while (!(distance.of[last] < radius)) --last;
+    box_.include({i + first, i + last, j, j});
+  }
+
+ private:
+  Box box_;
+};
+
+// The same in a closed grid, where the box is known when all nodes are: it leaves out the longest
+// gap.
+class ClosedReach {
+ public:
+  explicit ClosedReach(const Grid& grid) : lines_(grid) {}
+
+  Box box() const { return lines_.box(); }
+  bool covers(const Box& nodes) const { return lines_.holds(nodes); }
+
+  void include_near(const BatchNumbers& distance, int count, double radius, int i, int j) {
+    for (int k = 0; k < count; ++k) {
+      if (distance.of[k] < radius) lines_.include(i + k, j);
+    }
+  }
+
+ private:
+  LineMarks lines_;
+};
 
 // The two boxes of a force, grown tile by tile. A tile that is out of reach, or inside a box
 // already, adds nothing to that box, so for a large box few nodes besides its rim are visited.
+template <class Reach>
 class Selecting {
  public:
-  Selecting(const NodeTiles& tiles, const SampledForce& force) : tiles_(tiles), force_(force) {}
+  Selecting(const NodeTiles& tiles, const SampledForce& force)
+      : tiles_(tiles), force_(force), deformation_(tiles.grid()), pushed_(tiles.grid()) {}
 
+  ForceSelection boxes() {
+    run();
+    ForceSelection boxes;
+    boxes.deformation = deformation_.box();
+    boxes.force = pushed_.box();
+    return boxes;
+  }
+
+ private:
   void run() {
     if (std::holds_alternative<SampledCustomForce>(force_.kind)) {
       ask_all();
@@ -68,9 +114,6 @@ class Selecting {
     }
   }
 
-  ForceSelection boxes;
-
- private:
   // In the order of the nodes: the first unsound answer is the one that is reported.
   void ask_all() {
     const Grid& grid = tiles_.grid();
@@ -83,24 +126,25 @@ class Selecting {
 
   // Whether nodes of `box`, at a distance of `least` or more, can extend one of the boxes.
   bool may_add(const Box& box, double least) const {
-    return (least < force_.deformation_radius && !holds(boxes.deformation, box)) ||
-           (least < force_.force_radius && !holds(boxes.force, box));
+    return (least < force_.deformation_radius && !deformation_.covers(box)) ||
+           (least < force_.force_radius && !pushed_.covers(box));
   }
 
   void look_at(const Box& row) {
     const int node = tiles_.grid().node(row.i0, row.j0);
     const Batch points = tiles_.nodes().batch(node, row.columns());
     const BatchNumbers distance = distances(force_.kind, points);
-    include_near(distance, points.count, force_.deformation_radius, row.i0, row.j0,
-                 boxes.deformation);
-    include_near(distance, points.count, force_.force_radius, row.i0, row.j0, boxes.force);
+    deformation_.include_near(distance, points.count, force_.deformation_radius, row.i0, row.j0);
+    pushed_.include_near(distance, points.count, force_.force_radius, row.i0, row.j0);
   }
 
   const NodeTiles& tiles_;
   const SampledForce& force_;
+  Reach deformation_, pushed_;
 };
 
 // The load on the nodes of a row, from (i,j) on, by the forces of one region; world space.
+// Requires: they do not cross a seam.
 Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const SampledForce> forces,
                const Selection& selection, std::size_t region, int i, int j, int count) {
   Batch load;
@@ -109,10 +153,10 @@ Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const Sampl
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const ForceSelection& selected = selection.forces[k];
     if (selected.region != static_cast<int>(region)) continue;
-    const Box pushed = intersection({i, i + count - 1, j, j}, selected.force);
-    if (pushed.is_empty()) continue;
-    add_forces(forces[k], nodes.batch(grid.node(pushed.i0, j), pushed.columns()), pushed.i0 - i,
-               load);
+    for_each_shared(grid, {i, i + count - 1, j, j}, selected.force, [&](const Box& pushed) {
+      add_forces(forces[k], nodes.batch(grid.node_round(pushed.i0, j), pushed.columns()),
+                 pushed.i0 - i, load);
+    });
   }
   return load;
 }
@@ -126,10 +170,12 @@ void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
   PLIANT_EXPECTS(nodes.count() == grid.node_count());
   PLIANT_EXPECTS(selection.forces.size() == forces.size() && region < selection.regions.size());
   for (int j = box.j0; j <= box.j1; ++j) {
-    for (int i = box.i0; i <= box.i1; i += batch_size) {
-      const int count = std::min(batch_size, box.i1 + 1 - i);
+    for (int i = box.i0; i <= box.i1;) {
+      const int end = i < grid.columns ? std::min(box.i1 + 1, grid.columns) : box.i1 + 1;
+      const int count = std::min(batch_size, end - i);
       f(Eigen::Index{j - box.j0} * box.columns() + (i - box.i0),
         loads_on(grid, nodes, forces, selection, region, i, j, count));
+      i += count;
     }
   }
 }
@@ -138,8 +184,13 @@ void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
 
 Box Selection::box() const {
   Box all;
-  for (const Region& region : regions) all.include(region.box);
-  return all;
+  if (grid.is_open()) {
+    for (const Region& region : regions) all.include(region.box);
+    return all;
+  }
+  std::vector<Box> boxes;
+  for (const Region& region : regions) boxes.push_back(region.box);
+  return box_around(grid, boxes);
 }
 
 std::span<const Patch> Selection::patches_of_force(std::size_t k) const {
@@ -152,7 +203,7 @@ Selection recombined(Selection selection, Combine how, std::vector<Box> others) 
   std::vector<Box> boxes = others;
   for (const ForceSelection& force : selection.forces) boxes.push_back(force.deformation);
   selection.others = std::move(others);
-  selection.regions = combine(boxes, how);
+  selection.regions = combine(boxes, how, selection.grid);
   for (std::size_t k = 0; k < selection.forces.size(); ++k) {
     selection.forces[k].region = region_of_force(selection, k, how);
   }
@@ -168,9 +219,8 @@ Selection select_region(const Grid& grid, const PlacedNodes& nodes,
 }
 
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
-  Selecting selecting(tiles, force);
-  selecting.run();
-  return selecting.boxes;
+  if (tiles.grid().is_open()) return Selecting<OpenReach>(tiles, force).boxes();
+  return Selecting<ClosedReach>(tiles, force).boxes();
 }
 
 Selection reselected(Selection earlier, const NodeTiles& tiles,
@@ -179,6 +229,7 @@ Selection reselected(Selection earlier, const NodeTiles& tiles,
   PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
   Selection selection = std::move(earlier);
   bool are_same = selection.forces.size() == forces.size() && selection.others.empty();
+  selection.grid = tiles.grid();
   selection.forces.resize(forces.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
     ForceSelection& selected = selection.forces[k];
@@ -192,9 +243,9 @@ Selection reselected(Selection earlier, const NodeTiles& tiles,
   return are_same ? std::move(selection) : recombined(std::move(selection), how);
 }
 
-bool overlaps(const Region& region, const Box& force) {
+bool overlaps(const Grid& grid, const Region& region, const Box& force) {
   return std::any_of(region.parts.begin(), region.parts.end(),
-                     [&](const Box& part) { return !intersection(part, force).is_empty(); });
+                     [&](const Box& part) { return meet(grid, part, force); });
 }
 
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,

@@ -38,7 +38,7 @@ Selection reselected(Selection earlier, const NodeTiles& tiles,
 Selection recombined(Selection selection, Combine how, std::vector<Box> others = {});
 
 /// Whether a force box contains a node of the region, rim included.
-bool overlaps(const Region& region, const Box& force);
+bool overlaps(const Grid& grid, const Region& region, const Box& force);
 
 /// The load of all forces that act in one region, on each node of its box (#nodes x 3, row = j *
 /// columns + i counted within the box, world space): force k acts on the nodes inside its force

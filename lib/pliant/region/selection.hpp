@@ -42,6 +42,7 @@ struct Selection {
   std::vector<ForceSelection> forces;  ///< in the order of the forces
   std::vector<Box> others;             ///< boxes that no force selects, but that are solved too
   std::vector<Region> regions;         ///< in the order of `combine`, also those too small to solve
+  Grid grid = {};                      ///< of the nodes; matters only if it is closed
 
   Box box() const;  ///< smallest box around all regions; empty: there are none
 
