@@ -211,3 +211,109 @@ TEST_CASE("a mesh whose nodes all lie in one place takes no time", "[mesh][grid_
   mesh.positions.setZero();
   CHECK_THAT(complaint(mesh), Contains("vertices 0 and 1 are at the same position"));
 }
+
+namespace {
+
+std::string complaint(const Mesh& mesh, Wrap wrap) {
+  const auto mapping = find_grid(mesh, wrap);
+  return mapping ? "none" : mapping.error().message;
+}
+
+// A tube about y of `columns` x `rows` nodes. The vertices of its seam are there twice, or once and
+// then have the (u,v) of both ends.
+Mesh tube(int columns, int rows, bool is_split) {
+  Mesh mesh = make_mesh({.columns = columns + 1, .rows = rows});
+  const double turn = 2 * std::acos(-1.0);
+  for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+    const int i = vertex % (columns + 1), j = vertex / (columns + 1);
+    const double angle = turn * (i % columns) / columns;
+    mesh.positions.row(vertex) << std::cos(angle), j, std::sin(angle);
+  }
+  if (is_split) return mesh;
+  Field kept(columns * rows, 3);
+  const auto vertex_of = [&](int vertex) {
+    const int i = vertex % (columns + 1), j = vertex / (columns + 1);
+    return j * columns + i % columns;
+  };
+  for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex)
+    kept.row(vertex_of(vertex)) = mesh.positions.row(vertex);
+  for (int& vertex : mesh.corner_vertices) vertex = vertex_of(vertex);
+  mesh.positions = kept;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("wrap makes the first and the last column one", "[mesh][grid_mapping][closed]") {
+  for (const bool is_split : {true, false}) {
+    const Mesh mesh = tube(7, 5, is_split);
+    CHECK_THAT(complaint(mesh), Contains(": a seam"));
+    const GridMapping mapping = find_grid(mesh, Wrap::U).value();
+    CHECK(mapping.grid == Grid{7, 5, 1.0 / 7, 0.25, true, false});
+    REQUIRE(mapping.rest.rows() == 35);
+    const int stride = is_split ? 8 : 7;
+    for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+      const int i = vertex % stride % 7, j = vertex / stride;
+      CHECK(mapping.vertex_nodes[vertex] == j * 7 + i);
+      CHECK(mapping.rest.row(j * 7 + i) == mesh.positions.row(vertex));
+    }
+    std::vector<int> order(mesh.vertex_count());
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937 random(3);
+    for (int trial = 0; trial < 5; ++trial) {
+      std::shuffle(order.begin(), order.end(), random);
+      const GridMapping other = find_grid(reordered(mesh, order), Wrap::U).value();
+      CHECK(other.grid == mapping.grid);
+      CHECK(other.rest == mapping.rest);
+    }
+    // Its other direction is open.
+    CHECK_THAT(complaint(mesh, Wrap::UV), Contains("wrap makes them one node"));
+  }
+}
+
+TEST_CASE("a torus is closed along both", "[mesh][grid_mapping][closed]") {
+  const double diagonal = std::sqrt(8.0 * 8 + 2 * 2 + 8 * 8);
+  for (const double gap : {0.0, 0.7e-6 * diagonal}) {  // in two directions at a corner
+    const auto mapping = find_grid(torus(gap), Wrap::UV);
+    REQUIRE(mapping);
+    CHECK(mapping->grid == Grid{8, 5, 0.125, 0.2, true, true});
+  }
+  CHECK_THAT(complaint(torus(1.1e-6 * diagonal), Wrap::UV),
+             Contains("vertices 0 and 8, with the (u,v) (0, 0) and (1, 0), are ") &&
+                 Contains("1e-6 of the bounding box's diagonal"));
+  // Closed along one of them only it still meets itself.
+  CHECK_THAT(complaint(torus(0), Wrap::U), Contains(": a seam"));
+  CHECK_THAT(complaint(torus(0), Wrap::V), Contains(": a seam"));
+}
+
+TEST_CASE("what no closed grid can be is refused", "[mesh][grid_mapping][closed]") {
+  SECTION("an open sheet") {
+    CHECK_THAT(complaint(sheet(), Wrap::U),
+               Contains("vertices 0 and 8, with the (u,v) (0, 0) and (1, 0), are 8 apart"));
+    CHECK_THAT(complaint(sheet(), Wrap::V), Contains("vertices 0 and 45, with the (u,v) "));
+  }
+  SECTION("fewer than 3 columns") {
+    CHECK(complaint(tube(3, 3, true), Wrap::U) == "none");
+    CHECK_THAT(complaint(tube(2, 3, true), Wrap::U), Contains("a closed grid of 2 x 3 nodes"));
+  }
+  SECTION("a pole") {
+    const bool is_split = GENERATE(true, false);
+    Mesh mesh = tube(7, 5, is_split);
+    const int stride = is_split ? 8 : 7;
+    for (int i = 0; i < stride; ++i)
+      mesh.positions.row(4 * stride + i) = Eigen::RowVector3d(0, 5, 0);
+    CHECK_THAT(complaint(mesh, Wrap::U),
+               Contains("row 4 of the grid, with vertices ") && Contains(": a pole"));
+  }
+  SECTION("a pole of one vertex") {
+    Mesh mesh = tube(7, 5, false);
+    for (int& vertex : mesh.corner_vertices) vertex = vertex >= 28 ? 28 : vertex;
+    mesh.positions.conservativeResize(29, 3);
+    CHECK_THAT(complaint(mesh, Wrap::U), Contains("vertex 28 has several (u,v)"));
+  }
+  SECTION("a vertex with (u,v) of two columns") {
+    Mesh mesh = tube(7, 5, false);
+    mesh.corner_uvs[0] = 3;
+    CHECK_THAT(complaint(mesh, Wrap::U), Contains("has several (u,v)"));
+  }
+}

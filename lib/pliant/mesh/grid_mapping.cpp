@@ -15,8 +15,8 @@
 namespace pliant {
 namespace {
 
-// Border nodes nearer to each other than this times the diagonal of the bounding box count as one
-// place.
+// Vertices nearer to each other than this times the diagonal of the bounding box count as one
+// place, at the border of a grid or where it is closed.
 constexpr double one_place = 1e-6;
 
 // The error for a mesh in which some corner has no (u,v); `vertex` is that of the first one.
@@ -30,26 +30,35 @@ tl::unexpected<Error> without_uvs(const Mesh& mesh, int vertex) {
                   mesh.number_of(vertex), missing, mesh.corner_uvs.size()));
 }
 
-// One direction of the lattice: `count` values from `least` on, `spacing` apart.
+// One direction of the lattice: `count` values from `least` on, `spacing` apart. If it is closed,
+// the last one is the first again.
 struct Axis {
   double least = 0;
   double spacing = 0;
   int count = 0;
+  bool is_closed = false;
+
+  int nodes() const { return is_closed ? count - 1 : count; }
 
   double position(double value) const { return (value - least) / spacing; }
   double nearest(double value) const { return std::round(position(value)); }
   bool is_even(double value) const {
     return std::abs(position(value) - nearest(value)) <= lattice_tolerance;
   }
+  // The node nearest to it.
+  double node(double value) const {
+    const double line = nearest(value);
+    return is_closed && line == nodes() ? 0 : line;
+  }
   int index(double value) const {
-    return static_cast<int>(nearest(value));
+    return static_cast<int>(node(value));
   }  // for a value on a uniform lattice
 };
 
 // In a uniform lattice, values of one line differ by at most 2 tolerances, and neighbouring lines
 // are at least 1 - 2 tolerances apart, so every gap wider than half the widest one is between two
 // lines. Values that form no lattice also give some axis; each value is then checked against it.
-Axis find_axis(std::vector<double> values) {
+Axis find_axis(std::vector<double> values, bool is_closed) {
   std::sort(values.begin(), values.end());
   double widest = 0;
   for (std::size_t k = 1; k < values.size(); ++k)
@@ -57,7 +66,11 @@ Axis find_axis(std::vector<double> values) {
   int count = 1;
   for (std::size_t k = 1; k < values.size(); ++k) count += values[k] - values[k - 1] > 0.5 * widest;
   const double extent = values.back() - values.front();
-  return {values.front(), count > 1 ? extent / (count - 1) : 0, count};
+  return {values.front(), count > 1 ? extent / (count - 1) : 0, count, is_closed};
+}
+
+double one_place_distance(const Field& positions) {
+  return one_place * (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
 }
 
 using NodePair = std::array<int, 2>;
@@ -95,7 +108,8 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t number) {
 std::vector<int> border_nodes(const Grid& grid) {
   std::vector<int> nodes;
   for (int j = 0; j < grid.rows; ++j) {
-    const bool is_end = j == 0 || j == grid.rows - 1;
+    const bool is_end = !grid.is_closed_v && (j == 0 || j == grid.rows - 1);
+    if (!is_end && grid.is_closed_u) continue;
     for (int i = 0; i < grid.columns; i += is_end ? 1 : grid.columns - 1)
       nodes.push_back(grid.node(i, j));
   }
@@ -141,15 +155,45 @@ std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
   const auto same = find_pair(
       all, key_of, [&](const NodePair& each) { return rest.row(each[0]) == rest.row(each[1]); });
   if (same) return same;
-  const double distance =
-      one_place * (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const double distance = one_place_distance(rest);
   if (!(distance > 0) || !std::isfinite(distance)) return {};
   return near_pair(mapping, distance);
 }
 
+// Whether `count` nodes from `first` on, `step` apart, are all in one place.
+bool is_pole(const Field& rest, int first, int step, int count, double distance) {
+  for (int k = 1; k < count; ++k) {
+    if (!((rest.row(first + k * step) - rest.row(first)).norm() <= distance)) return false;
+  }
+  return true;
+}
+
+// The error for a grid that is closed round a pole; `vertices` has the first one of each node.
+Result<void> check_poles(const Mesh& mesh, const GridMapping& mapping,
+                         const std::vector<int>& vertices) {
+  const Grid& grid = mapping.grid;
+  const double distance = one_place_distance(mapping.rest);
+  const auto pole = [&](std::string_view line, int number, int node, int other) {
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("{} {} of the grid, with vertices {} and {}, is in one place: a pole, "
+                    "which a closed grid cannot have",
+                    line, number, mesh.number_of(vertices[node]), mesh.number_of(vertices[other])));
+  };
+  for (int j = 0; grid.is_closed_u && j < grid.rows; ++j) {
+    if (is_pole(mapping.rest, grid.node(0, j), 1, grid.columns, distance))
+      return pole("row", j, grid.node(0, j), grid.node(1, j));
+  }
+  for (int i = 0; grid.is_closed_v && i < grid.columns; ++i) {
+    if (is_pole(mapping.rest, grid.node(i, 0), grid.columns, grid.rows, distance))
+      return pole("column", i, grid.node(i, 0), grid.node(i, 1));
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<GridMapping> find_grid(const Mesh& mesh) {
+Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap) {
   // The first corner with a (u,v) gives the place of its vertex; the others must agree.
   const int vertex_count = mesh.vertex_count();
   std::vector<int> vertex_uvs(vertex_count, -1);
@@ -174,8 +218,16 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
   }
   if (us.empty()) return fail(ErrorCode::InvalidInput, "the mesh has no vertices");
 
-  const Axis u_axis = find_axis(us);
-  const Axis v_axis = find_axis(vs);
+  // A vertex on the seam of a closed grid may have the (u,v) of both its sides.
+  std::vector<double> all_us = us, all_vs = vs;
+  if (wrap != Wrap::None) {
+    for (const int uv : mesh.corner_uvs) {
+      all_us.push_back(mesh.uvs[uv][0]);
+      all_vs.push_back(mesh.uvs[uv][1]);
+    }
+  }
+  const Axis u_axis = find_axis(std::move(all_us), closes_u(wrap));
+  const Axis v_axis = find_axis(std::move(all_vs), closes_v(wrap));
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
     for (const auto& [axis, value, name] :
          {std::tuple{&u_axis, us[vertex], 'u'}, std::tuple{&v_axis, vs[vertex], 'v'}}) {
@@ -187,25 +239,28 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
       }
     }
   }
-  if (u_axis.count < 3 || v_axis.count < 3) {
-    return invalid(fmt::format("the (u,v) values make a grid of {} x {} nodes, smaller than 3 x 3",
-                               u_axis.count, v_axis.count));
-  }
-  if (std::int64_t{u_axis.count} * v_axis.count > vertex_count) {
+  if (u_axis.nodes() < 3 || v_axis.nodes() < 3) {
     return invalid(
-        fmt::format("the (u,v) values make a grid of {} x {} nodes, more than the {} "
-                    "vertices",
-                    u_axis.count, v_axis.count, vertex_count));
+        fmt::format("the (u,v) values make a {}grid of {} x {} nodes, smaller than 3 x 3",
+                    wrap == Wrap::None ? "" : "closed ", u_axis.nodes(), v_axis.nodes()));
   }
+  // Of a closed grid the cause may be a pole, which is found first.
+  const bool is_crowded = std::int64_t{u_axis.nodes()} * v_axis.nodes() > vertex_count;
+  const auto too_few_vertices = [&] {
+    return invalid(
+        fmt::format("the (u,v) values make a grid of {} x {} nodes, more than the {} vertices",
+                    u_axis.nodes(), v_axis.nodes(), vertex_count));
+  };
+  if (is_crowded && wrap == Wrap::None) return too_few_vertices();
 
   GridMapping mapping;
-  mapping.grid = {u_axis.count, v_axis.count, u_axis.spacing, v_axis.spacing};
+  mapping.grid = {u_axis.nodes(), v_axis.nodes(),   u_axis.spacing,
+                  v_axis.spacing, u_axis.is_closed, v_axis.is_closed};
   const Grid& grid = mapping.grid;
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
     const int vertex = mesh.corner_vertices[corner];
     const auto& [u, v] = mesh.uvs[mesh.corner_uvs[corner]];
-    if (u_axis.nearest(u) != u_axis.nearest(us[vertex]) ||
-        v_axis.nearest(v) != v_axis.nearest(vs[vertex])) {
+    if (u_axis.node(u) != u_axis.node(us[vertex]) || v_axis.node(v) != v_axis.node(vs[vertex])) {
       return invalid(fmt::format("vertex {} has several (u,v), ({}, {}) and ({}, {}): a seam",
                                  mesh.number_of(vertex), us[vertex], vs[vertex], u, v));
     }
@@ -214,7 +269,9 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
                                  mesh.number_of(vertex), u, v));
     }
   }
+  if (is_crowded) return too_few_vertices();
 
+  const double joined = wrap == Wrap::None ? 0 : one_place_distance(mesh.positions);
   std::vector<int> node_vertices(grid.node_count(), -1);  // the first vertex of each node
   mapping.vertex_nodes.resize(vertex_count);
   mapping.rest.resize(grid.node_count(), 3);
@@ -225,6 +282,17 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
     if (first < 0) {
       node_vertices[node] = vertex;
       mapping.rest.row(node) = mesh.positions.row(vertex);
+    } else if (u_axis.nearest(us[first]) != u_axis.nearest(us[vertex]) ||
+               v_axis.nearest(vs[first]) != v_axis.nearest(vs[vertex])) {
+      const double apart = (mesh.positions.row(vertex) - mesh.positions.row(first)).norm();
+      if (!(apart <= joined)) {
+        return fail(ErrorCode::InvalidInput,
+                    fmt::format("vertices {} and {}, with the (u,v) ({}, {}) and ({}, {}), are {} "
+                                "apart, but wrap makes them one node; they must be within {} of "
+                                "each other, 1e-6 of the bounding box's diagonal",
+                                mesh.number_of(first), mesh.number_of(vertex), us[first], vs[first],
+                                us[vertex], vs[vertex], apart, joined));
+      }
     } else if (mesh.positions.row(vertex) != mesh.positions.row(first)) {
       return invalid(
           fmt::format("vertices {} and {} share the (u,v) ({}, {}) but not the rest "
@@ -240,6 +308,7 @@ Result<GridMapping> find_grid(const Mesh& mesh) {
           u_axis.least + i * grid.hu, v_axis.least + j * grid.hv, i, j, grid.columns, grid.rows));
     }
   }
+  if (auto round = check_poles(mesh, mapping, node_vertices); !round) return fail(round.error());
   if (const auto pair = nodes_in_one_place(mapping)) {
     const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
     return invalid(fmt::format(

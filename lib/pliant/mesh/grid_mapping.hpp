@@ -29,6 +29,11 @@ inline constexpr double lattice_tolerance = 1e-2;
 /// different rest positions; nodes at the same rest position (on the border within 1e-6 of the
 /// bounding box's diagonal, elsewhere exactly), which is how formats that split vertices store a
 /// seam.
-Result<GridMapping> find_grid(const Mesh& mesh);
+///
+/// With `wrap` the first and last column (row) of the lattice are one, so that the grid has one
+/// less: (u,v) that differ by the whole range are one node. Errors also: their vertices are further
+/// apart than 1e-6 of the diagonal; a pole, which is a row (column) across the closed direction
+/// with all its nodes in one place.
+Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap = Wrap::None);
 
 }  // namespace pliant
