@@ -19,6 +19,7 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
   if (facts.grid) {
     json["columns"] = facts.grid->columns;
     json["rows"] = facts.grid->rows;
+    if (!facts.grid->is_open()) json["wrap"] = wrap_word(*facts.grid);
   } else {
     const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
     json["grid"] = nullptr;

@@ -32,9 +32,19 @@ std::string box_text(const BoundingBox& box) {
   return corner(box.low) + " to " + corner(box.high);
 }
 
+std::string closed_text(const Grid& grid) {
+  if (grid.is_open()) return {};
+  return fmt::format(", closed along {}", !grid.is_closed_v   ? "u"
+                                          : !grid.is_closed_u ? "v"
+                                                              : "u and v");
+}
+
 // `grid 61 x 61`, or `surface of 507 nodes in 500 faces, …`.
 std::string nodes_text(const SceneFacts::SurfaceFacts& facts) {
-  if (facts.grid) return fmt::format("grid {} x {}", facts.grid->columns, facts.grid->rows);
+  if (facts.grid) {
+    return fmt::format("grid {} x {}{}", facts.grid->columns, facts.grid->rows,
+                       closed_text(*facts.grid));
+  }
   const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
   const std::string lengths = unit[0] == unit[1] ? fmt::format("{:.5g}", unit[0])
                                                  : fmt::format("{:.5g} {:.5g}", unit[0], unit[1]);
@@ -81,21 +91,28 @@ std::string vibration_text(const RegionPreview& region, double fps) {
   return text;
 }
 
-std::string cut_text(const CutCounts& counts) {
-  return fmt::format("{} inside, {}", counted(counts.inside_nodes, "node"),
-                     counted(counts.cells, "cell"));
+// "columns 4 to 27", "columns 28 to 3 (across the seam)" or "all columns (a ring)".
+std::string lines_text(std::string_view lines, int first, int last, int count, bool is_closed) {
+  if (is_closed && last - first + 1 == count) return fmt::format("all {} (a ring)", lines);
+  if (last < count) return fmt::format("{} {} to {}", lines, first, last);
+  return fmt::format("{} {} to {} (across the seam)", lines, first, last - count);
 }
 
-std::string region_text(const RegionPreview& region) {
-  if (region.counts.cells > 0) return cut_text(region.counts);
-  const Box& box = region.region.box;
-  return fmt::format("{} x {} nodes, columns {} to {}, rows {} to {}", box.columns(), box.rows(),
-                     box.i0, box.i1, box.j0, box.j1);
+// The nodes of a box on a grid, or of a part of a surface.
+std::string selected_text(const Box& box, const CutCounts& counts,
+                          const std::optional<Grid>& grid) {
+  if (!grid) {
+    return fmt::format("{} inside, {}", counted(counts.inside_nodes, "node"),
+                       counted(counts.cells, "cell"));
+  }
+  return fmt::format("{} x {} nodes, {}, {}", box.columns(), box.rows(),
+                     lines_text("columns", box.i0, box.i1, grid->columns, grid->is_closed_u),
+                     lines_text("rows", box.j0, box.j1, grid->rows, grid->is_closed_v));
 }
 
 // One line per region if there are several; the largest peaks first, and only these if there are
 // many.
-std::string regions_text(const Preview& preview, double fps) {
+std::string regions_text(const Preview& preview, const std::optional<Grid>& grid, double fps) {
   std::vector<const RegionPreview*> regions;
   for (const RegionPreview& region : preview.regions) regions.push_back(&region);
   std::stable_sort(regions.begin(), regions.end(),
@@ -106,11 +123,11 @@ std::string regions_text(const Preview& preview, double fps) {
   constexpr std::size_t most = 8;
   std::string text;
   for (std::size_t k = 0; k < std::min(regions.size(), most); ++k) {
-    text += fmt::format("    region of {}: {}\n", region_text(*regions[k]),
-                        regions[k]->is_solvable
-                            ? fmt::format("static peak {:.4g}", regions[k]->static_peak)
-                        : regions[k]->counts.cells > 0 ? "nothing holds it"
-                                                       : "too few nodes to solve");
+    text += fmt::format(
+        "    region of {}: {}\n", selected_text(regions[k]->region.box, regions[k]->counts, grid),
+        regions[k]->is_solvable ? fmt::format("static peak {:.4g}", regions[k]->static_peak)
+        : grid                  ? "too few nodes to solve"
+                                : "nothing holds it");
     if (regions[k]->has_vibration) text += vibration_text(*regions[k], fps);
   }
   if (regions.size() > most) text += fmt::format("    and {} more\n", regions.size() - most);
@@ -152,7 +169,9 @@ std::string gap_text(const Preview& preview) {
 }
 
 // The effect of forces, in as many lines as needed; `who` names the forces.
-std::string preview_text(const Preview& preview, const std::string& who, const Scene& scene) {
+std::string preview_text(const Preview& preview, const std::string& who, const SceneFacts& facts) {
+  const Scene& scene = facts.scene;
+  const std::optional<Grid>& grid = facts.surfaces[preview.surface].grid;
   std::string text = fmt::format("  {} on {}: ", who, scene.surfaces[preview.surface].name);
   const bool is_force = preview.of == Preview::Of::Force;
   if (!preview.frame) {
@@ -161,15 +180,10 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
     return text + fmt::format("    its largest magnitude is {:g} (frame {})\n",
                               preview.largest_magnitude, preview.largest_magnitude_frame);
   }
-  const Box& box = preview.selected;
-  const std::string selected =
-      preview.counts.cells > 0
-          ? cut_text(preview.counts)
-          : fmt::format("{} x {} nodes, columns {} to {}, rows {} to {}", box.columns(), box.rows(),
-                        box.i0, box.i1, box.j0, box.j1);
   text += fmt::format("at frame {}{} {} {}\n", *preview.frame,
                       is_force ? fmt::format(", at magnitude {:g},", preview.magnitude) : "",
-                      preview.of == Preview::Of::All ? "they select" : "it selects", selected);
+                      preview.of == Preview::Of::All ? "they select" : "it selects",
+                      selected_text(preview.selected, preview.counts, grid));
   if (!preview.is_every_frame)
     text += "    not every frame was examined, because the range is long\n";
   if (preview.is_apart) {
@@ -178,8 +192,9 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
         "force moves the surface more than alone; combine=\"islands\" solves each box by itself\n";
   }
   if (!preview.is_solvable) {
-    text += preview.counts.cells > 0 ? "    none of them can move\n"
-                                     : "    fewer than 3 x 3 nodes: too few to solve\n";
+    text += grid ? "    fewer than 3 x 3 nodes: too few to solve\n" : "    none of them can move\n";
+  } else if (!preview.is_held) {
+    text += "    nothing holds the surface: it has no static peak and no natural frequency\n";
   } else if (!preview.is_solved) {
     text += "    too many nodes to preview the static peak and the natural frequency\n";
   } else {
@@ -193,7 +208,7 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
     text += "; too many frames and nodes to play the animation\n";
   }
   if (!preview.is_solved) return text;
-  return text + shares_text(preview, scene) + regions_text(preview, scene.fps);
+  return text + shares_text(preview, scene) + regions_text(preview, grid, scene.fps);
 }
 
 // Whether the preview of all forces of a surface equals that of its only force.
@@ -215,7 +230,7 @@ std::string forces_text(const SceneFacts& facts) {
       "forces, each alone, at the frame of greatest effect, on the surface at rest\n";
   for (const Preview& preview : facts.previews) {
     if (preview.of != Preview::Of::Force) continue;
-    text += preview_text(preview, title(scene.forces[preview.index]), scene);
+    text += preview_text(preview, title(scene.forces[preview.index]), facts);
   }
   for (std::size_t k = 0; k < scene.forces.size(); ++k) {
     const bool is_previewed =
@@ -232,7 +247,7 @@ std::string forces_text(const SceneFacts& facts) {
     bool is_told = false;
     for (const Preview& preview : facts.previews) {
       if (preview.of != Preview::Of::Group || preview.index != k) continue;
-      text += preview_text(preview, group.name, scene);
+      text += preview_text(preview, group.name, facts);
       is_told = true;
     }
     const bool is_empty =
@@ -246,7 +261,7 @@ std::string forces_text(const SceneFacts& facts) {
   std::string together;
   for (const Preview& preview : facts.previews) {
     if (preview.of != Preview::Of::All || is_told_already(preview, facts.previews)) continue;
-    together += preview_text(preview, "together", scene);
+    together += preview_text(preview, "together", facts);
   }
   if (!together.empty()) text += "all forces of a surface, together\n" + together;
   return text;

@@ -7,6 +7,7 @@ namespace pliant::cli {
 
 using viewer::Json;
 using viewer::to_json;
+using viewer::wrap_word;
 
 inline Json to_json(const CutCounts& counts) {
   return {{"insideNodes", counts.inside_nodes},

@@ -143,28 +143,31 @@ class SurfaceView {
     const PackedMotion motion = motion_.pack();
     // Half a step, plus the rounding of the rest position to float.
     const double error = 0.5 * motion.step + (high - low).maxCoeff() * 0x1p-25;
-    return {{"name", shape_.name},
-            {"enabled", surface_.enabled},
-            {"vertices", mesh.vertex_count()},
-            {"columns", shape_.grid ? shape_.grid->columns : static_cast<int>(shape_.rest.rows())},
-            {"rows", shape_.grid ? shape_.grid->rows : 1},
-            {"origin", to_json(origin)},
-            {"low", to_json(low_)},
-            {"high", to_json(high_)},
-            {"peakDisplacement", peak_displacement_},
-            {"peakSpeed", peak_speed_},
-            {"step", motion.step},
-            {"error", error},
-            {"transforms", same_or_all()},
-            {"rest", arrays.add(relative_rest(origin))},
-            {"uvs", arrays.add(vertex_uvs(mesh))},
-            {"nodes", arrays.add(std::span<const int>(shape_.vertex_nodes))},
-            {"triangles", arrays.add(triangle_vertices(mesh))},
-            {"edges", arrays.add(edge_vertices(mesh))},
-            {"predictors", arrays.add(motion.predictors)},
-            {"lowBytes", arrays.add(motion.low)},
-            {"highBytes", arrays.add(motion.high)},
-            {"marks", marks_.changes()}};
+    Json json = {
+        {"name", shape_.name},
+        {"enabled", surface_.enabled},
+        {"vertices", mesh.vertex_count()},
+        {"columns", shape_.grid ? shape_.grid->columns : static_cast<int>(shape_.rest.rows())},
+        {"rows", shape_.grid ? shape_.grid->rows : 1},
+        {"origin", to_json(origin)},
+        {"low", to_json(low_)},
+        {"high", to_json(high_)},
+        {"peakDisplacement", peak_displacement_},
+        {"peakSpeed", peak_speed_},
+        {"step", motion.step},
+        {"error", error},
+        {"transforms", same_or_all()},
+        {"rest", arrays.add(relative_rest(origin))},
+        {"uvs", arrays.add(vertex_uvs(mesh))},
+        {"nodes", arrays.add(std::span<const int>(shape_.vertex_nodes))},
+        {"triangles", arrays.add(triangle_vertices(mesh))},
+        {"edges", arrays.add(edge_vertices(mesh))},
+        {"predictors", arrays.add(motion.predictors)},
+        {"lowBytes", arrays.add(motion.low)},
+        {"highBytes", arrays.add(motion.high)},
+        {"marks", marks_.changes()}};
+    if (shape_.grid && !shape_.grid->is_open()) json["wrap"] = wrap_word(*shape_.grid);
+    return json;
   }
 
  private:

@@ -13,7 +13,13 @@ using Json = nlohmann::ordered_json;
 /// [x, y, z].
 inline Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
-/// Columns and rows, both ends included; null: an empty box.
+/// `u`, `v` or `uv`: the directions in which a grid is closed. Requires: it is closed.
+inline const char* wrap_word(const Grid& grid) {
+  return !grid.is_closed_v ? "u" : !grid.is_closed_u ? "v" : "uv";
+}
+
+/// Columns and rows, both ends included, those of a closed grid counted on beyond its end; null: an
+/// empty box.
 inline Json to_json(const Box& box) {
   if (box.is_empty()) return nullptr;
   return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};

@@ -57,8 +57,7 @@ TEST_CASE("what a later version brings is not taken for a misspelling", "[scene]
   for (const std::string given :
        {"integrator=\"newmark\"", "integrator=\"exact\"", "region=\"all\""})
     scenes.push_back({surface_with("<solver " + given + "/>"), 3, {given, later, "allowed:"}});
-  for (const std::string given :
-       {"uv=\"virtual\"", "wrap=\"u\"", "wrap=\"v\"", "wrap=\"uv\"", "resolution=\"9\""})
+  for (const std::string given : {"uv=\"virtual\"", "resolution=\"9\""})
     scenes.push_back(
         {scene_with("<surface name=\"s\"><mesh file=\"/etc/passwd\" " + given + "/></surface>"),
          2,

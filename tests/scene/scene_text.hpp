@@ -93,7 +93,7 @@ inline constexpr std::string_view rich_scene = R"(<?xml version="1.0" encoding="
             release="freeze" integrator="backwardEuler" region="forces"/>
     <animate attribute="translate"><key frame="1" value="0 0 0" left="1 1 1"/></animate>
   </surface>
-  <surface name="body" enabled="false"><mesh file="body &amp; soul.obj" object="torso" uvSet="0" uv="grid" wrap="none"/></surface>
+  <surface name="body" enabled="false"><mesh file="body &amp; soul.obj" object="torso" uvSet="0" uv="grid" wrap="uv"/></surface>
   <point name="poke" center="-3 0 0" direction="0 1 0" deformationRadius="6.1" forceRadius="2.1" targets="sheet body">
     <animate attribute="magnitude" before="slope 2" after="repeat 3" tangent="flat" interpolation="linear" overshoot="contain">
       <key frame="1" value="0" interpolation="elasticOut" amplitude="3" period="4"/>

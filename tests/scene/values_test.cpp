@@ -59,7 +59,7 @@ TEST_CASE("each value out of its range is told with the rule", "[scene][values]"
       {mesh("file=\"/etc/passwd\" uvSet=\"-1\""), 3, {"must be at least 0"}},
       {mesh("file=\"/etc/passwd\" uvSet=\"8\""), 3, {"must be at most 7"}},
       {mesh("file=\"/etc/passwd\" uv=\"gird\""), 3, {"did you mean \"grid\"?"}},
-      {mesh("file=\"/etc/passwd\" wrap=\"w\""), 3, {"unknown word; allowed: none"}},
+      {mesh("file=\"/etc/passwd\" wrap=\"w\""), 3, {"unknown word; allowed: none, u, v, uv"}},
       {part("transform", "translate=\"0 0\""), 3, {"three numbers are required, not 2"}},
       {part("transform", "rotate=\"0 0 inf\""), 3, {"not a finite number"}},
       {part("transform", "scale=\"1 0 1\""),

@@ -107,18 +107,21 @@ Result<RestShape> on_surface(const Surface& surface, Mesh mesh) {
 Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
   const MeshReading& reading = surface.reading;
   if (reading.asks_for_surface()) return on_surface(surface, std::move(mesh));
-  auto grid = find_grid(mesh);
+  const auto* const file = std::get_if<MeshFile>(&surface.shape);
+  const Wrap wrap = file ? file->wrap : Wrap::None;
+  auto grid = find_grid(mesh, wrap);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
   const std::string reason = grid.error().message;
-  if (reading.uv == UvReading::Grid) {
+  if (reading.uv == UvReading::Grid || wrap != Wrap::None) {
+    const std::string_view other =
+        reason.ends_with(": a seam") ? "wrap=\"u\" or \"v\" closes a grid there, and " : "";
     return invalid(
-        fmt::format("the mesh is no even grid: {}; uv=\"surface\" reads any mesh "
+        fmt::format("the mesh is no even grid: {}; {}uv=\"surface\" reads any mesh "
                     "(docs/meshes.md)",
-                    reason));
+                    reason, other));
   }
   auto shape = on_surface(surface, std::move(mesh));
   if (!shape) return shape;
-  const auto* file = std::get_if<MeshFile>(&surface.shape);
   shape->note = fmt::format("{}: the mesh{} is read as a surface, since it is no even grid: {}",
                             surface.name, file ? " " + file->path : "", reason);
   return shape;
@@ -144,7 +147,7 @@ Field RestShape::to_vertices(const Field& nodes, Field reuse) const {
   for (int component = 0; component < 3; ++component) {
     const double* const from = nodes.col(component).data();
     double* const to = reuse.col(component).data();
-    if (grid) {
+    if (grid && grid->is_open()) {
       for (std::size_t vertex = 0; vertex < vertex_nodes.size(); ++vertex)
         to[vertex] = from[vertex_nodes[vertex]];
       continue;

@@ -116,6 +116,7 @@ inline constexpr std::string_view reference_words[] = {"rest", "none"};
 inline constexpr std::string_view combine_words[] = {"box", "islands", "union"};
 inline constexpr std::string_view release_words[] = {"freeze", "recover"};
 inline constexpr std::string_view measure_words[] = {"current", "rest"};
+inline constexpr std::string_view wrap_words[] = {"none", "u", "v", "uv"};
 inline constexpr std::string_view falloff_words[] = {"constant", "linear", "smooth", "gaussian"};
 
 inline constexpr std::string_view uv_words[] = {"auto", "grid", "surface"};
@@ -124,8 +125,6 @@ inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the me
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
 // Choices that have one word so far, and the words that a later version will support.
-inline constexpr std::string_view wrap_words[] = {"none"};
-inline constexpr std::string_view later_wrap_words[] = {"u", "v", "uv"};
 inline constexpr std::string_view integrator_words[] = {"backwardEuler"};
 inline constexpr std::string_view later_integrator_words[] = {"newmark", "exact"};
 inline constexpr std::string_view region_words[] = {"forces"};
@@ -232,9 +231,9 @@ struct Description<MeshFile> {
                   .range = {.least = 0, .most = max_uv_sets - 1}},
         of.uv_set...);
     row(Attribute{.name = "wrap",
-                  .meaning = "no direction is closed",
-                  .words = wrap_words,
-                  .later = later_wrap_words});
+                  .meaning = "the closed directions: their first and last column (row) are one",
+                  .words = wrap_words},
+        of.wrap...);
   }
 };
 

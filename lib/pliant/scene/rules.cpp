@@ -122,13 +122,22 @@ class WholeChecker {
     if (reading.axis == std::array{0.0, 0.0, 0.0})
       complain(surface.name, "axis",
                fmt::format("{}.axis is 0 0 0, but must have a direction", surface.name));
-    if (reading.uv != UvReading::Grid) return;
+    const auto* const file = std::get_if<MeshFile>(&surface.shape);
+    const bool is_closed = file && file->wrap != Wrap::None;
+    if (is_closed && reading.uv == UvReading::Surface)
+      complain(
+          surface.name, "wrap",
+          fmt::format("{}.wrap is for a mesh that is read as a grid, but uv=\"surface\" reads this "
+                      "one as a surface, which closes by itself",
+                      surface.name));
+    if (reading.uv != UvReading::Grid && !is_closed) return;
     const auto refuse = [&](const char* attribute, bool is_given) {
       if (!is_given) return;
-      complain(surface.name, attribute,
-               fmt::format("{}.{} is for a mesh that is read as a surface, but uv=\"grid\" reads "
-                           "this one as a grid",
-                           surface.name, attribute));
+      complain(
+          surface.name, attribute,
+          fmt::format("{}.{} is for a mesh that is read as a surface, but {} reads this one as "
+                      "a grid",
+                      surface.name, attribute, is_closed ? "wrap" : "uv=\"grid\""));
     };
     refuse("unit", reading.unit.has_value());
     refuse("axis", reading.axis.has_value());

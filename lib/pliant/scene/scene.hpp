@@ -10,6 +10,7 @@
 
 #include "pliant/body/settings.hpp"
 #include "pliant/core/field.hpp"
+#include "pliant/core/grid.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/falloff.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
@@ -29,6 +30,7 @@ struct MeshFile {
   /// Files that it refers to are read only from this folder and below; empty: the file's own
   /// folder.
   std::string root = {};
+  Wrap wrap = Wrap::None;  ///< the closed directions of its grid
 };
 
 /// The source of a surface's rest shape; a `Mesh` is made by a program.

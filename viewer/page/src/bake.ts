@@ -24,6 +24,8 @@ interface SurfaceHead {
   vertices: number;
   columns: number;
   rows: number;
+  /** The directions in which the grid is closed. */
+  wrap?: "u" | "v" | "uv";
   origin: Vector;
   peakDisplacement: number;
   peakSpeed: number;

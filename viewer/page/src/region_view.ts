@@ -11,15 +11,32 @@ import type { Palette } from "./theme";
 
 type Edge = [number, number];
 
-/** The outline of the cells of some boxes, as edges between nodes. */
-export function outline(parts: Box[], columns: number, rows: number): Edge[] {
+interface GridHead {
+  columns: number;
+  rows: number;
+  wrap?: "u" | "v" | "uv";
+}
+
+/**
+ * The outline of the cells of some boxes, as edges between nodes. Along a closed direction columns (rows) are counted
+ * round: a box may end beyond the last one, and a box of all of them goes all round.
+ */
+export function outline(parts: Box[], { columns, rows, wrap }: GridHead): Edge[] {
   const edges: Edge[] = [];
-  const node = (i: number, j: number) => j * columns + i;
+  const [isClosedU, isClosedV] = [wrap?.includes("u") ?? false, wrap?.includes("v") ?? false];
+  const node = (i: number, j: number) => (isClosedV ? j % rows : j) * columns + (isClosedU ? i % columns : i);
+  // The first and the last line between which a box has cells.
+  const clip = (first: number, last: number, count: number, isClosed: boolean) =>
+    isClosed ? [first, last - first + 1 === count ? last + 1 : last] : [Math.max(first, 0), Math.min(last, count - 1)];
   const clipped = parts
-    .map(([i0, i1, j0, j1]): Box => [Math.max(i0, 0), Math.min(i1, columns - 1), Math.max(j0, 0), Math.min(j1, rows - 1)])
+    .map(([i0, i1, j0, j1]) => [...clip(i0, i1, columns, isClosedU), ...clip(j0, j1, rows, isClosedV)] as Box)
     .filter(([i0, i1, j0, j1]) => i0 <= i1 && j0 <= j1);
+  // Whether the cell between two lines is between `first` and `last`, if need be after a lap.
+  const isBetween = (line: number, first: number, last: number, count: number, isClosed: boolean) =>
+    isClosed ? (((line - first) % count) + count) % count < last - first : line >= first && line < last;
   // Whether the cell between (i,j) and (i+1,j+1) is in the part.
-  const holds = ([i0, i1, j0, j1]: Box, i: number, j: number) => i >= i0 && i < i1 && j >= j0 && j < j1;
+  const holds = ([i0, i1, j0, j1]: Box, i: number, j: number) =>
+    isBetween(i, i0, i1, columns, isClosedU) && isBetween(j, j0, j1, rows, isClosedV);
   const isInside = (i: number, j: number) => clipped.some((part) => holds(part, i, j));
   clipped.forEach((part, k) => {
     const [i0, i1, j0, j1] = part;
@@ -102,17 +119,17 @@ export class RegionView {
 
   /** `isIdle`: for each force, whether its magnitude is 0. `isShown`: whether it is shown. */
   show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[], isShown: boolean[]): void {
-    const { columns, rows } = this.view.surface.head;
+    const { head } = this.view.surface;
     const marks = this.view.surface.marksAt(frame);
     const wanted = `${marks?.frame} ${hasRegions} ${hasBoxes} ${hasBoxes ? [...isIdle, ...isShown].map(Number).join("") : ""}`;
     if (wanted !== this.shown) {
       this.shown = wanted;
       const rims = (isSolved: boolean) =>
-        hasRegions ? (marks?.regions ?? []).filter((each) => each.solved === isSolved).flatMap((each) => outline(each.parts, columns, rows)) : [];
+        hasRegions ? (marks?.regions ?? []).filter((each) => each.solved === isSolved).flatMap((each) => outline(each.parts, head)) : [];
       this.rim.take(rims(true));
       this.small.take(rims(false));
       const boxes = (areIdle: boolean) =>
-        hasBoxes ? (marks?.forces ?? []).filter((each) => isShown[each.force] && isIdle[each.force] === areIdle).flatMap((each) => outline([each.box], columns, rows)) : [];
+        hasBoxes ? (marks?.forces ?? []).filter((each) => isShown[each.force] && isIdle[each.force] === areIdle).flatMap((each) => outline([each.box], head)) : [];
       this.boxes.take(boxes(false));
       this.idle.take(boxes(true));
     }
