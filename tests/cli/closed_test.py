@@ -139,10 +139,11 @@ class Closed(Command):
     def test_errors_name_line_and_rule(self):
         self.write("tube.obj", tube())
         for wrap, rule in (("v", "are 4 apart, but wrap makes them one node"),
-                           ("none", 'a seam; wrap="u" or "v" closes a grid there, and uv="surface"')):
+                           ('none" uv="grid', 'a seam; wrap="u" or "v" closes a grid there, and uv="surface"')):
             self.scene(self.poke(0), wrap=wrap)
             result = self.run_pliant("validate", "scene.xml", code=2)
-            self.assertIn("scene.xml:3: error: surface \"tube\", mesh tube.obj: vertices ", result.stderr)
+            self.assertIn('scene.xml:3: error: surface "tube", mesh tube.obj: the mesh is no even grid: vertices ',
+                          result.stderr)
             self.assertIn(rule, result.stderr)
         self.scene(self.poke(0), wrap="uw")
         result = self.run_pliant("validate", "scene.xml", code=2)
