@@ -7,6 +7,7 @@
 
 #include "body/sheets.hpp"
 #include "pliant/body/grid_body.hpp"
+#include "pliant/plate/vibration.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 
@@ -257,6 +258,56 @@ TEST_CASE("a piece that nothing holds does not move", "[body][surface]") {
   REQUIRE(body.step(moving_inputs({load_on({0, 0, 0}, 5, 5)})));
   CHECK_FALSE(body.last_step().solves());
   CHECK(peak_of(body) == 0);
+}
+
+TEST_CASE("a force between the nodes of a coarse mesh is told from one that is far away",
+          "[body][surface]") {
+  const SurfaceBody body = body_of(square(4, 1, 0));
+  const auto is_near = [&](const Vector3d& center) {
+    const StepPlan plan = body.look(moving_inputs({load_on(center, 0.01, 0.01)})).value();
+    CHECK_FALSE(plan.selects());
+    return plan.surface->forces[0].is_near;
+  };
+  CHECK(is_near({0.12, 0, 0.1}));
+  CHECK(is_near({-0.37, 0.01, 0.4}));
+  CHECK_FALSE(is_near({0.12, 0.9, 0.1}));
+  CHECK_FALSE(is_near({2, 0, 0}));
+}
+
+TEST_CASE("a pinned square has the deflection and the vibration of the literature",
+          "[body][surface]") {
+  // Timoshenko & Woinowsky-Krieger: 0.00406 q; clamped it is 0.00126 q.
+  const Mesh mesh = square(40, 1, 0.2, true);
+  SurfaceBody body =
+      body_of(mesh, {.unit = one}, {.measure = Measure::Rest, .border = Border::Pinned});
+  REQUIRE(body.step(static_inputs({load_on({0, 0, 0}, 9, 9)})));
+  CHECK(peak_of(body) == Approx(0.00406235).epsilon(0.01));
+  const auto first = [&](const SurfaceBody& of) {
+    const SurfacePiece& piece = of.last_step().surface->pieces.at(0);
+    TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
+    return std::sqrt(
+        smallest_eigenvalue(vibrating(plate, of.bending(static_inputs({}))).value()).value());
+  };
+  CHECK(first(body) == Approx(19.739).epsilon(0.005));
+  SurfaceBody clamped = body_of(mesh, {.unit = one});
+  REQUIRE(clamped.step(static_inputs({load_on({0, 0, 0}, 9, 9)})));
+  CHECK(first(clamped) == Approx(35.985).epsilon(0.005));
+}
+
+TEST_CASE("a free border bends by Poisson's ratio", "[body][surface]") {
+  // Half a disc, whose diameter is the border.
+  const Mesh mesh = square(24, 1, 0, true);
+  const auto peak_with = [&](double poisson) {
+    SurfaceBody body =
+        body_of(mesh, {.unit = one}, {.measure = Measure::Rest, .border = Border::Free});
+    BodyInputs in = static_inputs({load_on({0.5, 0, 0}, 0.45, 9)});
+    in.poisson = poisson;
+    REQUIRE(body.step(in));
+    return peak_of(body);
+  };
+  const double none = peak_with(0), some = peak_with(0.3);
+  CHECK(std::abs(some / none - 1) > 0.01);
+  CHECK(none > 1.2 * settled_peak(mesh, 0.45));  // half a disc with a free diameter gives way
 }
 
 TEST_CASE("the factor stays while the region does", "[body][surface]") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
@@ -200,7 +201,14 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
     one.state = state_of(piece);
     auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
-    if (!next) return fail(next.error());
+    if (!next) {
+      Error error = next.error();
+      const int node = selection.level_set.nodes[piece.points[0]];
+      if (error.code == ErrorCode::SolverFailed) {
+        error.message += ", on the piece with node " + std::to_string(node);
+      }
+      return fail(std::move(error));
+    }
     one.state = *std::move(next);
   }
   return {};

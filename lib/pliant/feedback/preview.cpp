@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "pliant/body/step_facts.hpp"
+#include "pliant/core/expects.hpp"
 #include "pliant/feedback/acting_forces.hpp"
 #include "pliant/feedback/preview_body.hpp"
 

@@ -233,6 +233,11 @@ class SurfaceMaker {
       }
       centre /= size;
       for (double& each : centre_uv) each /= size;
+      for (int k = 0; k < size; ++k) {
+        // Twice the way from the centre is no less than that between two corners.
+        const double way = 2 * (position(start + k) - centre).norm();
+        surface_.widest_face = std::max(surface_.widest_face, way);
+      }
       const int triangle_count = size > 3 ? size : 1;
       for (int k = 0; k < triangle_count; ++k) {
         const int a = start + k, b = start + (k + 1) % size, c = start + 2;

@@ -37,6 +37,7 @@ struct TriangleSurface {
 
   std::array<double, 2> unit = {1, 1};  ///< as in `MeshReading` [length/uv]
   int faces_left_out = 0;               ///< that take no part
+  double widest_face = 0;               ///< no two corners of a face are farther apart [length]
 
   int node_count() const { return static_cast<int>(rest.rows()); }
   int face_count() const { return static_cast<int>(face_starts.size()) - 1; }

@@ -191,7 +191,8 @@ bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transf
     }
     return largest;
   };
-  visit_near(surface, tree, transform, force, radius,
+  const double beyond = with_faces ? surface.widest_face * transform.linear.norm() : 0;
+  visit_near(surface, tree, transform, force, radius + beyond,
              [&](std::span<const int> rows, const BatchNumbers& distance) {
                for (std::size_t n = 0; n < rows.size() && !is_found; ++n) {
                  const double reach = with_faces ? radius + radius_of_ball(rows[n]) : radius;
