@@ -28,11 +28,6 @@ class SurfaceBody final : public Body {
   }
   SolverCounts solver_counts() const override;
 
-  std::size_t plate_memory() const {
-    std::size_t b = 0;
-    for (auto& o : solves_) b += o.plate->memory();
-    return b;
-  }
   const TriangleSurface& surface() const { return *surface_; }
 
   /// The bending form of its plates.

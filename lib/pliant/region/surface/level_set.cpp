@@ -82,8 +82,8 @@ bool is_near_rim(double end, double other) {
 
 std::vector<double> depths_at(const TriangleSurface& surface, std::span<const int> nodes,
                               const Transform& transform, std::span<const SampledForce> forces,
-                              std::span<const int> selectors, std::vector<double> reuse) {
-  reuse.assign(nodes.size(), -deepest);
+                              std::span<const int> selectors) {
+  std::vector<double> depths(nodes.size(), -deepest);
   for (std::size_t first = 0; first < nodes.size(); first += batch_size) {
     const std::size_t count = std::min<std::size_t>(batch_size, nodes.size() - first);
     const Batch points = placed(transform, surface.rest, nodes.subspan(first, count));
@@ -92,11 +92,11 @@ std::vector<double> depths_at(const TriangleSurface& surface, std::span<const in
       const BatchNumbers distance = distances(forces[k].kind, points);
       for (std::size_t n = 0; n < count; ++n) {
         const double depth = forces[k].deformation_radius - distance.of[n];
-        reuse[first + n] = std::clamp(depth, reuse[first + n], deepest);
+        depths[first + n] = std::clamp(depth, depths[first + n], deepest);
       }
     }
   }
-  return reuse;
+  return depths;
 }
 
 std::vector<int> sorted_once(std::vector<int> numbers) {
@@ -107,19 +107,19 @@ std::vector<int> sorted_once(std::vector<int> numbers) {
 
 // Lists the corners of the level set's faces.
 void list_corners(const TriangleSurface& surface, LevelSet& level_set) {
-  std::vector<int>& all = level_set.nodes;
-  all.clear();
+  std::vector<int> all;
   for (const int face : level_set.faces) {
     const std::span<const int> nodes = surface.nodes_of(face);
     all.insert(all.end(), nodes.begin(), nodes.end());
   }
-  all = sorted_once(std::move(all));
+  level_set.nodes = sorted_once(std::move(all));
   // The place of each node among `all`; of other nodes nothing is written or read.
   const auto places =
       std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(surface.node_count()));
-  for (std::size_t k = 0; k < all.size(); ++k) places[all[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < level_set.nodes.size(); ++k) {
+    places[level_set.nodes[k]] = static_cast<int>(k);
+  }
   level_set.corner_starts = {0};
-  level_set.corners.clear();
   for (const int face : level_set.faces) {
     for (const int node : surface.nodes_of(face)) level_set.corners.push_back(places[node]);
     level_set.corner_starts.push_back(static_cast<int>(level_set.corners.size()));
@@ -138,11 +138,8 @@ void add_faces_of(const TriangleSurface& surface, std::span<const int> nodes, Le
 
 LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
-                        std::span<const int> selectors, LevelSet reuse) {
-  LevelSet found = std::move(reuse);
-  std::vector<int>& inside = found.nodes;
-  inside.clear();
-  found.faces.clear();
+                        std::span<const int> selectors) {
+  std::vector<int> inside;
   for (std::size_t k = 0; k < forces.size(); ++k) {
     if (!selects(selectors, k)) continue;
     const double radius = forces[k].deformation_radius;
@@ -154,12 +151,11 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                  return true;
                });
   }
-  inside = sorted_once(std::move(inside));
-  add_faces_of(surface, inside, found);
+  LevelSet found;
+  add_faces_of(surface, sorted_once(std::move(inside)), found);
   list_corners(surface, found);
-  found.at_nodes =
-      depths_at(surface, found.nodes, transform, forces, selectors, std::move(found.at_nodes));
-  found.at_centres = means_at_centres(found, found.at_nodes, std::move(found.at_centres));
+  found.at_nodes = depths_at(surface, found.nodes, transform, forces, selectors);
+  found.at_centres = means_at_centres(found, found.at_nodes);
   return found;
 }
 

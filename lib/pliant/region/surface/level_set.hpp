@@ -34,11 +34,11 @@ struct LevelSet {
 
 /// Finds phi of the forces that select, on the rest positions under `transform`. `tree` is of the
 /// surface's nodes; `selectors` as in `BodyInputs`: a force that another one selects for does not
-/// count. A program's own function is called for every node. The result reuses the memory of
-/// `reuse`. Cost: that of the nodes within reach, not of all.
+/// count. A program's own function is called for every node. Cost: that of the nodes within reach,
+/// not of all.
 LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
-                        std::span<const int> selectors, LevelSet reuse = {});
+                        std::span<const int> selectors);
 
 /// For each of the level set's nodes, whether it is nearer to a force than its deformation radius,
 /// at rest under `transform`.
