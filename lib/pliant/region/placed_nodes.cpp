@@ -28,4 +28,14 @@ Batch PlacedNodes::batch(int first, int count) const {
   return batch;
 }
 
+Batch PlacedNodes::batch(std::span<const int> nodes) const {
+  Batch batch;
+  batch.count = static_cast<int>(nodes.size());
+  for (int k = 0; k < batch.count; ++k) {
+    const Vector3d p = at(nodes[k]);
+    batch.x[k] = p[0], batch.y[k] = p[1], batch.z[k] = p[2];
+  }
+  return batch;
+}
+
 }  // namespace pliant

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/transform.hpp"
@@ -30,6 +31,9 @@ class PlacedNodes {
   /// `count` nodes from node `first` on, world [length]; the numbers are those of `at`. Requires: 0
   /// <= count <= batch_size.
   Batch batch(int first, int count) const;
+
+  /// The same for any nodes.
+  Batch batch(std::span<const int> nodes) const;
 
  private:
   const Field* positions_;

@@ -1,6 +1,7 @@
 #include "pliant/region/surface/surface_cut.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -151,6 +152,27 @@ TEST_CASE("at a branch the slopes of three cells add up to 0", "[region][surface
   CHECK(b == SideSlope{a.first + 1, 1, 1});
   CHECK(c == SideSlope{a.first, 2, -1});
   CHECK(cells.slope_count == cut.surface.edge_count() + 1);
+}
+
+TEST_CASE("depths of many nodes are those of each, and finite", "[region][surface]") {
+  const Mesh mesh = square(9, 1, 0.3);
+  const TriangleSurface surface = make_surface(mesh).value();
+  std::vector<int> nodes;
+  for (int node = surface.node_count() - 1; node >= 0; node -= 2) nodes.push_back(node);
+  REQUIRE(nodes.size() > 32);  // more than one batch
+  const PlacedNodes placed(surface.rest, Transform{2 * Matrix3d::Identity(), {0, 1, 0}});
+  const ForceKind kind = ball({0.1, 0, 0.2}, 1).kind;
+  const std::vector<double> depths = depths_of(placed, nodes, kind, 0.7);
+  REQUIRE(depths.size() == nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    CHECK(depths[k] == 0.7 - distance(kind, placed.at(nodes[k])));
+  }
+  const SampledCustomForce nowhere{
+      [](const Vector3d&) { return std::numeric_limits<double>::infinity(); },
+      [](const Vector3d&) { return Vector3d(0, 0, 0); }};
+  for (const double depth : depths_of(placed, nodes, nowhere, 0.7)) {
+    CHECK((std::isfinite(depth) && depth < 0));
+  }
 }
 
 TEST_CASE("the area of a load changes evenly while its force slides", "[region][surface]") {

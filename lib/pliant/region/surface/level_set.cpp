@@ -37,21 +37,12 @@ std::pair<Vector3d, Vector3d> placed_box(const Transform& transform, const Point
   return {middle - reach, middle + reach};
 }
 
-Batch placed(const Transform& transform, const Field& points, std::span<const int> rows) {
-  Batch batch;
-  batch.count = static_cast<int>(rows.size());
-  for (int k = 0; k < batch.count; ++k) {
-    const Vector3d p = to_world(transform, Vector3d(points.row(rows[k]).transpose()));
-    batch.x[k] = p[0], batch.y[k] = p[1], batch.z[k] = p[2];
-  }
-  return batch;
-}
-
 // Calls f(rows, distances) for the nodes of each leaf that may be nearer than the radius, until f
 // returns false.
 template <class F>
 void visit_near(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
                 const SampledForce& force, double radius, const F& f) {
+  const PlacedNodes nodes(surface.rest, transform);
   const bool is_custom = std::holds_alternative<SampledCustomForce>(force.kind);
   std::vector<int> open;
   if (!tree.parts().empty()) open.push_back(0);
@@ -68,7 +59,7 @@ void visit_near(const TriangleSurface& surface, const PointTree& tree, const Tra
     }
     const std::span<const int> rows(tree.rows().data() + part.first,
                                     static_cast<std::size_t>(part.count));
-    if (!f(rows, distances(force.kind, placed(transform, surface.rest, rows)))) return;
+    if (!f(rows, distances(force.kind, nodes.batch(rows)))) return;
   }
 }
 
@@ -78,25 +69,6 @@ bool is_near_rim(double end, double other) {
   if (end > 0 && other < 0) return end / (end - other) < snapping_share;
   if (end < 0 && other > 0) return 1 - other / (other - end) < snapping_share;
   return false;
-}
-
-std::vector<double> depths_at(const TriangleSurface& surface, std::span<const int> nodes,
-                              const Transform& transform, std::span<const SampledForce> forces,
-                              std::span<const int> selectors) {
-  std::vector<double> depths(nodes.size(), -deepest);
-  for (std::size_t first = 0; first < nodes.size(); first += batch_size) {
-    const std::size_t count = std::min<std::size_t>(batch_size, nodes.size() - first);
-    const Batch points = placed(transform, surface.rest, nodes.subspan(first, count));
-    for (std::size_t k = 0; k < forces.size(); ++k) {
-      if (!selects(selectors, k)) continue;
-      const BatchNumbers distance = distances(forces[k].kind, points);
-      for (std::size_t n = 0; n < count; ++n) {
-        const double depth = forces[k].deformation_radius - distance.of[n];
-        depths[first + n] = std::clamp(depth, depths[first + n], deepest);
-      }
-    }
-  }
-  return depths;
 }
 
 std::vector<int> sorted_once(std::vector<int> numbers) {
@@ -154,22 +126,40 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
   LevelSet found;
   add_faces_of(surface, sorted_once(std::move(inside)), found);
   list_corners(surface, found);
-  found.at_nodes = depths_at(surface, found.nodes, transform, forces, selectors);
+  found.at_nodes.assign(found.nodes.size(), -deepest);
+  const PlacedNodes placed(surface.rest, transform);
+  std::vector<double> depths;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (!selects(selectors, k)) continue;
+    depths = depths_of(placed, found.nodes, forces[k].kind, forces[k].deformation_radius,
+                       std::move(depths));
+    for (std::size_t n = 0; n < depths.size(); ++n) {
+      found.at_nodes[n] = std::max(depths[n], found.at_nodes[n]);
+    }
+  }
   found.at_centres = means_at_centres(found, found.at_nodes);
   return found;
 }
 
-std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& level_set,
-                               const Transform& transform, const SampledForce& force) {
-  std::vector<bool> is_within(level_set.nodes.size());
-  for (std::size_t first = 0; first < level_set.nodes.size(); first += batch_size) {
-    const std::size_t size = std::min<std::size_t>(batch_size, level_set.nodes.size() - first);
-    const std::span<const int> nodes = std::span(level_set.nodes).subspan(first, size);
-    const BatchNumbers distance = distances(force.kind, placed(transform, surface.rest, nodes));
-    for (std::size_t n = 0; n < size; ++n) {
-      is_within[first + n] = distance.of[n] < force.deformation_radius;
+std::vector<double> depths_of(const PlacedNodes& placed, std::span<const int> nodes,
+                              const ForceKind& force, double radius, std::vector<double> reuse) {
+  reuse.resize(nodes.size());
+  for (std::size_t first = 0; first < nodes.size(); first += batch_size) {
+    const std::size_t count = std::min<std::size_t>(batch_size, nodes.size() - first);
+    const BatchNumbers distance = distances(force, placed.batch(nodes.subspan(first, count)));
+    for (std::size_t n = 0; n < count; ++n) {
+      reuse[first + n] = std::clamp(radius - distance.of[n], -deepest, deepest);
     }
   }
+  return reuse;
+}
+
+std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& level_set,
+                               const Transform& transform, const SampledForce& force) {
+  const std::vector<double> depths = depths_of(
+      PlacedNodes(surface.rest, transform), level_set.nodes, force.kind, force.deformation_radius);
+  std::vector<bool> is_within(depths.size());
+  for (std::size_t k = 0; k < depths.size(); ++k) is_within[k] = depths[k] > 0;
   return is_within;
 }
 

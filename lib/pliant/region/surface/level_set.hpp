@@ -7,6 +7,7 @@
 #include "pliant/forces/force.hpp"
 #include "pliant/mesh/point_tree.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/region/placed_nodes.hpp"
 
 namespace pliant {
 
@@ -39,6 +40,12 @@ struct LevelSet {
 LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
                         std::span<const int> selectors);
+
+/// How deep each of `nodes` lies in a sphere around a force: radius - distance, within the bounds
+/// -1e150 and 1e150, so that it is finite however far a program's own force says it is. [length]
+std::vector<double> depths_of(const PlacedNodes& placed, std::span<const int> nodes,
+                              const ForceKind& force, double radius,
+                              std::vector<double> reuse = {});
 
 /// For each of the level set's nodes, whether it is nearer to a force than its deformation radius,
 /// at rest under `transform`.

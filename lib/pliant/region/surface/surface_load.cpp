@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace pliant {
 namespace {
-
-// A program's own force may say that it is infinitely far away.
-constexpr double farthest = 1e150;
 
 // The integrals of a triangle's hats over the part of it where a linear function, given at its
 // corners, is positive; in units of its area.
@@ -39,12 +37,9 @@ bool SurfaceLoads::compute(const SampledForce& force) {
   loads_.resize(pieces_.size());
   bool reaches = false;
   if (force.force_radius > 0) {
-    at_nodes_.resize(level_set_.nodes.size());
-    for (std::size_t k = 0; k < at_nodes_.size(); ++k) {
-      const double apart = distance(force.kind, measured_.at(level_set_.nodes[k]));
-      at_nodes_[k] = std::max(force.force_radius - apart, -farthest);
-      reaches = reaches || at_nodes_[k] > 0;
-    }
+    at_nodes_ = depths_of(measured_, level_set_.nodes, force.kind, force.force_radius,
+                          std::move(at_nodes_));
+    reaches = std::any_of(at_nodes_.begin(), at_nodes_.end(), [](double at) { return at > 0; });
   }
   if (reaches) at_centres_ = means_at_centres(level_set_, at_nodes_, std::move(at_centres_));
   bool is_any = false;
