@@ -117,8 +117,9 @@ Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
   auto factored = matrix_.factor(reduced_.count, has_same_pattern,
                                  [&] { return upper = matrix(bending_, shift_); });
   if (!factored) return factored;
+  if (auto chosen = choose_passes(upper); !chosen) return chosen;
   is_factored_ = true;
-  return choose_passes(upper);
+  return {};
 }
 
 // The forces on the unknowns by what is held: -K times the displacements and slopes that are given.
