@@ -7,18 +7,26 @@ namespace pliant {
 ReducedUnknowns::ReducedUnknowns(const TriangleCells& cells, int mass_count)
     : places(static_cast<std::size_t>(cells.unknown_count()), -1) {
   constexpr int none = -1, several = -2;
-  std::vector<int> blocks(places.size(), none);  // of each unknown
+  std::vector<int> owners(places.size(), none);  // the block of each unknown
   for (int block = 0; block < cells.block_count(); ++block) {
     for (int k = cells.block_starts[block]; k < cells.block_starts[block + 1]; ++k) {
       for_each_unknown(cells, cells.cells[k], [&](const CellUnknown& unknown) {
-        int& of_unknown = blocks[unknown.index];
-        of_unknown = of_unknown == none || of_unknown == block ? block : several;
+        int& owner = owners[unknown.index];
+        owner = owner == none || owner == block ? block : several;
       });
     }
   }
+  std::vector<bool> has_inner(static_cast<std::size_t>(cells.block_count()));
   for (int unknown = 0; unknown < cells.unknown_count(); ++unknown) {
-    const bool is_inner = unknown >= mass_count && blocks[unknown] >= 0;
-    if (!is_inner) places[unknown] = count++;
+    const int block = owners[unknown];
+    if (unknown < mass_count || block < 0) {
+      places[unknown] = count++;
+    } else {
+      has_inner[block] = true;
+    }
+  }
+  for (int block = 0; block < cells.block_count(); ++block) {
+    if (has_inner[block]) blocks.push_back(block);
   }
 }
 

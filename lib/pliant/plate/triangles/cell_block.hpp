@@ -12,6 +12,7 @@ namespace pliant {
 struct ReducedUnknowns {
   std::vector<int> places;  ///< of each unknown among those that are not inner; -1: inner
   int count = 0;
+  std::vector<int> blocks;  ///< those with inner unknowns, ascending
 
   /// Requires: the first `mass_count` points have a mass; they keep their numbers.
   ReducedUnknowns(const TriangleCells& cells, int mass_count);

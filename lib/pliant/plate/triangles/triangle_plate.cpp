@@ -25,15 +25,6 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       reduced_(cells_, static_cast<int>(masses_.size())),
       matrix_(choice, context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
-  for (int block = 0; block < cells_.block_count(); ++block) {
-    bool has_inner = false;
-    for (int k = cells_.block_starts[block]; k < cells_.block_starts[block + 1]; ++k) {
-      for_each_unknown(cells_, cells_.cells[k], [&](const CellUnknown& unknown) {
-        has_inner = has_inner || reduced_.places[unknown.index] < 0;
-      });
-    }
-    if (has_inner) blocks_with_inner_.push_back(block);
-  }
 }
 
 // The upper triangle, by columns, rows ascending. Contributions are gathered by columns, in the
@@ -93,7 +84,7 @@ Field TrianglePlate::reduced(const Field& forces) const {
   }
   CellBlock<double> block;
   std::vector<double> own;
-  for (const int k : blocks_with_inner_) {
+  for (const int k : reduced_.blocks) {
     block.compute(cells_, k, reduced_, bending_);
     for (int component = 0; component < 3; ++component) {
       own.assign(static_cast<std::size_t>(block.size()), 0);

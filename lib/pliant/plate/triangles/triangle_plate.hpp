@@ -74,7 +74,6 @@ class TrianglePlate {
   std::vector<double> masses_;
   RunContext context_;
   ReducedUnknowns reduced_;  // those of the matrix
-  std::vector<int> blocks_with_inner_;
   FactoredMatrix matrix_;
   bool is_factored_ = false;
   Bending bending_;  // of the factored matrix
