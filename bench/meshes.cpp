@@ -64,7 +64,8 @@ Bound bound_of(const SurfaceBody& body, const BodyInputs& in, int repetitions) {
   const SurfacePiece& piece = body.last_step().surface->pieces.at(0);
   const TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
   const double dt = in.frame_length / steps;
-  const SparseMatrix matrix = plate.matrix(body.bending(in), in.dynamics.shift(dt));
+  const Bending bending = bending_of(in, body.surface().unit, body.settings().border);
+  const SparseMatrix matrix = plate.matrix(bending, in.dynamics.shift(dt));
   std::unique_ptr<SparseFactor> factor;
   Bound bound;
   bound.factor = median_ms(repetitions, [&] {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,6 +35,11 @@ SolverChoice factor_of(SolverChoice choice) {
 }
 
 }  // namespace
+
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border) {
+  const bool is_free = border == Border::Free;
+  return bending_of(inputs.stiffness, unit, is_free ? std::optional(inputs.poisson) : std::nullopt);
+}
 
 SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface,
                          const BodySettings& settings, SolverChoice solver, RunContext context)
@@ -179,12 +185,6 @@ void SurfaceBody::keep_plates() {
   }
 }
 
-Bending SurfaceBody::bending(const BodyInputs& inputs) const {
-  const bool is_free = settings_.border == Border::Free;
-  return bending_of(inputs.stiffness, surface_->unit,
-                    is_free ? std::optional(inputs.poisson) : std::nullopt);
-}
-
 Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
   const SurfaceSelection& selection = *plan_.surface;
   const auto& [unit_u, unit_v] = surface_->unit;
@@ -194,7 +194,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     const SurfacePiece& piece = selection.pieces[k];
     if (!piece.moves()) continue;
     PieceSolve& one = solves_[place++];
-    one.problem.bending = bending(inputs);
+    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
     one.problem.dynamics = inputs.dynamics;
     one.problem.slopes = {tangents.su0 / unit_u, tangents.su1 / unit_u, tangents.sv0 / unit_v,
                           tangents.sv1 / unit_v};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include "pliant/region/surface/surface_load.hpp"
 
 namespace pliant {
+
+/// The bending form of a surface's plates; `unit` is that of its `TriangleSurface`.
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border);
 
 /// One elastic surface as triangles, of any mesh. docs/model.md, "Surfaces".
 class SurfaceBody final : public Body {
@@ -29,9 +33,6 @@ class SurfaceBody final : public Body {
   SolverCounts solver_counts() const override;
 
   const TriangleSurface& surface() const { return *surface_; }
-
-  /// The bending form of its plates.
-  Bending bending(const BodyInputs& inputs) const;
 
  private:
   // A piece while it is solved.

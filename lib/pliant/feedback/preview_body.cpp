@@ -225,8 +225,9 @@ Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   region.static_peak = std::sqrt(world.rowwise().squaredNorm().maxCoeff());
   if (piece.free_nodes > most_factored_unknowns) return region;
   TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_);
-  const auto* const body = static_cast<const SurfaceBody*>(current_);
-  const auto plate = vibrating(triangles, body->bending(inputs));
+  const Border border = body_settings(surface_, false).border;
+  const Bending bending = bending_of(inputs, shape_.surface->unit, border);
+  const auto plate = vibrating(triangles, bending);
   if (!plate) return fail(plate.error());
   if (auto added = add_vibrations(inputs, *plate, ways, region); !added) return fail(added.error());
   region.solver_memory = triangles.memory();
