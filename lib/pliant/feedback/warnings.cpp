@@ -71,14 +71,12 @@ std::string Warning::message() const {
     case Kind::BetweenNodes:
       return fmt::format(
           "{} \"{}\" reaches \"{}\" {}, but no node is nearer than its deformationRadius: the mesh "
-          "is "
-          "too coarse for it; subdivide the mesh, or let a finer one drive it",
+          "is too coarse; subdivide it, or press a finer proxy that drives it (drivenBy)",
           noun, force, surface, when);
     case Kind::LoosePiece:
       return fmt::format(
           "a piece of \"{}\" lies wholly in the forces' spheres {}: nothing holds it, so it does "
-          "not "
-          "move",
+          "not move",
           surface, when);
     case Kind::FacesLeftOut:
       return fmt::format(
