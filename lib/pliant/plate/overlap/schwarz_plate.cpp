@@ -30,24 +30,6 @@ double* at(const NodesView& view, int component, long node) {
   return view.first + component * view.component_stride + node;
 }
 
-// Moves rectangles that no stencil connects with one another, the largest among them, behind the
-// others: a round visits them once, as their order does not matter. Returns their number.
-std::size_t move_independent_back(std::vector<Box>& cover) {
-  std::vector<Box> back;
-  for (std::size_t k = cover.size(); k-- > 0;) {
-    const Box& box = cover[k];
-    const Box reach{box.i0 - 2, box.i1 + 2, box.j0 - 2, box.j1 + 2};
-    const bool is_free = std::all_of(back.begin(), back.end(), [&](const Box& other) {
-      return intersection(reach, other).is_empty();
-    });
-    if (!is_free) continue;
-    back.insert(back.begin(), box);
-    cover.erase(cover.begin() + static_cast<std::ptrdiff_t>(k));
-  }
-  cover.insert(cover.end(), back.begin(), back.end());
-  return back.size();
-}
-
 StencilWeights weights_of(const PlateSystem& system) {
   return {system.outline.grid(), system.stiffness, system.shift};
 }
@@ -109,7 +91,7 @@ Result<void> SchwarzPlate::prepare(const Outline& outline, const Stiffness& stif
   }
   ++counts_.factorizations;
   for (const Part& part : parts_) {
-    const Grid with_rim{part.box.columns() + 2, part.box.rows() + 2, grid.hu, grid.hv};
+    const Grid with_rim{part.area.box.columns() + 2, part.area.box.rows() + 2, grid.hu, grid.hv};
     if (auto ready = part.plate->prepare({with_rim, stiffness, shift}); !ready) {
       let_go();
       return ready;
@@ -174,10 +156,11 @@ Result<void> SchwarzPlate::lay_out() {
 
 void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
   for (const Box& box : cover) {
-    Part part = part_of(box);
+    Part part{overlap_part(system_.outline, box), nullptr};
     // Rectangles of one size share a plate.
     for (const Part& other : parts_) {
-      if (other.box.columns() == box.columns() && other.box.rows() == box.rows()) {
+      const Box& earlier = other.area.box;
+      if (earlier.columns() == box.columns() && earlier.rows() == box.rows()) {
         part.plate = other.plate;
       }
     }
@@ -187,34 +170,6 @@ void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
     }
     parts_.push_back(std::move(part));
   }
-}
-
-SchwarzPlate::Part SchwarzPlate::part_of(const Box& box) const {
-  const Outline& outline = system_.outline;
-  const Grid& grid = outline.grid();
-  Part part{box, nullptr, {}, {}};
-  for (int j = box.j0; j <= box.j1; ++j) {
-    const bool is_end = j == box.j0 || j == box.j1;
-    for (int i = box.i0; i <= box.i1; ++i) {
-      // In other rows, only the two nodes at the ends.
-      if (!is_end && i == box.i0 + 1 && box.i1 > i) i = box.i1;
-      const int along_u =
-          (i == box.i0 && outline.holds(i - 1, j)) + (i == box.i1 && outline.holds(i + 1, j));
-      const int along_v =
-          (j == box.j0 && outline.holds(i, j - 1)) + (j == box.j1 && outline.holds(i, j + 1));
-      if (along_u + along_v > 0) part.facing.push_back({grid.node(i, j), along_u, along_v});
-    }
-  }
-  for (int j = std::max(1, box.j0 - 2); j <= std::min(grid.rows - 2, box.j1 + 2); ++j) {
-    for (int i = std::max(1, box.i0 - 2); i <= std::min(grid.columns - 2, box.i1 + 2); ++i) {
-      if (box.contains(i, j)) {
-        i = box.i1;
-      } else if (outline.holds(i, j)) {
-        part.around.push_back(grid.node(i, j));
-      }
-    }
-  }
-  return part;
 }
 
 std::size_t SchwarzPlate::memory() const {
@@ -284,8 +239,8 @@ void SchwarzPlate::apply_rounds() {
 
 void SchwarzPlate::visit(const Part& part, bool is_last) {
   const long M = system_.outline.grid().columns;
-  const long first = part.box.j0 * M + part.box.i0;
-  const long width = part.box.columns();
+  const long first = part.area.box.j0 * M + part.area.box.i0;
+  const long width = part.area.box.columns();
   const ConstNodesView left{product_.of[0] + first, M, product_.of[1] - product_.of[0]};
   const NodesView corrected{part_correction_.of[0], width,
                             part_correction_.of[1] - part_correction_.of[0]};
@@ -299,7 +254,7 @@ void SchwarzPlate::visit(const Part& part, bool is_last) {
 // then only the excess of the clamped sides over A, eq. (35); around it, the stencil's values.
 void SchwarzPlate::take_correction(const Part& part, int component, bool is_last) {
   const long M = system_.outline.grid().columns;
-  const Box& box = part.box;
+  const Box& box = part.area.box;
   const long width = box.columns();
   const double* const y = part_correction_.of[component];
   double* const z = correction_.of[component];
@@ -316,10 +271,10 @@ void SchwarzPlate::take_correction(const Part& part, int component, bool is_last
     const bool is_here = box.i0 <= i && i <= box.i1 && box.j0 <= j && j <= box.j1;
     return is_here ? y[(j - box.j0) * width + (i - box.i0)] : 0;
   };
-  for (const auto& [node, along_u, along_v] : part.facing) {
+  for (const auto& [node, along_u, along_v] : part.area.facing) {
     left[node] += weights.ghosts(along_u, along_v) * at(node % M, node / M);
   }
-  for (const long node : part.around) {
+  for (const long node : part.area.around) {
     const long i = node % M;
     const long j = node / M;
     left[node] -= weights.apply([&](int di, int dj) { return at(i + di, j + dj); });

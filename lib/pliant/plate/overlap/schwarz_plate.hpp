@@ -10,6 +10,7 @@
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/outline/row_blocks.hpp"
+#include "pliant/plate/overlap/overlap_part.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/spectral/spectral_plate.hpp"
@@ -55,10 +56,8 @@ class SchwarzPlate {
  private:
   // A rectangle of the cover.
   struct Part {
-    Box box;  // of interior nodes
-    SpectralPlate* plate = nullptr;
-    std::vector<RowBlocks::Edge> facing;  // nodes of `box` beside interior nodes outside it
-    std::vector<long> around;             // interior nodes outside `box` that the stencil reaches
+    OverlapPart area;
+    SpectralPlate* plate;
   };
   // A field on all nodes, surrounded by rows of zeros; 0 at nodes that are not interior.
   struct NodeField {
@@ -69,7 +68,6 @@ class SchwarzPlate {
   Result<void> lay_out();
   void let_go();
   void make_parts(const std::vector<Box>& cover);
-  Part part_of(const Box& box) const;
   Result<void> iterate();
   bool settle_if_free(int component);
   Result<void> run(bool (&is_unsolved)[3]);
