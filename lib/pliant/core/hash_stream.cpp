@@ -9,7 +9,7 @@ namespace pliant {
 void HashStream::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
 
 HashStream::HashStream() : state_(XXH3_createState()) {
-  if (!state_) throw std::bad_alloc();
+  if (!state_) throw std::bad_alloc();  // as `new`
   XXH3_128bits_reset(state_.get());
 }
 
