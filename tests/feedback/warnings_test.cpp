@@ -1,42 +1,11 @@
 #include <string>
 
-#include "pliant/feedback/warning_log.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
 using Catch::Matchers::Contains;
-
-TEST_CASE("warnings come once a cause, with all its frames", "[feedback][warnings]") {
-  WarningLog log;
-  for (const int frame : {7, 5, 6, 9}) log.add(Warning::Kind::LostNodes, "sheet", "poke", frame);
-  log.add(Warning::Kind::RegionTooSmall, "sheet", "poke", 2);
-  log.add(Warning::Kind::LostNodes, "sheet", "other", 7);
-  const auto warnings = log.warnings(Scene(), false);
-  REQUIRE(warnings.size() == 3);
-  CHECK_THAT(
-      warnings[0].message(),
-      Contains("\"poke\" selects fewer than 3 x 3 nodes of \"sheet\"") && Contains("at frame 2"));
-  CHECK_THAT(warnings[1].message(),
-             Contains("\"other\" lost its own nodes on \"sheet\" at frame 7:"));
-  CHECK_THAT(warnings[2].message(),
-             Contains("\"poke\" lost its own nodes") && Contains("at frames 5-7, 9"));
-}
-
-TEST_CASE("what never happened is told once the range is complete", "[feedback][warnings]") {
-  WarningLog log;
-  using enum Warning::Kind;
-  for (const int frame : {1, 2, 3}) {
-    log.expect(SelectsNothing, "sheet", "poke", frame);
-    log.expect(SelectsNothing, "", "other", frame);
-  }
-  log.happened(SelectsNothing, "", "other");
-  CHECK(log.warnings(Scene(), false).empty());
-  REQUIRE(log.warnings(Scene(), true).size() == 1);
-  CHECK_THAT(log.warnings(Scene(), true)[0].message(),
-             Contains("\"poke\" selects no node of \"sheet\" at frames 1-3"));
-}
 
 namespace {
 
