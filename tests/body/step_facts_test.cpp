@@ -111,4 +111,13 @@ TEST_CASE("facts tell why a force on a surface moves nothing", "[body][facts][su
   CHECK(aside.is_solved);
   CHECK(aside.forces[1].is_outside);
   CHECK_FALSE(aside.forces[1].pushes);
+
+  // A force that selects nothing, at a node and beside one.
+  for (const double x : {0.0, 0.03}) {
+    const StepFacts pushing =
+        facts_on(mesh, {push_at({0, 0, 0}, 0.3, 0), push_at({x, 0, 0}, 0, 0.1)});
+    CHECK_FALSE(pushing.forces[1].is_between_nodes);
+    CHECK(pushing.forces[1].touches);
+    CHECK(pushing.forces[1].pushes);
+  }
 }

@@ -118,8 +118,9 @@ Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& sele
     for (const SurfacePiece& piece : selection.pieces) {
       told.counts = told.counts + piece.counts_of(within);
     }
+    const double radius = force.deformation_radius;
     told.is_near =
-        told.counts.inside_nodes > 0 || (told.selects && reach(force.deformation_radius, true));
+        told.counts.inside_nodes > 0 || (told.selects && radius > 0 && reach(radius, true));
     told.acts_inside = loads.compute(force);
     told.acts_outside = !told.acts_inside && reach(force.force_radius, false);
     if (!told.acts_inside && settings_.measure == Measure::Current) {
