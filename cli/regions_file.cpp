@@ -74,7 +74,7 @@ Json surface_json(const Scene& scene, int frame, std::size_t surface, const Surf
   if (!report.is_surface) return json;
   for (const char* of_grid : {"selected", "regions"}) json.erase(of_grid);
   json["grid"] = nullptr;
-  json["cut"] = to_text(report.cut);
+  json["cut"] = report.cut ? Json(to_text(*report.cut)) : Json(nullptr);
   json["pieces"] = Json::array();
   for (const CutCounts& piece : report.pieces) json["pieces"].push_back(to_json(piece));
   return json;

@@ -119,6 +119,11 @@ class Surfaces(Command):
         force, = surface["forces"]
         self.assertEqual(force["insideNodes"] - force["heldNodes"], piece["insideNodes"])
         self.assertEqual(len(surface["cut"]), 32)
+        late = self.scene_of(end=3, parts='<solver startFrame="2"/>')
+        self.bake(late, "a.npy", "--regions", self.path("r.json"))
+        idle, = json.loads(self.read("r.json"))["frames"][0]["surfaces"]
+        self.assertEqual(idle.keys(), surface.keys())
+        self.assertEqual((idle["grid"], idle["cut"], idle["pieces"], idle["solved"]), (None, None, [], False))
 
         told = self.run_pliant("info", scene).stdout
         self.assertRegex(told, r"surface of \d+ nodes in \d+ faces, 1 piece, 0 border edges, unit 3\.5")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,9 @@ struct SurfaceReport {
   /// On a surface of triangles, which has pieces in place of regions.
   bool is_surface = false;
   std::vector<CutCounts> pieces = {};
-  Hash cut = {};  ///< of phi at the nodes in and around the region, and of what is held
+  /// Of phi at the nodes in and around the region, and of what is held; none: the surface is
+  /// disabled, or not started.
+  std::optional<Hash> cut = {};
 };
 
 /// The solve of a body in its present state with these inputs. Errors: as `Body::look`; NotFinite

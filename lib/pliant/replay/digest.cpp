@@ -9,7 +9,8 @@ namespace pliant {
 namespace {
 
 // The input of the solve at a frame, as in docs/replay.md: a line `region solved i0 i1 j0 j1` for
-// each part of each region, then, for a body that recovers, a byte for each node.
+// each part of each region, or a hash of what is cut out of triangles; then, for a body that
+// recovers, a byte for each node.
 std::string region_text(const SurfaceReport& report, const BodyState& state) {
   std::string text;
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -18,7 +19,7 @@ std::string region_text(const SurfaceReport& report, const BodyState& state) {
                           part.i1, part.j0, part.j1);
     }
   }
-  if (report.is_surface) text += fmt::format("{}\n", to_text(report.cut));
+  if (report.cut) text += fmt::format("{}\n", to_text(*report.cut));
   text.append(state.unsettled.begin(), state.unsettled.end());
   return text;
 }

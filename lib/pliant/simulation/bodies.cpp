@@ -194,7 +194,10 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
 Result<FrameReport> Bodies::report(int frame) {
   std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
   threads_.for_each(bodies_.size(), [&](std::size_t k) {
-    if (!is_solved_at(scene_, scene_.surfaces[k], frame)) return;
+    if (!is_solved_at(scene_, scene_.surfaces[k], frame)) {
+      surfaces[k]->is_surface = !rest_shapes_[k].grid;
+      return;
+    }
     surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame));
   });
   FrameReport report{frame, {}};
