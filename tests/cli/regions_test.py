@@ -86,7 +86,7 @@ class Regions(Command):
                 return [keys(value[0])] if value and isinstance(value[0], dict) else []
             return {key: keys(inner) for key, inner in value.items()} if isinstance(value, dict) else None
         with open(os.path.join(SOURCE, "docs", "regions.md"), encoding="utf-8") as file:
-            page = file.read()
+            page = file.read().partition("## Surfaces of triangles")[0]
         shown = json.loads(re.search(r"```json\n(.*?)```", page, re.DOTALL).group(1))
         self.assertEqual(json.dumps(keys(shown)), json.dumps(keys(self.told())))
         described = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| (`.*?) \|", page, re.MULTILINE))))

@@ -2,10 +2,12 @@
 
 import json
 import math
+import os
+import re
 
 import numpy as np
 
-from command import Command, main
+from command import SOURCE, Command, main
 
 RADIUS = 0.7
 
@@ -119,6 +121,11 @@ class Surfaces(Command):
         force, = surface["forces"]
         self.assertEqual(force["insideNodes"] - force["heldNodes"], piece["insideNodes"])
         self.assertEqual(len(surface["cut"]), 32)
+        with open(os.path.join(SOURCE, "docs", "regions.md"), encoding="utf-8") as file:
+            page = file.read().partition("## Surfaces of triangles")[2]
+        shown = json.loads(re.search(r"```json\n(.*?)```", page, re.DOTALL).group(1))
+        self.assertEqual((shown.keys(), shown["pieces"][0].keys(), shown["forces"][0].keys()),
+                         (surface.keys(), piece.keys(), force.keys()))
         late = self.scene_of(end=3, parts='<solver startFrame="2"/>')
         self.bake(late, "a.npy", "--regions", self.path("r.json"))
         idle, = json.loads(self.read("r.json"))["frames"][0]["surfaces"]
