@@ -393,7 +393,7 @@ TEST_CASE("a closed net is a torus of quads with a seam in its UVs", "[mesh][nur
   }
   const NurbsSurface surface = make_nurbs(net);
   const Mesh& mesh = surface.mesh;
-  CHECK(surface.grid == Grid{6, 5, 1.0 / 6, 0.2});
+  CHECK(surface.grid == Grid{6, 5, 1.0 / 6, 0.2, true, true});
   CHECK(check_mesh(mesh));
   CHECK(mesh.vertex_count() == 120);
   CHECK(mesh.face_sizes.size() == 120);

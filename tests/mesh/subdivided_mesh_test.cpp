@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "pliant/mesh/grid_sheet.hpp"
-#include "pliant/mesh/subdivision.hpp"
+#include "pliant/mesh/subdivide.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 

@@ -1,5 +1,4 @@
-#include "pliant/mesh/subdivision.hpp"
-
+#include "pliant/mesh/subdivide.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "pliant/mesh/vertex_weights.hpp"
 
 namespace pliant {
 namespace {
@@ -16,88 +19,99 @@ struct DirectionNames {
   char attribute;  // of degreeU, samplesU
 };
 
+using NetCheck = tl::expected<void, NetProblem>;
+
+tl::unexpected<NetProblem> wrong(std::string part, std::string message) {
+  return tl::unexpected(NetProblem{std::move(part), std::move(message)});
+}
+
 constexpr DirectionNames names_u = {"columns", 'u', 'U'};
 constexpr DirectionNames names_v = {"rows", 'v', 'V'};
 
-Result<void> check_knots(const NurbsDirection& direction, const DirectionNames& names) {
+NetCheck check_knots(const NurbsDirection& direction, const DirectionNames& names) {
   const std::vector<double>& knots = direction.knots;
   const auto degree = static_cast<std::size_t>(direction.degree);
   const auto count = static_cast<std::size_t>(direction.count);
+  const std::string part = fmt::format("knots{}", names.attribute);
   const std::string thing = fmt::format("knots along=\"{}\"", names.along);
   if (knots.empty()) return {};
   if (direction.is_closed) {
-    return invalid(fmt::format("{}: a net that wrap closes along {} has none", thing, names.along));
+    return wrong(part,
+                 fmt::format("{}: a net that wrap closes along {} has none", thing, names.along));
   }
   if (knots.size() != count + degree + 1) {
-    return invalid(fmt::format("{}: there are {} numbers, but {} + degree{} + 1 = {} are needed",
-                               thing, knots.size(), names.count, names.attribute,
-                               count + degree + 1));
+    return wrong(
+        part, fmt::format("{}: there are {} numbers, but {} + degree{} + 1 = {} are needed", thing,
+                          knots.size(), names.count, names.attribute, count + degree + 1));
   }
   for (std::size_t k = 0; k < knots.size(); ++k) {
     if (!std::isfinite(knots[k]))
-      return invalid(fmt::format("{}: number {} is not finite", thing, k + 1));
+      return wrong(part, fmt::format("{}: number {} is not finite", thing, k + 1));
     if (k > 0 && knots[k] < knots[k - 1]) {
-      return invalid(fmt::format("{}: number {}, {}, is less than the one before it, {}", thing,
-                                 k + 1, knots[k], knots[k - 1]));
+      return wrong(part, fmt::format("{}: number {}, {}, is less than the one before it, {}", thing,
+                                     k + 1, knots[k], knots[k - 1]));
     }
   }
   // Parameters are multiples of a part of the range.
   if (!std::isfinite((knots.back() - knots.front()) * double{WrittenSize::most_vertices})) {
-    return invalid(
-        fmt::format("{}: {} and {} lie too far apart", thing, knots.front(), knots.back()));
+    return wrong(
+        part, fmt::format("{}: {} and {} lie too far apart", thing, knots.front(), knots.back()));
   }
   std::size_t equal = 1;
   for (std::size_t k = 1; k <= knots.size(); ++k, ++equal) {
     if (k < knots.size() && knots[k] == knots[k - 1]) continue;
     const bool is_end = k == equal || k == knots.size();
     if (equal > degree + (is_end ? 1 : 0)) {
-      return invalid(fmt::format("{}: {} occurs {} times, but {} is the most {}", thing,
-                                 knots[k - 1], equal, is_end ? degree + 1 : degree,
-                                 is_end ? "at an end" : "between the ends"));
+      return wrong(part, fmt::format("{}: {} occurs {} times, but {} is the most {}", thing,
+                                     knots[k - 1], equal, is_end ? degree + 1 : degree,
+                                     is_end ? "at an end" : "between the ends"));
     }
     equal = 0;
   }
   if (!(knots[degree] < knots[count])) {
-    return invalid(fmt::format("{}: the surface lies between numbers {} and {}, which are both {}",
-                               thing, degree + 1, count + 1, knots[degree]));
+    return wrong(part,
+                 fmt::format("{}: the surface lies between numbers {} and {}, which are both {}",
+                             thing, degree + 1, count + 1, knots[degree]));
   }
   return {};
 }
 
-Result<void> check_direction(const NurbsDirection& direction, const DirectionNames& names) {
+NetCheck check_direction(const NurbsDirection& direction, const DirectionNames& names) {
   if (direction.count < 3 || direction.count > WrittenSize::most_vertices) {
-    return invalid(fmt::format("{} is {}, but must be from 3 to {}", names.count, direction.count,
-                               WrittenSize::most_vertices));
+    return wrong(names.count, fmt::format("{} is {}, but must be from 3 to {}", names.count,
+                                          direction.count, WrittenSize::most_vertices));
   }
   if (direction.degree < 1 || direction.degree >= direction.count) {
-    return invalid(fmt::format("degree{} is {}, but must be from 1 to {} - 1 = {}", names.attribute,
-                               direction.degree, names.count, direction.count - 1));
+    return wrong(fmt::format("degree{}", names.attribute),
+                 fmt::format("degree{} is {}, but must be from 1 to {} - 1 = {}", names.attribute,
+                             direction.degree, names.count, direction.count - 1));
   }
   const int least = direction.is_closed ? 3 : 2;
   if (direction.samples && *direction.samples < least) {
-    return invalid(fmt::format("samples{} is {}, but must be at least {}", names.attribute,
-                               *direction.samples, least));
+    return wrong(fmt::format("samples{}", names.attribute),
+                 fmt::format("samples{} is {}, but must be at least {}", names.attribute,
+                             *direction.samples, least));
   }
   return check_knots(direction, names);
 }
 
-Result<WrittenSize> written_size(const NurbsNet& net) {
+tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
   // Of one direction, in double precision, where no product overflows.
   const auto entries = [](const NurbsDirection& direction) {
     return double(samples_of(direction)) * (direction.degree + 1.0);
   };
   const std::int64_t u = samples_of(net.u), v = samples_of(net.v);
   if (u * v > WrittenSize::most_vertices) {
-    return invalid(
-        fmt::format("{} x {} vertices would be written, but {} is the most; set "
-                    "samplesU and samplesV",
-                    u, v, WrittenSize::most_vertices));
+    return wrong("samplesU",
+                 fmt::format("{} x {} vertices would be written, but {} is the most; set "
+                             "samplesU and samplesV",
+                             u, v, WrittenSize::most_vertices));
   }
   if (entries(net.u) * entries(net.v) > double{WrittenSize::most_weights}) {
-    return invalid(
-        fmt::format("{} x {} vertices of {} x {} control points each would be written, "
-                    "but {} control points are the most; set samplesU and samplesV",
-                    u, v, net.u.degree + 1, net.v.degree + 1, WrittenSize::most_weights));
+    return wrong("samplesU",
+                 fmt::format("{} x {} vertices of {} x {} control points each would be written, "
+                             "but {} control points are the most; set samplesU and samplesV",
+                             u, v, net.u.degree + 1, net.v.degree + 1, WrittenSize::most_weights));
   }
   return WrittenSize{
       .vertices = u * v,
@@ -122,30 +136,32 @@ int samples_of(const NurbsDirection& direction) {
   return direction.is_closed ? 8 * direction.count : 8 * (direction.count - direction.degree) + 1;
 }
 
-Result<WrittenSize> check_net(const NurbsNet& net) {
-  if (auto checked = check_direction(net.u, names_u); !checked) return fail(checked.error());
-  if (auto checked = check_direction(net.v, names_v); !checked) return fail(checked.error());
+tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net) {
+  if (auto checked = check_direction(net.u, names_u); !checked)
+    return tl::unexpected(checked.error());
+  if (auto checked = check_direction(net.v, names_v); !checked)
+    return tl::unexpected(checked.error());
   const std::int64_t count = std::int64_t{net.u.count} * net.v.count;
   if (count > WrittenSize::most_vertices) {
-    return invalid(
-        fmt::format("columns x rows is {}, but {} is the most", count, WrittenSize::most_vertices));
+    return wrong("columns", fmt::format("columns x rows is {}, but {} is the most", count,
+                                        WrittenSize::most_vertices));
   }
   if (net.points.rows() != count) {
-    return invalid(fmt::format("there are {} points, but columns x rows = {} are needed",
-                               net.points.rows(), count));
+    return wrong("points", fmt::format("there are {} points, but columns x rows = {} are needed",
+                                       net.points.rows(), count));
   }
   for (Eigen::Index k = 0; k < net.points.rows(); ++k) {
     if (!net.points.row(k).allFinite())
-      return invalid(fmt::format("point {} has a coordinate that is not finite", k + 1));
+      return wrong("points", fmt::format("point {} has a coordinate that is not finite", k + 1));
   }
   if (!net.weights.empty() && static_cast<std::int64_t>(net.weights.size()) != count) {
-    return invalid(fmt::format("there are {} weights, but columns x rows = {} are needed",
-                               net.weights.size(), count));
+    return wrong("weights", fmt::format("there are {} weights, but columns x rows = {} are needed",
+                                        net.weights.size(), count));
   }
   for (std::size_t k = 0; k < net.weights.size(); ++k) {
     if (!(net.weights[k] > 0) || !std::isfinite(net.weights[k])) {
-      return invalid(
-          fmt::format("weight {} is {}, but must be > 0 and finite", k + 1, net.weights[k]));
+      return wrong("weights", fmt::format("weight {} is {}, but must be > 0 and finite", k + 1,
+                                          net.weights[k]));
     }
   }
   return written_size(net);

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "pliant/core/field.hpp"
-#include "pliant/core/result.hpp"
-#include "pliant/mesh/vertex_weights.hpp"
 
 namespace pliant {
+
+struct WrittenSize;
 
 /// A NURBS net along u or along v.
 struct NurbsDirection {
@@ -34,11 +37,17 @@ std::vector<double> knots_of(const NurbsDirection& direction);
 /// Requires: 1 <= degree < count <= 1e8.
 int samples_of(const NurbsDirection& direction);
 
-/// The size of the surface that a net is written as. Errors, in the words of the scene format: a
-/// member outside of the range of its comment; knots that fall, that span nothing or that lie too
-/// far apart, or of which more than `degree` are equal, at the ends more than degree + 1; knots of
-/// a closed direction; fewer than 2 samples, closed 3; numbers that are not finite; a surface that
-/// is larger than `WrittenSize` allows.
-Result<WrittenSize> check_net(const NurbsNet& net);
+/// What is wrong with a net.
+struct NetProblem {
+  std::string part;  ///< as the scene format calls it: columns, degreeU, points, knotsV, ...
+  std::string message;
+};
+
+/// The size of the surface that a net is written as. Problems: a member outside of the range of its
+/// comment; knots that fall, that span nothing or that lie too far apart, or of which more than
+/// `degree` are equal, at the ends more than degree + 1; knots of a closed direction; fewer than 2
+/// samples, closed 3; numbers that are not finite; a surface that is larger than `WrittenSize`
+/// allows.
+tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net);
 
 }  // namespace pliant

@@ -142,6 +142,19 @@ double spacing(const NurbsDirection& direction) {
   return 1.0 / (direction.is_closed ? direction.count : direction.count - 1);
 }
 
+// Calls `add_corner(k, l)` for the corners of each quad, turned like those of a `GridSheet`.
+template <class AddCorner>
+void for_each_quad(int quads_u, int quads_v, const AddCorner& add_corner) {
+  for (int l = 0; l < quads_v; ++l) {
+    for (int k = 0; k < quads_u; ++k) {
+      add_corner(k, l);
+      add_corner(k, l + 1);
+      add_corner(k + 1, l + 1);
+      add_corner(k + 1, l);
+    }
+  }
+}
+
 // Quads between all samples; their last column joins the first samples where u is closed.
 void add_quads(const NurbsNet& net, Mesh& mesh) {
   const int samples_u = samples_of(net.u), samples_v = samples_of(net.v);
@@ -159,22 +172,28 @@ void add_quads(const NurbsNet& net, Mesh& mesh) {
     mesh.corner_vertices.push_back(l % samples_v * samples_u + k % samples_u);
     mesh.corner_uvs.push_back(l * (quads_u + 1) + k);
   };
-  for (int l = 0; l < quads_v; ++l) {
-    for (int k = 0; k < quads_u; ++k) {
-      add_corner(k, l);  // first along v, then along u, as in a GridSheet
-      add_corner(k, l + 1);
-      add_corner(k + 1, l + 1);
-      add_corner(k + 1, l);
-    }
-  }
+  for_each_quad(quads_u, quads_v, add_corner);
 }
 
 }  // namespace
 
+Mesh control_mesh(const NurbsNet& net) {
+  Mesh mesh;
+  mesh.positions = net.points;
+  for_each_quad(net.u.is_closed ? net.u.count : net.u.count - 1,
+                net.v.is_closed ? net.v.count : net.v.count - 1, [&](int i, int j) {
+                  mesh.corner_vertices.push_back(j % net.v.count * net.u.count + i % net.u.count);
+                });
+  mesh.face_sizes.assign(mesh.corner_vertices.size() / 4, 4);
+  mesh.corner_uvs.assign(mesh.corner_vertices.size(), -1);
+  return mesh;
+}
+
 NurbsSurface make_nurbs(const NurbsNet& net) {
   PLIANT_EXPECTS(check_net(net).has_value());
   NurbsSurface surface;
-  surface.grid = {net.u.count, net.v.count, spacing(net.u), spacing(net.v)};
+  surface.grid = {net.u.count,    net.v.count,     spacing(net.u),
+                  spacing(net.v), net.u.is_closed, net.v.is_closed};
   surface.weights = WeightsMaker(net).make();
   surface.mesh.positions = surface.weights.apply(net.points);
   add_quads(net, surface.mesh);

@@ -26,4 +26,8 @@ struct NurbsSurface {
 /// Source: Piegl & Tiller, The NURBS Book, eq. (2.5) and (4.11), algorithm A2.2.
 NurbsSurface make_nurbs(const NurbsNet& net);
 
+/// The control points as vertices, with a quad between any four neighbours. Requires: `check_net`
+/// accepts the net.
+Mesh control_mesh(const NurbsNet& net);
+
 }  // namespace pliant

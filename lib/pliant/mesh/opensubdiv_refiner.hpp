@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pliant/mesh/subdivision.hpp"
+#include "pliant/mesh/subdivide.hpp"
 
 namespace pliant {
 

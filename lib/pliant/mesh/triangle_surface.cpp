@@ -46,6 +46,17 @@ class SurfaceMaker {
 
   Result<TriangleSurface> make() {
     join_vertices();
+    return make_of_nodes();
+  }
+
+  Result<TriangleSurface> make(std::vector<int> vertex_nodes, Field rest) {
+    surface_.vertex_nodes = std::move(vertex_nodes);
+    surface_.rest = std::move(rest);
+    return make_of_nodes();
+  }
+
+ private:
+  Result<TriangleSurface> make_of_nodes() {
     take_faces();
     leave_out_repeated();
     if (surface_.face_count() == 0) {
@@ -61,7 +72,6 @@ class SurfaceMaker {
     return std::move(surface_);
   }
 
- private:
   // Nodes in the order of their lowest vertices.
   void join_vertices() {
     surface_.vertex_nodes.assign(static_cast<std::size_t>(mesh_.vertex_count()), -1);
@@ -282,6 +292,11 @@ class SurfaceMaker {
 
 Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading) {
   return SurfaceMaker(mesh, reading).make();
+}
+
+Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
+                                         Field rest) {
+  return SurfaceMaker(mesh, {}).make(std::move(vertex_nodes), std::move(rest));
 }
 
 }  // namespace pliant

@@ -63,4 +63,9 @@ struct TriangleSurface {
 /// part; the surface has no area, or lengths that are not finite.
 Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading = {});
 
+/// The same with nodes that are known, such as those of a grid: `rest` (#nodes x 3) and the node of
+/// each vertex in a face.
+Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
+                                         Field rest);
+
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "pliant/mesh/subdivision.hpp"
+#include "pliant/mesh/subdivide.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/mesh/point_tree.hpp"
+
+namespace pliant {
+
+/// The point of some triangles that is closest to another one.
+struct ClosestPoint {
+  int triangle = 0;
+  std::array<double, 3> weights = {1, 0, 0};  ///< of the triangle's corners: barycentric, sum 1
+};
+
+/// Triangles in a tree of boxes, so that a search visits few of them. Degenerate triangles are
+/// segments and points.
+class TriangleTree {
+ public:
+  /// Requires: at least one triangle; its corners are rows of `points` (#points x 3), finite.
+  TriangleTree(const Field& points, std::vector<std::array<int, 3>> triangles);
+
+  /// Of equally close triangles the first one.
+  ClosestPoint closest(const Vector3d& p) const;
+
+ private:
+  struct Found;
+  struct Box {
+    Vector3d low, high;
+  };
+
+  double squared_distance(int part, const Vector3d& p) const;
+
+  Field points_;
+  std::vector<std::array<int, 3>> triangles_;
+  PointTree centres_;       // of the triangles
+  std::vector<Box> boxes_;  // one for each part of the tree, around its triangles
+};
+
+}  // namespace pliant
