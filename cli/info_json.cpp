@@ -16,7 +16,10 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
   Json json = {{"name", surface.name}, {"enabled", surface.enabled}};
   const auto* file = std::get_if<MeshFile>(&surface.shape);
   json["mesh"] = file ? Json(file->path) : Json(nullptr);
-  if (facts.grid) {
+  if (surface.subdivision) json["levels"] = surface.subdivision->levels;
+  if (surface.is_driven()) {
+    json["drivenBy"] = surface.driven_by;
+  } else if (facts.grid) {
     json["columns"] = facts.grid->columns;
     json["rows"] = facts.grid->rows;
     if (!facts.grid->is_open()) json["wrap"] = wrap_word(*facts.grid);

@@ -17,11 +17,13 @@ std::string title(const Force& force) {
                      force.group.empty() ? "" : " in " + force.group);
 }
 
-std::string shape_text(const SurfaceShape& shape) {
-  if (const auto* file = std::get_if<MeshFile>(&shape)) {
-    return "mesh " + printable(file->path);
+std::string shape_text(const Surface& surface) {
+  const std::string_view mesh = surface.subdivision ? "subdivided mesh" : "mesh";
+  if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
+    return fmt::format("{} {}", mesh, printable(file->path));
   }
-  return std::holds_alternative<GridSheet>(shape) ? "sheet" : "mesh";
+  if (std::holds_alternative<NurbsNet>(surface.shape)) return "NURBS net";
+  return std::holds_alternative<GridSheet>(surface.shape) ? "sheet" : std::string(mesh);
 }
 
 std::string box_text(const BoundingBox& box) {
@@ -54,10 +56,11 @@ std::string nodes_text(const SceneFacts::SurfaceFacts& facts) {
 }
 
 std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts& facts) {
-  std::string text = fmt::format(
-      "  {}  {}, {}, {}{}\n    bounding box {}\n", surface.name, shape_text(surface.shape),
-      nodes_text(facts), counted(facts.vertex_count, "vertex", "vertices"),
-      surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
+  std::string text =
+      fmt::format("  {}  {}, {}, {}{}\n    bounding box {}\n", surface.name, shape_text(surface),
+                  surface.is_driven() ? "driven by " + surface.driven_by : nodes_text(facts),
+                  counted(facts.vertex_count, "vertex", "vertices"),
+                  surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
   if (facts.own.low != facts.placed.low || facts.own.high != facts.placed.high) {
     text += fmt::format("    {} before its transform\n", box_text(facts.own));
   }

@@ -10,7 +10,7 @@ TEST_CASE("a surface has one shape and each part once", "[scene][surface]") {
   check_each({
       {scene_with("<surface name=\"s\"/>"),
        2,
-       {"<surface> \"s\" has no shape", "<grid> or <mesh>"}},
+       {"<surface> \"s\" has no shape", "<grid>, <mesh>, <nurbs> or <subdivision>"}},
       {surface_with("<mesh file=\"/etc/passwd\"/>"), 3, {"\"sheet\" has two shapes", "at line 2"}},
       {surface_with("<grid columns=\"3\" rows=\"3\"/>"), 3, {"two shapes"}},
       {surface_with("<material/>\n<material/>"), 4, {"second <material>", "first is at line 3"}},

@@ -21,6 +21,8 @@ class Says {
     for (const Surface& surface : scene.surfaces) {
       describe(*this, surface);
       std::visit([this](const auto& shape) { add(shape); }, surface.shape);
+      describe(*this, surface.reading);
+      if (surface.subdivision) describe(*this, *surface.subdivision);
       describe(*this, surface.transform);
       describe(*this, surface.material);
       describe(*this, surface.tangents);
@@ -67,6 +69,9 @@ class Says {
     for (const T& value : values) add(value);
   }
   void add(const Value<1>& value) { add(value[0]); }
+  void add(const Value<2>& value) {
+    for (const double number : value) add(number);
+  }
   void add(const Value<3>& value) {
     for (const double number : value) add(number);
   }
@@ -90,6 +95,15 @@ class Says {
   }
   void add(const GridSheet& sheet) { describe(*this, sheet); }
   void add(const MeshFile& mesh) { describe(*this, mesh); }
+  void add(const NurbsNet& net) {
+    describe(*this, net);
+    for (const NurbsDirection* const direction : {&net.u, &net.v}) {
+      add(direction->is_closed);
+      add(direction->knots);
+    }
+    add(net.weights);
+    for (const double coordinate : net.points.reshaped()) add(coordinate);
+  }
   void add(const Mesh&) { FAIL("a scene file has no such mesh"); }
 
   std::string text_;
@@ -125,6 +139,28 @@ TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
     }
     CHECK(count > 3);
   }
+}
+
+TEST_CASE("nets, cages and driven surfaces are written", "[scene][write]") {
+  NurbsNet net{.u = {.count = 4, .degree = 2, .knots = {0, 0, 0.1, 0.3, 1, 1, 7}, .samples = 9},
+               .v = {.count = 3, .degree = 1, .is_closed = true}};
+  net.points = Field::Random(12, 3);
+  net.weights = {1, 2, 3, 1e-300, 5, 6, 7, 8, 9, 10, 11, 0.1};
+  Surface skin{.name = "skin", .driven_by = "net", .shape = GridSheet{.columns = 3, .rows = 3}};
+  skin.material.density = 7;  // does not count, and could not be read
+  Surface cage{.name = "cage", .shape = MeshFile{.path = "shots/a.obj", .wrap = Wrap::U}};
+  cage.subdivision = Subdivision{.levels = 3, .scheme = SubdivisionScheme::Loop};
+  Surface mesh{.name = "mesh", .shape = MeshFile{.path = "shots/a.obj"}};
+  mesh.reading = {.uv = UvReading::Surface,
+                  .unit = {{1, 2}},
+                  .axis = {{0, 0, 1}},
+                  .border = Border::Free,
+                  .weld = 0.1};
+  Scene all = scene({{.name = "net", .shape = net}, skin, cage, mesh}, {});
+  const std::string text = to_xml(all, "shots").value();
+  all.surfaces[1].material = {};
+  check_round_trip(all, "shots");
+  CHECK(to_xml(all, "shots").value() == text);
 }
 
 TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {

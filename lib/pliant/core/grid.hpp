@@ -52,6 +52,9 @@ enum class Wrap { None, U, V, UV };
 
 inline bool closes_u(Wrap wrap) { return wrap == Wrap::U || wrap == Wrap::UV; }
 inline bool closes_v(Wrap wrap) { return wrap == Wrap::V || wrap == Wrap::UV; }
+inline Wrap wrap_of(bool closes_u, bool closes_v) {
+  return closes_u && closes_v ? Wrap::UV : closes_u ? Wrap::U : closes_v ? Wrap::V : Wrap::None;
+}
 
 /// A uniform lattice over (u,v): node (i,j) is column i along u and row j along v. SPEC 1; thesis
 /// 4.3, fig. 1, which has one spacing h instead of hu and hv.

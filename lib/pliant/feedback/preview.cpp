@@ -284,7 +284,7 @@ Result<std::vector<Preview>> preview_forces(const Scene& scene,
   std::size_t count = 0;
   for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
     cases.emplace_back();
-    if (!scene.surfaces[k].enabled) continue;
+    if (!scene.surfaces[k].enabled || scene.surfaces[k].is_driven()) continue;
     for (Case& one : cases_of(scene, k)) {
       if (has_frames(one, scene)) cases[k].push_back(std::move(one));
     }

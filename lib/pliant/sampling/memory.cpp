@@ -28,6 +28,28 @@ std::size_t bytes_of(const GridSheet& sheet) {
                        (sheet.triangles ? 6 : 4) * quads);
 }
 
+std::size_t bytes_of(const WrittenSize& size) {
+  const auto vertices = static_cast<std::size_t>(size.vertices);
+  const auto faces = static_cast<std::size_t>(size.faces);
+  // An entry of the weights, and its copy while it is put in order.
+  constexpr std::size_t bytes_of_weight = 32;
+  return bytes_of_mesh(vertices, 2 * vertices, faces, 4 * faces) +
+         static_cast<std::size_t>(size.weights) * bytes_of_weight +
+         vertices * 2 * sizeof(std::size_t);
+}
+
+std::size_t bytes_to_bind(std::size_t vertex_count,
+                          const std::shared_ptr<const TriangleSurface>& surface, const Mesh& mesh) {
+  // A vertex: in world space, its triangle, weights and displacement.
+  constexpr std::size_t bytes_of_bound_vertex = 100;
+  // A corner of a driver: a triangle, its gradients, a centre's part; in the tree; a node with w
+  // and its gradient.
+  constexpr std::size_t bytes_of_corner = 400;
+  const std::size_t corners = surface ? surface->corner_nodes.size() : mesh.corner_vertices.size();
+  return vertex_count * bytes_of_bound_vertex + corners * bytes_of_corner +
+         (surface ? 0 : bytes_as_surface(mesh));
+}
+
 std::size_t bytes_as_surface(const Mesh& mesh) {
   // A corner: its node, edge and origin, twice while edges are numbered, its face at its node, and,
   // as a triangle of a face, what is laid flat, and two cells of a region with their points,

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/vertex_weights.hpp"
 
 namespace pliant {
 
@@ -15,6 +18,9 @@ std::size_t bytes_of(const Mesh& mesh);
 /// The mesh that `make_mesh` makes. Requires: columns, rows >= 3. [bytes]
 std::size_t bytes_of(const GridSheet& sheet);
 
+/// A mesh that is written from nodes, and its weights. [bytes]
+std::size_t bytes_of(const WrittenSize& size);
+
 /// The memory besides the mesh: for finding the grid, then for the state, one frame's step without
 /// the solver's factor, the frame and writing it to a file. An upper bound, reached if a force
 /// selects the whole surface. [bytes]
@@ -23,5 +29,10 @@ std::size_t bytes_to_run(std::size_t vertex_count);
 /// What reading a mesh as a surface of triangles, and cutting its regions, takes besides. An upper
 /// bound. [bytes]
 std::size_t bytes_as_surface(const Mesh& mesh);
+
+/// The memory for binding vertices to a driver, and for moving them. `surface`: the driver's
+/// triangles; null: they are made of `mesh`. An upper bound. [bytes]
+std::size_t bytes_to_bind(std::size_t vertex_count,
+                          const std::shared_ptr<const TriangleSurface>& surface, const Mesh& mesh);
 
 }  // namespace pliant

@@ -3,34 +3,29 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/body/driven_body.hpp"
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
+#include "pliant/core/expects.hpp"
+#include "pliant/mesh/binding.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
+#include "pliant/mesh/nurbs_surface.hpp"
 #include "pliant/mesh/read_mesh.hpp"
+#include "pliant/mesh/subdivide.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/vertex_weights.hpp"
 #include "pliant/sampling/memory.hpp"
+#include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/check.hpp"
 
 namespace pliant {
 namespace {
-
-struct MakeMesh {
-  Result<Mesh> operator()(const GridSheet& sheet) const { return make_mesh(sheet); }
-  Result<Mesh> operator()(const MeshFile& file) const {
-    return read_mesh(file.path, file.object, file.uv_set, file.root, context);
-  }
-  Result<Mesh> operator()(const Mesh& mesh) const {
-    if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
-    return mesh;
-  }
-
-  const RunContext& context;
-};
 
 // The memory for making a shape, as far as it is known in advance.
 struct BytesToMake {
@@ -40,6 +35,11 @@ struct BytesToMake {
   }
   std::size_t operator()(const MeshFile& file) const { return bytes_per_byte * size_of(file.path); }
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
+  std::size_t operator()(const NurbsNet& net) const {
+    const WrittenSize size = check_net(net).value();
+    return bytes_of(size) + bytes_to_run(static_cast<std::size_t>(size.vertices) +
+                                         static_cast<std::size_t>(net.points.rows()));
+  }
 
   // The files that a mesh file refers to; known only after reading the file, which needs memory
   // itself.
@@ -60,23 +60,29 @@ struct BytesToMake {
   }
 };
 
-}  // namespace
-
-namespace {
-
 // Resizes a surface's share of the memory.
-Result<void> take(std::size_t bytes, const Surface& surface, const SceneOrigin& origin,
+Result<void> take(std::size_t bytes, const std::string& surface, const SceneOrigin& origin,
                   MemoryShare& memory) {
   if (memory.try_resize(bytes)) return {};
   return fail({.code = ErrorCode::OutOfMemory,
-               .message = fmt::format("surface \"{}\" {}", surface.name, memory.complaint(bytes)),
+               .message = fmt::format("surface \"{}\" {}", surface, memory.complaint(bytes)),
                .file = origin.file,
-               .line = origin.line_of(surface.name)});
+               .line = origin.line_of(surface)});
 }
 
-}  // namespace
-
-namespace {
+// The node with the largest weight of each vertex, the first of equals.
+std::vector<int> heaviest_nodes(const VertexWeights& weights) {
+  std::vector<int> heaviest;
+  heaviest.reserve(static_cast<std::size_t>(weights.vertex_count()));
+  for (int vertex = 0; vertex < weights.vertex_count(); ++vertex) {
+    std::size_t most = weights.starts[vertex];
+    for (std::size_t entry = most + 1; entry < weights.starts[vertex + 1]; ++entry) {
+      if (weights.weights[entry] > weights.weights[most]) most = entry;
+    }
+    heaviest.push_back(weights.nodes[most]);
+  }
+  return heaviest;
+}
 
 // `surface "head", mesh head.obj`
 std::string title_of(const Surface& surface) {
@@ -127,22 +133,177 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
   return shape;
 }
 
-// What a surface of triangles cannot do.
-Result<void> check_as_surface(const Surface& surface, const RestShape& shape,
-                              const SceneOrigin& origin) {
-  if (shape.grid || surface.solver.reference == Reference::Rest) return {};
-  return fail({.code = ErrorCode::InvalidInput,
-               .message = fmt::format(
-                   "{}: reference=\"none\" needs a grid, whose sides determine the shape at rest, "
-                   "but the mesh is read as a surface{}",
-                   title_of(surface), shape.note.empty() ? "" : ", since it is no even grid"),
-               .file = origin.file,
-               .line = origin.line_of(surface.name, "reference")});
+// Makes the shape of one surface, and reserves its memory.
+class ShapeMaker {
+ public:
+  ShapeMaker(const Surface& surface, const SceneOrigin& origin, const RunContext& context)
+      : surface_(surface), origin_(origin), context_(context), memory_(context.memory) {}
+
+  Result<ReservedShape> make() {
+    const auto* const net = std::get_if<NurbsNet>(&surface_.shape);
+    auto shape = net ? make_net(*net) : make_of_mesh();
+    if (!shape) return fail(shape.error());
+    return ReservedShape{*std::move(shape), std::move(memory_)};
+  }
+
+  // Only reserves what a sheet or a net needs, which then can be made.
+  Result<CheckedShape> check() {
+    if (std::holds_alternative<GridSheet>(surface_.shape) ||
+        std::holds_alternative<NurbsNet>(surface_.shape)) {
+      if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
+        return fail(taken.error());
+      return CheckedShape{std::move(memory_)};
+    }
+    auto made = make();
+    if (!made) return fail(made.error());
+    return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
+  }
+
+ private:
+  Result<RestShape> make_net(const NurbsNet& net) {
+    if (auto taken = take_bytes(BytesToMake{}(net)); !taken) return fail(taken.error());
+    NurbsSurface made = make_nurbs(net);
+    if (surface_.is_driven()) return mesh_only(std::move(made.mesh));
+    RestShape shape{.name = surface_.name,
+                    .mesh = std::move(made.mesh),
+                    .vertex_nodes = heaviest_nodes(made.weights),
+                    .rest = net.points,
+                    .grid = made.grid};
+    shape.weights = std::make_shared<const VertexWeights>(std::move(made.weights));
+    return shape;
+  }
+
+  Result<RestShape> make_of_mesh() {
+    auto mesh = make_mesh_of_shape();
+    if (!mesh) return fail(mesh.error());
+    const bool is_sheet = std::holds_alternative<GridSheet>(surface_.shape);
+    const std::size_t bytes = bytes_of(*mesh) +
+                              bytes_to_run(static_cast<std::size_t>(mesh->vertex_count())) +
+                              (is_sheet ? 0 : bytes_as_surface(*mesh));
+    if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
+    if (surface_.is_driven() && !surface_.subdivision) return mesh_only(*std::move(mesh));
+    auto shape = read_nodes(surface_, *std::move(mesh));
+    if (!shape) return fail(about_mesh(shape.error()));
+    if (auto sound = check_as_surface(*shape); !sound) return fail(sound.error());
+    if (!surface_.subdivision) return shape;
+    return subdivided(*std::move(shape), bytes);
+  }
+
+  Result<Mesh> make_mesh_of_shape() {
+    const auto* const file = std::get_if<MeshFile>(&surface_.shape);
+    if (file) {
+      if (auto readable = check_mesh_file(file->path); !readable)
+        return fail(at_scene(readable.error()));
+    }
+    std::size_t ahead = std::visit(BytesToMake{}, surface_.shape);
+    if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
+    if (file) {
+      ahead += BytesToMake::of_references(*file);
+      if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
+      auto mesh = read_mesh(file->path, file->object, file->uv_set, file->root, context_);
+      if (!mesh) return fail(at_scene(mesh.error()));
+      return mesh;
+    }
+    if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) return make_mesh(*sheet);
+    const Mesh& own = std::get<Mesh>(surface_.shape);
+    if (auto checked = check_mesh(own); !checked) return fail(at_scene(checked.error()));
+    return own;
+  }
+
+  Result<RestShape> subdivided(RestShape shape, std::size_t bytes) {
+    if (shape.grid) {
+      auto triangles = surface_of_nodes(shape.mesh, shape.vertex_nodes, shape.rest);
+      if (!triangles) return fail(about_mesh(triangles.error()));
+      shape.cage = std::make_shared<const TriangleSurface>(*std::move(triangles));
+    }
+    const TriangleSurface& cage = shape.cage ? *shape.cage : *shape.surface;
+    const auto size = check_subdivision(shape.mesh, cage, *surface_.subdivision);
+    if (!size) return fail(about_mesh(size.error()));
+    bytes += bytes_of(*size) + bytes_to_run(static_cast<std::size_t>(size->vertices));
+    if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
+    auto made = subdivide(shape.mesh, cage, *surface_.subdivision);
+    if (!made) return fail(about_mesh(made.error()));
+    if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
+    shape.mesh = std::move(made->mesh);
+    shape.vertex_nodes = heaviest_nodes(made->weights);
+    shape.weights = std::make_shared<const VertexWeights>(std::move(made->weights));
+    return shape;
+  }
+
+  // Of a driven surface.
+  RestShape mesh_only(Mesh mesh) const {
+    const auto vertex_count = static_cast<std::size_t>(mesh.vertex_count());
+    return {.name = surface_.name,
+            .mesh = std::move(mesh),
+            .vertex_nodes = std::vector<int>(vertex_count, -1),
+            .rest = Field(0, 3)};
+  }
+
+  // What a surface of triangles cannot do.
+  Result<void> check_as_surface(const RestShape& shape) const {
+    if (shape.grid || surface_.is_driven() || surface_.solver.reference == Reference::Rest)
+      return {};
+    return fail(
+        {.code = ErrorCode::InvalidInput,
+         .message = fmt::format(
+             "{}: reference=\"none\" needs a grid, whose sides determine the shape at rest, "
+             "but the mesh is read as a surface{}",
+             title_of(surface_), shape.note.empty() ? "" : ", since it is no even grid"),
+         .file = origin_.file,
+         .line = origin_.line_of(surface_.name, "reference")});
+  }
+
+  Result<void> take_bytes(std::size_t bytes) {
+    return take(bytes, surface_.name, origin_, memory_);
+  }
+
+  // An unreadable file is reported as a problem of the scene; an error in its contents already
+  // names the file.
+  Error at_scene(Error error) const {
+    if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
+    if (error.file.empty()) {
+      error.file = origin_.file;
+      error.line = origin_.line_of(surface_.name, "file");
+    }
+    return error;
+  }
+  Error about_mesh(Error error) const {
+    error.message = fmt::format("{}: {}", title_of(surface_), error.message);
+    return at_scene(std::move(error));
+  }
+
+  const Surface& surface_;
+  const SceneOrigin& origin_;
+  const RunContext& context_;
+  MemoryShare memory_;
+};
+
+// The triangles that a driven surface follows.
+Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surface,
+                                                            const RestShape& shape) {
+  if (shape.surface) return shape.surface;
+  if (shape.cage) return shape.cage;
+  const auto* const net = std::get_if<NurbsNet>(&surface.shape);
+  std::vector<int> nodes = shape.vertex_nodes;
+  if (net) {
+    nodes.resize(static_cast<std::size_t>(shape.rest.rows()));
+    std::iota(nodes.begin(), nodes.end(), 0);
+  }
+  auto made = surface_of_nodes(net ? control_mesh(*net) : shape.mesh, std::move(nodes), shape.rest);
+  if (!made) return fail(made.error());
+  return std::make_shared<const TriangleSurface>(*std::move(made));
+}
+
+const Surface& named(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.surfaces, name, &Surface::name);
+  PLIANT_EXPECTS(found != scene.surfaces.end());
+  return *found;
 }
 
 }  // namespace
 
 Field RestShape::to_vertices(const Field& nodes, Field reuse) const {
+  if (weights) return weights->apply(nodes, std::move(reuse));
   reuse.resize(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
   for (int component = 0; component < 3; ++component) {
     const double* const from = nodes.col(component).data();
@@ -194,6 +355,7 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
 
 std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
                                 SolverChoice solver, RunContext context) {
+  if (shape.rest.rows() == 0) return std::make_unique<DrivenBody>(settings);
   if (shape.surface) {
     return std::make_unique<SurfaceBody>(shape.surface, settings, solver, std::move(context));
   }
@@ -202,54 +364,34 @@ std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& sett
 
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context) {
-  const auto at_scene = [&](Error error) {
-    // An unreadable file is reported as a problem of the scene; an error in its contents already
-    // names the file.
-    if (error.code == ErrorCode::Unreadable)
-      return fail(unreadable_mesh(error, surface.name, origin));
-    if (error.file.empty()) {
-      error.file = origin.file;
-      error.line = origin.line_of(surface.name, "file");
-    }
-    return fail(std::move(error));
-  };
-  if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
-    if (auto readable = check_mesh_file(file->path); !readable) return at_scene(readable.error());
-  }
-  MemoryShare memory(context.memory);
-  std::size_t ahead = std::visit(BytesToMake{}, surface.shape);
-  if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
-  if (const auto* file = std::get_if<MeshFile>(&surface.shape)) {
-    ahead += BytesToMake::of_references(*file);
-    if (auto taken = take(ahead, surface, origin, memory); !taken) return fail(taken.error());
-  }
-  auto mesh = std::visit(MakeMesh{context}, surface.shape);
-  if (!mesh) return at_scene(mesh.error());
-  const std::size_t bytes =
-      bytes_of(*mesh) + bytes_to_run(static_cast<std::size_t>(mesh->vertex_count())) +
-      (std::holds_alternative<GridSheet>(surface.shape) ? 0 : bytes_as_surface(*mesh));
-  if (auto taken = take(bytes, surface, origin, memory); !taken) return fail(taken.error());
-  auto shape = read_nodes(surface, *std::move(mesh));
-  if (!shape) {
-    Error error = shape.error();
-    error.message = fmt::format("{}: {}", title_of(surface), error.message);
-    return at_scene(std::move(error));
-  }
-  if (auto sound = check_as_surface(surface, *shape, origin); !sound) return fail(sound.error());
-  return ReservedShape{*std::move(shape), std::move(memory)};
+  return ShapeMaker(surface, origin, context).make();
 }
 
 Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context) {
-  if (const auto* sheet = std::get_if<GridSheet>(&surface.shape)) {
-    MemoryShare memory(context.memory);
-    if (auto taken = take(BytesToMake{}(*sheet), surface, origin, memory); !taken)
-      return fail(taken.error());
-    return CheckedShape{std::move(memory)};
+  return ShapeMaker(surface, origin, context).check();
+}
+
+Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, const Scene& scene) {
+  RestShape& shape = driven.shape;
+  const Surface& own = named(scene, shape.name);
+  const Surface& driving = named(scene, driver.name);
+  const auto vertex_count = static_cast<std::size_t>(shape.mesh.vertex_count());
+  const std::size_t bytes =
+      driven.memory.bytes() + bytes_to_bind(vertex_count, driver.surface, driver.mesh);
+  if (auto taken = take(bytes, own.name, scene.origin, driven.memory); !taken) return taken;
+  auto triangles = triangles_of(driving, driver);
+  if (!triangles) {
+    return fail({.code = ErrorCode::InvalidInput,
+                 .message = fmt::format("{} cannot drive {}: {}", title_of(driving), own.name,
+                                        triangles.error().message),
+                 .file = scene.origin.file,
+                 .line = scene.origin.line_of(own.name, "drivenBy")});
   }
-  auto made = make_rest_shape(surface, origin, context);
-  if (!made) return fail(made.error());
-  return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
+  shape.binding = std::make_shared<const Binding>(
+      **triangles, sample_transform(driving.transform, scene.start),
+      to_world(sample_transform(own.transform, scene.start), shape.mesh.positions));
+  return {};
 }
 
 std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,

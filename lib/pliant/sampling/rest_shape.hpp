@@ -18,20 +18,30 @@
 
 namespace pliant {
 
+class Binding;
 class Body;
 struct TriangleSurface;
+struct VertexWeights;
 
 /// A surface before any force acts on it: its mesh, and the nodes that are simulated.
 struct RestShape {
   std::string name;  ///< of the surface
-  Mesh mesh;
-  std::vector<int> vertex_nodes;  ///< #vertices: the node of each; -1: it never moves
-  Field rest;                     ///< #nodes x 3: rest positions, object space [length]
+  Mesh mesh;         ///< as it is written
+  /// #vertices: the node of each, of a weighted sum the heaviest; -1: it never moves, or is driven
+  std::vector<int> vertex_nodes;
+  Field rest;  ///< #nodes x 3: rest positions, object space [length]; none: it is driven
 
   /// The grid of the nodes; none: they are a surface of triangles.
   std::optional<Grid> grid = {};
   std::shared_ptr<const TriangleSurface> surface = {};  ///< null: a grid
   std::string note = {};  ///< a remark for the author on how the mesh was read; may be empty
+
+  /// Vertices of a net or a cage as weighted sums of nodes; null: each moves as its node.
+  std::shared_ptr<const VertexWeights> weights = {};
+  std::shared_ptr<const TriangleSurface> cage = {};  ///< the triangles of a cage that is a grid
+
+  /// How a driven surface follows its driver; null: it is not driven, or not bound yet.
+  std::shared_ptr<const Binding> binding = {};
 
   /// The vertices for positions of the nodes (#nodes x 3 -> #vertices x 3), in the memory of
   /// `reuse`. Vertices of one node keep their offsets from each other.
@@ -47,10 +57,11 @@ struct SurfaceSummary {
   std::array<double, 2> unit = {1, 1};  ///< the lengths that count as 1 along u and v [length/uv]
 };
 
-/// Of a shape that is a surface; null: it is a grid.
+/// Of a shape that is a surface; null: it is a grid, or driven.
 std::optional<SurfaceSummary> summary_of(const RestShape& shape);
 
-/// The body of a rest shape, at rest. `solver` and `context` are those of its plates.
+/// The body of a rest shape, at rest; that of a driven surface has no nodes. `solver` and `context`
+/// are those of its plates.
 std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
                                 SolverChoice solver = SolverChoice::Auto, RunContext context = {});
 
@@ -60,12 +71,18 @@ struct ReservedShape {
   MemoryShare memory;
 };
 
-/// Makes or reads a surface's mesh, and finds its grid or reads it as a surface of triangles.
-/// Reserves memory before a sheet is made and after a file is read. Errors: those of `read_mesh`
-/// and `check_mesh`; those of `find_grid` and `make_surface`, with the surface's line in the scene;
-/// what a surface cannot do; OutOfMemory; Interrupted, while assimp reads.
+/// Makes or reads a surface's mesh, and finds its grid or reads it as a surface of triangles; makes
+/// the vertices of a net, and refines a cage. Of a driven surface it makes the mesh only. Reserves
+/// memory before a sheet or a net is made, after a file is read, and before a cage is refined.
+/// Errors: those of `read_mesh` and `check_mesh`; those of `find_grid`, `make_surface` and
+/// `subdivide`, with the surface's line in the scene; what a surface cannot do; OutOfMemory;
+/// Interrupted, while assimp reads.
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context = {});
+
+/// Binds a driven surface to its driver, as both are placed at the scene's start, and reserves the
+/// memory for it. Errors: the driver's triangles have no area; OutOfMemory.
+Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, const Scene& scene);
 
 /// The memory that a rest shape would reserve, and its note.
 struct CheckedShape {

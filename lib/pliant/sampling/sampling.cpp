@@ -190,7 +190,7 @@ int first_solved_frame(const Scene& scene, const Surface& surface) {
 }
 
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
-  return surface.enabled && frame >= first_solved_frame(scene, surface);
+  return surface.enabled && !surface.is_driven() && frame >= first_solved_frame(scene, surface);
 }
 
 Transform sample_transform(const TransformChannels& channels, int frame) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <string>
 #include <string_view>
 
@@ -11,12 +10,15 @@ namespace {
 
 class Surfaces {
  public:
-  explicit Surfaces(const Scene& scene) : all_(scene.surfaces.size()) {
-    std::iota(all_.begin(), all_.end(), std::size_t{0});
-    for (const std::size_t k : all_) named_.emplace(scene.surfaces[k].name, k);
+  explicit Surfaces(const Scene& scene) {
+    for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
+      if (scene.surfaces[k].is_driven()) continue;
+      all_.push_back(k);
+      named_.emplace(scene.surfaces[k].name, k);
+    }
   }
 
-  // The surfaces with these names, in the order of the scene; no names: all surfaces.
+  // The surfaces with these names that are solved, in the order of the scene; no names: all.
   std::vector<std::size_t> of(const std::vector<std::string>& targets) const {
     if (targets.empty()) return all_;
     std::vector<std::size_t> found;

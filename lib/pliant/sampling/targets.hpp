@@ -9,7 +9,8 @@ namespace pliant {
 
 // Which forces act on which surfaces, looked up by name once per scene; not for programs.
 
-/// The forces and groups that target one surface, enabled or not, in the order of the scene.
+/// The forces and groups that target one surface, enabled or not, in the order of the scene; none
+/// target one that is driven.
 struct SurfaceTargets {
   struct Member {
     std::size_t force = 0;  ///< index in the scene

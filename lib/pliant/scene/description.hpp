@@ -122,6 +122,7 @@ inline constexpr std::string_view falloff_words[] = {"constant", "linear", "smoo
 inline constexpr std::string_view uv_words[] = {"auto", "grid", "surface"};
 inline constexpr std::string_view later_uv_words[] = {"virtual"};
 inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the mesh's own triangles";
+inline constexpr std::string_view scheme_words[] = {"catmullClark", "loop"};
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
 // Choices that have one word so far, and the words that a later version will support.
@@ -176,6 +177,11 @@ struct Description<Surface> {
     row(name_attribute("name for channels, targets and files"), of.name...);
     row(Attribute{.name = "enabled", .meaning = "`false`: written at rest, not solved"},
         of.enabled...);
+    row(Attribute{.name = "drivenBy",
+                  .meaning =
+                      "the surface that it follows; it has only a shape and a transform then",
+                  .absent = "none: it is solved itself"},
+        of.driven_by...);
   }
 };
 
@@ -276,6 +282,71 @@ struct Description<MeshReading> {
                   .range = not_negative,
                   .absent = "10⁻⁶ of the mesh's diagonal"},
         of.weld...);
+  }
+};
+
+/// What a <subdivision> has besides the attributes of a mesh.
+template <>
+struct Description<Subdivision> {
+  static constexpr std::string_view element = "subdivision";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "levels",
+                  .meaning = "how many times the cage is refined",
+                  .range = {.least = 0, .most = Subdivision::most_levels}},
+        of.levels...);
+    row(Attribute{.name = "scheme",
+                  .meaning = "rule of subdivision: `catmullClark` for all faces, `loop` for "
+                             "triangles",
+                  .words = scheme_words},
+        of.scheme...);
+  }
+};
+
+/// A net but for `wrap`, which is in both of its directions, and its numbers.
+template <>
+struct Description<NurbsNet> {
+  static constexpr std::string_view element = "nurbs";
+  static constexpr Range count{.least = 3, .most = max_sheet_vertices};
+  static constexpr Range samples{.least = 2, .most = max_sheet_vertices};
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "columns",
+                  .meaning = "control points along u",
+                  .unit = "points",
+                  .range = count,
+                  .need = Need::Required},
+        of.u.count...);
+    row(Attribute{.name = "rows",
+                  .meaning = "control points along v; columns times rows at most 10⁸",
+                  .unit = "points",
+                  .range = count,
+                  .need = Need::Required},
+        of.v.count...);
+    row(Attribute{.name = "degreeU",
+                  .meaning = "degree along u, less than `columns`",
+                  .range = {.least = 1},
+                  .need = Need::Required},
+        of.u.degree...);
+    row(Attribute{.name = "degreeV",
+                  .meaning = "degree along v, less than `rows`",
+                  .range = {.least = 1},
+                  .need = Need::Required},
+        of.v.degree...);
+    row(Attribute{.name = "samplesU",
+                  .meaning = "vertices that are written along u, at least 3 if u is closed",
+                  .unit = "vertices",
+                  .range = samples,
+                  .absent = "8 (columns − degreeU) + 1; closed: 8 columns"},
+        of.u.samples...);
+    row(Attribute{.name = "samplesV",
+                  .meaning = "vertices that are written along v, at least 3 if v is closed",
+                  .unit = "vertices",
+                  .range = samples,
+                  .absent = "8 (rows − degreeV) + 1; closed: 8 rows"},
+        of.v.samples...);
   }
 };
 
@@ -619,6 +690,7 @@ void for_each_channel(T& thing, Visit&& visit) {
   if constexpr (std::is_same_v<Thing, Surface>) {
     describe(finder, thing);
     describe(finder, thing.transform);
+    if (thing.is_driven()) return;
     describe(finder, thing.material);
     describe(finder, thing.tangents);
     describe(finder, thing.solver);

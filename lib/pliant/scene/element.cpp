@@ -32,8 +32,7 @@ std::string where_it_belongs(std::string_view name) {
 std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XMLElement& child,
                           std::span<const Child> children) {
   std::vector<std::string_view> names;
-  for (const Child& known : children)
-    if (known.read) names.push_back(known.name);
+  for (const Child& known : children) names.push_back(known.name);
   const std::string belongs = where_it_belongs(child.Name());
   return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
                      belongs.empty()
@@ -103,17 +102,47 @@ bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> c
     const auto known = std::find_if(children.begin(), children.end(), [&](const Child& candidate) {
       return candidate.name == child->Name();
     });
-    if (known != children.end() && known->read) {
+    if (known != children.end()) {
       known->read(*child);
       continue;
     }
     all_known = false;
-    findings.add_problem(child->GetLineNum(),
-                         known != children.end()
-                             ? fmt::format("the element {} {}", tag(*child), not_supported())
-                             : unknown_child(element, *child, children));
+    findings.add_problem(child->GetLineNum(), unknown_child(element, *child, children));
   }
   return all_known;
+}
+
+bool read_numbers(const tinyxml2::XMLElement& element, std::vector<double>& numbers,
+                  Findings& findings) {
+  bool is_sound = true;
+  const auto complain = [&](int line, std::string message) {
+    is_sound = false;
+    findings.add_problem(line, std::move(message));
+  };
+  for (const auto* node = element.FirstChild(); node && !findings.is_full();
+       node = node->NextSibling()) {
+    if (const auto* child = node->ToElement())
+      complain(child->GetLineNum(), unknown_child(element, *child, {}));
+    if (!node->ToText()) continue;
+    // The line of a text is that of its first word.
+    std::string_view text = node->Value();
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    for (int line = node->GetLineNum(); !text.empty() && !findings.is_full();) {
+      const std::string_view word = text.substr(0, text.find_first_of(blanks));
+      const Reading<double> number = parse_number(word);
+      if (number)
+        numbers.push_back(*number);
+      else
+        complain(line, fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
+                                   in_quotes(word), number.error()));
+      if (!number) return false;
+      text.remove_prefix(word.size());
+      const std::size_t gap = std::min(text.find_first_not_of(blanks), text.size());
+      line += static_cast<int>(std::count(text.begin(), text.begin() + gap, '\n'));
+      text.remove_prefix(gap);
+    }
+  }
+  return is_sound;
 }
 
 Slot* find(std::span<Slot> table, std::string_view name) {

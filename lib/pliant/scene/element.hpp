@@ -18,7 +18,7 @@ namespace pliant::xml {
 /// An element that another may contain, and the function that reads it.
 struct Child {
   std::string_view name;
-  std::function<void(const tinyxml2::XMLElement&)> read;  ///< empty: not supported by this version
+  std::function<void(const tinyxml2::XMLElement&)> read;
 };
 
 /// Reads the attributes of an element into the places of its table. Problems: an attribute that is
@@ -30,6 +30,11 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
 /// Returns whether every child was known: if not, an unknown one may be a required one misspelt.
 bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> children,
                    Findings& findings);
+
+/// Reads the text of an element, numbers between blanks, into `numbers`. Problems: an element in
+/// it, what is not a number, each with its line. Returns whether there was none.
+bool read_numbers(const tinyxml2::XMLElement& element, std::vector<double>& numbers,
+                  Findings& findings);
 
 /// The row of that name, or null.
 Slot* find(std::span<Slot> table, std::string_view name);

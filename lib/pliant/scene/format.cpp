@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "pliant/scene/key_text.hpp"
+#include "pliant/scene/net.hpp"
 #include "pliant/scene/path.hpp"
 #include "pliant/scene/read_elements.hpp"
 
@@ -58,8 +59,19 @@ ElementFormat mesh_element() {
           formats_of(table_of(mesh, reading))};
 }
 
-ElementFormat later_element(std::string_view name, std::vector<std::string_view> parents) {
-  return {name, std::move(parents), Need::Later, {}};
+ElementFormat cage_element() {
+  MeshFile mesh;
+  MeshReading reading;
+  Subdivision subdivision;
+  return {Description<Subdivision>::element,
+          {"surface"},
+          Need::Optional,
+          formats_of(table_of(mesh, reading, subdivision))};
+}
+
+/// An element of a <nurbs> that contains numbers.
+ElementFormat numbers_element(std::string_view name, Need need, std::string_view text) {
+  return {.name = name, .parents = {"nurbs"}, .need = need, .attributes = {}, .text = text};
 }
 
 }  // namespace
@@ -83,13 +95,19 @@ std::vector<ElementFormat> scene_format() {
   animated.insert(animated.end(), forces.begin(), forces.end());
   animated.emplace_back("path");
 
+  ElementFormat knots = element<KnotsText>({"nurbs"});
+  knots.text = "columns + degreeU + 1 numbers that never fall; along v likewise";
+
   std::vector<ElementFormat> formats = {
       element<Scene>({}, Need::Required),
       element<Surface>({"scene"}),
       element<GridSheet>({"surface"}),
       mesh_element(),
-      later_element("nurbs", {"surface"}),
-      later_element("subdivision", {"surface"}),
+      element<NurbsNet>({"surface"}),
+      numbers_element("points", Need::Required, "`x y z` of each control point, along u first"),
+      numbers_element("weights", Need::Optional, "one number above 0 for each control point"),
+      knots,
+      cage_element(),
       element<TransformChannels>({"surface"}),
       element<MaterialChannels>({"surface"}),
       element<TangentChannels>({"surface"}),

@@ -27,6 +27,7 @@ struct ElementFormat {
   std::vector<std::string_view> parents;  ///< elements that may contain it; empty: it is the root
   Need need = Need::Optional;
   std::vector<AttributeFormat> attributes;
+  std::string_view text = {};  ///< what it contains besides elements, for people; empty: nothing
 };
 
 /// The whole format, made from the same tables that the reader uses.

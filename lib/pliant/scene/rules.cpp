@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/mesh/vertex_weights.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
 #include "pliant/scene/nearest.hpp"
@@ -104,6 +105,9 @@ class WholeChecker {
     if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape))
       check_ranges(surface.name, *mesh);
     check_reading(surface);
+    check_subdivision(surface);
+    check_driver(surface);
+    if (const auto* const net = std::get_if<NurbsNet>(&surface.shape)) check(surface, *net);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
     if (!sheet) return;
     check_ranges(surface.name, *sheet);
@@ -116,9 +120,55 @@ class WholeChecker {
                       surface.name, sheet->columns, sheet->rows, vertices, max_sheet_vertices));
   }
 
+  void check(const Surface& surface, const NurbsNet& net) {
+    for (const char* part : {"columns", "rows", "degreeU", "degreeV", "samplesU", "samplesV",
+                             "wrap", "points", "weights", "knotsU", "knotsV"})
+      if (surface.name.empty() || !is_sound(surface.name, part)) return;
+    if (const auto checked = check_net(net); !checked)
+      complain(surface.name, checked.error().part,
+               fmt::format("surface \"{}\": {}", surface.name, checked.error().message));
+  }
+
+  void check_subdivision(const Surface& surface) {
+    if (!surface.subdivision) return;
+    check_ranges(surface.name, *surface.subdivision);
+    if (std::holds_alternative<MeshFile>(surface.shape) ||
+        std::holds_alternative<Mesh>(surface.shape))
+      return;
+    complain(surface.name, "levels",
+             fmt::format("surface \"{}\" has a subdivision, but only a mesh is subdivided",
+                         surface.name));
+  }
+
+  void check_driver(const Surface& surface) {
+    if (!surface.is_driven() || !is_sound(surface.name, "drivenBy")) return;
+    const auto refuse = [&](std::string_view reason) {
+      complain(surface.name, "drivenBy", fmt::format("{}.drivenBy: {}", surface.name, reason));
+    };
+    if (surface.driven_by == surface.name) return refuse("a surface cannot drive itself");
+    std::vector<std::string_view> drivers;
+    for (const Surface& other : scene_.surfaces) {
+      if (other.name.empty()) return;  // it may be the one that is meant
+      if (other.name != surface.driven_by) {
+        if (!other.is_driven() && other.name != surface.name) drivers.push_back(other.name);
+        continue;
+      }
+      if (other.is_driven())
+        refuse(fmt::format("{} is driven itself, by {}", in_quotes(other.name),
+                           in_quotes(other.driven_by)));
+      return;
+    }
+    refuse(fmt::format("no surface is named {}{}", in_quotes(surface.driven_by),
+                       hint(surface.driven_by, drivers)));
+  }
+
   void check_reading(const Surface& surface) {
     const MeshReading& reading = surface.reading;
     check_ranges(surface.name, reading);
+    if (std::holds_alternative<NurbsNet>(surface.shape) && reading.asks_for_surface())
+      complain(
+          surface.name, "uv",
+          fmt::format("surface \"{}\" is a net, which is not read as a surface", surface.name));
     if (reading.axis == std::array{0.0, 0.0, 0.0})
       complain(surface.name, "axis",
                fmt::format("{}.axis is 0 0 0, but must have a direction", surface.name));
@@ -180,6 +230,9 @@ class WholeChecker {
     std::vector<std::string_view> surfaces;  // each once, in the order of the scene
     for (const Surface& surface : scene_.surfaces)
       if (names.insert(surface.name).second) surfaces.push_back(surface.name);
+    std::map<std::string_view, std::string_view> driven;
+    for (const Surface& surface : scene_.surfaces)
+      if (surface.is_driven()) driven.emplace(surface.name, surface.driven_by);
     if (names.contains("")) return;  // a target may mean a surface with an unreadable name
     std::map<std::string_view, std::string_view> elements;
     for (const Named& one : named_) elements.emplace(one.name, one.element);
@@ -187,6 +240,12 @@ class WholeChecker {
     const auto check = [&](const auto& acting) {
       for (const std::string& target : acting.targets) {
         if (findings_.is_full()) return;
+        if (driven.contains(target)) {
+          complain(
+              acting.name, "targets",
+              fmt::format("{}.targets: {} is driven by {}, and feels the forces that act on it",
+                          acting.name, in_quotes(target), in_quotes(driven[target])));
+        }
         if (names.contains(target)) continue;
         const auto found = elements.find(target);
         const bool is_named = found != elements.end();

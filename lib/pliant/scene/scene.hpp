@@ -16,6 +16,8 @@
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
+#include "pliant/mesh/nurbs_net.hpp"
+#include "pliant/mesh/subdivision.hpp"
 #include "pliant/timeline/channel.hpp"
 #include "pliant/timeline/curve.hpp"
 #include "pliant/timeline/position.hpp"
@@ -34,7 +36,7 @@ struct MeshFile {
 };
 
 /// The source of a surface's rest shape; a `Mesh` is made by a program.
-using SurfaceShape = std::variant<GridSheet, MeshFile, Mesh>;
+using SurfaceShape = std::variant<GridSheet, MeshFile, Mesh, NurbsNet>;
 
 /// p_world = translate + R S p, right-handed. SPEC 7.
 struct TransformChannels {
@@ -76,16 +78,22 @@ struct SolverSettings {
   Release release = Release::Freeze;  ///< Recover only with tangents of 0
 };
 
-/// One elastic surface.
+/// One elastic surface, or one that is driven by another.
 struct Surface {
-  std::string name;          ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
-  bool enabled = true;       ///< false: written at rest, not solved
-  SurfaceShape shape = {};   ///< by default a `GridSheet`
-  MeshReading reading = {};  ///< of a shape that is a mesh
+  std::string name;     ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  bool enabled = true;  ///< false: written at rest, not solved
+  /// The surface that it follows; empty: it is solved itself. A driven surface uses its shape and
+  /// transform only.
+  std::string driven_by = {};
+  SurfaceShape shape = {};                      ///< by default a `GridSheet`
+  MeshReading reading = {};                     ///< of a shape that is a mesh
+  std::optional<Subdivision> subdivision = {};  ///< of a shape that is a mesh: it is a cage
   TransformChannels transform = {};
   MaterialChannels material = {};
   TangentChannels tangents = {};
   SolverSettings solver = {};
+
+  bool is_driven() const { return !driven_by.empty(); }
 };
 
 /// The thesis's force: a sphere that pushes along one direction.

@@ -332,6 +332,32 @@ Table table_of(MeshFile& mesh, MeshReading& reading) {
   return maker.take();
 }
 
+Table table_of(MeshFile& mesh, MeshReading& reading, Subdivision& subdivision) {
+  Table table = table_of(mesh, reading);
+  for (Slot& slot : table_of<Subdivision>(subdivision)) table.push_back(std::move(slot));
+  return table;
+}
+
+Table table_of(NurbsNet& net) {
+  constexpr Attribute wrap{.name = "wrap",
+                           .meaning =
+                               "the closed directions: the first column (row) follows the "
+                               "last one",
+                           .words = wrap_words};
+  Table table = table_of<NurbsNet>(net);
+  const auto read = [&net, wrap](std::string_view text) {
+    Wrap value = Wrap::None;
+    Reading<void> read_word = slot(wrap, choice(value)).read(text);
+    net.u.is_closed = closes_u(value);
+    net.v.is_closed = closes_v(value);
+    return read_word;
+  };
+  Wrap value = wrap_of(net.u.is_closed, net.v.is_closed);
+  Slot own = slot(wrap, choice(value));
+  table.push_back(custom(wrap, own.type, own.range, read, own.text));
+  return table;
+}
+
 Table table_of(Force& force) {
   SlotMaker maker;
   describe(maker, force);

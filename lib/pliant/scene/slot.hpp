@@ -129,6 +129,12 @@ Table table_of(T& thing) {
 /// The slots of a mesh file: its own, then those of how it is read.
 Table table_of(MeshFile& mesh, MeshReading& reading);
 
+/// The slots of a cage: those of a mesh file, then those of its subdivision.
+Table table_of(MeshFile& mesh, MeshReading& reading, Subdivision& subdivision);
+
+/// The slots of a net, and its closed directions.
+Table table_of(NurbsNet& net);
+
 /// The slots of a force: those of every kind, then those of its kind.
 Table table_of(Force& force);
 

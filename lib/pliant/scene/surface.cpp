@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/scene/net.hpp"
 #include "pliant/scene/read_elements.hpp"
 
 namespace pliant::xml {
@@ -29,10 +30,12 @@ class SurfaceReader {
 
  private:
   void read_grid(const tinyxml2::XMLElement& element);
-  void read_mesh(const tinyxml2::XMLElement& element);
+  void read_mesh(const tinyxml2::XMLElement& element, bool is_cage);
+  void read_net(const tinyxml2::XMLElement& element);
   void read_part(const tinyxml2::XMLElement& element, Part& part);
   void read_own_animate(const tinyxml2::XMLElement& element);
   bool takes_shape(const tinyxml2::XMLElement& element);
+  void refuse_parts_of_driven();
   std::string title() const;  ///< `<surface> "sheet"`
 
   const tinyxml2::XMLElement& element_;
@@ -51,9 +54,9 @@ Surface SurfaceReader::read() {
   using Element = tinyxml2::XMLElement;
   const Child children[] = {
       {"grid", [&](const Element& child) { read_grid(child); }},
-      {"mesh", [&](const Element& child) { read_mesh(child); }},
-      {"nurbs", {}},
-      {"subdivision", {}},
+      {"mesh", [&](const Element& child) { read_mesh(child, false); }},
+      {"nurbs", [&](const Element& child) { read_net(child); }},
+      {"subdivision", [&](const Element& child) { read_mesh(child, true); }},
       {"transform", [&](const Element& child) { read_part(child, transform_); }},
       {"material", [&](const Element& child) { read_part(child, material_); }},
       {"tangents", [&](const Element& child) { read_part(child, tangents_); }},
@@ -64,7 +67,9 @@ Surface SurfaceReader::read() {
   if (shape_line_ == 0 && all_known)
     file_.findings.add_problem(
         element_.GetLineNum(),
-        fmt::format("{} has no shape: one <grid> or <mesh> is required", title()));
+        fmt::format("{} has no shape: one <grid>, <mesh>, <nurbs> or <subdivision> is required",
+                    title()));
+  refuse_parts_of_driven();
 
   record_element(element_, surface_.name, own_, file_);
   if (!surface_.name.empty()) {
@@ -103,12 +108,13 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
-void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
   mesh.root = file_.root;
   MeshReading reading;
-  Table table = table_of(mesh, reading);
+  Subdivision subdivision;
+  Table table = is_cage ? table_of(mesh, reading, subdivision) : table_of(mesh, reading);
   read_attributes(element, table, file_.findings);
   if (!mesh.path.empty()) mesh.path = (file_.folder / mesh.path).string();
   read_children(element, {}, file_.findings);
@@ -117,7 +123,22 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element) {
   if (!is_first) return;
   surface_.shape = mesh;
   surface_.reading = reading;
+  if (is_cage) surface_.subdivision = subdivision;
   if (!surface_.name.empty()) record(surface_.name, table, file_);
+}
+
+void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
+  const bool is_first = takes_shape(element);
+  NurbsNet net;
+  Table table = table_of(net);
+  read_attributes(element, table, file_.findings);
+  NetReader reader(net, surface_.name, file_);
+  reader.read_content(element);
+  if (!is_first) return;
+  surface_.shape = std::move(net);
+  if (surface_.name.empty()) return;
+  record(surface_.name, table, file_);
+  reader.record_content();
 }
 
 void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
@@ -131,6 +152,20 @@ void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
                                read_animate(child, part.table, surface_.name, file_.findings);
                              }}};
   read_children(element, children, file_.findings);
+}
+
+/// What drives a surface also moves it: only its shape and its transform are its own.
+void SurfaceReader::refuse_parts_of_driven() {
+  if (!surface_.is_driven()) return;
+  const std::pair<std::string_view, const Part*> parts[] = {
+      {"material", &material_}, {"tangents", &tangents_}, {"solver", &solver_}};
+  for (const auto& [name, part] : parts) {
+    if (part->line == 0) continue;
+    file_.findings.add_problem(
+        part->line,
+        fmt::format("{} is driven by {} and has no <{}>; that of {} counts", title(),
+                    in_quotes(surface_.driven_by), name, in_quotes(surface_.driven_by)));
+  }
 }
 
 /// An <animate> directly in the surface may name a channel of any of its parts, as all names

@@ -42,6 +42,7 @@ class SceneWriter {
  private:
   void write(const Surface& surface);
   void write_shape(const Surface& surface);
+  void write(const NurbsNet& net);
   void write(const Force& force);
   void write(const Group& group, const std::vector<const Force*>& forces);
 
@@ -220,6 +221,8 @@ void SceneWriter::write_shape(const Surface& surface) {
     GridSheet own = *sheet;
     GridSheet standard;
     element("grid", [&] { write_attributes(table_of(own), table_of(standard)); });
+  } else if (auto net = std::get_if<NurbsNet>(&surface.shape)) {
+    write(*net);
   } else if (auto mesh = std::get_if<MeshFile>(&surface.shape)) {
     MeshFile own = *mesh;
     MeshReading reading = surface.reading;
@@ -227,21 +230,65 @@ void SceneWriter::write_shape(const Surface& surface) {
     MeshReading standard_reading;
     if (!folder_.empty())
       own.path = std::filesystem::path(own.path).lexically_proximate(folder_).string();
-    element("mesh", [&] {
-      write_attributes(table_of(own, reading), table_of(standard, standard_reading));
+    if (!surface.subdivision) {
+      element("mesh", [&] {
+        write_attributes(table_of(own, reading), table_of(standard, standard_reading));
+      });
+      return;
+    }
+    Subdivision subdivision = *surface.subdivision;
+    Subdivision standard_subdivision;
+    element("subdivision", [&] {
+      write_attributes(table_of(own, reading, subdivision),
+                       table_of(standard, standard_reading, standard_subdivision));
     });
   }
+}
+
+void SceneWriter::write(const NurbsNet& net) {
+  NurbsNet own;  // without its numbers, which are no attributes
+  own.u = {.count = net.u.count,
+           .degree = net.u.degree,
+           .is_closed = net.u.is_closed,
+           .samples = net.u.samples};
+  own.v = {.count = net.v.count,
+           .degree = net.v.degree,
+           .is_closed = net.v.is_closed,
+           .samples = net.v.samples};
+  NurbsNet standard;
+  element("nurbs", [&] {
+    write_attributes(table_of(own), table_of(standard));
+    std::string points;
+    for (Eigen::Index k = 0; k < net.points.rows(); ++k)
+      points += fmt::format("{}{} {} {}", k == 0 ? "" : "\n", net.points(k, 0), net.points(k, 1),
+                            net.points(k, 2));
+    element("points", [&] { printer_.PushText(points.c_str()); });
+    const auto write_numbers = [&](const std::vector<double>& numbers) {
+      printer_.PushText(fmt::format("{}", fmt::join(numbers, " ")).c_str());
+    };
+    if (!net.weights.empty()) element("weights", [&] { write_numbers(net.weights); });
+    for (const bool is_u : {true, false}) {
+      const std::vector<double>& knots = (is_u ? net.u : net.v).knots;
+      if (knots.empty()) continue;
+      element("knots", [&] {
+        printer_.PushAttribute("along", is_u ? "u" : "v");
+        write_numbers(knots);
+      });
+    }
+  });
 }
 
 void SceneWriter::write(const Surface& surface) {
   Surface own;
   own.name = surface.name;
   own.enabled = surface.enabled;
+  own.driven_by = surface.driven_by;
   Surface standard;
   element("surface", [&] {
     write_attributes(table_of(own), table_of(standard));
     write_shape(surface);
     write_part(surface.transform);
+    if (surface.is_driven()) return;
     write_part(surface.material);
     write_part(surface.tangents);
     write_part(surface.solver);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/mesh/binding.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 
@@ -51,6 +52,10 @@ Extent extent_of(const Transform& transform, const Field& positions, const Field
           std::sqrt(*std::max_element(largest, largest + lanes))};
 }
 
+std::ptrdiff_t solved_count(const Scene& scene) {
+  return std::ranges::count_if(scene.surfaces, [](const Surface& one) { return !one.is_driven(); });
+}
+
 }  // namespace
 
 Bodies::Bodies(const Scene& scene, const SceneSampling& sampling, const SimulationOptions& options)
@@ -61,7 +66,7 @@ Bodies::Bodies(const Scene& scene, const SceneSampling& sampling, const Simulati
       solver_(options.solver),
       // Several surfaces are solved in parallel; a single one uses all threads.
       context_{.memory = &memory_,
-               .threads = scene.surfaces.size() == 1 ? &threads_ : nullptr,
+               .threads = solved_count(scene) == 1 ? &threads_ : nullptr,
                .most_lanes = options.most_lanes,
                .should_stop = options.should_stop},
       profiles_(options.profile ? scene.surfaces.size() : 0) {}
@@ -83,40 +88,67 @@ tl::unexpected<Error> interrupted_at_start() {
 
 Result<void> Bodies::make_all() {
   std::vector<Error> errors = check_channels(scene_, {}, context_.should_stop);
+  std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
-    if (context_.is_stopped()) break;
+    if (context_.is_stopped()) return interrupted_at_start();
     auto made = make_rest_shape(surface, scene_.origin, context_);
-    if (!made) {
+    if (made)
+      shapes.push_back(*std::move(made));
+    else
       errors.push_back(std::move(made.error()));
-      continue;
-    }
-    add(surface, std::move(made->shape), std::move(made->memory));
   }
-  steps_.resize(bodies_.size());
   if (context_.is_stopped()) return interrupted_at_start();
+  if (errors.empty()) {
+    for (const Surface& surface : scene_.surfaces) drivers_.push_back(index_of_driver(surface));
+    if (auto bound = bind_driven(shapes); !bound) errors.push_back(bound.error());
+  }
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
+  for (std::size_t k = 0; k < shapes.size(); ++k) add(scene_.surfaces[k], std::move(shapes[k]));
+  steps_.resize(bodies_.size());
   return {};
 }
 
-void Bodies::add(const Surface& surface, RestShape rest_shape, MemoryShare share) {
+// The surface that drives a surface; its own index if none does.
+std::size_t Bodies::index_of_driver(const Surface& surface) const {
+  const std::string& name = surface.is_driven() ? surface.driven_by : surface.name;
+  return static_cast<std::size_t>(std::ranges::find(scene_.surfaces, name, &Surface::name) -
+                                  scene_.surfaces.begin());
+}
+
+Result<void> Bodies::bind_driven(std::span<ReservedShape> made) const {
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    if (!scene_.surfaces[k].is_driven()) continue;
+    if (context_.is_stopped()) return interrupted_at_start();
+    if (auto bound = bind_to_driver(made[k], made[drivers_[k]].shape, scene_); !bound) return bound;
+  }
+  return {};
+}
+
+void Bodies::add(const Surface& surface, ReservedShape made) {
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
-  const BodySettings settings = body_settings(surface, rest_shape.grid.has_value());
-  bodies_.push_back(make_body(rest_shape, settings, solver_, std::move(context)));
-  rest_shapes_.push_back(std::move(rest_shape));
-  shares_.push_back(std::move(share));
+  const BodySettings settings = body_settings(surface, made.shape.grid.has_value());
+  bodies_.push_back(make_body(made.shape, settings, solver_, std::move(context)));
+  rest_shapes_.push_back(std::move(made.shape));
+  shares_.push_back(std::move(made.memory));
+}
+
+// In parallel, unless the threads work on the parts of a single body.
+void Bodies::for_each_body(const std::function<void(std::size_t)>& visit) {
+  if (!context_.threads) return threads_.for_each(bodies_.size(), visit);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) visit(k);
 }
 
 void Bodies::step(int frame, KeptStates* kept, const std::function<bool()>& give_way) {
   // By reference: a std::function would allocate for so many captures.
   const auto step_one = [&](std::size_t k) { step(k, frame, kept); };
-  threads_.for_each(bodies_.size(), std::ref(step_one));
+  for_each_body(std::ref(step_one));
   const auto lacks_memory = [](const Step& step) {
     return step.is_solved_now && !step.outcome &&
            step.outcome.error().code == ErrorCode::OutOfMemory;
   };
   if (std::any_of(steps_.begin(), steps_.end(), lacks_memory) && give_way && give_way()) {
-    threads_.for_each(bodies_.size(), [&](std::size_t k) {
+    for_each_body([&](std::size_t k) {
       if (lacks_memory(steps_[k])) step(k, frame, kept);
     });
   }
@@ -173,27 +205,53 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
   reuse.surfaces_.resize(bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const StageTimer timer(profile_of(k), Stage::Output);
-    const Surface& surface = scene_.surfaces[k];
-    const Field& nodes = bodies_[k]->state().positions;
-    const Transform transform = sample_transform(surface.transform, frame);
-    const Extent extent = extent_of(transform, nodes, bodies_[k]->rest());
-    if (!extent.is_finite) {
-      return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
-                          surface, frame));
-    }
-    SurfaceFrame& shown = reuse.surfaces_[k];
-    shown.name_ = surface.name;
-    shown.transform_ = transform;
-    shown.peak_displacement_ = extent.peak_displacement;
-    shown.object_positions_ =
-        rest_shapes_[k].to_vertices(nodes, std::move(shown.object_positions_));
+    if (auto done = show(k, frame, reuse.surfaces_[k]); !done) return fail(done.error());
   }
   return reuse;
 }
 
+Result<void> Bodies::show(std::size_t index, int frame, SurfaceFrame& shown) const {
+  const RestShape& shape = rest_shapes_[index];
+  const Field& nodes = bodies_[index]->state().positions;
+  const Transform transform = sample_transform(scene_.surfaces[index].transform, frame);
+  Field positions = std::move(shown.object_positions_);
+  positions = shape.binding ? driven_positions(index, frame, transform, std::move(positions))
+                            : shape.to_vertices(nodes, std::move(positions));
+  // A vertex moves as its node, if it has one.
+  const bool has_nodes = !shape.binding && !shape.weights;
+  const Extent extent = has_nodes ? extent_of(transform, nodes, shape.rest)
+                                  : extent_of(transform, positions, shape.mesh.positions);
+  if (!extent.is_finite) {
+    return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
+                        scene_.surfaces[index], frame));
+  }
+  shown.name_ = shape.name;
+  shown.transform_ = transform;
+  shown.peak_displacement_ = extent.peak_displacement;
+  shown.object_positions_ = std::move(positions);
+  return {};
+}
+
+// The vertices of a driven surface: its driver's displacement, through the linear parts of both
+// transforms.
+Field Bodies::driven_positions(std::size_t index, int frame, const Transform& transform,
+                               Field reuse) const {
+  const std::size_t driver = drivers_[index];
+  const Body& body = *bodies_[driver];
+  const Field moved = body.state().positions - body.rest();
+  Field positions = rest_shapes_[index].binding->displacements(moved, std::move(reuse));
+  const Transform from = sample_transform(scene_.surfaces[driver].transform, frame);
+  const Matrix3d linear = inverse_linear(transform) * from.linear;
+  for (Eigen::Index k = 0; k < positions.rows(); ++k) {
+    const Vector3d displacement = linear * positions.row(k).transpose();
+    positions.row(k) = rest_shapes_[index].mesh.positions.row(k) + displacement.transpose();
+  }
+  return positions;
+}
+
 Result<FrameReport> Bodies::report(int frame) {
   std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
-  threads_.for_each(bodies_.size(), [&](std::size_t k) {
+  for_each_body([&](std::size_t k) {
     if (!is_solved_at(scene_, scene_.surfaces[k], frame)) {
       surfaces[k]->is_surface = !rest_shapes_[k].grid;
       return;

@@ -76,7 +76,13 @@ class Bodies {
   Profile* profile_of(std::size_t surface);  ///< null: no profiling
 
  private:
-  void add(const Surface& surface, RestShape rest_shape, MemoryShare share);
+  void add(const Surface& surface, ReservedShape made);
+  void for_each_body(const std::function<void(std::size_t)>& visit);
+  std::size_t index_of_driver(const Surface& surface) const;
+  Result<void> bind_driven(std::span<ReservedShape> made) const;
+  Result<void> show(std::size_t index, int frame, SurfaceFrame& shown) const;
+  Field driven_positions(std::size_t index, int frame, const Transform& transform,
+                         Field reuse) const;
   void step(std::size_t index, int frame, KeptStates* kept);
   Error located(Error error, const Surface& surface, int frame) const;
 
@@ -87,6 +93,7 @@ class Bodies {
   std::vector<MemoryShare> shares_;  // one a surface, as the following
   std::vector<RestShape> rest_shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::size_t> drivers_;  // the index of the surface that drives each, or its own
   std::vector<Step> steps_;
   SolverChoice solver_;
   RunContext context_;             // of the bodies, each with a profile of its own

@@ -104,7 +104,8 @@ Result<void> Simulation::Player::step() {
   bool is_solved = false, is_read = false;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
-    if (surface.enabled) warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
+    if (surface.enabled && !surface.is_driven())
+      warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
     const Bodies::Step& step = bodies_.last_step(k);
     if (!step.is_solved_now) continue;
     warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
