@@ -29,7 +29,8 @@ Binding::Binding(const TriangleSurface& driver, const Transform& transform, cons
   triangles_of_points_.reserve(static_cast<std::size_t>(points.rows()));
   weights_.reserve(static_cast<std::size_t>(points.rows()));
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const ClosestPoint closest = tree.closest(scale * points.row(k).transpose());
+    const int near = k > 0 ? triangles_of_points_.back() : 0;  // neighbours in a mesh are near
+    const ClosestPoint closest = tree.closest(scale * points.row(k).transpose(), near);
     triangles_of_points_.push_back(closest.triangle);
     weights_.push_back(closest.weights);
   }

@@ -102,9 +102,16 @@ double TriangleTree::squared_distance(int part, const Vector3d& p) const {
   return slack * way.squaredNorm();
 }
 
-ClosestPoint TriangleTree::closest(const Vector3d& p) const {
+void TriangleTree::try_triangle(int triangle, const Vector3d& p, Found& found) const {
+  Triangle corners;
+  for (int k = 0; k < 3; ++k) corners[k] = points_.row(triangles_[triangle][k]).transpose();
+  found.try_triangle(triangle, corners, p);
+}
+
+ClosestPoint TriangleTree::closest(const Vector3d& p, int near) const {
   Found found;
-  found.place.triangle = static_cast<int>(triangles_.size());
+  found.place.triangle = near;
+  try_triangle(near, p, found);
   std::vector<std::pair<double, int>> open = {{squared_distance(0, p), 0}};
   while (!open.empty()) {
     const auto [least, part] = open.back();
@@ -112,19 +119,15 @@ ClosestPoint TriangleTree::closest(const Vector3d& p) const {
     if (least > found.squared_distance) continue;
     const PointTree::Part& here = centres_.parts()[part];
     if (here.is_leaf()) {
-      for (int n = here.first; n < here.first + here.count; ++n) {
-        const int triangle = centres_.rows()[n];
-        Triangle corners;
-        for (int k = 0; k < 3; ++k) corners[k] = points_.row(triangles_[triangle][k]).transpose();
-        found.try_triangle(triangle, corners, p);
-      }
+      for (int n = here.first; n < here.first + here.count; ++n)
+        try_triangle(centres_.rows()[n], p, found);
       continue;
     }
-    std::pair<double, int> near{squared_distance(here.child, p), here.child};
-    std::pair<double, int> far{squared_distance(here.child + 1, p), here.child + 1};
-    if (far < near) std::swap(near, far);
-    open.push_back(far);
-    open.push_back(near);
+    std::pair<double, int> first{squared_distance(here.child, p), here.child};
+    std::pair<double, int> second{squared_distance(here.child + 1, p), here.child + 1};
+    if (second < first) std::swap(first, second);
+    open.push_back(second);
+    open.push_back(first);
   }
   return found.place;
 }

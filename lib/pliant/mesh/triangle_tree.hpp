@@ -21,8 +21,8 @@ class TriangleTree {
   /// Requires: at least one triangle; its corners are rows of `points` (#points x 3), finite.
   TriangleTree(const Field& points, std::vector<std::array<int, 3>> triangles);
 
-  /// Of equally close triangles the first one.
-  ClosestPoint closest(const Vector3d& p) const;
+  /// Of equally close triangles the first one. The search is faster if the triangle `near` is near.
+  ClosestPoint closest(const Vector3d& p, int near = 0) const;
 
  private:
   struct Found;
@@ -30,6 +30,7 @@ class TriangleTree {
     Vector3d low, high;
   };
 
+  void try_triangle(int triangle, const Vector3d& p, Found& found) const;
   double squared_distance(int part, const Vector3d& p) const;
 
   Field points_;
