@@ -17,7 +17,7 @@ import time
 
 import numpy as np
 
-from engine import bake
+from bakes import bake
 from reference import output_path
 from scene import Scene
 
@@ -52,10 +52,10 @@ def first_difference(scene, name, reference, positions, tolerance):
     if not wrong.any():
         return None
     frame, vertex = np.argwhere(wrong.any(axis=-1))[0]
-    i, j = next(s for s in scene.surfaces if s.name == name).grid.node[vertex]
+    node = next(s for s in scene.surfaces if s.name == name).grid.node_of[vertex]
     worst = np.nanmax(difference)
     return (f"surface {name}: first difference at frame {scene.start + frame}, vertex {vertex} "
-            f"(node {i},{j}): {positions[frame, vertex]} instead of {expected[frame, vertex]} "
+            f"(node {node}): {positions[frame, vertex]} instead of {expected[frame, vertex]} "
             f"(rest {reference.world_rest[frame, vertex]}); "
             f"{int(wrong.any(axis=-1)[frame].sum())} vertices differ there, "
             f"tolerance {tolerance:.3g}, worst of the run {worst:.3g}")

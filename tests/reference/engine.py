@@ -416,6 +416,7 @@ class Diagnostics:
         self.direction_margin = math.inf  # smallest non-exact delta where delta gives a direction
         self.time_margin = math.inf  # smallest |t - T| / T of an overshoot step
         self.settle_margin = math.inf  # smallest |motion - 1e-6 D| / (1e-6 D) of `recover`
+        self.cut_margin = math.inf  # smallest distance of a cut of triangles from where it snaps
         self.recovering = 0  # nodes counted as selected, over all frames
         self.unions = 0  # solves of regions that are not a box
 
@@ -636,13 +637,13 @@ class SurfaceRun:
             assert all(group.deformation_radius(frame)[0] >= 0 for frame in frames)
 
     def run(self):
-        """Yields (frame, object positions, transform) from the scene's first to its last frame."""
+        """Yields (object positions of the vertices, transform) of each frame."""
         frames = range(self.scene.start, self.scene.end + 1)
         self.check_channels(frames)
         for frame in frames:
             if frame <= self.surface.start_frame:
                 self.reset()
-            yield frame, self.position.copy(), Transform(self.surface, frame)
+            yield self.surface.grid.to_vertices(self.position), Transform(self.surface, frame)
             if self.surface.is_enabled and frame >= self.surface.start_frame:
                 self.solve(frame)
 
@@ -659,29 +660,3 @@ class GroupSphere:
     def sample(self, name, frame):
         assert name == "center"
         return self.center(frame)
-
-
-class Bake:
-    """Positions of one surface, frames x vertices x 3, in either space, and the rest in world."""
-
-    def __init__(self, scene, surface, diagnostics, noise=None):
-        to_vertices = surface.grid.to_vertices
-        object_frames, world_frames, rest_frames = [], [], []
-        for _, position, transform in SurfaceRun(scene, surface, diagnostics, noise).run():
-            object_frames.append(to_vertices(position))
-            world_frames.append(to_vertices(transform.to_world(position)))
-            rest_frames.append(to_vertices(transform.to_world(surface.grid.rest)))
-        self.object, self.world = np.array(object_frames), np.array(world_frames)
-        self.world_rest = np.array(rest_frames)
-        self.is_always_identity = all(
-            Transform(surface, frame).is_identity for frame in range(scene.start, scene.end + 1))
-
-    def peak(self):
-        """The largest |position - rest| of the run, in world space."""
-        return float(np.sqrt(((self.world - self.world_rest)**2).sum(axis=-1)).max())
-
-
-def bake(scene, diagnostics=None, noise=None):
-    """{surface name: Bake} of a whole scene."""
-    diagnostics = diagnostics or Diagnostics()
-    return {surface.name: Bake(scene, surface, diagnostics, noise) for surface in scene.surfaces}

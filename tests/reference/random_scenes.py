@@ -223,16 +223,7 @@ class SceneMaker:
                 stream.write(mesh.text)
             out.add(2, f'<mesh file="{file}"/>')
         if not self.is_lattice and self.chance(0.55):
-            order = self.pick("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
-            self.tags.update(["transform", f"rotateOrder {order}"])
-            moves = 0.35
-            travel = 10 ** rng.uniform(-1, 0.5)
-            spin = self.pick(20.0, 90.0, 180.0)
-            channels = [
-                self.channel("translate", lambda: travel * rng.uniform(-1, 1, 3), moves, False),
-                self.channel("rotate", lambda: spin * rng.uniform(-1, 1, 3), moves, False),
-                self.channel("scale", lambda: rng.uniform(0.5, 1.8, 3), moves)]
-            write_element(out, 2, "transform", [("rotateOrder", order)], channels)
+            self.transform(out)
         solver = []
         if self.chance(0.4):
             frame = self.start + self.pick(-3, 0, 2, 5)
@@ -248,6 +239,20 @@ class SceneMaker:
                 solver.append((choice, value))
                 self.tags.add(f"{choice} {value}")
         return out.lines, solver
+
+    def transform(self, out):
+        """Writes a transform, constant or moving."""
+        rng = self.rng
+        order = self.pick("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
+        self.tags.update(["transform", f"rotateOrder {order}"])
+        moves = 0.35
+        travel = 10 ** rng.uniform(-1, 0.5)
+        spin = self.pick(20.0, 90.0, 180.0)
+        channels = [
+            self.channel("translate", lambda: travel * rng.uniform(-1, 1, 3), moves, False),
+            self.channel("rotate", lambda: spin * rng.uniform(-1, 1, 3), moves, False),
+            self.channel("scale", lambda: rng.uniform(0.5, 1.8, 3), moves)]
+        write_element(out, 2, "transform", [("rotateOrder", order)], channels)
 
     def probe(self, heads):
         """The surfaces as the reference reads them, before materials and forces are chosen."""
@@ -282,6 +287,10 @@ class SceneMaker:
     @staticmethod
     def size_of(world):
         return float(world.reshape(-1, 3).ptp(axis=0).max())
+
+    @staticmethod
+    def spacing_of(world):
+        return float(np.linalg.norm(np.diff(world, axis=0), axis=-1).max())
 
     def path(self, name, world):
         """A channel for a centre: constant, or moving, perhaps off the sheet and back."""
@@ -430,7 +439,7 @@ class SceneMaker:
             for k in range(self.pick(1, 1, 2, 2, 3, 4)):
                 aim = int(self.rng.integers(len(worlds)))
                 world, load_scale = worlds[aim], blocks[aim][1]
-                spacing = float(np.linalg.norm(np.diff(world, axis=0), axis=-1).max())
+                spacing = self.spacing_of(world)
                 targets = None
                 if len(names) > 1 and self.chance(0.5):
                     targets = [name for j, name in enumerate(names) if j == aim or
@@ -441,9 +450,10 @@ class SceneMaker:
 
         return text
 
-    def surface_tail(self, lines, solver, surface, world):
-        """Material, tangents and solver of a surface; returns its lines and the load's scale."""
-        rng, out = self.rng, Writer()
+    def stiffness_of(self, surface):
+        """Channels of b, c and d, the stiffness against a load in a region of typical size, and the
+        lengths of that."""
+        rng = self.rng
         grid = surface.grid
         length_u = grid.hu * (grid.columns - 1) * rng.uniform(0.5, 0.9)
         length_v = grid.hv * (grid.rows - 1) * rng.uniform(0.5, 0.9)
@@ -460,6 +470,12 @@ class SceneMaker:
                          self.channel("c", lambda: c * rng.uniform(0.8, 1.05), animated)]
         stiffness = (b / length_u**4 + MIXED_SHARE * max(c, 0) / (length_u * length_v)**2 +
                      d / length_v**4) / (PEAK * (2 + 2 * MIXED_SHARE))
+        return channels, stiffness, length_u, length_v
+
+    def surface_tail(self, lines, solver, surface, world):
+        """Material, tangents and solver of a surface; returns its lines and the load's scale."""
+        rng, out = self.rng, Writer()
+        channels, stiffness, length_u, length_v = self.stiffness_of(surface)
         omega = 2 * math.pi * self.fps / rng.uniform(4, 40)
         density = FREQUENCY_SHARE * stiffness / omega**2
         damping = 2 * rng.choice([0.02, 0.2, 1.0]) * omega * density
@@ -474,7 +490,7 @@ class SceneMaker:
                      self.channel("damping", lambda: damping * rng.uniform(0.7, 1.4),
                                   0.15 if damping else 0)]
         write_element(out, 2, "material", [], channels)
-        size = float(grid.rest.reshape(-1, 3).ptp(axis=0).max())
+        size = self.size_of(surface.grid.rest)
         if self.chance(0.3) and ("release", "recover") not in solver:
             self.tags.add("tangents")
             channels = []
@@ -498,14 +514,15 @@ class SceneMaker:
         return lines + out.lines + ["  </surface>"], amplitude * stiffness * stretch
 
 
-def make_scene(seed, index, folder, rejections):
-    """Writes one accepted scene; returns its tags, its relative peak and its diagnostics."""
-    name = f"random-{seed}-{index:03d}"
+def make_scene(kind, prefix, seed, index, folder, rejections):
+    """Writes one accepted scene, made by a `kind` of SceneMaker; returns its tags, its relative peak
+    and its diagnostics."""
+    name = f"{prefix}-{seed}-{index:03d}"
     path = os.path.join(folder, name + ".xml")
     for attempt in range(1000):
         rng = np.random.default_rng([seed, index, attempt])
         with tempfile.TemporaryDirectory() as scratch:
-            maker = SceneMaker(rng, scratch, name)
+            maker = kind(rng, scratch, name)
             text_of_factor = maker.make()
             factor = 1.0
             trial = os.path.join(scratch, name + ".xml")
@@ -563,7 +580,7 @@ def note_run(tags, diagnostics):
             tags.add("ran: region changes")
 
 
-def main():
+def main(kind=SceneMaker, prefix="random"):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--count", type=int, required=True)
@@ -572,10 +589,10 @@ def main():
     os.makedirs(arguments.output, exist_ok=True)
     coverage, rejections = collections.Counter(), collections.Counter()
     for index in range(arguments.count):
-        tags, peak, diagnostics = make_scene(arguments.seed, index, arguments.output,
-                                             rejections)
+        tags, peak, diagnostics = make_scene(kind, prefix, arguments.seed, index,
+                                             arguments.output, rejections)
         coverage.update(tags)
-        print(f"random-{arguments.seed}-{index:03d}: peak {peak:.3g} of the size, "
+        print(f"{prefix}-{arguments.seed}-{index:03d}: peak {peak:.3g} of the size, "
               f"{len(diagnostics.solves)} solves, {len(diagnostics.skips)} without, "
               f"margin {diagnostics.tie_margin:.1e}", flush=True)
     print("covered:")

@@ -11,7 +11,8 @@ import sys
 
 import numpy as np
 
-from engine import Diagnostics, bake
+from bakes import bake
+from engine import Diagnostics
 from scene import Scene
 
 

@@ -10,9 +10,10 @@ from fractions import Fraction
 import numpy as np
 
 from curves import Constant, Curve, Key
+from triangle_mesh import TriangleMesh, read_obj_corners
 
 TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
-MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1}
+MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1, "poisson": 0.3}
 TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
 SOLVER_CHANNELS = {"dt": 0.01}
 SOLVER_CHOICES = {
@@ -98,15 +99,15 @@ def read_channel(element, owner, name, default, is_boolean=False):
 
 
 class Grid:
-    """Vertices with their lattice: `node[k]` is the (i, j) of vertex k, `rest` is M x N x 3."""
+    """Vertices with their lattice: `node_of[k]` is the (i, j) of vertex k, `rest` is M x N x 3."""
 
     def __init__(self, vertices, u, v):
         self.vertices = vertices
         column, self.hu, self.columns = lattice_index(u)
         row, self.hv, self.rows = lattice_index(v)
-        self.node = np.stack([column, row], axis=1)
+        self.node_of = np.stack([column, row], axis=1)
         self.rest = np.full((self.columns, self.rows, 3), np.nan)
-        for (i, j), position in zip(self.node, vertices):
+        for (i, j), position in zip(self.node_of, vertices):
             is_new = np.isnan(self.rest[i, j, 0])
             assert is_new or (self.rest[i, j] == position).all(), f"node {i},{j} has two positions"
             self.rest[i, j] = position
@@ -114,7 +115,7 @@ class Grid:
 
     def to_vertices(self, node_values):
         """Values per vertex, in the order of the source mesh."""
-        return node_values[self.node[:, 0], self.node[:, 1]]
+        return node_values[self.node_of[:, 0], self.node_of[:, 1]]
 
 
 def lattice_index(values):
@@ -167,6 +168,17 @@ def read_obj(path):
     return Grid(np.array(positions), u, v)
 
 
+def read_surface(element, folder):
+    """A <mesh> that is read as a surface of triangles (MESHES 1)."""
+    assert set(element.keys()) <= {"file", "uv", "unit", "axis", "border", "weld"}
+    read = {name: numbers(element.get(name)) for name in ("unit", "axis", "weld")
+            if name in element.keys()}
+    if "weld" in read:
+        read["weld"] = float(read["weld"][0])
+    vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
+    return TriangleMesh(vertices, faces, border=element.get("border", "clamped"), **read)
+
+
 # Elements
 
 
@@ -184,6 +196,8 @@ class Surface:
         grid, mesh = element.find("grid"), element.find("mesh")
         if grid is not None:
             self.grid = flat_grid(grid)
+        elif mesh.get("uv") == "surface":
+            self.grid = read_surface(mesh, folder)
         else:
             assert set(mesh.keys()) <= {"file", "uv", "wrap"} and mesh.get("uv", "grid") == "grid"
             assert mesh.get("wrap", "none") == "none"
@@ -200,6 +214,9 @@ class Surface:
         for name, allowed in SOLVER_CHOICES.items():
             self.choices[name] = solver.get(name, allowed[0])
             assert self.choices[name] in allowed, f"{name}={self.choices[name]}"
+        if isinstance(self.grid, TriangleMesh):
+            assert self.choices["reference"] == "rest"
+            self.choices["measure"] = solver.get("measure", "rest")
         # An earlier start acts as the scene's start.
         self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
 

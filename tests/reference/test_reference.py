@@ -16,6 +16,7 @@ import scipy.sparse.linalg
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import engine  # noqa: E402
+from bakes import bake  # noqa: E402
 from curves import Curve, Key, auto_weight, limit_lengths, time_is_monotone  # noqa: E402
 from scene import Scene  # noqa: E402
 from well_posed import trouble_of  # noqa: E402
@@ -146,7 +147,7 @@ class Region(unittest.TestCase):
     def bake(self, forces, surface=""):
         diagnostics = engine.Diagnostics()
         scene = scene_from(SQUARE.format(forces=forces, surface=surface))
-        return engine.bake(scene, diagnostics)["sheet"], diagnostics
+        return bake(scene, diagnostics)["sheet"], diagnostics
 
     def test_ties_are_outside(self):
         # Radius 5 about node (6, 6): (3,4), (4,3), (5,0) and (0,5) are at 5 exactly, so outside;

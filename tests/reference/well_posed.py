@@ -7,8 +7,9 @@ run that does not amplify noise of 1e-12 to near the tolerance of the comparison
 
 import numpy as np
 
+from bakes import bake
 from curves import Curve
-from engine import Diagnostics, bake
+from engine import Diagnostics
 from scene import Scene
 
 
@@ -31,7 +32,7 @@ def trouble_of(path):
     for result in results.values():
         size = float(result.world_rest[0].ptp(axis=0).max())
         relative = max(relative, result.peak() / size)
-    if diagnostics.tie_margin < 1e-8:
+    if min(diagnostics.tie_margin, diagnostics.cut_margin) < 1e-8:
         return "a radius within rounding of a distance", relative, diagnostics
     if diagnostics.direction_margin < 1e-6:
         return "a direction from a point at the node itself", relative, diagnostics

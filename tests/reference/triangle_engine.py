@@ -1,0 +1,466 @@
+"""Surfaces of triangles: MESHES 3 to 5, evaluated literally and slowly.
+
+Nothing is shared with the library under test. A region is cut triangle by triangle, and the energy
+of its cells is assembled with the slopes and the centres as unknowns.
+"""
+
+import collections
+import math
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+
+from engine import Transform, check_coefficients, distances, falloff, steps_of_frame, unit_forces
+from triangle_mesh import edge, joined
+
+SNAP = 0.1  # a cut nearer to the end of an edge than this part of it goes to that end
+THIRD = np.full(3, 1 / 3)
+
+
+# The region (MESHES 3)
+
+
+def snapped(mesh, phi, diagnostics):
+    """Rule 2: phi at the points, with 0 at those that a cut comes near to."""
+    result = phi.copy()
+    for p, q in mesh.triangles_at:
+        if phi[p] * phi[q] < 0:
+            a, b = (p, q) if phi[p] > 0 else (q, p)
+            t = phi[a] / (phi[a] - phi[b])
+            diagnostics.cut_margin = min(diagnostics.cut_margin, abs(t - SNAP), abs(1 - t - SNAP))
+            if t < SNAP:
+                result[a] = 0
+            if 1 - t < SNAP:
+                result[b] = 0
+    return result
+
+
+class Region:
+    """The cells of one cut of a mesh, with the points that are their corners.
+
+    A corner of a cell is a point of the mesh, p; a rim point between two, (p, q) with phi > 0 at p;
+    or the centre of the part of triangle t, ("part", t). `cells` are three of them, `places` where
+    they stand along u and v.
+    """
+
+    def __init__(self, mesh, phi, is_inside):
+        self.mesh, self.phi, self.is_inside = mesh, phi, is_inside
+        self.cells, self.places = [], []
+        self.part_corners = {}  # of the centre of a part
+        self.cells_at = collections.defaultdict(list)  # pair of corners -> (cell, edge of it)
+        self.edge_of = {}  # pair of corners on an edge of the mesh's triangles -> that edge
+        for t, corners in enumerate(mesh.triangles):
+            if max(phi[p] for p in corners) > 0:
+                self.cut(t, corners)
+        self.places = np.array(self.places).reshape(-1, 3, 2)
+        self.sort_pieces()
+
+    def cut(self, t, corners):
+        """Adds the part of triangle t where phi >= 0."""
+        layout = self.mesh.layout[t]
+        names, places, sides = [], [], []  # sides: the edges of the triangle on which a corner is
+        for k in range(3):
+            p, q = corners[k], corners[(k + 1) % 3]
+            if self.phi[p] >= 0:
+                names.append(p)
+                places.append(layout[k])
+                sides.append({k, (k + 2) % 3})
+            if self.phi[p] * self.phi[q] < 0:
+                a, b = (p, q) if self.phi[p] > 0 else (q, p)
+                names.append((a, b))
+                share = self.share(a, b)
+                if a == q:
+                    share = 1 - share
+                places.append((1 - share) * layout[k] + share * layout[(k + 1) % 3])
+                sides.append({k})
+        count = len(names)
+        for k in range(count):
+            following = (k + 1) % count
+            for side in sides[k] & sides[following]:
+                self.edge_of[pair(names[k], names[following])] = edge(
+                    corners[side], corners[(side + 1) % 3])
+        if count == 3:
+            self.add_cell(names, places)
+            return
+        assert count == 4
+        centre = ("part", t)
+        self.part_corners[centre] = names
+        for k in range(4):
+            following = (k + 1) % 4
+            self.add_cell([names[k], names[following], centre],
+                          [places[k], places[following], sum(places) / 4])
+
+    def share(self, a, b):
+        """How far from a to b the rim point stands."""
+        return self.phi[a] / (self.phi[a] - self.phi[b])
+
+    def add_cell(self, names, places):
+        for k in range(3):
+            key = pair(names[k], names[(k + 1) % 3])
+            self.cells_at[key].append((len(self.cells), k))
+        self.cells.append(names)
+        self.places.append(places)
+
+    def is_held(self, name):
+        """Rule 4, for the corner of a cell."""
+        if isinstance(name, tuple):
+            return name[0] != "part"
+        if not self.is_inside[name]:
+            return True
+        is_node = name < len(self.mesh.rest)
+        return bool(is_node and self.mesh.border != "free" and self.mesh.is_border[name])
+
+    def sort_pieces(self):
+        """Rule 5: which cells move, and the numbers of each piece."""
+        names = sorted({name for cell in self.cells for name in cell}, key=str)
+        number = {name: k for k, name in enumerate(names)}
+        piece_of = joined(len(names), ((number[cell[0]], number[name]) for cell in self.cells
+                                       for name in cell[1:]))
+        held = {piece_of[number[name]] for name in names if self.is_held(name)}
+        self.moving_cells = np.array([piece_of[number[cell[0]]] in held for cell in self.cells],
+                                     dtype=bool)
+        self.unknown_names = [name for name in names
+                              if not self.is_held(name) and piece_of[number[name]] in held]
+        self.moving_nodes = [name for name in self.unknown_names
+                             if not isinstance(name, tuple) and name < len(self.mesh.rest)]
+        self.pieces = {}
+        for piece in sorted(set(piece_of)):
+            nodes = [name for name in names if piece_of[number[name]] == piece and
+                     not isinstance(name, tuple) and name < len(self.mesh.rest)]
+            self.pieces[piece] = {
+                "inside": sum(bool(self.is_inside[node]) for node in nodes),
+                "held": sum(self.is_held(node) for node in nodes),
+                "free": sum(not self.is_held(node) for node in nodes),
+                "cells": sum(piece_of[number[cell[0]]] == piece for cell in self.cells),
+                "moves": piece in held}
+
+    def held_displacement(self, name, w):
+        """MESHES 4: the displacement of a held corner."""
+        if isinstance(name, tuple):
+            return self.held_displacement(name[1], w)
+        if name < len(self.mesh.rest):
+            return w[name]
+        outside = [node for node in self.mesh.centre_corners[name - len(self.mesh.rest)]
+                   if not self.is_inside[node]]
+        return w[outside].mean(axis=0)
+
+    def values_at(self, name, values):
+        """A function on the mesh's points, carried on to the corners of cells (MESHES 5)."""
+        if not isinstance(name, tuple):
+            return values[name]
+        if name[0] == "part":
+            return sum(self.values_at(corner, values) for corner in self.part_corners[name]) / 4
+        share = self.share(*name)
+        return (1 - share) * values[name[0]] + share * values[name[1]]
+
+    def shared_out(self, integrals):
+        """Sums of the cells' integrals (of 3 hats each) at the nodes that move (MESHES 5)."""
+        total = collections.defaultdict(float)
+        for cell, parts in zip(self.cells, integrals):
+            for name, part in zip(cell, parts):
+                total[name] += part
+        for name, corners in self.part_corners.items():
+            for corner in corners:
+                total[corner] += total[name] / 4
+        first = len(self.mesh.rest)
+        for k, corners in enumerate(self.mesh.centre_corners):
+            for corner in corners:
+                total[corner] += total[first + k] / len(corners)
+        return np.array([total[node] for node in self.moving_nodes])
+
+    def areas(self):
+        first, second = (self.places[:, k] - self.places[:, 0] for k in (1, 2))
+        return np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
+
+    def masses(self):
+        return self.shared_out(self.areas()[:, None] * THIRD)
+
+    def load_areas(self, reach):
+        """mu of MESHES 5; `reach` is forceRadius - delta at the mesh's points."""
+        integrals = [area * hat_integrals([self.values_at(name, reach) for name in cell])
+                     for area, cell in zip(self.areas(), self.cells)]
+        return self.shared_out(integrals)
+
+
+def pair(a, b):
+    return (a, b) if str(a) < str(b) else (b, a)
+
+
+def hat_integrals(values):
+    """Integrals of a triangle's hats over the part where the linear function is > 0; area 1."""
+    kept = []
+    for k in range(3):
+        following = (k + 1) % 3
+        if values[k] > 0:
+            kept.append(np.eye(3)[k])
+        if values[k] * values[following] < 0:
+            t = values[k] / (values[k] - values[following])
+            kept.append((1 - t) * np.eye(3)[k] + t * np.eye(3)[following])
+    total = np.zeros(3)
+    for p, q in zip(kept[1:], kept[2:]):
+        corners = np.array([kept[0], p, q])
+        total += abs(np.linalg.det(corners)) * corners.mean(axis=0)
+    return total
+
+
+# The plate (MESHES 4)
+
+
+def bending(places):
+    """Area of a cell, its outward normals (edge k from corner k), and H as 3 rows (uu, vv, uv) by 6
+    columns (w of the corners, slopes of the edges)."""
+    (a, b), (c, d) = places[1] - places[0], places[2] - places[0]
+    area = abs(a * d - b * c) / 2
+    gradients, normals, lengths = np.zeros((3, 2)), np.zeros((3, 2)), np.zeros(3)
+    for k in range(3):
+        p, q, opposite = places[k], places[(k + 1) % 3], places[(k + 2) % 3]
+        along = q - p
+        normal = np.array([along[1], -along[0]])
+        if normal @ (opposite - p) > 0:
+            normal = -normal
+        lengths[k] = math.hypot(*along)
+        normals[k] = normal / lengths[k]
+        gradients[(k + 2) % 3] = -normal / (2 * area)
+    columns = np.zeros((3, 6))
+    for k in range(3):
+        x, y = normals[k]
+        shape = lengths[k] / area * np.array([x * x, y * y, x * y])
+        columns[:, 3 + k] += shape
+        for corner in range(3):
+            columns[:, corner] -= shape * (normals[k] @ gradients[corner])
+    return area, normals, columns
+
+
+def given_slope(normal, tangents, unit):
+    x, y = normal
+    along_u = tangents["su1"] / unit[0] if x > 0 else -tangents["su0"] / unit[0]
+    along_v = tangents["sv1"] / unit[1] if y > 0 else -tangents["sv0"] / unit[1]
+    return np.broadcast_to(x * x * along_u + y * y * along_v, 3)
+
+
+class Plate:
+    """K and the right-hand side of what is held, for the region's unknowns.
+
+    The first unknowns are the region's `moving_nodes`, then centres, then slopes.
+    """
+
+    def __init__(self, region, w, material, tangents):
+        mesh, unit = region.mesh, region.mesh.unit
+        b, c, d = (material[name] for name in "bcd")
+        if mesh.border == "free":
+            poisson = material["poisson"]
+        else:
+            poisson = min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
+        b, c, d = b * unit[0]**4, c * unit[0]**2 * unit[1]**2, d * unit[1]**4
+        both = poisson * math.sqrt(b * d)
+        form = np.array([[b, both, 0], [both, d, 0], [0, 0, c - 2 * both]])
+
+        others = [name for name in region.unknown_names if name not in set(region.moving_nodes)]
+        number = {name: k for k, name in enumerate(list(region.moving_nodes) + others)}
+        count = len(number)
+        slopes = {}  # (cell, edge) -> ([(unknown, sign)], given)
+        shapes = [bending(places) for places in region.places]
+        for key, places in region.cells_at.items():
+            if not region.moving_cells[places[0][0]]:
+                continue
+            on = region.edge_of.get(key)
+            total = 2 if on is None else mesh.triangles_at[on]
+            is_border = total == 1
+            is_given = len(places) != total or (is_border and mesh.border == "clamped")
+            if is_given:
+                for cell, k in places:
+                    slopes[cell, k] = [], given_slope(shapes[cell][1][k], tangents, unit)
+                continue
+            if is_border:
+                slopes[places[0]] = [(count, 1.0)], np.zeros(3)
+                count += 1
+                continue
+            first = count
+            count += total - 1
+            for k, place in enumerate(places[:-1]):
+                slopes[place] = [(first + k, 1.0)], np.zeros(3)
+            slopes[places[-1]] = [(first + k, -1.0) for k in range(total - 1)], np.zeros(3)
+
+        rows, columns, values = [], [], []
+        right = np.zeros((count, 3))
+        for cell, (names, (area, _, strain)) in enumerate(zip(region.cells, shapes)):
+            if not region.moving_cells[cell]:
+                continue
+            known = np.zeros((6, 3))
+            place = []  # (row of the cell's six, unknown, sign)
+            for k, name in enumerate(names):
+                if name in number:
+                    place.append((k, number[name], 1.0))
+                else:
+                    known[k] = region.held_displacement(name, w)
+                terms, known[3 + k] = slopes[cell, k]
+                place += [(3 + k, unknown, sign) for unknown, sign in terms]
+            matrix = area * strain.T @ form @ strain
+            force = -matrix @ known
+            for i, row, row_sign in place:
+                right[row] += row_sign * force[i]
+                for j, column, column_sign in place:
+                    rows.append(row)
+                    columns.append(column)
+                    values.append(row_sign * column_sign * matrix[i, j])
+        self.stiffness = scipy.sparse.csc_matrix((values, (rows, columns)), shape=(count, count))
+        self.right = right
+
+
+def advance(region, w, velocity, load, material, tangents, count, dt):
+    """`count` backward Euler steps of the nodes that move; returns their w and velocity."""
+    plate = Plate(region, w, material, tangents)
+    nodes = region.moving_nodes
+    density, damping = material["density"], material["damping"]
+    masses = np.zeros(len(plate.right))
+    masses[:len(nodes)] = region.masses()
+    inertia = density / dt**2 + damping / dt
+    matrix = (plate.stiffness + scipy.sparse.diags(inertia * masses)).tocsc()
+    factor = scipy.sparse.linalg.splu(matrix)
+    unknown, speed = w[nodes], velocity[nodes]
+    weight = masses[:len(nodes), None]
+    for _ in range(count):
+        right = plate.right.copy()
+        right[:len(nodes)] += load + weight * (inertia * unknown + density / dt * speed)
+        solution = factor.solve(right)
+        solution += factor.solve(right - matrix @ solution)  # iterative refinement
+        solution = solution[:len(nodes)]
+        speed = (solution - unknown) / dt
+        unknown = solution
+    return unknown, speed
+
+
+# The run (MESHES 5, SPEC 6)
+
+
+class TriangleRun:
+    """The state of one surface: displacements, and the velocities of the last solve."""
+
+    def __init__(self, scene, surface, diagnostics, noise=None):
+        self.scene, self.surface, self.diagnostics, self.noise = scene, surface, diagnostics, noise
+        self.mesh = surface.grid
+        self.regions = {}  # by the bytes of phi and of what is inside
+        self.reports = {}  # frame -> numbers of its pieces
+        self.reset()
+
+    def reset(self):
+        self.w = np.zeros_like(self.mesh.rest)
+        self.velocity = np.zeros_like(self.w)
+        self.unsettled = np.zeros(len(self.w), dtype=bool)
+
+    def enabled_forces(self, frame):
+        """The forces that push, groups' included, and the phi of each that selects, as functions
+        of the points."""
+        def acts(item):
+            is_target = item.targets is None or self.surface.name in item.targets
+            return is_target and item.enabled(frame)[0] != 0
+
+        pushing, selecting = [], []
+        for force in self.scene.forces:
+            if acts(force):
+                pushing.append(force)
+                selecting.append(lambda points, force=force: force.sample(
+                    "deformationRadius", frame) - distances(force, frame, points))
+        for group in self.scene.groups:
+            if acts(group):
+                pushing += [force for force in group.forces if acts(force)]
+                selecting.append(lambda points, group=group: float(
+                    group.deformation_radius(frame)[0]) -
+                    np.linalg.norm(points - group.center(frame), axis=-1))
+        return pushing, selecting
+
+    def region(self, selecting, rest_points):
+        """MESHES 3, and 5 for `recover`."""
+        mesh = self.mesh
+        node_phi = np.full(len(mesh.rest), -1.0)
+        if selecting:
+            node_phi = np.max([phi(rest_points) for phi in selecting], axis=0)
+            self.diagnostics.tie_margin = min(self.diagnostics.tie_margin,
+                                              float(np.abs(node_phi).min()) / mesh.diagonal)
+        phi = snapped(mesh, mesh.at_points(node_phi), self.diagnostics)
+        is_inside = phi > 0
+        if self.surface.choices["release"] == "recover":
+            still = np.nonzero(self.unsettled & ~is_inside[:len(mesh.rest)])[0]
+            self.diagnostics.recovering += len(still)
+            touched = {k for node in still for k in mesh.faces_of_node[node]}
+            is_inside[still] = True
+            phi[still] = 1
+            for k in touched:
+                nodes, centre = mesh.faces[k]
+                if centre is not None:
+                    is_inside[centre], phi[centre] = True, 1
+                for node in nodes:
+                    phi[node] = max(phi[node], 0)
+        key = phi.tobytes() + is_inside.tobytes()
+        if key not in self.regions:
+            self.regions[key] = Region(mesh, phi, is_inside)
+        return self.regions[key]
+
+    def solve(self, frame):
+        """The solve at `frame`, which computes the mesh of frame + 1."""
+        mesh, surface = self.mesh, self.surface
+        pushing, selecting = self.enabled_forces(frame)
+        transform = Transform(surface, frame)
+        rest_points = transform.to_world(mesh.rest)
+        points = rest_points
+        if surface.choices["measure"] == "current":
+            points = transform.to_world(mesh.rest + self.w)
+        region = self.region(selecting, rest_points)
+        nodes = region.moving_nodes
+        self.reports[frame] = region
+        recovers = surface.choices["release"] == "recover"
+        if recovers:
+            is_back = np.array([region.is_held(node) for node in range(len(self.w))])
+            self.w[is_back] = 0
+            self.velocity[is_back] = 0
+        if not nodes:
+            self.diagnostics.skips.append((frame, surface.name, "no node"))
+            return
+        self.diagnostics.solves.append((frame, surface.name, len(nodes)))
+        load = np.zeros((len(nodes), 3))
+        for force in pushing:
+            delta = distances(force, frame, points)
+            radius = force.sample("forceRadius", frame)
+            share = region.load_areas(mesh.at_points(radius - delta))
+            is_pushed = share != 0
+            if not is_pushed.any():
+                continue
+            at = np.array(nodes)[is_pushed]
+            strength = force.sample("magnitude", frame) * falloff(force, delta[at] / radius)
+            push = unit_forces(force, frame, points[at], self)
+            load[is_pushed] += (share[is_pushed] * strength)[:, None] * push
+        load = transform.vector_to_object(load)
+        material = {name: surface.sample(name, frame)
+                    for name in ("density", "damping", "b", "c", "d", "poisson")}
+        tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
+        count, dt = steps_of_frame(self.scene.frame_length, surface.sample("dt", frame),
+                                   surface.choices["stepping"])
+        w, speed = advance(region, self.w, self.velocity, load, material, tangents, count, dt)
+        before = self.w[nodes]
+        if self.noise is not None:  # simulates another implementation's rounding
+            w = w * (1 + 1e-12 * self.noise.standard_normal(w.shape))
+        self.w[nodes] = w
+        self.velocity[:] = 0
+        self.velocity[nodes] = speed
+        if recovers:
+            moved = np.maximum(np.linalg.norm(w, axis=-1), np.linalg.norm(w - before, axis=-1))
+            length = 1e-6 * mesh.diagonal
+            # Those of a piece that nothing holds stay where they are.
+            self.unsettled = np.linalg.norm(self.w, axis=-1) >= length
+            self.unsettled[nodes] = moved >= length
+            self.diagnostics.settle_margin = min(self.diagnostics.settle_margin,
+                                                 float(np.abs(moved / length - 1).min()))
+        assert np.isfinite(self.w).all(), f"not finite after frame {frame}"
+
+    def run(self):
+        """Yields (object positions of the vertices, transform) of each frame."""
+        for frame in range(self.scene.start, self.scene.end + 1):
+            check_coefficients(*(self.surface.sample(name, frame)
+                                 for name in ("density", "damping", "b", "c", "d", "dt")))
+        for frame in range(self.scene.start, self.scene.end + 1):
+            if frame <= self.surface.start_frame:
+                self.reset()
+            yield self.mesh.displaced(self.w), Transform(self.surface, frame)
+            if self.surface.is_enabled and frame >= self.surface.start_frame:
+                self.solve(frame)
