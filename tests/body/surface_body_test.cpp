@@ -350,6 +350,37 @@ TEST_CASE("a released surface comes back to rest, all of it", "[body][surface]")
   CHECK(frames > 3);
 }
 
+TEST_CASE("a piece that nothing held for a while still comes back to rest", "[body][surface]") {
+  // Beside a sheet, which moves all the time.
+  Mesh mesh = square(16, 4, 0.3);
+  const int first = static_cast<int>(mesh.positions.rows());
+  const Mesh ball = sphere(2);
+  mesh.positions.conservativeResize(first + ball.positions.rows(), 3);
+  mesh.positions.bottomRows(ball.positions.rows()) =
+      ball.positions.rowwise() + Eigen::RowVector3d(0, 1.5, 0);
+  mesh.face_sizes.insert(mesh.face_sizes.end(), ball.face_sizes.begin(), ball.face_sizes.end());
+  for (const int vertex : ball.corner_vertices) mesh.corner_vertices.push_back(first + vertex);
+  mesh.corner_uvs.assign(mesh.corner_vertices.size(), -1);
+  SurfaceBody body = body_of(mesh, {}, {.measure = Measure::Rest, .release = Release::Recover});
+  const auto ball_peak = [&] { return way_of(body).bottomRows(ball.positions.rows()).norm(); };
+
+  BodyInputs in = moving_inputs({load_on({0, 2.5, 0}, 0.8, 0.5, 5000), load_on({0, 0, 0}, 1, 0.5)});
+  in.dynamics = {1, 4000};
+  REQUIRE(body.step(in));
+  const double pushed = ball_peak();
+  REQUIRE(pushed > 1e-4);
+  in.forces[0].deformation_radius = 2.6;  // all of the ball
+  REQUIRE(body.step(in));
+  CHECK(body.last_step().solves());
+  CHECK(ball_peak() == pushed);
+  in.forces.erase(in.forces.begin());
+  REQUIRE(body.step(in));
+  CHECK_FALSE(body.last_step().recovering.empty());
+  CHECK(ball_peak() > 0.1 * pushed);
+  for (int frame = 0; frame < 500 && ball_peak() > 0; ++frame) REQUIRE(body.step(in));
+  CHECK(ball_peak() == 0);
+}
+
 TEST_CASE("a frozen node stays where the region left it, and holds its rim", "[body][surface]") {
   SurfaceBody body = body_of(square(16, 1, 0.3));
   BodyInputs in = moving_inputs({load_on({-0.1, 0, 0}, 0.3, 0.2, 50)});

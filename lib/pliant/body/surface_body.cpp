@@ -279,8 +279,8 @@ Result<void> SurfaceBody::take() {
 // Requires: the next positions are complete, but not yet in the state.
 void SurfaceBody::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
+  // Those of a piece that nothing holds too: they stay away from rest, and come back once it moves.
   for (const SurfacePiece& piece : plan_.surface->pieces) {
-    if (!piece.moves()) continue;
     for (int k = 0; k < piece.free_nodes; ++k) {
       const int node = plan_.surface->level_set.nodes[piece.points[k]];
       const auto position = next_positions_.row(node);
