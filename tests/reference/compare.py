@@ -5,10 +5,12 @@
 
 Each scene is baked with `PLIANT_BINARY bake SCENE -o OUT.npy` and with the reference; the largest
 difference must stay within 1e-8 of the surface's peak displacement over the run. A surface that
-never moves must be exactly at rest. Exit 1 when a scene fails.
+never moves must be exactly at rest. On a surface of triangles, so must every vertex that does not
+move, and the pieces' numbers of nodes and cells must agree. Exit 1 when a scene fails.
 """
 
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -76,6 +78,34 @@ def rest_difference(binary, path, name, reference, folder):
     return f"surface {name}: at rest, but not bit for bit in object space"
 
 
+def still_difference(binary, path, name, reference, folder):
+    """A message unless what never moves on a surface of triangles is at rest to the bit."""
+    out = os.path.join(folder, "object.npy")
+    subprocess.run([binary, "bake", path, "-o", out, "--quiet", "--surface", name,
+                    "--space", "object"], capture_output=True, check=True)
+    is_still = (reference.object == reference.run.mesh.vertices).all(axis=-1)
+    moved = (np.load(out) != reference.run.mesh.vertices).any(axis=-1) & is_still
+    if not moved.any():
+        return None
+    frame, vertex = np.argwhere(moved)[0]
+    return (f"surface {name}: vertex {vertex} is not at rest at row {frame}; {int(moved.sum())} "
+            f"such positions in all")
+
+
+def pieces_difference(told, name, reference):
+    """A message unless --regions tells the numbers of the pieces (MESHES 5) of each frame."""
+    for frame in told["frames"]:
+        surface = next(s for s in frame["surfaces"] if s["name"] == name)
+        pieces = sorted((piece["insideNodes"], piece["heldNodes"], piece["cells"])
+                        for piece in surface.get("pieces", []))
+        region = reference.run.regions_at.get(frame["frame"])
+        expected = sorted(region.pieces) if region else []
+        if pieces != expected:
+            return (f"surface {name}: pieces of {pieces} inside nodes, held nodes and cells at "
+                    f"frame {frame['frame']} instead of {expected}")
+    return None
+
+
 def compare_scene(binary, path, folder):
     """Bakes and compares one scene; returns whether it agrees."""
     scene = Scene(path)
@@ -83,11 +113,14 @@ def compare_scene(binary, path, folder):
     references = bake(scene)
     took = time.monotonic() - began
     out = os.path.join(folder, os.path.splitext(os.path.basename(path))[0] + ".npy")
-    run = subprocess.run([binary, "bake", path, "-o", out, "--quiet"], capture_output=True,
-                         text=True, check=False)
+    regions = os.path.join(folder, "regions.json")
+    run = subprocess.run([binary, "bake", path, "-o", out, "--quiet", "--regions", regions],
+                         capture_output=True, text=True, check=False)
     if run.returncode != 0:
         print(f"FAIL {path}: exit {run.returncode} from bake: {run.stderr.strip()}")
         return False
+    with open(regions, encoding="utf-8") as file:
+        told = json.load(file)
     agrees = True
     for name, reference in references.items():
         file = output_path(out, scene, name)
@@ -100,6 +133,9 @@ def compare_scene(binary, path, folder):
         message = first_difference(scene, name, reference, positions, tolerance)
         if message is None and is_at_rest(reference):
             message = rest_difference(binary, path, name, reference, folder)
+        if message is None and reference.is_triangles:
+            message = (pieces_difference(told, name, reference) or
+                       still_difference(binary, path, name, reference, folder))
         if message is None:
             worst = float(np.abs(positions - reference.world).max())
             relative = worst / peak if tolerance > 0 and peak > 0 else worst

@@ -1,8 +1,8 @@
-# Generates random scenes and compares them.
-# usage: cmake -DPYTHON=… -DREFERENCE=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
+# Generates random scenes, by KIND_scenes.py, and compares them.
+# usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
-execute_process(COMMAND "${PYTHON}" "${REFERENCE}/random_scenes.py"
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/${KIND}_scenes.py"
   --seed ${SEED} --count ${COUNT} -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB scenes "${WORK}/*.xml")
 list(LENGTH scenes count)

@@ -16,9 +16,12 @@ import scipy.sparse.linalg
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import engine  # noqa: E402
+import triangle_engine  # noqa: E402
 from bakes import bake  # noqa: E402
 from curves import Curve, Key, auto_weight, limit_lengths, time_is_monotone  # noqa: E402
 from scene import Scene  # noqa: E402
+from triangle_engine import bending, hat_integrals, snapped  # noqa: E402
+from triangle_mesh import TriangleMesh  # noqa: E402
 from well_posed import trouble_of  # noqa: E402
 
 FLAT = {name: np.zeros(1) for name in ("su0", "su1", "sv0", "sv1")}
@@ -265,6 +268,85 @@ class Curves(unittest.TestCase):
     def test_step_takes_the_value_of_its_key(self):
         c = curve((0, 1, "step"), (2, 5, "stepNext"), (4, 7))
         self.assertEqual([c(t)[0] for t in (0, 1, 2, 3, 4)], [1, 1, 5, 7, 7])
+
+
+def square_mesh(count, rng, **attributes):
+    """Quads over the unit square, half of them cut into triangles, vertices within moved."""
+    places = np.array([(i, 0, j) for j in range(count + 1) for i in range(count + 1)]) / count
+    within = ((places[:, [0, 2]] > 0) & (places[:, [0, 2]] < 1)).all(axis=1)
+    places[np.ix_(within, [0, 2])] += 0.2 / count * rng.uniform(-1, 1, (int(within.sum()), 2))
+    faces = []
+    for j in range(count):
+        for i in range(count):
+            a = j * (count + 1) + i
+            quad = [(k, None) for k in (a, a + count + 1, a + count + 2, a + 1)]
+            faces += [quad] if rng.random() < 0.5 else [quad[:3], [quad[0]] + quad[2:]]
+    return TriangleMesh(places, faces, **attributes)
+
+
+class Triangles(unittest.TestCase):
+    """MESHES 1 to 5 and 13."""
+
+    def test_bending_is_exact_for_quadratics(self):
+        rng = np.random.default_rng(3)
+        places = rng.uniform(-1, 1, (50, 3, 2))
+        areas, normals, columns = bending(places)
+        hessian = np.array([[0.7, -0.4], [-0.4, 1.3]])
+        w = np.einsum("cki,ij,ckj->ck", places, hessian, places) / 2 + places[..., 0] - 2
+        middles = (places + np.roll(places, -1, axis=1)) / 2
+        slopes = ((middles @ hessian + [1, 0]) * normals).sum(axis=-1)
+        result = np.einsum("chk,ck->ch", columns, np.concatenate([w, slopes], axis=1))
+        size = (np.abs(columns).max(axis=(1, 2)) * 10)[:, None]
+        np.testing.assert_array_less(np.abs(result - [0.7, 1.3, -0.4]) / size, 1e-14)
+        turned = bending(places[:, ::-1])[0]
+        np.testing.assert_allclose(turned, areas, rtol=1e-12)
+
+    def test_hat_integrals(self):
+        third = [1 / 3] * 3
+        for values, expected in (((1, 2, 3), third), ((0, 0, 1), third), ((-1, 0, -2), [0] * 3),
+                                 ((0, 0, 0), [0] * 3), ((1, -1, 0), [1 / 4, 1 / 12, 1 / 6]),
+                                 ((1, -1, -1), [1 / 6, 1 / 24, 1 / 24]),
+                                 ((-1, 1, 1), [1 / 3 - 1 / 6, 1 / 3 - 1 / 24, 1 / 3 - 1 / 24])):
+            np.testing.assert_allclose(hat_integrals([float(x) for x in values]), expected,
+                                       atol=1e-15, err_msg=str(values))
+
+    def test_cuts_near_a_node_go_through_it(self):
+        mesh = TriangleMesh(np.array([(0.0, 0, 0), (0, 0, 1), (1, 0, 0)]),
+                            [[(0, None), (1, None), (2, None)]])
+        for phi, expected in (((1, -1, 2), (1, -1, 2)), ((0.1, -1, 2), (0, -1, 2)),
+                              ((9, -0.9, 9), (9, 0, 9)), ((9, -1.1, 9), (9, -1.1, 9)),
+                              ((0.1, -1, -0.005), (0, -1, 0))):
+            np.testing.assert_array_equal(
+                snapped(mesh, np.array(phi, dtype=float), engine.Diagnostics()), expected)
+
+    def test_flat_triangles_get_an_area(self):
+        mesh = TriangleMesh(np.array([(0.0, 0, 0), (0.4, 0, 0), (1, 0, 0), (0.5, 1, 0)]),
+                            [[(k, None) for k in face] for face in ((0, 1, 2), (0, 2, 3))])
+        places = mesh.layout[0]
+        lengths = np.linalg.norm(places - np.roll(places, -1, axis=0), axis=1)
+        np.testing.assert_allclose(lengths, [0.4 + 1e-8, 0.6 + 1e-8, 1 + 1e-8], rtol=1e-15)
+        self.assertEqual(places[0, 1], places[2, 1])  # u along the longest edge
+
+    def test_clamped_square(self):
+        errors = []
+        for count in (8, 16):
+            mesh = square_mesh(count, np.random.default_rng(4))
+            self.assertAlmostEqual(mesh.unit[0], 1, places=12)
+            region = triangle_engine.Region(mesh, mesh.at_points(np.ones(len(mesh.rest))))
+            nodes = region.moving_nodes
+            self.assertEqual(len(nodes), (count - 1)**2)
+            load = region.masses()[:, None] * np.ones(3)
+            # Area of the border's nodes is dropped.
+            self.assertLess(load[:, 0].sum(), 1)
+            w, _ = triangle_engine.advance(
+                region, np.zeros_like(mesh.rest), np.zeros_like(mesh.rest), load,
+                {**ISOTROPIC, "poisson": 0.3}, FLAT, 1, 0.01)
+            middle = nodes.index((count // 2) * (count + 2))
+            near = mesh.rest[nodes[middle], [0, 2]] - 0.5
+            self.assertLess(np.abs(near).max(), 0.25 / count)
+            errors.append(abs(w[middle, 1] / 0.00126532 - 1))
+        self.assertLess(errors[1], 0.05)
+        self.assertLess(errors[1], errors[0] / 2)
 
 
 class Scenes(unittest.TestCase):

@@ -11,7 +11,8 @@ import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
 
-from engine import Transform, check_coefficients, distances, falloff, steps_of_frame, unit_forces
+from engine import (GroupSphere, Transform, check_coefficients, distances, falloff,
+                    steps_of_frame, unit_forces)
 from triangle_mesh import edge, joined
 
 SNAP = 0.1  # a cut nearer to the end of an edge than this part of it goes to that end
@@ -44,8 +45,8 @@ class Region:
     they stand along u and v.
     """
 
-    def __init__(self, mesh, phi, is_inside):
-        self.mesh, self.phi, self.is_inside = mesh, phi, is_inside
+    def __init__(self, mesh, phi):
+        self.mesh, self.phi, self.is_inside = mesh, phi, phi > 0
         self.cells, self.places = [], []
         self.part_corners = {}  # of the centre of a part
         self.cells_at = collections.defaultdict(list)  # pair of corners -> (cell, edge of it)
@@ -54,6 +55,7 @@ class Region:
             if max(phi[p] for p in corners) > 0:
                 self.cut(t, corners)
         self.places = np.array(self.places).reshape(-1, 3, 2)
+        self.areas, self.normals, self.bending = bending(self.places)
         self.sort_pieces()
 
     def cut(self, t, corners):
@@ -124,16 +126,14 @@ class Region:
                               if not self.is_held(name) and piece_of[number[name]] in held]
         self.moving_nodes = [name for name in self.unknown_names
                              if not isinstance(name, tuple) and name < len(self.mesh.rest)]
-        self.pieces = {}
+        self.pieces = []  # numbers of inside nodes, held nodes and cells
         for piece in sorted(set(piece_of)):
             nodes = [name for name in names if piece_of[number[name]] == piece and
                      not isinstance(name, tuple) and name < len(self.mesh.rest)]
-            self.pieces[piece] = {
-                "inside": sum(bool(self.is_inside[node]) for node in nodes),
-                "held": sum(self.is_held(node) for node in nodes),
-                "free": sum(not self.is_held(node) for node in nodes),
-                "cells": sum(piece_of[number[cell[0]]] == piece for cell in self.cells),
-                "moves": piece in held}
+            self.pieces.append((
+                sum(bool(self.is_inside[node]) for node in nodes),
+                sum(self.is_held(node) for node in nodes),
+                sum(piece_of[number[cell[0]]] == piece for cell in self.cells)))
 
     def held_displacement(self, name, w):
         """MESHES 4: the displacement of a held corner."""
@@ -169,18 +169,19 @@ class Region:
                 total[corner] += total[first + k] / len(corners)
         return np.array([total[node] for node in self.moving_nodes])
 
-    def areas(self):
-        first, second = (self.places[:, k] - self.places[:, 0] for k in (1, 2))
-        return np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
-
     def masses(self):
-        return self.shared_out(self.areas()[:, None] * THIRD)
+        return self.shared_out(self.areas[:, None] * THIRD)
 
     def load_areas(self, reach):
         """mu of MESHES 5; `reach` is forceRadius - delta at the mesh's points."""
         integrals = [area * hat_integrals([self.values_at(name, reach) for name in cell])
-                     for area, cell in zip(self.areas(), self.cells)]
+                     for area, cell in zip(self.areas, self.cells)]
         return self.shared_out(integrals)
+
+
+def areas_of(places):
+    first, second = (places[:, k] - places[:, 0] for k in (1, 2))
+    return np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2
 
 
 def pair(a, b):
@@ -189,10 +190,14 @@ def pair(a, b):
 
 def hat_integrals(values):
     """Integrals of a triangle's hats over the part where the linear function is > 0; area 1."""
+    if max(values) <= 0:
+        return np.zeros(3)
+    if min(values) >= 0:
+        return THIRD
     kept = []
     for k in range(3):
         following = (k + 1) % 3
-        if values[k] > 0:
+        if values[k] >= 0:
             kept.append(np.eye(3)[k])
         if values[k] * values[following] < 0:
             t = values[k] / (values[k] - values[following])
@@ -208,28 +213,21 @@ def hat_integrals(values):
 
 
 def bending(places):
-    """Area of a cell, its outward normals (edge k from corner k), and H as 3 rows (uu, vv, uv) by 6
-    columns (w of the corners, slopes of the edges)."""
-    (a, b), (c, d) = places[1] - places[0], places[2] - places[0]
-    area = abs(a * d - b * c) / 2
-    gradients, normals, lengths = np.zeros((3, 2)), np.zeros((3, 2)), np.zeros(3)
-    for k in range(3):
-        p, q, opposite = places[k], places[(k + 1) % 3], places[(k + 2) % 3]
-        along = q - p
-        normal = np.array([along[1], -along[0]])
-        if normal @ (opposite - p) > 0:
-            normal = -normal
-        lengths[k] = math.hypot(*along)
-        normals[k] = normal / lengths[k]
-        gradients[(k + 2) % 3] = -normal / (2 * area)
-    columns = np.zeros((3, 6))
-    for k in range(3):
-        x, y = normals[k]
-        shape = lengths[k] / area * np.array([x * x, y * y, x * y])
-        columns[:, 3 + k] += shape
-        for corner in range(3):
-            columns[:, corner] -= shape * (normals[k] @ gradients[corner])
-    return area, normals, columns
+    """Of each cell: its area, its outward normals (edge k from corner k), and H as 3 rows (uu, vv,
+    uv) by 6 columns (w of the corners, slopes of the edges)."""
+    along = np.roll(places, -1, axis=1) - places
+    lengths = np.linalg.norm(along, axis=-1)
+    normals = np.stack([along[..., 1], -along[..., 0]], axis=-1) / lengths[..., None]
+    opposite = np.roll(places, -2, axis=1) - places
+    heights = (normals * opposite).sum(axis=-1)  # of the opposite corner; negative if outward
+    normals = np.where(heights[..., None] > 0, -normals, normals)
+    areas = areas_of(places)
+    # The hat of corner k falls to 0 at the edge after it.
+    gradients = -np.roll(normals * lengths[..., None], -1, axis=1) / (2 * areas[:, None, None])
+    x, y = normals[..., 0], normals[..., 1]
+    by_slope = np.stack([x * x, y * y, x * y], axis=1) * (lengths / areas[:, None])[:, None, :]
+    by_corner = -by_slope @ normals @ gradients.transpose(0, 2, 1)
+    return areas, normals, np.concatenate([by_corner, by_slope], axis=2)
 
 
 def given_slope(normal, tangents, unit):
@@ -260,7 +258,6 @@ class Plate:
         number = {name: k for k, name in enumerate(list(region.moving_nodes) + others)}
         count = len(number)
         slopes = {}  # (cell, edge) -> ([(unknown, sign)], given)
-        shapes = [bending(places) for places in region.places]
         for key, places in region.cells_at.items():
             if not region.moving_cells[places[0][0]]:
                 continue
@@ -270,7 +267,7 @@ class Plate:
             is_given = len(places) != total or (is_border and mesh.border == "clamped")
             if is_given:
                 for cell, k in places:
-                    slopes[cell, k] = [], given_slope(shapes[cell][1][k], tangents, unit)
+                    slopes[cell, k] = [], given_slope(region.normals[cell, k], tangents, unit)
                 continue
             if is_border:
                 slopes[places[0]] = [(count, 1.0)], np.zeros(3)
@@ -284,7 +281,7 @@ class Plate:
 
         rows, columns, values = [], [], []
         right = np.zeros((count, 3))
-        for cell, (names, (area, _, strain)) in enumerate(zip(region.cells, shapes)):
+        for cell, names in enumerate(region.cells):
             if not region.moving_cells[cell]:
                 continue
             known = np.zeros((6, 3))
@@ -296,15 +293,15 @@ class Plate:
                     known[k] = region.held_displacement(name, w)
                 terms, known[3 + k] = slopes[cell, k]
                 place += [(3 + k, unknown, sign) for unknown, sign in terms]
-            matrix = area * strain.T @ form @ strain
-            force = -matrix @ known
-            for i, row, row_sign in place:
-                right[row] += row_sign * force[i]
-                for j, column, column_sign in place:
-                    rows.append(row)
-                    columns.append(column)
-                    values.append(row_sign * column_sign * matrix[i, j])
-        self.stiffness = scipy.sparse.csc_matrix((values, (rows, columns)), shape=(count, count))
+            strain = region.bending[cell]
+            matrix = region.areas[cell] * strain.T @ form @ strain
+            of_six, unknowns, signs = (np.array(column) for column in zip(*place))
+            np.add.at(right, unknowns, -signs[:, None] * (matrix @ known)[of_six])
+            rows.append(np.repeat(unknowns, len(place)))
+            columns.append(np.tile(unknowns, len(place)))
+            values.append((np.outer(signs, signs) * matrix[np.ix_(of_six, of_six)]).ravel())
+        triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+        self.stiffness = scipy.sparse.csc_matrix(triplets, shape=(count, count))
         self.right = right
 
 
@@ -340,8 +337,8 @@ class TriangleRun:
     def __init__(self, scene, surface, diagnostics, noise=None):
         self.scene, self.surface, self.diagnostics, self.noise = scene, surface, diagnostics, noise
         self.mesh = surface.grid
-        self.regions = {}  # by the bytes of phi and of what is inside
-        self.reports = {}  # frame -> numbers of its pieces
+        self.regions = {}  # by the bytes of phi
+        self.regions_at = {}  # by the frame
         self.reset()
 
     def reset(self):
@@ -350,51 +347,43 @@ class TriangleRun:
         self.unsettled = np.zeros(len(self.w), dtype=bool)
 
     def enabled_forces(self, frame):
-        """The forces that push, groups' included, and the phi of each that selects, as functions
-        of the points."""
+        """The forces that push, groups' included, and what selects: (force, radius)."""
         def acts(item):
             is_target = item.targets is None or self.surface.name in item.targets
             return is_target and item.enabled(frame)[0] != 0
 
-        pushing, selecting = [], []
-        for force in self.scene.forces:
-            if acts(force):
-                pushing.append(force)
-                selecting.append(lambda points, force=force: force.sample(
-                    "deformationRadius", frame) - distances(force, frame, points))
+        pushing = [force for force in self.scene.forces if acts(force)]
+        selecting = [(force, force.sample("deformationRadius", frame)) for force in pushing]
         for group in self.scene.groups:
             if acts(group):
                 pushing += [force for force in group.forces if acts(force)]
-                selecting.append(lambda points, group=group: float(
-                    group.deformation_radius(frame)[0]) -
-                    np.linalg.norm(points - group.center(frame), axis=-1))
+                selecting.append((GroupSphere(group), float(group.deformation_radius(frame)[0])))
         return pushing, selecting
 
-    def region(self, selecting, rest_points):
+    def region(self, frame, selecting, transform):
         """MESHES 3, and 5 for `recover`."""
         mesh = self.mesh
-        node_phi = np.full(len(mesh.rest), -1.0)
-        if selecting:
-            node_phi = np.max([phi(rest_points) for phi in selecting], axis=0)
-            self.diagnostics.tie_margin = min(self.diagnostics.tie_margin,
-                                              float(np.abs(node_phi).min()) / mesh.diagonal)
+        points = transform.to_world(mesh.rest)
+        is_untouched = np.full((len(points), 1), transform.is_identity)
+        node_phi = np.full(len(points), -1.0)
+        for k, (force, radius) in enumerate(selecting):
+            depth = radius - distances(force, frame, points)
+            node_phi = depth if k == 0 else np.maximum(node_phi, depth)
+            self.diagnostics.note_distances(force, frame, points[:, None], is_untouched, [radius])
         phi = snapped(mesh, mesh.at_points(node_phi), self.diagnostics)
-        is_inside = phi > 0
         if self.surface.choices["release"] == "recover":
-            still = np.nonzero(self.unsettled & ~is_inside[:len(mesh.rest)])[0]
+            still = np.nonzero(self.unsettled & ~(phi[:len(points)] > 0))[0]
             self.diagnostics.recovering += len(still)
-            touched = {k for node in still for k in mesh.faces_of_node[node]}
-            is_inside[still] = True
+            # Nothing but the sign matters: no edge of these faces is cut.
             phi[still] = 1
-            for k in touched:
+            for k in {k for node in still for k in mesh.faces_of_node[node]}:
                 nodes, centre = mesh.faces[k]
+                phi[nodes] = np.maximum(phi[nodes], 0)
                 if centre is not None:
-                    is_inside[centre], phi[centre] = True, 1
-                for node in nodes:
-                    phi[node] = max(phi[node], 0)
-        key = phi.tobytes() + is_inside.tobytes()
+                    phi[centre] = 1
+        key = phi.tobytes()
         if key not in self.regions:
-            self.regions[key] = Region(mesh, phi, is_inside)
+            self.regions[key] = Region(mesh, phi)
         return self.regions[key]
 
     def solve(self, frame):
@@ -402,13 +391,11 @@ class TriangleRun:
         mesh, surface = self.mesh, self.surface
         pushing, selecting = self.enabled_forces(frame)
         transform = Transform(surface, frame)
-        rest_points = transform.to_world(mesh.rest)
-        points = rest_points
-        if surface.choices["measure"] == "current":
-            points = transform.to_world(mesh.rest + self.w)
-        region = self.region(selecting, rest_points)
+        is_current = surface.choices["measure"] == "current"
+        points = transform.to_world(mesh.rest + self.w if is_current else mesh.rest)
+        region = self.region(frame, selecting, transform)
         nodes = region.moving_nodes
-        self.reports[frame] = region
+        self.regions_at[frame] = region
         recovers = surface.choices["release"] == "recover"
         if recovers:
             is_back = np.array([region.is_held(node) for node in range(len(self.w))])

@@ -55,10 +55,7 @@ def joined(count, pairs):
 
 def corners_left(face):
     """The face without corners that repeat the node before them, around."""
-    left = [corner for k, corner in enumerate(face) if k == 0 or corner[0] != face[k - 1][0]]
-    while len(left) > 1 and left[-1][0] == left[0][0]:
-        left.pop()
-    return left
+    return [corner for k, corner in enumerate(face) if corner[0] != face[k - 1][0]]
 
 
 def edge(p, q):
@@ -149,6 +146,12 @@ class TriangleMesh:
         return result
 
 
+def cross(a, b):
+    """np.cross of two vectors takes ten times as long."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                     a[0] * b[1] - a[1] * b[0]])
+
+
 def area_of(places):
     (a, b), (c, d) = places[1] - places[0], places[2] - places[0]
     return abs(a * d - b * c) / 2
@@ -161,7 +164,7 @@ def lay_out(corners, uvs, axis):
     missing = FLAT * longest - (sum(lengths) - 2 * longest)
     if missing > 0:
         return lay_out_flat([length + missing for length in lengths], FLAT * longest)
-    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    normal = cross(corners[1] - corners[0], corners[2] - corners[0])
     normal /= np.linalg.norm(normal)
     u, v = directions(corners, normal, uvs, axis)
     return np.stack([(corners - corners[0]) @ u, (corners - corners[0]) @ v], axis=1)
@@ -191,7 +194,7 @@ def directions(corners, normal, uvs, axis):
             along_u = (d * first - b * second) / determinant
             along_v = (a * second - c * first) / determinant
             u = along_u / np.linalg.norm(along_u)
-            v = np.cross(normal, u)
+            v = cross(normal, u)
             return u, (v if v @ along_v > 0 else -v)
     axis = np.array([1.0, 0.0, 0.0]) if axis is None else np.asarray(axis, dtype=float)
     for candidate in (axis, np.roll(axis, 1)):  # (x,y,z), then (z,x,y)
@@ -201,4 +204,4 @@ def directions(corners, normal, uvs, axis):
     else:
         projected = corners[1] - corners[0]
     u = projected / np.linalg.norm(projected)
-    return u, np.cross(normal, u)
+    return u, cross(normal, u)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Generates random, well-posed scenes of surfaces of triangles that exercise MESHES 1 to 5.
 
-    python3 triangle_scenes.py --seed N --count K -o DIR
+    python3 triangles_scenes.py --seed N --count K -o DIR
 
 writes DIR/triangles-N-000.xml ... with their meshes. The kinds of mesh and of UVs, the borders, the
 axes and the units take turns; all else is drawn.
@@ -16,9 +16,9 @@ import numpy as np
 import random_scenes
 from random_mesh import text_of
 from random_scenes import MIXED_SHARE, PEAK, Channel, SceneMaker, Writer
-from triangle_random_mesh import KINDS, UVS, RandomSurface
+from random_triangle_mesh import KINDS, UVS, RandomSurface
 
-ODDITIES = ((), ("seams", "order"), ("flat",), ("faces", "order"), ("weld",))
+ODDITIES = ((), ("seams", "order"), ("flat",), ("faces", "order"), ("weld",), ("turns",))
 BORDERS = ("clamped", "free", "pinned")
 AXES = (None, None, "drawn", "1 1 1")
 UNITS = (None, "two", "one")
@@ -47,13 +47,14 @@ class TriangleSceneMaker(SceneMaker):
 
     def surface_head(self, index):
         rng, out, turn = self.rng, Writer(), self.number + 3 * index
+        slow = turn + turn // len(KINDS)  # goes through all with each kind
         out.add(1, f'<surface name="mesh{index}">')
-        border = BORDERS[turn % len(BORDERS)]
+        border = BORDERS[slow % len(BORDERS)]
         axis = AXES[turn % len(AXES)]
-        unit = UNITS[(turn // 2) % len(UNITS)]
+        unit = UNITS[(slow // 2) % len(UNITS)]
         kind = KINDS[turn % len(KINDS)]
-        mesh = RandomSurface(rng, kind, UVS[(turn // 3) % len(UVS)],
-                             ODDITIES[turn % len(ODDITIES)], self.tags)
+        mesh = RandomSurface(rng, kind, UVS[(slow // 3) % len(UVS)],
+                             ODDITIES[slow % len(ODDITIES)], self.tags)
         file = f"{self.name}-mesh{index}.obj"
         self.meshes[file] = mesh.text
         with open(os.path.join(self.folder, file), "w", encoding="utf-8") as stream:

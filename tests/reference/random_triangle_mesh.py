@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull, Delaunay
 
 from random_mesh import text_of
 
-KINDS = ("delaunay", "quads", "sphere", "polygons", "fins", "box", "two", "tube")
+KINDS = ("delaunay", "quads", "sphere", "polygons", "fins", "box", "two", "tube", "stars")
 UVS = ("none", "plane", "charts", "some")
 
 
@@ -80,6 +80,32 @@ def polygons(rng):
     return middles, faces
 
 
+def stars(rng):
+    """A sheet of squares and of faces with 8 corners, some of which turn inwards."""
+    blocks = int(rng.integers(4, 7))
+    columns = 2 * blocks + 1
+    points, faces = relief(rng, jittered(rng, columns, columns, 0.3)), []
+
+    def face(i, j, *steps):
+        return [(j + dj) * columns + i + di for di, dj in steps]
+
+    def square(i, j):
+        return face(i, j, (0, 0), (0, 1), (1, 1), (1, 0))
+
+    for i in range(0, columns - 1, 2):
+        for j in range(0, columns - 1, 2):
+            kind = rng.integers(3)
+            if kind == 0:
+                faces += [square(i + di, j + dj) for di in (0, 1) for dj in (0, 1)]
+                continue
+            corner = (1, 1) if kind == 1 else (2, 2)
+            faces.append(face(i, j, (0, 0), (0, 1), (0, 2), (1, 2), corner, (2, 1), (2, 0),
+                              (1, 0)))
+            if kind == 1:
+                faces.append(square(i + 1, j + 1))
+    return points, faces
+
+
 def fins(rng):
     """A sheet with fins on a line across it: edges of three or four faces."""
     columns, rows = 9, int(rng.integers(7, 10))
@@ -149,7 +175,7 @@ class RandomSurface:
         self.rng = rng
         points, faces = {"delaunay": delaunay, "quads": quads, "sphere": sphere,
                          "polygons": polygons, "fins": fins, "box": box, "two": two,
-                         "tube": tube}[kind](rng)
+                         "tube": tube, "stars": stars}[kind](rng)
         size = 10 ** rng.uniform(-0.5, 1)
         self.points, self.faces = list(points * size * rng.uniform(0.8, 1.2, 3)), faces
         self.size = size
@@ -166,6 +192,8 @@ class RandomSurface:
             self.add_odd_faces()
         if "order" in oddities:
             self.shuffle()
+        if "turns" in oddities:
+            self.faces = [face[::-1] if rng.random() < 0.3 else face for face in self.faces]
         self.write(uvs)
 
     def add_flat_triangles(self):
@@ -205,11 +233,13 @@ class RandomSurface:
     def add_odd_faces(self):
         """Faces that take no part, corners that repeat, and vertices in no face."""
         rng, faces = self.rng, self.faces
-        for k in rng.permutation(len(faces))[:4].tolist():
+        picked = rng.permutation(len(faces)).tolist()
+        for k in picked[:6]:
             faces.append(faces[k][1:] + faces[k][:1])
             faces.append([faces[k][0], faces[k][0], faces[k][1]])
-            place = int(rng.integers(len(faces[k])))
-            faces[k] = faces[k][:place + 1] + faces[k][place:]
+        for k in picked[6:18]:
+            place = int(rng.integers(3))
+            faces[k] = faces[k][:place] + [faces[k][place - 1]] + faces[k][place:]
         a, b, c = faces[0][:3]
         faces.append([a, b, a, c])
         self.points += list(rng.uniform(-3, 3, (3, 3)) * self.size)
@@ -239,7 +269,8 @@ class RandomSurface:
             if uvs == "some" and rng.random() < 0.2:
                 own[:, 1] = own[:, 0]  # a chart without area
             for k in face:
-                lines.append("vt " + text_of(self.points[k] @ own))
+                lines.append("vt " + text_of(self.points[k] @ own +
+                                             0.05 * self.size * rng.uniform(-1, 1, 2)))
             lines.append("f " + " ".join(f"{k + 1}/{written + j + 1}" for j, k in enumerate(face)))
             written += len(face)
         self.text = "\n".join(lines) + "\n"
