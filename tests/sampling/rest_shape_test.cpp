@@ -143,6 +143,24 @@ TEST_CASE("vertices of one node keep their offsets, those in no face their place
   CHECK(vertices.row(4) == mesh.positions.row(4));
 }
 
+TEST_CASE("pieces are of faces that take part", "[sampling][rest_shape]") {
+  // Two triangles that share a corner, one apart, and one that has a corner twice.
+  Mesh mesh;
+  mesh.positions = Field::Zero(10, 3);
+  for (int vertex = 0; vertex < 10; ++vertex) {
+    mesh.positions.row(vertex) << vertex, 0, vertex * vertex;
+  }
+  mesh.face_sizes = {3, 3, 3, 3};
+  mesh.corner_vertices = {0, 1, 2, 2, 3, 4, 5, 6, 7, 8, 9, 9};
+  mesh.corner_uvs.assign(12, -1);
+  const SurfaceSummary told =
+      summary_of(make_rest_shape(with_shape(mesh), origin).value().shape).value();
+  CHECK(told.nodes == 10);
+  CHECK(told.faces == 3);
+  CHECK(told.pieces == 2);
+  CHECK(told.border_edges == 9);
+}
+
 TEST_CASE("a shape that cannot be had is the scene's error or the file's",
           "[sampling][rest_shape]") {
   const ScratchFolder folder;

@@ -330,11 +330,12 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
       .nodes = surface.node_count(), .faces = surface.face_count(), .unit = surface.unit};
   summary.border_edges =
       static_cast<int>(std::count(surface.edge_sides.begin(), surface.edge_sides.end(), 1));
-  // Counts pieces by walking from each node not seen before.
+  // Counts pieces by walking from each node not seen before. One whose faces all take no part is
+  // none.
   std::vector<bool> is_seen(static_cast<std::size_t>(surface.node_count()));
   std::vector<int> open;
   for (int first = 0; first < surface.node_count(); ++first) {
-    if (is_seen[first]) continue;
+    if (is_seen[first] || surface.faces_of(first).empty()) continue;
     ++summary.pieces;
     is_seen[first] = true;
     open.push_back(first);
