@@ -43,15 +43,15 @@ def relief(u, v):
                for a, b, s, t, height in FEATURES)
 
 
-def position(u, v):
-    """A point of the face; it looks along +z, +y up."""
+def position(u, v, height=None):
+    """A point of the face, of its own height by default; it looks along +z, +y up."""
     around = math.radians(-80 + 160 * u)
     up = math.radians(-62 + 124 * v)
     normal = (math.cos(up) * math.sin(around), math.sin(up), math.cos(up) * math.cos(around))
     # The jaw is narrower than the crown.
     width = 3.7 * (1 - 0.16 * (1 - v) ** 2)
     radii = (width, 5.0, 4.3)
-    height = relief(u, v)
+    height = relief(u, v) if height is None else height
     return tuple(radius * n + height * n for radius, n in zip(radii, normal))
 
 

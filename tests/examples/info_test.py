@@ -100,6 +100,10 @@ def held(scene, text, told, preview):
     # Info describes the surface at rest. Only the peak of the animation includes nodes that a force
     # loses as the surface moves away.
     for surface in root.iter("surface"):
+        for shape in surface.iter("mesh"):
+            shape.set("file", os.path.join(os.path.dirname(scene), shape.get("file")))
+        if surface.get("drivenBy"):
+            continue
         solver = surface.find("solver")
         if solver is None:
             solver = tree.SubElement(surface, "solver")
@@ -166,7 +170,13 @@ def check(name, scene, folder, count):
     told = info(scene)
     with open(scene, encoding="utf-8") as file:
         text = file.read()
+    # Info tells of nodes; those of nets and cages are not written.
+    shapes = {surface.get("name"): surface for surface in tree.fromstring(text).iter("surface")}
+    unwritten = [name for name, surface in shapes.items()
+                 if surface.find("nurbs") is not None or surface.find("subdivision") is not None]
     for preview in told["together"]:
+        if preview["surface"] in unwritten:
+            continue
         frames = bake(scene, preview["surface"])
         sizes = np.linalg.norm(frames - frames[0], axis=2).max(axis=1)
         if preview["animation"]:
