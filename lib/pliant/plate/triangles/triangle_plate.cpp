@@ -11,6 +11,9 @@
 namespace pliant {
 namespace {
 
+// The largest error of a solution, as a part of its peak.
+constexpr double largest_error = 1e-10;
+
 double dot(const Curvature& a, const Curvature& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -23,53 +26,73 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       masses_(std::move(masses)),
       context_(context),
       reduced_(cells_, static_cast<int>(masses_.size())),
-      matrix_(choice, context.memory) {
+      matrix_(choice, context.memory),
+      precise_share_(context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
 }
 
-// The upper triangle, by columns, rows ascending. Contributions are gathered by columns, in the
-// order of the blocks, and those of one entry are added in that order.
-SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift) const {
+// Contributions are gathered by rows, in the order of the blocks, and those of one entry are added
+// in that order.
+template <class Real>
+TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shift,
+                                              Half half) const {
   struct Entry {
     int row, column;
-    double value;
+    Real value;
   };
   std::vector<Entry> entries;
-  CellBlock<double> block;
+  CellBlock<Real> block;
   for (int k = 0; k < cells_.block_count(); ++k) {
     block.compute(cells_, k, reduced_, bending);
     for (int a = block.inner_count(); a < block.size(); ++a) {
       for (int b = a; b < block.size(); ++b) {
-        const auto [row, column] =
+        const auto [low, high] =
             std::minmax(reduced_.places[block.unknown(a)], reduced_.places[block.unknown(b)]);
-        entries.push_back({row, column, block.at(a, b)});
+        entries.push_back({high, low, block.at(a, b)});
+        if (half == Half::Both && low != high) entries.push_back({low, high, block.at(a, b)});
       }
     }
   }
   const int size = reduced_.count;
   std::vector<int> starts(static_cast<std::size_t>(size) + 1, 0);
-  for (const Entry& entry : entries) ++starts[entry.column + 1];
+  for (const Entry& entry : entries) ++starts[entry.row + 1];
   for (int k = 0; k < size; ++k) starts[k + 1] += starts[k];
   std::vector<int> order(entries.size());
   std::vector<int> next(starts.begin(), starts.end() - 1);
   for (std::size_t k = 0; k < entries.size(); ++k) {
-    order[next[entries[k].column]++] = static_cast<int>(k);
+    order[next[entries[k].row]++] = static_cast<int>(k);
   }
-  SparseMatrix matrix(size, size);
-  matrix.reserve(static_cast<Eigen::Index>(entries.size()) / 2);
-  for (int column = 0; column < size; ++column) {
-    matrix.startVec(column);
-    const auto begin = order.begin() + starts[column], end = order.begin() + starts[column + 1];
+  Rows<Real> rows;
+  rows.columns.reserve(entries.size() / 2);
+  rows.values.reserve(entries.size() / 2);
+  for (int row = 0; row < size; ++row) {
+    const auto begin = order.begin() + starts[row], end = order.begin() + starts[row + 1];
     std::sort(begin, end, [&](int a, int b) {
-      return std::pair(entries[a].row, a) < std::pair(entries[b].row, b);
+      return std::pair(entries[a].column, a) < std::pair(entries[b].column, b);
     });
     for (auto place = begin; place != end;) {
-      const int row = entries[*place].row;
-      double sum = 0;
-      for (; place != end && entries[*place].row == row; ++place) sum += entries[*place].value;
+      const int column = entries[*place].column;
+      Real sum = 0;
+      for (; place != end && entries[*place].column == column; ++place)
+        sum += entries[*place].value;
       const bool has_mass = row == column && row < static_cast<int>(masses_.size());
-      matrix.insertBack(row, column) = has_mass ? sum + shift * masses_[row] : sum;
+      rows.columns.push_back(column);
+      rows.values.push_back(has_mass ? sum + Real{shift} * masses_[row] : sum);
     }
+    rows.starts.push_back(rows.columns.size());
+  }
+  return rows;
+}
+
+SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift) const {
+  // The rows of the lower half are the columns of the upper one.
+  const Rows<double> columns = rows<double>(bending, shift, Half::Lower);
+  SparseMatrix matrix(reduced_.count, reduced_.count);
+  matrix.reserve(static_cast<Eigen::Index>(columns.values.size()));
+  for (int column = 0; column < reduced_.count; ++column) {
+    matrix.startVec(column);
+    for (std::size_t k = columns.starts[column]; k < columns.starts[column + 1]; ++k)
+      matrix.insertBack(columns.columns[k], column) = columns.values[k];
   }
   matrix.finalize();
   return matrix;
@@ -108,7 +131,7 @@ Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
   auto factored = matrix_.factor(reduced_.count, has_same_pattern,
                                  [&] { return upper = matrix(bending_, shift_); });
   if (!factored) return factored;
-  if (auto chosen = choose_passes(upper); !chosen) return chosen;
+  if (auto measured = measure_error(upper); !measured) return measured;
   is_factored_ = true;
   return {};
 }
@@ -147,43 +170,44 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
 }
 
 Field TrianglePlate::residual(const Field& solution, const Field& right_hand_sides) const {
-  using Real = long double;
+  const double* const x = solution.col(0).data();
+  const double* const y = solution.col(1).data();
+  const double* const z = solution.col(2).data();
   Field result(right_hand_sides.rows(), 3);
-  std::vector<std::array<Real, 3>> sums(static_cast<std::size_t>(solution.rows()));
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const Real mass = k < masses_.size() ? masses_[k] : 0;
-    for (int n = 0; n < 3; ++n) {
-      sums[k][n] = right_hand_sides(row, n) - shift_ * mass * solution(row, n);
+  for (Eigen::Index row = 0; row < result.rows(); ++row) {
+    Extended of_x = right_hand_sides(row, 0);
+    Extended of_y = right_hand_sides(row, 1);
+    Extended of_z = right_hand_sides(row, 2);
+    for (std::size_t k = precise_.starts[row]; k < precise_.starts[row + 1]; ++k) {
+      const Extended entry = precise_.values[k];
+      const int column = precise_.columns[k];
+      of_x -= entry * x[column];
+      of_y -= entry * y[column];
+      of_z -= entry * z[column];
     }
-  }
-  CellBlock<Real> block;
-  for (int k = 0; k < cells_.block_count(); ++k) {
-    block.compute(cells_, k, reduced_, bending_);
-    for (int a = block.inner_count(); a < block.size(); ++a) {
-      const int row = reduced_.places[block.unknown(a)];
-      for (int b = block.inner_count(); b < block.size(); ++b) {
-        const int column = reduced_.places[block.unknown(b)];
-        const Real entry = a < b ? block.at(a, b) : block.at(b, a);
-        for (int n = 0; n < 3; ++n) sums[row][n] -= entry * solution(column, n);
-      }
-    }
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    for (int n = 0; n < 3; ++n) {
-      result(static_cast<Eigen::Index>(k), n) = static_cast<double>(sums[k][n]);
-    }
+    result(row, 0) = static_cast<double>(of_x);
+    result(row, 1) = static_cast<double>(of_y);
+    result(row, 2) = static_cast<double>(of_z);
   }
   return result;
 }
 
-// How often a solution must be corrected, from the errors of one that presses evenly on the plate.
-Result<void> TrianglePlate::choose_passes(const SparseMatrix& upper) {
-  constexpr int most_passes = 10;
-  constexpr double largest_error = 1e-10;  // of the peak
-  refinement_passes_ = 0;
+// Of the points that have a mass.
+double TrianglePlate::peak(const Field& solution) const {
+  return solution.topRows(static_cast<Eigen::Index>(masses_.size())).cwiseAbs().maxCoeff();
+}
+
+void TrianglePlate::drop_precise() {
+  precise_ = {};
+  static_cast<void>(precise_share_.try_resize(0));  // to give back never fails
+}
+
+// Finds the error of a solution, by one that presses evenly on the plate: if it is too large, all
+// are corrected.
+Result<void> TrianglePlate::measure_error(const SparseMatrix& upper) {
+  solve_error_ = 0;
+  drop_precise();
   const auto points = static_cast<Eigen::Index>(masses_.size());
-  const auto peak = [&](const Field& w) { return w.col(0).head(points).cwiseAbs().maxCoeff(); };
   Field pressure = Field::Zero(reduced_.count, 3);
   pressure.col(0).head(points) = Eigen::Map<const Eigen::VectorXd>(masses_.data(), points);
   auto solution = matrix_.solve(pressure);
@@ -194,28 +218,41 @@ Result<void> TrianglePlate::choose_passes(const SparseMatrix& upper) {
   rough.col(0) = pressure.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
   const auto first = matrix_.solve(rough);
   if (!first) return fail(first.error());
-  if (peak(*first) < 0.1 * largest_error * peak(*solution)) return {};
-  double before = std::numeric_limits<double>::infinity();
-  while (refinement_passes_ < most_passes) {
-    auto correction = matrix_.solve(residual(*solution, pressure));
-    if (!correction) return fail(correction.error());
-    *solution += *correction;
-    const double error = peak(*correction) / peak(*solution);
-    // The corrections become as small as rounding lets them.
-    if (!(error > largest_error) || !(error < 0.5 * before)) break;
-    before = error;
-    ++refinement_passes_;
-  }
+  if (peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+  // Both halves of the matrix, and twice as much while they are gathered.
+  const std::size_t bytes =
+      static_cast<std::size_t>(upper.nonZeros()) * 6 * (sizeof(Extended) + 2 * sizeof(int));
+  if (!precise_share_.try_resize(bytes))
+    return fail(ErrorCode::OutOfMemory, precise_share_.complaint(bytes));
+  precise_ = rows<Extended>(bending_, shift_, Half::Both);
+  const auto correction = matrix_.solve(residual(*solution, pressure));
+  if (!correction) return fail(correction.error());
+  solve_error_ = peak(*correction) / peak(*solution);
+  if (solve_error_ > largest_error) return {};
+  solve_error_ = 0;
+  drop_precise();
   return {};
 }
 
-Result<Field> TrianglePlate::solve_refined(const Field& right_hand_sides) {
+// Corrects a guess until what a solve leaves is small. A good guess, such as the way on from the
+// steps before, needs one solve, and without one a solution is the first guess.
+Result<Field> TrianglePlate::solve_refined(const Field& right_hand_sides,
+                                           std::optional<Field> guess) {
+  constexpr int most_passes = 10;
   matrix_.count_solve();
-  auto solution = matrix_.solve(right_hand_sides);
-  for (int pass = 0; solution && pass < refinement_passes_; ++pass) {
+  if (!refines()) return matrix_.solve(right_hand_sides);
+  Result<Field> solution =
+      guess ? Result<Field>(*std::move(guess)) : matrix_.solve(right_hand_sides);
+  double before = std::numeric_limits<double>::infinity();
+  for (int pass = 0; solution && pass < most_passes; ++pass) {
     auto correction = matrix_.solve(residual(*solution, right_hand_sides));
     if (!correction) return correction;
     *solution += *correction;
+    const double change = peak(*correction);
+    // The corrections become as small as rounding lets them.
+    if (!(solve_error_ * change > largest_error * peak(*solution)) || !(change < 0.5 * before))
+      break;
+    before = change;
   }
   return solution;
 }
@@ -225,7 +262,7 @@ Result<Field> TrianglePlate::solve(const Field& forces) {
   PLIANT_EXPECTS(is_factored_ && forces.rows() == points);
   Field right_hand_sides = Field::Zero(reduced_.count, 3);
   right_hand_sides.topRows(points) = forces;
-  auto solution = solve_refined(right_hand_sides);
+  auto solution = solve_refined(right_hand_sides, {});
   if (!solution) return solution;
   return Field(solution->topRows(points));
 }
@@ -249,14 +286,20 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   Field w = state.displacement.topRows(points);
   Field v = std::move(state.velocity);
   Field right_hand_sides = known;
+  // The solutions of the last two steps, if they are refined.
+  std::optional<Field> last, before;
   for (int step = 0; step < steps.count; ++step) {
     if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     for (int k = 0; k < 3; ++k) {
       right_hand_sides.col(k).head(points) =
           known.col(k).head(points) + masses.cwiseProduct(shift * w.col(k) + inertia * v.col(k));
     }
-    auto next = solve_refined(right_hand_sides);
+    auto next = solve_refined(right_hand_sides, before ? Field(2 * *last - *before) : last);
     if (!next) return fail(next.error());
+    if (refines()) {
+      before = std::move(last);
+      last = *next;
+    }
     v = (next->topRows(points) - w) / dt;
     w = next->topRows(points);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/core/triangle_cells.hpp"
@@ -66,9 +67,25 @@ class TrianglePlate {
  private:
   Field reduced(const Field& forces) const;
   Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
+  using Extended = long double;
+  enum class Half { Lower, Both };
+
+  // A sparse matrix by rows, its columns ascending.
+  template <class Real>
+  struct Rows {
+    std::vector<std::size_t> starts = {0};  // #rows + 1
+    std::vector<int> columns = {};
+    std::vector<Real> values = {};
+  };
+
+  template <class Real>
+  Rows<Real> rows(const Bending& bending, double shift, Half half) const;
   Field residual(const Field& solution, const Field& right_hand_sides) const;
-  Result<Field> solve_refined(const Field& right_hand_sides);
-  Result<void> choose_passes(const SparseMatrix& upper);
+  double peak(const Field& solution) const;
+  void drop_precise();
+  bool refines() const { return solve_error_ > 0; }
+  Result<Field> solve_refined(const Field& right_hand_sides, std::optional<Field> guess);
+  Result<void> measure_error(const SparseMatrix& upper);
 
   TriangleCells cells_;
   std::vector<double> masses_;
@@ -78,7 +95,10 @@ class TrianglePlate {
   bool is_factored_ = false;
   Bending bending_;  // of the factored matrix
   double shift_ = 0;
-  int refinement_passes_ = 0;  // needed for it
+
+  double solve_error_ = 0;  // of a solution, as a part of its peak; 0: small enough
+  Rows<Extended> precise_;  // the factored matrix, if solutions are refined
+  MemoryShare precise_share_;
 };
 
 }  // namespace pliant
