@@ -269,8 +269,10 @@ TEST_CASE("a force between the nodes of a coarse mesh is told from one that is f
     return plan.surface->forces[0].is_near;
   };
   CHECK(is_near({0.12, 0, 0.1}));
-  CHECK(is_near({-0.37, 0.01, 0.4}));
+  CHECK(is_near({-0.37, 0.009, 0.4}));
+  CHECK_FALSE(is_near({-0.37, 0.011, 0.4}));  // above a face
   CHECK_FALSE(is_near({0.12, 0.9, 0.1}));
+  CHECK_FALSE(is_near({0.52, 0, 0.1}));  // beside the border
   CHECK_FALSE(is_near({2, 0, 0}));
 }
 

@@ -163,6 +163,60 @@ std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& l
   return is_within;
 }
 
+namespace {
+
+// Searches a triangle, in world space, for a place nearer than `radius`.
+class TriangleSearch {
+ public:
+  TriangleSearch(const SampledForce& force, double radius) : force_(force), radius_(radius) {}
+
+  bool finds(const std::array<Vector3d, 3>& corners) {
+    looks_ = 0;
+    return finds(corners, 0);
+  }
+
+ private:
+  // A distance changes by no more than the way to another position, so that most parts are settled
+  // at once; what is still open at last touches the force at most.
+  bool finds(const std::array<Vector3d, 3>& corners, int level) {
+    constexpr int finest = 20, most_looks = 500;
+    const Vector3d middle = (corners[0] + corners[1] + corners[2]) / 3;
+    double way = 0;
+    for (const Vector3d& corner : corners) way = std::max(way, (corner - middle).norm());
+    const double least = distance(force_.kind, middle);
+    ++looks_;
+    if (least < radius_) return true;
+    if (!(least - way < radius_) || level == finest || looks_ > most_looks) return false;
+    const auto& [a, b, c] = corners;
+    const Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+    return finds({a, ab, ca}, level + 1) || finds({ab, b, bc}, level + 1) ||
+           finds({ca, bc, c}, level + 1) || finds({ab, bc, ca}, level + 1);
+  }
+
+  const SampledForce& force_;
+  double radius_;
+  int looks_ = 0;
+};
+
+// Whether a face is nearer than `radius` anywhere.
+bool reaches_face(const TriangleSurface& surface, int face, const Transform& transform,
+                  TriangleSearch& search) {
+  const auto nodes = surface.nodes_of(face);
+  const auto place = [&](int node) {
+    return to_world(transform, Vector3d(surface.rest.row(node).transpose()));
+  };
+  if (!surface.has_centre(face))
+    return search.finds({place(nodes[0]), place(nodes[1]), place(nodes[2])});
+  Vector3d centre = Vector3d::Zero();
+  for (const int node : nodes) centre += place(node) / static_cast<double>(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (search.finds({place(nodes[k]), place(nodes[(k + 1) % nodes.size()]), centre})) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
              const SampledForce& force, double radius, bool with_faces) {
   bool is_found = false;
@@ -177,12 +231,18 @@ bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transf
     }
     return largest;
   };
+  TriangleSearch search(force, radius);
   const double beyond = with_faces ? surface.widest_face * transform.linear.norm() : 0;
   visit_near(surface, tree, transform, force, radius + beyond,
              [&](std::span<const int> rows, const BatchNumbers& distance) {
                for (std::size_t n = 0; n < rows.size() && !is_found; ++n) {
-                 const double reach = with_faces ? radius + radius_of_ball(rows[n]) : radius;
-                 is_found = distance.of[n] < reach;
+                 is_found = distance.of[n] < radius;
+                 if (is_found || !with_faces || distance.of[n] >= radius + radius_of_ball(rows[n]))
+                   continue;
+                 const auto faces = surface.faces_of(rows[n]);
+                 is_found = std::any_of(faces.begin(), faces.end(), [&](int face) {
+                   return reaches_face(surface, face, transform, search);
+                 });
                }
                return !is_found;
              });

@@ -52,8 +52,8 @@ std::vector<double> depths_of(const PlacedNodes& placed, std::span<const int> no
 std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& level_set,
                                const Transform& transform, const SampledForce& force);
 
-/// Whether any node at rest is nearer to a force than `radius`, or, with `with_faces`, a face may
-/// be: by a ball around its corners.
+/// Whether any node at rest is nearer to a force than `radius`, or, with `with_faces`, any place on
+/// a face.
 bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
              const SampledForce& force, double radius, bool with_faces);
 
