@@ -69,7 +69,7 @@ std::string changed_collada(const std::string& from, const std::string& to) {
 }  // namespace
 
 TEST_CASE("Collada and FBX keep quads, with a vertex for each corner",
-          "[mesh][read_assimp][threads]") {
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   check_equal(
@@ -84,7 +84,7 @@ TEST_CASE("Collada and FBX keep quads, with a vertex for each corner",
   }
 }
 
-TEST_CASE("(u,v) point the same way as in OBJ", "[mesh][read_assimp][threads]") {
+TEST_CASE("(u,v) point the same way as in OBJ", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(true);
   for (auto& [u, v] : sheet.uvs) v = v * 0.5;  // not symmetric in v
@@ -96,7 +96,8 @@ TEST_CASE("(u,v) point the same way as in OBJ", "[mesh][read_assimp][threads]") 
   CHECK(mapping.rest == of_obj.rest);
 }
 
-TEST_CASE("the transforms of a node and of all above it apply", "[mesh][read_assimp][threads]") {
+TEST_CASE("the transforms of a node and of all above it apply",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = by_corner(small_sheet(false));
   const auto scale = GENERATE(std::array{2, 3, 4}, std::array{-2, 3, 4});  // the second mirrors
@@ -114,7 +115,7 @@ TEST_CASE("the transforms of a node and of all above it apply", "[mesh][read_ass
   CHECK(mesh.corner_vertices == sheet.corner_vertices);  // a mirror does not reverse faces
 }
 
-TEST_CASE("without a transform positions keep their bits", "[mesh][read_assimp][threads]") {
+TEST_CASE("without a transform positions keep their bits", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(false);
   sheet.positions.array() /= 1024;
@@ -127,7 +128,7 @@ TEST_CASE("without a transform positions keep their bits", "[mesh][read_assimp][
   CHECK(std::signbit(mesh.positions(corner - sheet.corner_vertices.begin(), 1)));
 }
 
-TEST_CASE("Collada's unit and up axis are applied", "[mesh][read_assimp][threads]") {
+TEST_CASE("Collada's unit and up axis are applied", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const std::string asset = "<unit name=\"cm\" meter=\"0.01\"/><up_axis>Z_UP</up_axis>";
   const auto file = folder.write("a.dae", sheet_collada(collada_node("n", instance), asset));
@@ -138,7 +139,8 @@ TEST_CASE("Collada's unit and up axis are applied", "[mesh][read_assimp][threads
   CHECK((positions - expected).cwiseAbs().maxCoeff() < float_error);
 }
 
-TEST_CASE("an object is a node with faces, taken by its name", "[mesh][read_assimp][threads]") {
+TEST_CASE("an object is a node with faces, taken by its name",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const std::string right = collada_node("right", "<translate>5 0 0</translate>" + instance);
   const std::string nodes = collada_node("empty", collada_node("left", instance) + right);
@@ -157,7 +159,7 @@ TEST_CASE("an object is a node with faces, taken by its name", "[mesh][read_assi
   CHECK(read_assimp(single, "cloth")->positions == left.positions);  // the mesh's own name
 }
 
-TEST_CASE("a list of many objects is cut", "[mesh][read_assimp][threads]") {
+TEST_CASE("a list of many objects is cut", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   std::string nodes;
   for (int k = 0; k < 30; ++k) nodes += collada_node(fmt::format("n{}", k), instance);
@@ -165,7 +167,8 @@ TEST_CASE("a list of many objects is cut", "[mesh][read_assimp][threads]") {
              EndsWith("\"n9\", … (30 in all)"));
 }
 
-TEST_CASE("a node's meshes of several materials become one", "[mesh][read_assimp][threads]") {
+TEST_CASE("a node's meshes of several materials become one",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   const std::string faces = collada_faces(sheet, 0, 1, false) + collada_faces(sheet, 1, 4, false);
@@ -174,7 +177,7 @@ TEST_CASE("a node's meshes of several materials become one", "[mesh][read_assimp
   CHECK(find_grid(read_assimp(file).value()));
 }
 
-TEST_CASE("the set of (u,v) is taken by its number", "[mesh][read_assimp][threads]") {
+TEST_CASE("the set of (u,v) is taken by its number", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   const auto file = folder.write(
@@ -190,7 +193,7 @@ TEST_CASE("the set of (u,v) is taken by its number", "[mesh][read_assimp][thread
   CHECK(read_assimp(folder.write("a.fbx", fbx_text(sheet)), "", 1)->uvs == by_corner(sheet).uvs);
 }
 
-TEST_CASE("a mesh without (u,v) is read, and is no grid", "[mesh][read_assimp][threads]") {
+TEST_CASE("a mesh without (u,v) is read, and is no grid", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const auto file = folder.write(
       "a.dae",
@@ -201,7 +204,8 @@ TEST_CASE("a mesh without (u,v) is read, and is no grid", "[mesh][read_assimp][t
   CHECK_THAT(complaint(file, "", 1), contains_text("the object has 0 UV sets"));
 }
 
-TEST_CASE("points and lines are passed over, and are not enough", "[mesh][read_assimp][threads]") {
+TEST_CASE("points and lines are passed over, and are not enough",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   const std::string lines =
@@ -214,7 +218,7 @@ TEST_CASE("points and lines are passed over, and are not enough", "[mesh][read_a
              EndsWith("b.dae: error: the file has no faces"));
 }
 
-TEST_CASE("coordinates that are not finite are refused", "[mesh][read_assimp][threads]") {
+TEST_CASE("coordinates that are not finite are refused", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(false);
   SECTION("a position") { sheet.positions(4, 1) = NAN; }
@@ -223,7 +227,7 @@ TEST_CASE("coordinates that are not finite are refused", "[mesh][read_assimp][th
   CHECK_THAT(complaint(file), contains_text("a.fbx: error: ") && contains_text("not finite"));
 }
 
-TEST_CASE("a transform that is not affine is refused", "[mesh][read_assimp][threads]") {
+TEST_CASE("a transform that is not affine is refused", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const std::string node =
       collada_node("n", "<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0.5 0 0 1</matrix>" + instance);
@@ -246,7 +250,7 @@ TEST_CASE("a file that cannot be opened is unreadable", "[mesh][read_assimp]") {
   }
 }
 
-TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp][threads]") {
+TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   struct Case {
     std::string name, text, expected;
@@ -265,7 +269,8 @@ TEST_CASE("a broken file is one line with the reason", "[mesh][read_assimp][thre
   }
 }
 
-TEST_CASE("of a file that is something else nothing is told", "[mesh][read_assimp][threads]") {
+TEST_CASE("of a file that is something else nothing is told",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   for (const std::string ending : {"fbx", "dae"}) {
     for (const std::string text : {"root:x:0:0:root:/root:/bin/bash\n", "<secret>root</secret>"}) {
@@ -278,7 +283,8 @@ TEST_CASE("of a file that is something else nothing is told", "[mesh][read_assim
 
 // The result of assimp 5.2 for each file does not matter: a crash, an error, even a mesh. It must
 // not harm this process, must end, and must be reported in one line.
-TEST_CASE("files made to break assimp break nothing of ours", "[mesh][read_assimp][threads]") {
+TEST_CASE("files made to break assimp break nothing of ours",
+          "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   const std::string node = collada_node("n", instance);
@@ -362,7 +368,7 @@ TEST_CASE("files made to break assimp break nothing of ours", "[mesh][read_assim
   }
 }
 
-TEST_CASE("sound FBX files with odd links are read", "[mesh][read_assimp][threads]") {
+TEST_CASE("sound FBX files with odd links are read", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(false);
   const std::vector<FbxMore> sound = {{.links = {{21, 10}, {0, 21}}},
@@ -396,7 +402,7 @@ TEST_CASE("eight threads read at once", "[mesh][read_assimp][threads]") {
   CHECK(equal == 32);
 }
 
-TEST_CASE("no prefix or mutation of a mesh file does harm", "[mesh][read_assimp][threads]") {
+TEST_CASE("no prefix or mutation of a mesh file does harm", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   const std::vector<std::pair<std::string, std::string>> files = {
       {"a.dae", sheet_collada(collada_node("n", instance))},

@@ -31,7 +31,7 @@ std::string boxed_complaint(const std::filesystem::path& file, const std::string
 }  // namespace
 
 TEST_CASE("whatever becomes of the reader is one line that names the file",
-          "[mesh][read_boxed][threads]") {
+          "[mesh][read_boxed][threads][boxed]") {
   const ScratchFolder folder;
   const auto file = folder.write("a.fbx", "1234567");
   const auto check = [&](const std::string& what, const std::string& expected) {
@@ -51,7 +51,7 @@ TEST_CASE("whatever becomes of the reader is one line that names the file",
              contains_text("the Collada reader"));
 }
 
-TEST_CASE("what the reader says is one short line", "[mesh][read_boxed][threads]") {
+TEST_CASE("what the reader says is one short line", "[mesh][read_boxed][threads][boxed]") {
   const ScratchFolder folder;
   const std::string told = boxed_complaint(folder.write("a.fbx", ""), "tell lies");
   CHECK_THAT(told, contains_text("the file cannot be read: ?[2Jgo and \"run\" thisxxx"));
@@ -60,7 +60,7 @@ TEST_CASE("what the reader says is one short line", "[mesh][read_boxed][threads]
 }
 
 TEST_CASE("a budget below the file's own bound is memory that is short",
-          "[mesh][read_boxed][threads]") {
+          "[mesh][read_boxed][threads][boxed]") {
   const ScratchFolder folder;
   const auto file = folder.write("a.fbx", std::string(1 << 20, 'x'));
   MemoryBudget little(1000);
@@ -79,7 +79,7 @@ TEST_CASE("time and memory grow with the file", "[mesh][read_boxed]") {
   CHECK(box_limits(100'000'000, 1'000'000'000).memory == 1'000'000'000);
 }
 
-TEST_CASE("reading ends when its caller wants to stop", "[mesh][read_boxed][threads]") {
+TEST_CASE("reading ends when its caller wants to stop", "[mesh][read_boxed][threads][boxed]") {
   const ScratchFolder folder;
   const auto mesh =
       misread(folder.write("a.fbx", ""), "spin", {.should_stop = [] { return true; }});
@@ -88,7 +88,7 @@ TEST_CASE("reading ends when its caller wants to stop", "[mesh][read_boxed][thre
 }
 
 // An answer through all stages: the file contains the answer of the program.
-TEST_CASE("no answer makes a mesh that is none", "[mesh][read_boxed][threads]") {
+TEST_CASE("no answer makes a mesh that is none", "[mesh][read_boxed][threads][boxed]") {
   const ScratchFolder folder;
   const int input = open(folder.write("a.fbx", fbx_binary(small_sheet(false))).c_str(), O_RDONLY);
   std::string whole =

@@ -21,7 +21,7 @@ std::string complaint_of_file(const std::filesystem::path& file, const std::stri
 
 }  // namespace
 
-TEST_CASE("the ending picks the reader, in any case", "[mesh][read_mesh][threads]") {
+TEST_CASE("the ending picks the reader, in any case", "[mesh][read_mesh][threads][boxed]") {
   const ScratchFolder folder;
   const Mesh sheet = small_sheet(true);
   Gltf gltf;

@@ -77,8 +77,8 @@ TEST_CASE("a cage moves as the mesh that it is", "[simulation][subdivision]") {
 
 TEST_CASE("a cage that is a grid is refined", "[simulation][subdivision]") {
   if (!has_opensubdiv()) return;
-  Surface cage = with_shape(
-      sheet("s"), make_mesh({.columns = 13, .rows = 13, .width = 12, .depth = 12}));
+  Surface cage =
+      with_shape(sheet("s"), make_mesh({.columns = 13, .rows = 13, .width = 12, .depth = 12}));
   cage.subdivision = Subdivision{.levels = 1};
   auto simulation = Simulation::make(scene({cage}, {poke("p", {0, 0, 0})})).value();
   const RestShape& shape = simulation.rest_shapes()[0];
@@ -141,7 +141,8 @@ TEST_CASE("a displacement goes through both transforms", "[simulation][driven]")
   CHECK(follower.peak_displacement() > 0.1);
 }
 
-TEST_CASE("forces act on drivers only, and threads change no bit", "[simulation][driven][threads]") {
+TEST_CASE("forces act on drivers only, and threads change no bit",
+          "[simulation][driven][threads]") {
   const Surface skin = driven("skin", "cage", sphere(3));
   Scene s = scene({sheet("cage"), skin}, {poke("p", {0, 0, 0})});
   CHECK(Simulation::check(s));
