@@ -70,7 +70,7 @@ Bound bound_of(const SurfaceBody& body, const BodyInputs& in, int repetitions) {
   Bound bound;
   bound.factor = median_ms(repetitions, [&] {
     factor = make_sparse_factor(available_solvers().front());
-    if (!factor->analyze(matrix) || !factor->factorize(matrix)) std::abort();
+    if (!factor->analyze(matrix) || !factor->factorize(matrix, {})) std::abort();
   });
   const Field forces = Field::Random(matrix.rows(), 3);
   bound.solves = median_ms(repetitions, [&] {

@@ -26,6 +26,7 @@ class CholmodFactor final : public SparseFactor {
   }
   ~CholmodFactor() override {
     cholmod_free_factor(&factor_, &common_);
+    cholmod_free_factor(&pattern_, &common_);
     for (cholmod_dense* dense : {solution_, workspace_y_, workspace_e_}) {
       cholmod_free_dense(&dense, &common_);
     }
@@ -34,16 +35,35 @@ class CholmodFactor final : public SparseFactor {
 
   Result<void> analyze(const SparseMatrix& matrix) override {
     cholmod_free_factor(&factor_, &common_);
+    cholmod_free_factor(&pattern_, &common_);
     cholmod_sparse view = view_of(matrix);
-    factor_ = cholmod_analyze(&view, &common_);
+    pattern_ = cholmod_analyze(&view, &common_);
     return check(matrix.rows());
   }
 
   std::size_t entries() const override { return static_cast<std::size_t>(common_.lnz); }
 
-  Result<void> factorize(const SparseMatrix& matrix) override {
-    cholmod_sparse view = view_of(matrix);
-    cholmod_factorize(&view, factor_, &common_);
+  // What `cholmod_factorize` does, but some rows at a time.
+  Result<void> factorize(const SparseMatrix& matrix, const StopRequest& should_stop) override {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_sparse* const ordered = in_order(matrix);
+    if (ordered) factor_ = cholmod_copy_factor(pattern_, &common_);
+    bool is_stopped = false;
+    // LDL^T, by columns, each as long as the analysis found.
+    if (factor_ && cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, factor_, &common_)) {
+      constexpr std::size_t rows_at_a_time = 64;
+      const auto size = static_cast<std::size_t>(matrix.rows());
+      double beta[2] = {0, 0};
+      for (std::size_t row = 0; row < size && common_.status == CHOLMOD_OK; row += rows_at_a_time) {
+        is_stopped = should_stop && should_stop();
+        if (is_stopped) break;
+        cholmod_rowfac(ordered, nullptr, beta, row, std::min(size, row + rows_at_a_time), factor_,
+                       &common_);
+      }
+    }
+    cholmod_sparse* rest = ordered;
+    cholmod_free_sparse(&rest, &common_);
+    if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
     if (auto checked = check(matrix.rows()); !checked) return checked;
     // CHOLMOD factors an indefinite matrix as LDL^T without an error; D, the first entry of each
     // column of the factor, shows whether the matrix was definite. !(d > 0) is true for NaN too.
@@ -90,6 +110,17 @@ class CholmodFactor final : public SparseFactor {
     return view;
   }
 
+  // The upper triangle of the matrix in the order of the factor; null: no memory.
+  cholmod_sparse* in_order(const SparseMatrix& matrix) {
+    cholmod_sparse view = view_of(matrix);
+    auto* const order = static_cast<int*>(pattern_->Perm);
+    cholmod_sparse* lower = cholmod_ptranspose(&view, 2, order, nullptr, 0, &common_);
+    cholmod_sparse* const upper =
+        lower ? cholmod_ptranspose(lower, 2, nullptr, nullptr, 0, &common_) : nullptr;
+    cholmod_free_sparse(&lower, &common_);
+    return upper;
+  }
+
   Result<void> check(long size) const {
     if (common_.status == CHOLMOD_OK || common_.status == CHOLMOD_DSMALL) return {};
     if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE) {
@@ -99,6 +130,7 @@ class CholmodFactor final : public SparseFactor {
   }
 
   cholmod_common common_ = {};
+  cholmod_factor* pattern_ = nullptr;  // of the analysis
   cholmod_factor* factor_ = nullptr;
   cholmod_dense* solution_ = nullptr;
   cholmod_dense* workspace_y_ = nullptr;

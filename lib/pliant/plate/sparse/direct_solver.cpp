@@ -13,7 +13,7 @@ namespace {
 class DirectSolver final : public PlateSolver {
  public:
   DirectSolver(SolverChoice choice, const RunContext& context)
-      : PlateSolver(context), matrix_(choice, context.memory) {}
+      : PlateSolver(context), matrix_(choice, context) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     if (factored_ == system) return {};

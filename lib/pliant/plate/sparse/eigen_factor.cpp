@@ -15,7 +15,7 @@ class EigenFactor final : public SparseFactor {
 
   std::size_t entries() const override { return ldlt_.factor_entries(); }
 
-  Result<void> factorize(const SparseMatrix& matrix) override {
+  Result<void> factorize(const SparseMatrix& matrix, const StopRequest&) override {
     ldlt_.factorize(matrix);
     // Eigen reports zero pivots only; it factors an indefinite matrix as LDL^T without an error.
     Eigen::Index pivot = 0;

@@ -41,7 +41,7 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
     if (auto taken = take(size, bytes_to_factorize * size + bytes); !taken) return taken;
   }
   ++counts_.factorizations;
-  return factor_->factorize(matrix);
+  return factor_->factorize(matrix, should_stop_);
 } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
   return fail(no_memory_for_factor(size));
 }

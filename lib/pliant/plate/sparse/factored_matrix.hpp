@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/run_context.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
 
 namespace pliant {
@@ -13,13 +14,13 @@ namespace pliant {
 /// reserves memory before it is used. Internal to plate.
 class FactoredMatrix {
  public:
-  /// Requires: the choice is available; `memory`, from which it reserves, outlives it; null: no
-  /// limit.
-  FactoredMatrix(SolverChoice choice, MemoryBudget* memory) : choice_(choice), memory_(memory) {}
+  /// Requires: the choice is available.
+  FactoredMatrix(SolverChoice choice, const RunContext& context)
+      : choice_(choice), memory_(context.memory), should_stop_(context.should_stop) {}
 
   /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
   /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
-  /// OutOfMemory; SolverFailed if it is not positive definite.
+  /// OutOfMemory; SolverFailed if it is not positive definite; Interrupted.
   Result<void> factor(long size, bool has_same_pattern,
                       const std::function<SparseMatrix()>& assemble);
 
@@ -35,6 +36,7 @@ class FactoredMatrix {
 
   SolverChoice choice_;
   MemoryShare memory_;
+  StopRequest should_stop_;
   std::unique_ptr<SparseFactor> factor_;
   SolverCounts counts_;
 };

@@ -7,6 +7,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
@@ -28,8 +29,9 @@ class SparseFactor {
   /// Entries of the factor of the analysed matrix.
   virtual std::size_t entries() const = 0;
 
-  /// Factors a matrix with the pattern of the analysed one.
-  virtual Result<void> factorize(const SparseMatrix& matrix) = 0;
+  /// Factors a matrix with the pattern of the analysed one. CHOLMOD asks `should_stop` every now
+  /// and then, Eigen cannot. Errors: SolverFailed if it is not positive definite; Interrupted.
+  virtual Result<void> factorize(const SparseMatrix& matrix, const StopRequest& should_stop) = 0;
 
   /// Solves for three right-hand sides (#rows x 3).
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;

@@ -26,7 +26,7 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       masses_(std::move(masses)),
       context_(context),
       reduced_(cells_, static_cast<int>(masses_.size())),
-      matrix_(choice, context.memory),
+      matrix_(choice, context),
       precise_share_(context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
 }
