@@ -15,7 +15,7 @@ namespace {
 
 // `force` is the force of the report; null: a group.
 Json force_json(const ForceReport& report, bool is_surface, const Force* force, int frame) {
-  const auto& [name, kind, sampled, selection, push, counts] = report;
+  const auto& [name, kind, sampled, selection, push, counts, outline] = report;
   Json json = {{"name", name},
                {"kind", kind},
                {"magnitude", sampled->magnitude},

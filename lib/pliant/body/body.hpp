@@ -62,6 +62,11 @@ class Body {
   const BodyState& state() const { return state_; }
   const BodySettings& settings() const { return settings_; }
 
+  /// The nodes from which the forces' distances are measured (#nodes x 3, object space).
+  const Field& measured() const {
+    return settings_.measure == Measure::Rest ? rest_ : state_.positions;
+  }
+
   BodyState rest_state() const;  ///< after a `reset`
 
   /// Continues from `state`, the result of `state()` of a body like this one.
@@ -70,10 +75,6 @@ class Body {
  protected:
   Body(Field rest, const BodySettings& settings);
 
-  /// The nodes from which the forces' distances are measured (#nodes x 3, object space).
-  const Field& measured() const {
-    return settings_.measure == Measure::Rest ? rest_ : state_.positions;
-  }
   bool recovers() const { return settings_.release == Release::Recover; }
 
   Field rest_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/hash_stream.hpp"
+#include "pliant/feedback/cut_outline.hpp"
 #include "pliant/region/region.hpp"
 #include "pliant/sampling/sampling.hpp"
 
@@ -29,6 +30,16 @@ Hash hash_of_cut(const SurfaceSelection& selection) {
   return stream.hash();
 }
 
+// Around the part of the region that is nearer to a force than its force radius.
+SurfaceLines pushed_part(const Body& body, const SurfaceInputs& inputs,
+                         const SurfaceSelection& selection, const SampledForce& force) {
+  if (!(force.force_radius > 0)) return {};
+  const PlacedNodes measured(body.measured(), inputs.body.transform);
+  const std::vector<double> depths =
+      depths_of(measured, selection.level_set.nodes, force.kind, force.force_radius);
+  return outline_of(selection.pieces, selection.level_set, depths);
+}
+
 }  // namespace
 
 Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
@@ -47,6 +58,7 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
     report.cut = hash_of_cut(*step->surface);
     for (const SurfacePiece& piece : step->surface->pieces) {
       report.pieces.push_back(piece.counts(step->surface->level_set));
+      report.outlines.push_back({piece.moves(), outline_of(piece, step->surface->level_set)});
     }
   }
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
@@ -57,6 +69,7 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
     force.push = body.push_of(inputs.body, *step, k);
     if (step->surface) {
       force.counts = step->surface->forces[k].counts;
+      force.outline = pushed_part(body, inputs, *step->surface, inputs.body.forces[k]);
     } else {
       force.selection = step->selection.forces[k];
     }

@@ -8,6 +8,7 @@
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/feedback/surface_lines.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/region/selection.hpp"
 
@@ -27,6 +28,9 @@ struct ForceReport {
   ForceSelection selection;  ///< its boxes in nodes, and the index of its region
   Push push;                 ///< its effect on the nodes that move
   CutCounts counts = {};     ///< on a surface of triangles: of its own sphere
+  /// On a surface of triangles: around the part of the region that is nearer than its force radius,
+  /// between nodes.
+  SurfaceLines outline = {};
 };
 
 /// The solve at a frame, on one surface. SPEC 5, 6.
@@ -43,6 +47,7 @@ struct SurfaceReport {
   /// On a surface of triangles, which has pieces in place of regions.
   bool is_surface = false;
   std::vector<CutCounts> pieces = {};
+  std::vector<PieceOutline> outlines = {};  ///< of the pieces
   /// Of phi at the nodes in and around the region, and of what is held; none: the surface is
   /// disabled, or not started.
   std::optional<Hash> cut = {};

@@ -433,4 +433,32 @@ std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_
   return at_points;
 }
 
+std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const double> at_nodes,
+                                     std::span<const double> at_centres) {
+  const auto at_end = [&](int end) { return end >= 0 ? at_nodes[end] : at_centres[-1 - end]; };
+  std::vector<double> at(piece.points.size());
+  const auto each_point = [&](const auto& f) {
+    for (std::size_t k = 0; k < piece.points.size(); ++k) f(k, piece.points[k]);
+  };
+  each_point([&](std::size_t k, int point) {
+    if (point >= 0) {
+      at[k] = at_nodes[point];
+      return;
+    }
+    const CutPoint& cut = piece.cut_points[-1 - point];
+    if (cut.kind == CutPoint::Kind::Centre) {
+      at[k] = at_centres[cut.face];
+    } else if (cut.kind == CutPoint::Kind::Rim) {
+      const double from = at_end(cut.of[0]), to = at_end(cut.of[1]);
+      at[k] = from + cut.t * (to - from);
+    }
+  });
+  each_point([&](std::size_t k, int point) {
+    if (point >= 0 || piece.cut_points[-1 - point].kind != CutPoint::Kind::Part) return;
+    const std::array<int, 4>& of = piece.cut_points[-1 - point].of;
+    at[k] = 0.25 * (at[of[0]] + at[of[1]] + at[of[2]] + at[of[3]]);
+  });
+  return at;
+}
+
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pliant/core/triangle_cells.hpp"
@@ -55,6 +56,11 @@ struct SurfacePiece {
 /// face; what then lies on anything but a free node is dropped.
 std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_set,
                                std::vector<double> at_points);
+
+/// A function that is linear on each triangle, on the points of a piece (#points): from its values
+/// on the nodes and at the centres of the level set.
+std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const double> at_nodes,
+                                     std::span<const double> at_centres);
 
 /// Cuts the region phi >= 0 out of the triangles. `is_border` (#nodes of the surface) marks the
 /// nodes of edges with one face. The pieces are in the order of their first cells. Requires:

@@ -60,35 +60,11 @@ bool SurfaceLoads::compute(const SampledForce& force) {
 
 // The area on which the force acts, shared out to the free nodes.
 std::vector<double> SurfaceLoads::areas_on(const SurfacePiece& piece) const {
-  const auto at_end = [&](int end) { return end >= 0 ? at_nodes_[end] : at_centres_[-1 - end]; };
-  std::vector<double> at_points(piece.points.size());
-  const auto each_point = [&](const auto& f) {
-    for (std::size_t k = 0; k < piece.points.size(); ++k) f(k, piece.points[k]);
-  };
-  each_point([&](std::size_t k, int point) {
-    if (point >= 0) {
-      at_points[k] = at_nodes_[point];
-      return;
-    }
-    const CutPoint& cut = piece.cut_points[-1 - point];
-    if (cut.kind == CutPoint::Kind::Centre) {
-      at_points[k] = at_centres_[cut.face];
-    } else if (cut.kind == CutPoint::Kind::Rim) {
-      const double from = at_end(cut.of[0]), to = at_end(cut.of[1]);
-      at_points[k] = from + cut.t * (to - from);
-    }
-  });
-  each_point([&](std::size_t k, int point) {
-    if (point >= 0 || piece.cut_points[-1 - point].kind != CutPoint::Kind::Part) return;
-    const std::array<int, 4>& of = piece.cut_points[-1 - point].of;
-    at_points[k] =
-        0.25 * (at_points[of[0]] + at_points[of[1]] + at_points[of[2]] + at_points[of[3]]);
-  });
+  const std::vector<double> at = values_at_points(piece, at_nodes_, at_centres_);
   std::vector<double> areas(piece.points.size(), 0);
   for (const TriangleCell& cell : piece.cells.cells) {
     const auto& [a, b, c] = cell.points;
-    const std::array<double, 3> hats =
-        hats_where_positive({at_points[a], at_points[b], at_points[c]});
+    const std::array<double, 3> hats = hats_where_positive({at[a], at[b], at[c]});
     const double area = std::abs(cell.shape.signed_area());
     for (int k = 0; k < 3; ++k) areas[cell.points[k]] += area * hats[k];
   }
