@@ -90,14 +90,20 @@ std::vector<float> vertex_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-// Vertices in the order of their nodes, so that neighbours in a row of the grid are next to each
-// other.
+// Vertices in the order of their nodes, those without one first, so that neighbours in a row of the
+// grid are next to each other.
 std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
   std::vector<int> order(vertex_nodes.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return vertex_nodes[a] < vertex_nodes[b]; });
   return order;
+}
+
+// The node that each vertex moves as; -1: none, as for vertices that are sums of nodes.
+std::vector<int> nodes_of(const RestShape& shape) {
+  if (!shape.weights) return shape.vertex_nodes;
+  return std::vector<int>(shape.vertex_nodes.size(), -1);
 }
 
 Json transform_json(const Transform& transform) {
@@ -116,7 +122,8 @@ class SurfaceView {
       : shape_(shape),
         surface_(surface),
         fps_(fps),
-        motion_(shape.mesh.positions, node_order(shape.vertex_nodes)) {}
+        nodes_(nodes_of(shape)),
+        motion_(shape.mesh.positions, node_order(nodes_)) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
     transforms_.push_back(transform_json(frame.transform()));
@@ -159,7 +166,7 @@ class SurfaceView {
         {"transforms", same_or_all()},
         {"rest", arrays.add(relative_rest(origin))},
         {"uvs", arrays.add(vertex_uvs(mesh))},
-        {"nodes", arrays.add(std::span<const int>(shape_.vertex_nodes))},
+        {"nodes", arrays.add(nodes_)},
         {"triangles", arrays.add(triangle_vertices(mesh))},
         {"edges", arrays.add(edge_vertices(mesh))},
         {"predictors", arrays.add(motion.predictors)},
@@ -191,6 +198,7 @@ class SurfaceView {
   const RestShape& shape_;
   const Surface& surface_;
   double fps_;
+  std::vector<int> nodes_;  // of the vertices
   MotionPacker motion_;
   std::vector<Json> transforms_;
   SurfaceMarks marks_;

@@ -289,6 +289,82 @@ test("the rim of a region lies on the surface, along its box", async () => {
   });
 });
 
+/**
+ * A flat sheet of triangles without (u,v) over [-2,2]², in two halves with vertices of their own along x = 0, and a
+ * vertex in no face: the first one, and the last one.
+ */
+function writeTriangles(file) {
+  const [lines, count] = [["v 0 3 0"], 24];
+  const halves = [[0, count / 2], [count / 2, count]].map(([begin, end]) => {
+    const first = lines.length;
+    for (let j = 0; j <= count; ++j) for (let i = begin; i <= end; ++i) lines.push(`v ${(4 * i) / count - 2} 0 ${(4 * j) / count - 2}`);
+    return { first, columns: end - begin + 1 };
+  });
+  lines.push("v 0 -3 0");
+  for (const { first, columns } of halves) {
+    for (let j = 0; j < count; ++j) {
+      for (let i = 0; i < columns - 1; ++i) {
+        const a = first + j * columns + i + 1;
+        const [b, c, d] = [a + 1, a + columns, a + columns + 1];
+        lines.push(...((i + j) % 2 ? [`f ${a} ${c} ${d}`, `f ${a} ${d} ${b}`] : [`f ${a} ${c} ${b}`, `f ${b} ${c} ${d}`]));
+      }
+    }
+  }
+  writeFileSync(file, `${lines.join("\n")}\n`);
+}
+
+test("vertices that are no nodes stand where a bake has them", async () => {
+  writeTriangles(inFolder("triangles.obj"));
+  const points = Array.from({ length: 49 }, (_, k) => `${(k % 7) - 3} ${(k % 7) % 6 && k > 6 && k < 42 ? 0.4 : 0} ${Math.floor(k / 7) - 3}`);
+  writeFileSync(inFolder("none.xml"), `<scene version="1" start="1" end="6">
+    <surface name="net"><nurbs columns="7" rows="7" degreeU="2" degreeV="3"><points>${points.join(" ")}</points></nurbs></surface>
+    <surface name="skin" drivenBy="net"><grid columns="12" rows="9" width="5" depth="4"/></surface>
+    <surface name="s"><mesh file="triangles.obj" uv="surface"/></surface>
+    <point name="p" deformationRadius="2.3" forceRadius="1.2" magnitude="300" center="0 0.4 0" targets="net"/>
+    <point name="q" deformationRadius="1" forceRadius="1" magnitude="300" targets="s"/></scene>`);
+  run("bake", inFolder("none.xml"), "-o", inFolder("none.npy"), "--quiet");
+  await withPage(pageOf(inFolder("none.xml")), {}, async (page) => {
+    for (const surface of ["net", "skin", "s"]) {
+      const { shape, numbers } = readNpy(inFolder(`none-${surface}.npy`));
+      for (const frame of [1, 3, 6]) {
+        await goTo(page, frame);
+        const { positions, error } = await worldPositions(page, surface);
+        assert.equal(positions.length, shape[1] * 3);
+        const begin = (frame - 1) * positions.length;
+        const off = positions.reduce((most, each, k) => Math.max(most, Math.abs(each - numbers[begin + k])), 0);
+        assert.ok(off <= 1.8 * error + 1e-5, `${surface} frame ${frame}: off by ${off}, may be ${error}`);
+      }
+      const moved = Math.max(...numbers.slice(-3 * shape[1]).map((each, k) => Math.abs(each - numbers[k])));
+      assert.ok(moved > 0.01, `${surface} moves by ${moved}`);
+    }
+  });
+});
+
+test("the readout names the node of a vertex, if it has one", async () => {
+  writeTriangles(inFolder("triangles.obj"));
+  writeFileSync(inFolder("named.xml"), `<scene version="1" start="1" end="3"><surface name="s"><mesh file="triangles.obj" uv="surface"/></surface>
+    <surface name="net"><nurbs columns="4" rows="4" degreeU="2" degreeV="2"><points>${Array.from({ length: 16 }, (_, k) => `${k % 4} 0 ${Math.floor(k / 4)}`).join(" ")}</points></nurbs>
+    <transform translate="4 0 0"/></surface></scene>`);
+  await withPage(`${pageOf(inFolder("named.xml"))}#turn=0&tilt=80`, {}, async (page) => {
+    const at = async (surface, vertex, aside = 0) => {
+      const [x, y] = await page.evaluate(([name, k]) => {
+        const { viewer, stage } = window.pliant;
+        const seen = viewer.views.find((view) => view.surface.head.name === name).vertex(k).project(stage.camera);
+        const box = stage.canvas.getBoundingClientRect();
+        return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
+      }, [surface, vertex]);
+      await page.mouse.move(x + aside, y);
+      await page.waitForFunction((wanted) => document.querySelector("#readout b")?.textContent.startsWith(wanted), `${surface} ${vertex}`);
+      return page.locator("#readout b").first().textContent();
+    };
+    // Vertex 0 is no node. 13 columns of the left half; its last one comes again in the right half.
+    assert.equal(await at("s", 1 + 12 * 13 + 5), `s ${1 + 12 * 13 + 5} node ${12 * 13 + 5}`);
+    const twin = 1 + 25 * 13 + 12 * 13;
+    assert.equal(await at("s", twin, 2), `s ${twin} node ${12 * 13 + 12}`);
+    assert.equal(await at("net", 40), "net 40");
+  });
+});
+
 test("plays at the frame rate, and loops", async () => {
   await withPage(pageOf(example("thesis/fig08-force")), {}, async (page) => {
     const { fps, first, last } = await page.evaluate(() => window.pliant.viewer.bake.head);

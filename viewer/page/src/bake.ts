@@ -115,7 +115,9 @@ export class BakedSurface {
   readonly uvs: Float32Array;
   readonly triangles: Uint32Array;
   readonly edges: Uint32Array;
-  /** The first vertex of each node of the grid; -1: none. */
+  /** The node that each vertex moves as; -1: none. */
+  readonly nodes: Int32Array;
+  /** The first vertex of each node; -1: none. */
   readonly nodeVertices: Int32Array;
   private readonly steps: Int16Array;
 
@@ -126,15 +128,19 @@ export class BakedSurface {
   ) {
     const floats = (place: ArrayPlace) => new Float32Array(arrays, start + place.begin, place.count);
     const whole = (place: ArrayPlace) => new Uint32Array(arrays, start + place.begin, place.count);
+    const signed = (place: ArrayPlace) => new Int32Array(arrays, start + place.begin, place.count);
     const bytes = (place: ArrayPlace) => new Uint8Array(arrays, start + place.begin, place.count);
     this.rest = floats(head.rest);
     this.uvs = floats(head.uvs);
     this.triangles = whole(head.triangles);
     this.edges = whole(head.edges);
-    const nodes = whole(head.nodes);
+    this.nodes = signed(head.nodes);
     this.nodeVertices = new Int32Array(head.columns * head.rows).fill(-1);
-    for (let vertex = nodes.length; vertex-- > 0; ) this.nodeVertices[nodes[vertex]] = vertex;
-    this.steps = unfolded(bytes(head.predictors), bytes(head.lowBytes), bytes(head.highBytes), vertexOrder(nodes, this.nodeVertices.length));
+    for (let vertex = this.nodes.length; vertex-- > 0; ) {
+      if (this.nodes[vertex] >= 0) this.nodeVertices[this.nodes[vertex]] = vertex;
+    }
+    const order = vertexOrder(this.nodes, this.nodeVertices.length);
+    this.steps = unfolded(bytes(head.predictors), bytes(head.lowBytes), bytes(head.highBytes), order);
   }
 
   /** Displacements from rest at frame `index` plus `share` of the way to the next. */
@@ -155,13 +161,13 @@ export class BakedSurface {
   }
 }
 
-/** Vertices in the order of their nodes, those of one node in the order of the mesh. */
-function vertexOrder(nodes: Uint32Array, nodeCount: number): Uint32Array {
-  const begins = new Uint32Array(nodeCount + 1);
-  for (const node of nodes) ++begins[node + 1];
-  for (let node = 0; node < nodeCount; ++node) begins[node + 1] += begins[node];
+/** Vertices in the order of their nodes, those without one first, those of one node in the order of the mesh. */
+function vertexOrder(nodes: Int32Array, nodeCount: number): Uint32Array {
+  const begins = new Uint32Array(nodeCount + 2);
+  for (const node of nodes) ++begins[node + 2];
+  for (let node = 0; node <= nodeCount; ++node) begins[node + 1] += begins[node];
   const order = new Uint32Array(nodes.length);
-  nodes.forEach((node, vertex) => (order[begins[node]++] = vertex));
+  nodes.forEach((node, vertex) => (order[begins[node + 1]++] = vertex));
   return order;
 }
 

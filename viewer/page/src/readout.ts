@@ -52,19 +52,20 @@ export class Readout {
       return;
     }
     const { view, vertex } = this.picked;
-    const { name, columns } = view.surface.head;
-    const node = view.surface.nodeVertices.indexOf(vertex);
+    const { name, columns, rows } = view.surface.head;
+    const node = view.surface.nodes[vertex];
+    const where = rows > 1 ? `(${node % columns}, ${Math.floor(node / columns)})` : `node ${node}`;
     const place = view.vertex(vertex, this.marker.position);
     this.marker.scale.setScalar(0.0045 * place.distanceTo(this.stage.camera.position));
-    const rows: [string, string][] = [
-      ["vertex", `${name} ${vertex}${node >= 0 ? ` (${node % columns}, ${Math.floor(node / columns)})` : ""}`],
+    const lines: [string, string][] = [
+      ["vertex", `${name} ${vertex}${node >= 0 ? ` ${where}` : ""}`],
       ["u, v", `${fixed(view.surface.uvs[2 * vertex])}, ${fixed(view.surface.uvs[2 * vertex + 1])}`],
       ["position", place.toArray().map(fixed).join(", ")],
       ["displacement", fixed(view.displacement[vertex])],
       ["velocity", `${fixed(view.speed[vertex])} /s`],
     ];
     this.output.replaceChildren(
-      ...rows.map(([label, text]) => {
+      ...lines.map(([label, text]) => {
         const row = document.createElement("span");
         const what = document.createElement("span");
         what.textContent = label;
