@@ -6,13 +6,13 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "pliant/mesh/triangulate.hpp"
+#include "viewer/arrays.hpp"
 #include "viewer/bytes.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/forces.hpp"
@@ -21,31 +21,6 @@
 
 namespace pliant::viewer {
 namespace {
-
-// The arrays after the head. The head gives the offset and length of each.
-class Arrays {
- public:
-  // Little-endian numbers of four bytes, or bytes. Each array begins at an offset that is a
-  // multiple of four.
-  template <class Number>
-  Json add(std::span<const Number> numbers) {
-    const std::size_t begin = bytes_.size();
-    bytes_.resize(begin + numbers.size_bytes());
-    if (!numbers.empty()) std::memcpy(bytes_.data() + begin, numbers.data(), numbers.size_bytes());
-    bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    return {{"begin", begin}, {"count", numbers.size()}};
-  }
-  template <class Number>
-  Json add(const std::vector<Number>& numbers) {
-    return add(std::span<const Number>(numbers));
-  }
-  Json add(const std::string& bytes) { return add(std::span<const char>(bytes)); }
-
-  std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
 
 std::vector<std::uint32_t> triangle_vertices(const Mesh& mesh) {
   std::vector<std::uint32_t> vertices;
@@ -123,7 +98,8 @@ class SurfaceView {
         surface_(surface),
         fps_(fps),
         nodes_(nodes_of(shape)),
-        motion_(shape.mesh.positions, node_order(nodes_)) {}
+        motion_(shape.mesh.positions, node_order(nodes_)),
+        marks_(shape) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
     transforms_.push_back(transform_json(frame.transform()));
@@ -174,6 +150,7 @@ class SurfaceView {
         {"highBytes", arrays.add(motion.high)},
         {"marks", marks_.changes()}};
     if (shape_.grid && !shape_.grid->is_open()) json["wrap"] = wrap_word(*shape_.grid);
+    if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     return json;
   }
 

@@ -68,22 +68,47 @@ Json view_forces(const Scene& scene, const FrameRange& frames) {
   return forces;
 }
 
+SurfaceMarks::SurfaceMarks(const RestShape& shape) {
+  if (!shape.grid || shape.weights) mesh_.emplace(shape);
+}
+
 void SurfaceMarks::add(int frame, const SurfaceReport& report,
                        const std::map<std::string, std::size_t, std::less<>>& force_numbers) {
-  Json regions = Json::array(), boxes = Json::array();
-  for (std::size_t k = 0; k < report.regions.size(); ++k) {
+  Json regions = Json::array(), forces = Json::array();
+  for (const Region& region : report.regions) {
+    regions.push_back({{"solved", region.is_solved()}});
+    if (mesh_) {
+      regions.back()["lines"] = lines_.add(mesh_->around(region.parts));
+      continue;
+    }
     Json parts = Json::array();
-    for (const Box& part : report.regions[k].parts) parts.push_back(corners(part));
-    regions.push_back({{"solved", report.regions[k].is_solved()}, {"parts", parts}});
+    for (const Box& part : region.parts) parts.push_back(corners(part));
+    regions.back()["parts"] = parts;
+  }
+  for (const PieceOutline& piece : report.outlines) {
+    if (piece.lines.segments.empty()) continue;
+    regions.push_back(
+        {{"solved", piece.is_solved}, {"lines", lines_.add(mesh_->to_vertices(piece.lines))}});
   }
   for (const ForceReport& force : report.forces) {
-    if (force.selection.force.is_empty() || force.kind == "group") continue;
+    if (force.kind == "group") continue;
+    Json mark = {{"force", force_numbers.find(force.name)->second}};
+    if (const Box& box = force.selection.force; !box.is_empty()) {
+      if (mesh_) {
+        mark["lines"] = lines_.add(mesh_->around({&box, 1}));
+      } else {
+        mark["box"] = corners(box);
+      }
+    } else if (!force.outline.segments.empty()) {
+      mark["lines"] = lines_.add(mesh_->to_vertices(force.outline));
+    } else if (force.kind != "inertia" || force.push.node_count == 0) {
+      continue;
+    }
     const auto& push = force.push.sum;
-    boxes.push_back({{"force", force_numbers.find(force.name)->second},
-                     {"box", corners(force.selection.force)}});
-    if (force.kind == "inertia") boxes.back()["push"] = {push.x(), push.y(), push.z()};
+    if (force.kind == "inertia") mark["push"] = {push.x(), push.y(), push.z()};
+    forces.push_back(std::move(mark));
   }
-  Json marks = {{"regions", regions}, {"forces", boxes}};
+  Json marks = {{"regions", regions}, {"forces", forces}};
   if (marks == last_) return;
   last_ = marks;
   marks["frame"] = frame;

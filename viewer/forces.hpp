@@ -1,13 +1,17 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pliant/feedback/frame_report.hpp"
+#include "pliant/feedback/surface_lines.hpp"
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
 #include "viewer/frame_range.hpp"
 #include "viewer/json.hpp"
+#include "viewer/lines.hpp"
 
 namespace pliant::viewer {
 
@@ -19,9 +23,12 @@ namespace pliant::viewer {
 Json view_forces(const Scene& scene, const FrameRange& frames);
 
 /// The regions and the boxes of forces that a page draws on one surface, stored only at frames
-/// where they change.
+/// where they change. Of a grid whose nodes are vertices they are boxes, otherwise lines.
 class SurfaceMarks {
  public:
+  /// Requires: `shape` outlives it.
+  explicit SurfaceMarks(const RestShape& shape);
+
   /// `force_numbers`: the index of each name in the result of `view_forces`.
   void add(int frame, const SurfaceReport& report,
            const std::map<std::string, std::size_t, std::less<>>& force_numbers);
@@ -29,7 +36,11 @@ class SurfaceMarks {
   /// An array of objects, each with the first `frame` for which it is valid.
   const Json& changes() const { return changes_; }
 
+  const PackedLines& lines() const { return lines_; }
+
  private:
+  std::optional<LinesOnMesh> mesh_;  // null: a grid whose nodes are vertices
+  PackedLines lines_;
   Json changes_ = Json::array();
   Json last_;
 };

@@ -313,7 +313,85 @@ function writeTriangles(file) {
   writeFileSync(file, `${lines.join("\n")}\n`);
 }
 
-test("vertices that are no nodes stand where a bake has them", async () => {
+/** Segments of the lines of that name, six numbers each. */
+const segmentsOf = (page, name) =>
+  page.evaluate((wanted) => {
+    const lines = window.pliant.stage.scene.getObjectByName(wanted);
+    const { array } = lines.geometry.attributes.instanceStart?.data ?? { array: [] };
+    return lines.visible ? Array.from({ length: array.length / 6 }, (_, k) => [...array.slice(6 * k, 6 * k + 6)]) : [];
+  }, name);
+
+/** Whether each place is the end of an even number of segments. */
+const closes = (segments) => {
+  const ends = new Map();
+  for (const segment of segments) for (const end of [segment.slice(0, 3).join(), segment.slice(3).join()]) ends.set(end, (ends.get(end) ?? 0) + 1);
+  return segments.length > 0 && [...ends.values()].every((count) => count % 2 === 0);
+};
+
+const trianglesScene = (center) => `<scene version="1" start="1" end="12">
+  <surface name="s"><mesh file="triangles.obj" uv="surface"/><material density="0.02" damping="0.2"/></surface>
+  <point name="poke" direction="0 1 0" deformationRadius="1" forceRadius="0.5" magnitude="500">${center}</point>
+  <point name="idle" center="-1.5 0 -1.5" deformationRadius="0.4" forceRadius="0.2" magnitude="0"/>
+  <point name="held" center="2 0 2" deformationRadius="0.15" forceRadius="0" magnitude="0"/>
+  </scene>`;
+const sliding = '<animate attribute="center"><key frame="1" value="-0.5 0 0"/><key frame="12" value="0.5 0 0.2"/></animate>';
+
+test("the outline of a cut and of what forces push is drawn on the surface, across a seam", async () => {
+  writeTriangles(inFolder("triangles.obj"));
+  const scene = inFolder("cut.xml");
+  writeFileSync(scene, trianglesScene(sliding));
+  const center = curve(scene, "poke.center");
+  await withPage(pageOf(scene), {}, async (page) => {
+    const spacing = 4 / 24;
+    for (const frame of [1, 6, 12]) {
+      await goTo(page, frame);
+      const [x, , z] = center.get(frame);
+      const parts = [
+        ["s rim", [[x, z, 1], [-1.5, -1.5, 0.4]]],
+        ["s force boxes", [[x, z, 0.5]]],
+        ["s idle force boxes", [[-1.5, -1.5, 0.2]]],
+      ];
+      for (const [name, circles] of parts) {
+        const segments = await segmentsOf(page, name);
+        assert.ok(closes(segments), `${name} at frame ${frame}`);
+        const lengths = circles.map(() => 0);
+        for (const [ax, , az, bx, , bz] of segments) {
+          const off = circles.map(([cx, cz, radius]) => Math.max(...[[ax, az], [bx, bz]].map(([px, pz]) => Math.abs(Math.hypot(px - cx, pz - cz) - radius))));
+          const nearest = off.indexOf(Math.min(...off));
+          assert.ok(off[nearest] < 0.2 * spacing, `${name} at frame ${frame}: ${ax}, ${az} is off by ${off[nearest]}`);
+          lengths[nearest] += Math.hypot(bx - ax, bz - az);
+        }
+        circles.forEach(([, , radius], k) => near(lengths[k] / (2 * Math.PI * radius), 1, radius < spacing * 2 ? 0.1 : 0.05, `${name} at frame ${frame}`));
+      }
+    }
+    // At the corner only a held node is inside.
+    const corner = await segmentsOf(page, "s unsolved");
+    assert.ok(closes(corner));
+    assert.ok(corner.flat().every((number, k) => (k % 3 === 1 ? number === 0 : number > 1.8)), `${corner}`);
+    // It follows the surface: where that is raised, what is pushed is too.
+    const heights = (await segmentsOf(page, "s force boxes")).flatMap((segment) => [segment[1], segment[4]]);
+    const peak = await page.evaluate(() => Math.max(...window.pliant.viewer.views[0].mesh.geometry.getAttribute("position").array.filter((_, k) => k % 3 === 1).slice(1, -1)));
+    assert.ok(Math.min(...heights) > 0.2 * peak && Math.max(...heights) < peak && peak > 0.02, `${heights} of ${peak}`);
+    for (const [key, value] of [["regions", "hasRegions"], ["boxes", "hasBoxes"]]) {
+      await page.evaluate(([word, name]) => { window.pliant.viewer.display[name] = false; window.pliant.viewer.redress(); }, [key, value]);
+    }
+    for (const name of ["s rim", "s force boxes", "s idle force boxes"]) assert.deepEqual(await segmentsOf(page, name), [], name);
+  });
+});
+
+test("pictures have the outline of a cut", async () => {
+  writeTriangles(inFolder("triangles.obj"));
+  writeFileSync(inFolder("still.xml"), trianglesScene("").replace('magnitude="500"', 'magnitude="500" center="0 0 0"'));
+  const take = (name, look) => {
+    run("view", inFolder("still.xml"), "--png", name, "--frame", "6", "--size", "480x320", "--quiet", "--look", `gizmos=off&legend=off&tilt=60&colour=plain&${look}`);
+    return pixelsOf(name);
+  };
+  const plain = take("c0.png", "regions=off&boxes=off");
+  const [rim, boxes] = [differing(plain, take("c1.png", "boxes=off")), differing(plain, take("c2.png", "regions=off"))];
+  assert.ok(rim > 600 && boxes > 300 && boxes < rim, `${rim}, ${boxes} pixels`);
+});
+
+test("vertices that are no nodes stand where a bake has them, and regions are drawn on them", async () => {
   writeTriangles(inFolder("triangles.obj"));
   const points = Array.from({ length: 49 }, (_, k) => `${(k % 7) - 3} ${(k % 7) % 6 && k > 6 && k < 42 ? 0.4 : 0} ${Math.floor(k / 7) - 3}`);
   writeFileSync(inFolder("none.xml"), `<scene version="1" start="1" end="6">
@@ -337,6 +415,30 @@ test("vertices that are no nodes stand where a bake has them", async () => {
       const moved = Math.max(...numbers.slice(-3 * shape[1]).map((each, k) => Math.abs(each - numbers[k])));
       assert.ok(moved > 0.01, `${surface} moves by ${moved}`);
     }
+    for (const lines of ["net rim", "net force boxes", "s rim"]) assert.ok(closes(await segmentsOf(page, lines)), lines);
+    for (const lines of ["skin rim", "skin force boxes"]) assert.deepEqual(await segmentsOf(page, lines), []);
+    // All ends of the net's lines lie on its triangles.
+    const farthest = await page.evaluate(() => {
+      const { stage, viewer } = window.pliant;
+      const { array: at } = viewer.views[0].mesh.geometry.getAttribute("position");
+      const { triangles } = viewer.views[0].surface;
+      const Vector = stage.camera.position.constructor;
+      const vertex = (k) => new Vector(...at.slice(3 * k, 3 * k + 3));
+      const distance = (p, a, b, c) => {
+        const normal = b.clone().sub(a).cross(c.clone().sub(a)).normalize();
+        const inside = [[a, b], [b, c], [c, a]].every(([from, to]) => to.clone().sub(from).cross(p.clone().sub(from)).dot(normal) > -1e-5);
+        return inside ? Math.abs(p.clone().sub(a).dot(normal)) : Infinity;
+      };
+      const { array } = stage.scene.getObjectByName("net rim").geometry.attributes.instanceStart.data;
+      let most = 0;
+      for (let k = 0; k < array.length; k += 3) {
+        let least = Infinity;
+        for (let t = 0; t < triangles.length; t += 3) least = Math.min(least, distance(new Vector(...array.slice(k, k + 3)), ...[0, 1, 2].map((c) => vertex(triangles[t + c]))));
+        most = Math.max(most, least);
+      }
+      return most;
+    });
+    assert.ok(farthest < 1e-5, `${farthest}`);
   });
 });
 

@@ -11,11 +11,14 @@ interface ArrayPlace {
   count: number;
 }
 
-/** The regions and boxes drawn on a surface, valid from a frame on. */
+/** Lines on a surface: first point, number of points, first segment, number of segments. */
+export type LinesPlace = [number, number, number, number];
+
+/** The regions and boxes drawn on a surface, valid from a frame on: of a grid boxes, otherwise lines. */
 export interface Marks {
   frame: number;
-  regions: { solved: boolean; parts: Box[] }[];
-  forces: { force: number; box: Box; push?: Vector }[];
+  regions: { solved: boolean; parts?: Box[]; lines?: LinesPlace }[];
+  forces: { force: number; box?: Box; lines?: LinesPlace; push?: Vector }[];
 }
 
 interface SurfaceHead {
@@ -43,6 +46,18 @@ interface SurfaceHead {
   lowBytes: ArrayPlace;
   highBytes: ArrayPlace;
   marks: Marks[];
+  lines?: { counts: ArrayPlace; sources: ArrayPlace; shares: ArrayPlace; segments: ArrayPlace };
+}
+
+/** Segments between points that are weighted sums of vertices. */
+export interface Lines {
+  /** For each point where its entries begin, and the end of the last. */
+  starts: ArrayLike<number>;
+  /** A vertex, or -1 - k for the earlier point k. */
+  sources: ArrayLike<number>;
+  shares: ArrayLike<number>;
+  /** Two points each. */
+  segments: ArrayLike<number>;
 }
 
 /** A force, or the region of a group. */
@@ -119,6 +134,7 @@ export class BakedSurface {
   readonly nodes: Int32Array;
   /** The first vertex of each node; -1: none. */
   readonly nodeVertices: Int32Array;
+  private readonly lines: { starts: Uint32Array; sources: Int32Array; shares: Float32Array; segments: Uint32Array };
   private readonly steps: Int16Array;
 
   constructor(
@@ -141,6 +157,23 @@ export class BakedSurface {
     }
     const order = vertexOrder(this.nodes, this.nodeVertices.length);
     this.steps = unfolded(bytes(head.predictors), bytes(head.lowBytes), bytes(head.highBytes), order);
+    const none = { begin: 0, count: 0 };
+    const { counts, sources, shares, segments } = head.lines ?? { counts: none, sources: none, shares: none, segments: none };
+    const starts = new Uint32Array(counts.count + 1);
+    whole(counts).forEach((count, point) => (starts[point + 1] = starts[point] + count));
+    this.lines = { starts, sources: signed(sources), shares: floats(shares), segments: whole(segments) };
+  }
+
+  linesAt([point, pointCount, segment, segmentCount]: LinesPlace): Lines {
+    const { starts, sources, shares, segments } = this.lines;
+    const own = starts.subarray(point, point + pointCount + 1);
+    const [begin, end] = [own[0], own[pointCount]];
+    return {
+      starts: own.map((entry) => entry - begin),
+      sources: sources.subarray(begin, end),
+      shares: shares.subarray(begin, end),
+      segments: segments.subarray(2 * segment, 2 * (segment + segmentCount)),
+    };
   }
 
   /** Displacements from rest at frame `index` plus `share` of the way to the next. */

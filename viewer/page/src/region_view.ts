@@ -1,11 +1,11 @@
 // Draws the selections on the surface: the rim of each region, the box of each force (thesis 5.3,
-// fig. 5 and 12).
+// fig. 5 and 12), or what it pushes on a surface of triangles.
 
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
-import type { Box } from "./bake";
+import type { BakedSurface, Box, Lines, LinesPlace } from "./bake";
 import type { SurfaceView } from "./surface_view";
 import type { Palette } from "./theme";
 
@@ -56,10 +56,16 @@ export function outline(parts: Box[], { columns, rows, wrap }: GridHead): Edge[]
   return edges;
 }
 
-/** Lines along edges of the surface's grid. */
-class NodeLines {
+/** Edges between nodes as lines between their first vertices. */
+function linesOf(edges: Edge[], nodeVertices: Int32Array): Lines {
+  const sources = edges.flat().map((node) => Math.max(nodeVertices[node], 0));
+  return { starts: [...sources.keys(), sources.length], sources, shares: sources.map(() => 1), segments: [...sources.keys()] };
+}
+
+/** Lines that follow the surface. */
+class FollowingLines {
   readonly object: LineSegments2;
-  private edges: Edge[] = [];
+  private lines: Lines[] = [];
 
   constructor(name: string, material: LineMaterial) {
     this.object = new LineSegments2(new LineSegmentsGeometry(), material);
@@ -67,69 +73,85 @@ class NodeLines {
     this.object.frustumCulled = false;
   }
 
-  take(edges: Edge[]): void {
-    this.edges = edges;
+  take(lines: Lines[]): void {
+    this.lines = lines.filter(({ segments }) => segments.length > 0);
     this.object.geometry.dispose();
     this.object.geometry = new LineSegmentsGeometry();
-    this.object.visible = edges.length > 0;
+    this.object.visible = this.lines.length > 0;
   }
 
   follow(view: SurfaceView): void {
-    if (this.edges.length === 0) return;
-    const { nodeVertices } = view.surface;
-    const source = view.mesh.geometry.getAttribute("position").array;
-    const ends = new Float32Array(6 * this.edges.length);
+    if (this.lines.length === 0) return;
+    const positions = view.mesh.geometry.getAttribute("position").array;
+    const ends = new Float32Array(this.lines.reduce((sum, { segments }) => sum + 3 * segments.length, 0));
     let write = 0;
-    for (const edge of this.edges) {
-      for (const node of edge) {
-        const vertex = 3 * Math.max(nodeVertices[node], 0);
-        for (let k = 0; k < 3; ++k) ends[write++] = source[vertex + k];
+    for (const { starts, sources, shares, segments } of this.lines) {
+      const points = new Float32Array(3 * (starts.length - 1));
+      for (let point = 0; point < starts.length - 1; ++point) {
+        for (let entry = starts[point]; entry < starts[point + 1]; ++entry) {
+          const isVertex = sources[entry] >= 0;
+          const from = isVertex ? positions : points;
+          const source = 3 * (isVertex ? sources[entry] : -1 - sources[entry]);
+          for (let k = 0; k < 3; ++k) points[3 * point + k] += shares[entry] * from[source + k];
+        }
+      }
+      for (let end = 0; end < segments.length; ++end) {
+        for (let k = 0; k < 3; ++k) ends[write++] = points[3 * segments[end] + k];
       }
     }
     this.object.geometry.setPositions(ends);
   }
 }
 
-const lineMaterial = (linewidth: number, opacity: number) =>
-  new LineMaterial({ linewidth, opacity, transparent: true, polygonOffset: true, polygonOffsetFactor: -4, polygonOffsetUnits: -4 });
+/** The lines of boxes, or those that the bake has. */
+function linesOfMark(surface: BakedSurface, boxes: Box[], place?: LinesPlace): Lines {
+  return place ? surface.linesAt(place) : linesOf(outline(boxes, surface.head), surface.nodeVertices);
+}
+
+const lineMaterial = (linewidth: number, opacity: number, nearness: number) =>
+  new LineMaterial({ linewidth, opacity, transparent: true, polygonOffset: true, polygonOffsetFactor: -nearness, polygonOffsetUnits: -nearness });
 
 /** The regions and boxes of one surface. */
 export class RegionView {
-  // Slightly nearer than the surface, so that it does not hide them.
+  // Slightly nearer than the surface, so that it does not hide them; boxes nearer than rims, which they may run along.
   private readonly materials = {
-    rim: lineMaterial(2.5, 1),
-    small: lineMaterial(1.5, 0.4),
-    box: lineMaterial(2, 1),
-    idle: lineMaterial(1.5, 0.3),
+    rim: lineMaterial(2.5, 1, 4),
+    small: lineMaterial(1.5, 0.4, 4),
+    box: lineMaterial(2, 1, 6),
+    idle: lineMaterial(1.5, 0.3, 6),
   };
-  private readonly rim: NodeLines;
-  private readonly small: NodeLines;
-  private readonly boxes: NodeLines;
-  private readonly idle: NodeLines;
+  private readonly rim: FollowingLines;
+  private readonly small: FollowingLines;
+  private readonly boxes: FollowingLines;
+  private readonly idle: FollowingLines;
   private shown = "";
 
   constructor(private readonly view: SurfaceView) {
     const { name } = view.surface.head;
-    this.rim = new NodeLines(`${name} rim`, this.materials.rim);
-    this.small = new NodeLines(`${name} unsolved`, this.materials.small);
-    this.boxes = new NodeLines(`${name} force boxes`, this.materials.box);
-    this.idle = new NodeLines(`${name} idle force boxes`, this.materials.idle);
+    this.rim = new FollowingLines(`${name} rim`, this.materials.rim);
+    this.small = new FollowingLines(`${name} unsolved`, this.materials.small);
+    this.boxes = new FollowingLines(`${name} force boxes`, this.materials.box);
+    this.idle = new FollowingLines(`${name} idle force boxes`, this.materials.idle);
     view.group.add(...this.lines.map((lines) => lines.object));
   }
 
   /** `isIdle`: for each force, whether its magnitude is 0. `isShown`: whether it is shown. */
   show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[], isShown: boolean[]): void {
-    const { head } = this.view.surface;
-    const marks = this.view.surface.marksAt(frame);
+    const { surface } = this.view;
+    const marks = surface.marksAt(frame);
     const wanted = `${marks?.frame} ${hasRegions} ${hasBoxes} ${hasBoxes ? [...isIdle, ...isShown].map(Number).join("") : ""}`;
     if (wanted !== this.shown) {
       this.shown = wanted;
       const rims = (isSolved: boolean) =>
-        hasRegions ? (marks?.regions ?? []).filter((each) => each.solved === isSolved).flatMap((each) => outline(each.parts, head)) : [];
+        hasRegions ? (marks?.regions ?? []).filter((each) => each.solved === isSolved).map((each) => linesOfMark(surface, each.parts ?? [], each.lines)) : [];
       this.rim.take(rims(true));
       this.small.take(rims(false));
       const boxes = (areIdle: boolean) =>
-        hasBoxes ? (marks?.forces ?? []).filter((each) => isShown[each.force] && isIdle[each.force] === areIdle).flatMap((each) => outline([each.box], head)) : [];
+        hasBoxes
+          ? (marks?.forces ?? [])
+              .filter((each) => isShown[each.force] && isIdle[each.force] === areIdle)
+              .map((each) => linesOfMark(surface, each.box ? [each.box] : [], each.lines))
+          : [];
       this.boxes.take(boxes(false));
       this.idle.take(boxes(true));
     }
@@ -148,7 +170,7 @@ export class RegionView {
     for (const material of Object.values(this.materials)) material.dispose();
   }
 
-  private get lines(): NodeLines[] {
+  private get lines(): FollowingLines[] {
     return [this.rim, this.small, this.boxes, this.idle];
   }
 }

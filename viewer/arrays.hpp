@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstring>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewer/json.hpp"
+
+namespace pliant::viewer {
+
+/// The arrays after the head. The head gives the offset and length of each.
+class Arrays {
+ public:
+  /// Little-endian numbers of four bytes, or bytes. Each array begins at an offset that is a
+  /// multiple of four.
+  template <class Number>
+  Json add(std::span<const Number> numbers) {
+    const std::size_t begin = bytes_.size();
+    bytes_.resize(begin + numbers.size_bytes());
+    if (!numbers.empty()) std::memcpy(bytes_.data() + begin, numbers.data(), numbers.size_bytes());
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    return {{"begin", begin}, {"count", numbers.size()}};
+  }
+  template <class Number>
+  Json add(const std::vector<Number>& numbers) {
+    return add(std::span<const Number>(numbers));
+  }
+  Json add(const std::string& bytes) { return add(std::span<const char>(bytes)); }
+
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+};
+
+}  // namespace pliant::viewer
