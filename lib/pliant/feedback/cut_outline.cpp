@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -14,18 +15,31 @@ using Side = std::array<int, 2>;  // two points of a piece, in ascending order
 
 Side side_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
-// The sides of one cell only.
-std::vector<Side> sides_of_one_cell(const SurfacePiece& piece) {
-  std::vector<Side> sides;
+// Calls f(side) for each side of each cell.
+template <class F>
+void each_side(const SurfacePiece& piece, const F& f) {
   for (const TriangleCell& cell : piece.cells.cells) {
-    for (int k = 0; k < 3; ++k) sides.push_back(side_of(cell.points[k], cell.points[(k + 1) % 3]));
+    for (int k = 0; k < 3; ++k) f(side_of(cell.points[k], cell.points[(k + 1) % 3]));
   }
-  std::sort(sides.begin(), sides.end());
+}
+
+// The sides of one cell only, in ascending order.
+std::vector<Side> sides_of_one_cell(const SurfacePiece& piece) {
+  // The other ends of all sides, by their first ends: a few for each.
+  std::vector<int> starts(static_cast<std::size_t>(piece.cells.point_count) + 2, 0);
+  each_side(piece, [&](const Side& side) { ++starts[side[0] + 2]; });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<int> ends(3 * piece.cells.cells.size());
+  each_side(piece, [&](const Side& side) { ends[starts[side[0] + 1]++] = side[1]; });
   std::vector<Side> single;
-  for (auto side = sides.begin(); side != sides.end();) {
-    const auto end = std::upper_bound(side, sides.end(), *side);
-    if (end - side == 1) single.push_back(*side);
-    side = end;
+  for (int first = 0; first < piece.cells.point_count; ++first) {
+    const auto begin = ends.begin() + starts[first], end = ends.begin() + starts[first + 1];
+    std::sort(begin, end);
+    for (auto same = begin; same != end;) {
+      const auto next = std::find_if(same, end, [&](int other) { return other != *same; });
+      if (next - same == 1) single.push_back({first, *same});
+      same = next;
+    }
   }
   return single;
 }
