@@ -241,7 +241,7 @@ Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const 
     const auto frame = simulation.at(number);
     if (!frame) return fail(frame.error());
     if (number >= frames.first) {
-      const auto report = simulation.report(number);
+      const auto report = simulation.report(number, ReportDetail::Outlines);
       if (!report) return fail(report.error());
       for (std::size_t k = 0; k < surfaces.size(); ++k) {
         if (auto added = surfaces[k].add(frame->surfaces()[k], number); !added) {

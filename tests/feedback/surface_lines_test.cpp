@@ -122,7 +122,7 @@ TEST_CASE("the outline on a cage is drawn on the subdivided surface", "[feedback
   force.force_radius = 0.5;
   auto simulation = Simulation::make(scene({ball}, {force}, 4)).value();
   const RestShape& shape = simulation.rest_shapes()[0];
-  const SurfaceReport report = simulation.report(1)->surfaces[0];
+  const SurfaceReport report = simulation.report(1, ReportDetail::Outlines)->surfaces[0];
   REQUIRE(report.outlines.size() == 1);
   CHECK(report.outlines[0].is_solved);
   const LinesOnMesh mesh(shape);
@@ -160,7 +160,7 @@ TEST_CASE("a report has the outline of each piece and of what each force pushes"
   force.deformation_radius = 0.7;
   force.force_radius = 0.4;
   auto simulation = Simulation::make(scene({surface, sheet("grid")}, {force}, 4)).value();
-  const SurfaceReport first = simulation.report(1)->surfaces[0];
+  const SurfaceReport first = simulation.report(1, ReportDetail::Outlines)->surfaces[0];
   REQUIRE(first.outlines.size() == 2);
   CHECK(first.pieces.size() == 2);
   const bool is_ball_first = first.pieces[0].cells > first.pieces[1].cells;
@@ -178,9 +178,10 @@ TEST_CASE("a report has the outline of each piece and of what each force pushes"
                Catch::Matchers::WithinAbs(0.4, 0.02));
   }
   // It moves only if distances are measured on the moving surface.
-  const SurfaceLines later = simulation.report(4)->surfaces[0].forces.at(0).outline;
+  const SurfaceLines later =
+      simulation.report(4, ReportDetail::Outlines)->surfaces[0].forces.at(0).outline;
   CHECK((later.shares == pushed.shares) == (surface.solver.measure == Measure::Rest));
-  CHECK(simulation.report(4)->surfaces[0].outlines[0].lines.shares ==
+  CHECK(simulation.report(4, ReportDetail::Outlines)->surfaces[0].outlines[0].lines.shares ==
         first.outlines[0].lines.shares);
-  CHECK(simulation.report(1)->surfaces[1].outlines.empty());
+  CHECK(simulation.report(1, ReportDetail::Outlines)->surfaces[1].outlines.empty());
 }

@@ -169,6 +169,9 @@ TEST_CASE("forces act on drivers only, and threads change no bit",
   s.surfaces[0].enabled = false;
   const std::vector<Field> still = baked(s, "skin");
   CHECK(still.back() == still.front());
+  s.surfaces[0].enabled = true;
+  s.surfaces[1].enabled = false;
+  CHECK(baked(s, "skin").back() == still.front());
 }
 
 TEST_CASE("nets, cages and bindings reserve their memory first", "[simulation][driven]") {

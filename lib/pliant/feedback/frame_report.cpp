@@ -42,7 +42,9 @@ SurfaceLines pushed_part(const Body& body, const SurfaceInputs& inputs,
 
 }  // namespace
 
-Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
+Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs,
+                                ReportDetail detail) {
+  const bool has_outlines = detail == ReportDetail::Outlines;
   const auto step = body.look(inputs.body);
   if (!step) return fail(step.error());
   SurfaceReport report;
@@ -58,7 +60,8 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
     report.cut = hash_of_cut(*step->surface);
     for (const SurfacePiece& piece : step->surface->pieces) {
       report.pieces.push_back(piece.counts(step->surface->level_set));
-      report.outlines.push_back({piece.moves(), outline_of(piece, step->surface->level_set)});
+      if (has_outlines)
+        report.outlines.push_back({piece.moves(), outline_of(piece, step->surface->level_set)});
     }
   }
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
@@ -69,7 +72,8 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs) {
     force.push = body.push_of(inputs.body, *step, k);
     if (step->surface) {
       force.counts = step->surface->forces[k].counts;
-      force.outline = pushed_part(body, inputs, *step->surface, inputs.body.forces[k]);
+      if (has_outlines)
+        force.outline = pushed_part(body, inputs, *step->surface, inputs.body.forces[k]);
     } else {
       force.selection = step->selection.forces[k];
     }

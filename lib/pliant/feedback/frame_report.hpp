@@ -28,8 +28,8 @@ struct ForceReport {
   ForceSelection selection;  ///< its boxes in nodes, and the index of its region
   Push push;                 ///< its effect on the nodes that move
   CutCounts counts = {};     ///< on a surface of triangles: of its own sphere
-  /// On a surface of triangles: around the part of the region that is nearer than its force radius,
-  /// between nodes.
+  /// On a surface of triangles, with `ReportDetail::Outlines`: around the part of the region that
+  /// is nearer than its force radius, between nodes.
   SurfaceLines outline = {};
 };
 
@@ -47,15 +47,21 @@ struct SurfaceReport {
   /// On a surface of triangles, which has pieces in place of regions.
   bool is_surface = false;
   std::vector<CutCounts> pieces = {};
-  std::vector<PieceOutline> outlines = {};  ///< of the pieces
+  std::vector<PieceOutline> outlines = {};  ///< of the pieces, with `ReportDetail::Outlines`
   /// Of phi at the nodes in and around the region, and of what is held; none: the surface is
   /// disabled, or not started.
   std::optional<Hash> cut = {};
 };
 
+/// What a report contains.
+enum class ReportDetail {
+  Counts,    ///< no outlines
+  Outlines,  ///< all
+};
+
 /// The solve of a body in its present state with these inputs. Errors: as `Body::look`; NotFinite
 /// if a custom force returns an invalid value. Not for programs.
-Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs);
+Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs, ReportDetail detail);
 
 /// The solve at one frame, which computes the next frame's mesh from this frame's.
 struct FrameReport {

@@ -236,6 +236,7 @@ Result<void> Bodies::show(std::size_t index, int frame, SurfaceFrame& shown) con
 // transforms.
 Field Bodies::driven_positions(std::size_t index, int frame, const Transform& transform,
                                Field reuse) const {
+  if (!scene_.surfaces[index].enabled) return rest_shapes_[index].mesh.positions;
   const std::size_t driver = drivers_[index];
   const Body& body = *bodies_[driver];
   const Field moved = body.state().positions - body.rest();
@@ -249,14 +250,14 @@ Field Bodies::driven_positions(std::size_t index, int frame, const Transform& tr
   return positions;
 }
 
-Result<FrameReport> Bodies::report(int frame) {
+Result<FrameReport> Bodies::report(int frame, ReportDetail detail) {
   std::vector<Result<SurfaceReport>> surfaces(bodies_.size());
   for_each_body([&](std::size_t k) {
     if (!is_solved_at(scene_, scene_.surfaces[k], frame)) {
       surfaces[k]->is_surface = !rest_shapes_[k].grid;
       return;
     }
-    surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame));
+    surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame), detail);
   });
   FrameReport report{frame, {}};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {

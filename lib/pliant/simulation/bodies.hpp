@@ -59,7 +59,7 @@ class Bodies {
 
   /// The solve that `step` would make at a frame. Errors: those of `Body::look` and of custom
   /// forces.
-  Result<FrameReport> report(int frame);
+  Result<FrameReport> report(int frame, ReportDetail detail);
 
   void reset();  ///< all bodies to rest
   void restore(std::vector<BodyState> states);

@@ -297,7 +297,7 @@ Result<void> LiveSimulation::Run::check() {
 
 Result<FrameReport> LiveSimulation::Run::report() {
   if (auto sound = check(); !sound) return fail(sound.error());
-  return bodies_.report(frame_);
+  return bodies_.report(frame_, ReportDetail::Counts);
 }
 
 Result<void> LiveSimulation::Run::advance() {

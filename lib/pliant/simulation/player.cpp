@@ -54,9 +54,9 @@ Result<Frame> Simulation::Player::at(int frame, Frame reuse) {
   return bodies_.output(frame, std::move(reuse));
 }
 
-Result<FrameReport> Simulation::Player::report(int frame) {
+Result<FrameReport> Simulation::Player::report(int frame, ReportDetail detail) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
-  return bodies_.report(frame);
+  return bodies_.report(frame, detail);
 }
 
 Result<std::string> Simulation::Player::state_bytes(int frame) {

@@ -28,7 +28,7 @@ class Simulation::Player {
   Result<void> make_bodies();
 
   Result<Frame> at(int frame, Frame reuse);
-  Result<FrameReport> report(int frame);
+  Result<FrameReport> report(int frame, ReportDetail detail);
   Result<std::string> state_bytes(int frame);
   Result<int> restore(std::string_view state_bytes);
 

@@ -56,7 +56,9 @@ Result<Frame> Simulation::at(int frame, Frame reuse) {
   return player_->at(frame, std::move(reuse));
 }
 
-Result<FrameReport> Simulation::report(int frame) { return player_->report(frame); }
+Result<FrameReport> Simulation::report(int frame, ReportDetail detail) {
+  return player_->report(frame, detail);
+}
 
 const BodyState& Simulation::state(std::size_t surface) const {
   PLIANT_EXPECTS(surface < player_->bodies().size());

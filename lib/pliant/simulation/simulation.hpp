@@ -106,7 +106,7 @@ class Simulation {
   /// The solve at a frame, in any order: regions, forces, steps. A surface that is not solved at
   /// the frame has an empty report. The last frame's solve is reported too, although no frame shows
   /// it. Cost and errors: as `at`.
-  Result<FrameReport> report(int frame);
+  Result<FrameReport> report(int frame, ReportDetail detail = ReportDetail::Counts);
 
   /// The state of a surface, by its index in the scene, at the frame of the last `report`; before
   /// any, at the first frame.
