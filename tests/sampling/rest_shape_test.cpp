@@ -1,6 +1,8 @@
 #include "pliant/sampling/rest_shape.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
@@ -119,6 +121,22 @@ TEST_CASE("a mesh is read in the way that suits it, or that the scene asks for",
   refused.solver.reference = Reference::None;
   CHECK_THAT(make_rest_shape(refused, origin).error().message,
              Contains("reference=\"none\" needs a grid"));
+}
+
+TEST_CASE("a mesh of a program closes by wrap as a file does", "[sampling][rest_shape]") {
+  // A tube of 6 columns, whose seam is there once, with both (u,v).
+  Mesh tube = make_mesh({.columns = 7, .rows = 4});
+  for (int k = 0; k < 28; ++k) {
+    const double angle = 2 * std::numbers::pi * (k % 7 % 6) / 6;
+    tube.positions.row(k) << std::cos(angle), k / 7, std::sin(angle);
+  }
+  Surface surface = with_shape(tube);
+  surface.reading.wrap = Wrap::U;
+  const RestShape shape = make_rest_shape(surface, {}).value().shape;
+  REQUIRE(shape.grid);
+  CHECK(shape.grid->columns == 6);
+  CHECK(shape.grid->is_closed_u);
+  CHECK_FALSE(shape.grid->is_closed_v);
 }
 
 TEST_CASE("vertices of one node keep their offsets, those in no face their place",

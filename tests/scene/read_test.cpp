@@ -160,7 +160,7 @@ TEST_CASE("most of the format at once", "[scene][read]") {
   const auto& mesh = std::get<MeshFile>(scene.surfaces.at(1).shape);
   CHECK(mesh.path == "shots/body & soul.obj");
   CHECK(mesh.object == "torso");
-  CHECK(mesh.wrap == Wrap::UV);
+  CHECK(scene.surfaces.at(1).reading.wrap == Wrap::UV);
   CHECK(scene.forces.at(0).magnitude.curve().keys().overshoot == Overshoot::Contain);
   CHECK(scene.origin.line_of("sheet", "scale") == 7);
   CHECK(scene.origin.line_of("sheet", "translate") == 15);

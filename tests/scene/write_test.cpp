@@ -148,7 +148,8 @@ TEST_CASE("nets, cages and driven surfaces are written", "[scene][write]") {
   net.weights = {1, 2, 3, 1e-300, 5, 6, 7, 8, 9, 10, 11, 0.1};
   Surface skin{.name = "skin", .driven_by = "net", .shape = GridSheet{.columns = 3, .rows = 3}};
   skin.material.density = 7;  // does not count, and could not be read
-  Surface cage{.name = "cage", .shape = MeshFile{.path = "shots/a.obj", .wrap = Wrap::U}};
+  Surface cage{.name = "cage", .shape = MeshFile{.path = "shots/a.obj"}};
+  cage.reading.wrap = Wrap::U;
   cage.subdivision = Subdivision{.levels = 3, .scheme = SubdivisionScheme::Loop};
   Surface mesh{.name = "mesh", .shape = MeshFile{.path = "shots/a.obj"}};
   mesh.reading = {.uv = UvReading::Surface,

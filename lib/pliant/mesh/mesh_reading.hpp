@@ -3,6 +3,8 @@
 #include <array>
 #include <optional>
 
+#include "pliant/core/grid.hpp"
+
 namespace pliant {
 
 /// Where the u and v of a mesh come from.
@@ -19,9 +21,11 @@ enum class Border {
   Free,     ///< it moves
 };
 
-/// How a mesh is read. All but `uv` are of a surface.
+/// How a mesh is read. `wrap` is of a grid; all but `uv` are of a surface otherwise.
 struct MeshReading {
   UvReading uv = UvReading::Auto;
+
+  Wrap wrap = Wrap::None;  ///< the closed directions of its grid
 
   /// The lengths that count as 1 along u and along v [length/uv], > 0; none: the root of the
   /// surface's area, for both.

@@ -114,11 +114,10 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
   const MeshReading& reading = surface.reading;
   if (reading.asks_for_surface()) return on_surface(surface, std::move(mesh));
   const auto* const file = std::get_if<MeshFile>(&surface.shape);
-  const Wrap wrap = file ? file->wrap : Wrap::None;
-  auto grid = find_grid(mesh, wrap);
+  auto grid = find_grid(mesh, reading.wrap);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
   const std::string reason = grid.error().message;
-  if (reading.uv == UvReading::Grid || wrap != Wrap::None) {
+  if (reading.uv == UvReading::Grid || reading.wrap != Wrap::None) {
     const std::string_view other =
         reason.ends_with(": a seam") ? "wrap=\"u\" or \"v\" closes a grid there, and " : "";
     return invalid(
@@ -263,7 +262,8 @@ class ShapeMaker {
     if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
     if (error.file.empty()) {
       error.file = origin_.file;
-      error.line = origin_.line_of(surface_.name, "file");
+      error.line =
+          origin_.line_of(surface_.name, origin_.gives(surface_.name, "wrap") ? "wrap" : "file");
     }
     return error;
   }

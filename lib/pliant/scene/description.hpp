@@ -236,10 +236,6 @@ struct Description<MeshFile> {
                   .meaning = "the set of UVs to read, if the file contains several",
                   .range = {.least = 0, .most = max_uv_sets - 1}},
         of.uv_set...);
-    row(Attribute{.name = "wrap",
-                  .meaning = "the closed directions: their first and last column (row) are one",
-                  .words = wrap_words},
-        of.wrap...);
   }
 };
 
@@ -250,6 +246,10 @@ struct Description<MeshReading> {
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "wrap",
+                  .meaning = "the closed directions: their first and last column (row) are one",
+                  .words = wrap_words},
+        of.wrap...);
     row(Attribute{.name = "uv",
                   .meaning = "`grid`: the UVs, which form an even grid; `surface`: lengths along "
                              "the surface of any mesh; `auto`: the grid if there is one",

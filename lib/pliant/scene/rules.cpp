@@ -165,15 +165,14 @@ class WholeChecker {
   void check_reading(const Surface& surface) {
     const MeshReading& reading = surface.reading;
     check_ranges(surface.name, reading);
-    if (std::holds_alternative<NurbsNet>(surface.shape) && reading.asks_for_surface())
-      complain(
-          surface.name, "uv",
-          fmt::format("surface \"{}\" is a net, which is not read as a surface", surface.name));
+    if (std::holds_alternative<NurbsNet>(surface.shape) &&
+        (reading.asks_for_surface() || reading.wrap != Wrap::None))
+      complain(surface.name, "uv",
+               fmt::format("surface \"{}\" is a net, which is not read as a mesh", surface.name));
     if (reading.axis == std::array{0.0, 0.0, 0.0})
       complain(surface.name, "axis",
                fmt::format("{}.axis is 0 0 0, but must have a direction", surface.name));
-    const auto* const file = std::get_if<MeshFile>(&surface.shape);
-    const bool is_closed = file && file->wrap != Wrap::None;
+    const bool is_closed = reading.wrap != Wrap::None;
     if (is_closed && reading.uv == UvReading::Surface)
       complain(
           surface.name, "wrap",

@@ -32,7 +32,6 @@ struct MeshFile {
   /// Files that it refers to are read only from this folder and below; empty: the file's own
   /// folder.
   std::string root = {};
-  Wrap wrap = Wrap::None;  ///< the closed directions of its grid
 };
 
 /// The source of a surface's rest shape; a `Mesh` is made by a program.
