@@ -4,6 +4,7 @@
 #include <random>
 
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 
@@ -60,7 +61,7 @@ TEST_CASE("no point of any triangle is closer than the closest", "[mesh][triangl
   const TriangleTree tree(soup.points, soup.triangles);
   std::mt19937 random(8);
   std::uniform_real_distribution<double> anywhere(-1.5, 1.5);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < testing::rounds(60); ++round) {
     const Vector3d p(anywhere(random), anywhere(random), anywhere(random));
     const ClosestPoint found = tree.closest(p);
     for (const double weight : found.weights) CHECK((weight >= 0 && weight <= 1));
