@@ -75,12 +75,6 @@ std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
   return order;
 }
 
-// The node that each vertex moves as; -1: none, as for vertices that are sums of nodes.
-std::vector<int> nodes_of(const RestShape& shape) {
-  if (!shape.weights) return shape.vertex_nodes;
-  return std::vector<int>(shape.vertex_nodes.size(), -1);
-}
-
 Json transform_json(const Transform& transform) {
   Json numbers = Json::array();
   for (int row = 0; row < 3; ++row) {
@@ -97,8 +91,7 @@ class SurfaceView {
       : shape_(shape),
         surface_(surface),
         fps_(fps),
-        nodes_(nodes_of(shape)),
-        motion_(shape.mesh.positions, node_order(nodes_)),
+        motion_(shape.mesh.positions, node_order(shape.vertex_nodes)),
         marks_(shape) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
@@ -142,7 +135,7 @@ class SurfaceView {
         {"transforms", same_or_all()},
         {"rest", arrays.add(relative_rest(origin))},
         {"uvs", arrays.add(vertex_uvs(mesh))},
-        {"nodes", arrays.add(nodes_)},
+        {"nodes", arrays.add(shape_.vertex_nodes)},
         {"triangles", arrays.add(triangle_vertices(mesh))},
         {"edges", arrays.add(edge_vertices(mesh))},
         {"predictors", arrays.add(motion.predictors)},
@@ -175,7 +168,6 @@ class SurfaceView {
   const RestShape& shape_;
   const Surface& surface_;
   double fps_;
-  std::vector<int> nodes_;  // of the vertices
   MotionPacker motion_;
   std::vector<Json> transforms_;
   SurfaceMarks marks_;

@@ -148,24 +148,12 @@ def flat_grid(element):
 
 def read_obj(path):
     """A <mesh>: positions in file order, and the single (u,v) of each, from the faces."""
-    positions, coordinates, uv_of = [], [], {}
-    with open(path, encoding="utf-8") as lines:
-        for line in lines:
-            words = line.split("#")[0].split()
-            if not words:
-                continue
-            if words[0] == "v":
-                positions.append([float(word) for word in words[1:4]])
-            elif words[0] == "vt":
-                coordinates.append((float(words[1]), float(words[2])))
-            elif words[0] == "f":
-                for corner in words[1:]:
-                    vertex, texture = (int(word) for word in corner.split("/")[:2])
-                    vertex += len(positions) if vertex < 0 else -1
-                    uv = coordinates[texture if texture < 0 else texture - 1]
-                    assert uv_of.setdefault(vertex, uv) == uv, "a vertex with several UVs"
+    positions, faces = read_obj_corners(path)
+    uv_of = {}
+    for vertex, uv in (corner for face in faces for corner in face):
+        assert tuple(uv_of.setdefault(vertex, uv)) == tuple(uv), "a vertex with several UVs"
     u, v = zip(*(uv_of[k] for k in range(len(positions))))
-    return Grid(np.array(positions), u, v)
+    return Grid(positions, u, v)
 
 
 def read_surface(element, folder):

@@ -38,8 +38,8 @@ std::size_t bytes_of(const WrittenSize& size) {
          vertices * 2 * sizeof(std::size_t);
 }
 
-std::size_t bytes_to_bind(std::size_t vertex_count,
-                          const std::shared_ptr<const TriangleSurface>& surface, const Mesh& mesh) {
+std::size_t bytes_to_bind(std::size_t vertex_count, const TriangleSurface* surface,
+                          const Mesh& mesh) {
   // A vertex: in world space, its triangle, weights and displacement.
   constexpr std::size_t bytes_of_bound_vertex = 100;
   // A corner of a driver: a triangle, its gradients, a centre's part; in the tree; a node with w

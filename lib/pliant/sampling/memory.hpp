@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
@@ -32,7 +31,7 @@ std::size_t bytes_as_surface(const Mesh& mesh);
 
 /// The memory for binding vertices to a driver, and for moving them. `surface`: the driver's
 /// triangles; null: they are made of `mesh`. An upper bound. [bytes]
-std::size_t bytes_to_bind(std::size_t vertex_count,
-                          const std::shared_ptr<const TriangleSurface>& surface, const Mesh& mesh);
+std::size_t bytes_to_bind(std::size_t vertex_count, const TriangleSurface* surface,
+                          const Mesh& mesh);
 
 }  // namespace pliant

@@ -70,20 +70,6 @@ Result<void> take(std::size_t bytes, const std::string& surface, const SceneOrig
                .line = origin.line_of(surface)});
 }
 
-// The node with the largest weight of each vertex, the first of equals.
-std::vector<int> heaviest_nodes(const VertexWeights& weights) {
-  std::vector<int> heaviest;
-  heaviest.reserve(static_cast<std::size_t>(weights.vertex_count()));
-  for (int vertex = 0; vertex < weights.vertex_count(); ++vertex) {
-    std::size_t most = weights.starts[vertex];
-    for (std::size_t entry = most + 1; entry < weights.starts[vertex + 1]; ++entry) {
-      if (weights.weights[entry] > weights.weights[most]) most = entry;
-    }
-    heaviest.push_back(weights.nodes[most]);
-  }
-  return heaviest;
-}
-
 // `surface "head", mesh head.obj`
 std::string title_of(const Surface& surface) {
   const auto* file = std::get_if<MeshFile>(&surface.shape);
@@ -163,9 +149,10 @@ class ShapeMaker {
     if (auto taken = take_bytes(BytesToMake{}(net)); !taken) return fail(taken.error());
     NurbsSurface made = make_nurbs(net);
     if (surface_.is_driven()) return mesh_only(std::move(made.mesh));
+    std::vector<int> vertex_nodes = no_nodes(made.mesh);
     RestShape shape{.name = surface_.name,
                     .mesh = std::move(made.mesh),
-                    .vertex_nodes = heaviest_nodes(made.weights),
+                    .vertex_nodes = std::move(vertex_nodes),
                     .rest = net.points,
                     .grid = made.grid};
     shape.weights = std::make_shared<const VertexWeights>(std::move(made.weights));
@@ -182,7 +169,10 @@ class ShapeMaker {
     if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
     if (surface_.is_driven() && !surface_.subdivision) return mesh_only(*std::move(mesh));
     auto shape = read_nodes(surface_, *std::move(mesh));
-    if (!shape) return fail(about_mesh(shape.error()));
+    if (!shape) {
+      const bool is_closed = origin_.gives(surface_.name, "wrap");
+      return fail(about_mesh(shape.error(), is_closed ? "wrap" : "file"));
+    }
     if (auto sound = check_as_surface(*shape); !sound) return fail(sound.error());
     if (!surface_.subdivision) return shape;
     return subdivided(*std::move(shape), bytes);
@@ -224,18 +214,22 @@ class ShapeMaker {
     if (!made) return fail(about_mesh(made.error()));
     if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
     shape.mesh = std::move(made->mesh);
-    shape.vertex_nodes = heaviest_nodes(made->weights);
+    shape.vertex_nodes = no_nodes(shape.mesh);
     shape.weights = std::make_shared<const VertexWeights>(std::move(made->weights));
     return shape;
   }
 
   // Of a driven surface.
   RestShape mesh_only(Mesh mesh) const {
-    const auto vertex_count = static_cast<std::size_t>(mesh.vertex_count());
+    std::vector<int> vertex_nodes = no_nodes(mesh);
     return {.name = surface_.name,
             .mesh = std::move(mesh),
-            .vertex_nodes = std::vector<int>(vertex_count, -1),
+            .vertex_nodes = std::move(vertex_nodes),
             .rest = Field(0, 3)};
+  }
+
+  static std::vector<int> no_nodes(const Mesh& mesh) {
+    return std::vector<int>(static_cast<std::size_t>(mesh.vertex_count()), -1);
   }
 
   // What a surface of triangles cannot do.
@@ -258,18 +252,17 @@ class ShapeMaker {
 
   // An unreadable file is reported as a problem of the scene; an error in its contents already
   // names the file.
-  Error at_scene(Error error) const {
+  Error at_scene(Error error, const std::string& attribute = "file") const {
     if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
     if (error.file.empty()) {
       error.file = origin_.file;
-      error.line =
-          origin_.line_of(surface_.name, origin_.gives(surface_.name, "wrap") ? "wrap" : "file");
+      error.line = origin_.line_of(surface_.name, attribute);
     }
     return error;
   }
-  Error about_mesh(Error error) const {
+  Error about_mesh(Error error, const std::string& attribute = "file") const {
     error.message = fmt::format("{}: {}", title_of(surface_), error.message);
-    return at_scene(std::move(error));
+    return at_scene(std::move(error), attribute);
   }
 
   const Surface& surface_;
@@ -379,7 +372,7 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
   const Surface& driving = named(scene, driver.name);
   const auto vertex_count = static_cast<std::size_t>(shape.mesh.vertex_count());
   const std::size_t bytes =
-      driven.memory.bytes() + bytes_to_bind(vertex_count, driver.surface, driver.mesh);
+      driven.memory.bytes() + bytes_to_bind(vertex_count, driver.surface.get(), driver.mesh);
   if (auto taken = take(bytes, own.name, scene.origin, driven.memory); !taken) return taken;
   auto triangles = triangles_of(driving, driver);
   if (!triangles) {

@@ -27,7 +27,7 @@ struct VertexWeights;
 struct RestShape {
   std::string name;  ///< of the surface
   Mesh mesh;         ///< as it is written
-  /// #vertices: the node of each, of a weighted sum the heaviest; -1: it never moves, or is driven
+  /// #vertices: the node of each; -1: it never moves, is driven, or is a weighted sum of nodes
   std::vector<int> vertex_nodes;
   Field rest;  ///< #nodes x 3: rest positions, object space [length]; none: it is driven
 

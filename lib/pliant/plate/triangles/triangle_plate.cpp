@@ -7,6 +7,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/solver_errors.hpp"
 
 namespace pliant {
 namespace {
@@ -223,7 +224,7 @@ Result<void> TrianglePlate::measure_error(const SparseMatrix& upper) {
   const std::size_t bytes =
       static_cast<std::size_t>(upper.nonZeros()) * 6 * (sizeof(Extended) + 2 * sizeof(int));
   if (!precise_share_.try_resize(bytes))
-    return fail(ErrorCode::OutOfMemory, precise_share_.complaint(bytes));
+    return fail(factor_too_large(reduced_.count, precise_share_.complaint(bytes)));
   precise_ = rows<Extended>(bending_, shift_, Half::Both);
   const auto correction = matrix_.solve(residual(*solution, pressure));
   if (!correction) return fail(correction.error());
