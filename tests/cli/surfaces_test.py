@@ -1,5 +1,6 @@
 """Meshes that are no even grid, from scene to files: every command, every format."""
 
+import base64
 import json
 import math
 import os
@@ -29,6 +30,82 @@ def ball(around=24, down=16):
             faces.append((a, b, b + around, a + around))
         faces.append((len(vertices), last + i, last + following))
     return vertices, faces
+
+
+def ply_of(vertices, faces):
+    header = f"""ply
+format ascii 1.0
+element vertex {len(vertices)}
+property double x
+property double y
+property double z
+element face {len(faces)}
+property list uchar int vertex_indices
+end_header
+"""
+    return header + "".join("%.17g %.17g %.17g\n" % tuple(v) for v in vertices) + "".join(
+        "%d %s\n" % (len(face), " ".join(str(k - 1) for k in face)) for face in faces)
+
+
+def gltf_of(vertices, faces):
+    """Of triangles."""
+    positions, indices = np.array(vertices, "<f4"), np.array(faces, "<u4") - 1
+    numbers = positions.tobytes() + indices.tobytes()
+    return json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(positions), "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5125, "count": indices.size, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": positions.nbytes},
+                        {"buffer": 0, "byteOffset": positions.nbytes, "byteLength": indices.nbytes}],
+        "buffers": [{"byteLength": len(numbers),
+                     "uri": "data:application/octet-stream;base64," + base64.b64encode(numbers).decode()}]})
+
+
+def collada_of(vertices, faces):
+    numbers = " ".join("%.9g" % x for v in vertices for x in v)
+    return f"""<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset/>
+<library_geometries><geometry id="g" name="ball"><mesh>
+<source id="p"><float_array id="pa" count="{3 * len(vertices)}">{numbers}</float_array><technique_common>
+<accessor source="#pa" count="{len(vertices)}" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="{len(faces)}"><input semantic="VERTEX" source="#v" offset="0"/>
+<vcount>{" ".join(str(len(face)) for face in faces)}</vcount>
+<p>{" ".join(str(k - 1) for face in faces for k in face)}</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>
+"""
+
+
+def fbx_of(vertices, faces):
+    # The last corner of a face is its complement.
+    corners = [number for face in faces for number in [k - 1 for k in face[:-1]] + [-face[-1]]]
+    return f"""; FBX 7.4.0 project file
+FBXHeaderExtension:  {{
+FBXHeaderVersion: 1003
+FBXVersion: 7400
+}}
+Objects:  {{
+Geometry: 10, "Geometry::", "Mesh" {{
+Vertices: *{3 * len(vertices)} {{
+a: {",".join("%.9g" % x for v in vertices for x in v)}
+}}
+PolygonVertexIndex: *{len(corners)} {{
+a: {",".join(map(str, corners))}
+}}
+GeometryVersion: 124
+}}
+Model: 20, "Model::ball", "Mesh" {{
+Version: 232
+}}
+}}
+Connections:  {{
+C: "OO", 20, 0
+C: "OO", 10, 20
+}}
+"""
 
 
 SCENE = """<scene version="1" start="1" end="{end}">
@@ -89,6 +166,34 @@ class Surfaces(Command):
         peak = np.abs(np.load(self.path("a.npy"))[5] - np.array(self.vertices)).max()
         # glTF has two triangles for a quad, which are stiffer.
         self.assertLess(abs(np.abs(again[5] - again[0]).max() - peak), 0.15 * peak)
+
+    def test_every_mesh_format_without_uvs_has_the_same_motion(self):
+        vertices, faces = ball(12, 8)
+        vertices = np.round(64 * np.array(vertices)) / 64  # which every format keeps
+        # glTF has triangles only.
+        faces = [(face[0], face[k], face[k + 1]) for face in faces for k in range(1, len(face) - 1)]
+        self.write("m.obj", "".join("v %.17g %.17g %.17g\n" % tuple(v) for v in vertices) +
+                   "".join("f %d %d %d\n" % face for face in faces))
+        for ending, made in (("ply", ply_of), ("gltf", gltf_of), ("dae", collada_of), ("fbx", fbx_of)):
+            self.write(f"m.{ending}", made(vertices, faces))
+        frames = {}
+        for ending in ("obj", "ply", "gltf", "dae", "fbx"):
+            told = self.bake(self.scene_of(file=f"m.{ending}"), "a.npy").stderr
+            self.assertRegex(told, rf"^\S*s\.xml:2: note: ball: the mesh \S*m\.{ending} is read as a surface, "
+                                   r"since it is no even grid: it has no \(u,v\) \(UVs\)\n$")
+            frames[ending] = np.load(self.path("a.npy"))
+        moves = frames["obj"] - frames["obj"][0]
+        self.assertGreater(np.abs(moves).max(), 0.01)
+        for ending in ("ply", "gltf"):
+            self.assertTrue((frames[ending] == frames["obj"]).all(), ending)
+        # These have a vertex for each corner, which one node moves; nodes in another order round differently.
+        corners = np.array(faces).ravel() - 1
+        far = np.linalg.norm(vertices - [0, 1, 0], axis=1) >= RADIUS
+        for ending in ("dae", "fbx"):
+            own = frames[ending] - frames[ending][0]
+            self.assertTrue((frames[ending][0] == vertices[corners]).all(), ending)
+            self.assertLess(np.abs(own - moves[:, corners]).max(), 1e-8 * np.abs(moves).max(), ending)
+            self.assertTrue((own[:, far[corners]] == 0).all(), ending)
 
     def test_threads_caches_and_replays_keep_its_bits(self):
         scene = self.scene_of(end=10)
