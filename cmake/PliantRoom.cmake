@@ -41,9 +41,9 @@ if(PLIANT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 # pliant_sanitize_fast(TARGET): for rooms that need little of the tests' time. Optimising UBSan's
-# checks takes longer than running them unoptimised.
+# checks takes longer than running them unoptimised, but for fuzzers.
 function(pliant_sanitize_fast target)
-  if(PLIANT_SANITIZE)
+  if(PLIANT_SANITIZE AND NOT PLIANT_BUILD_FUZZ)
     target_compile_options(${target} PRIVATE -O0)
   endif()
 endfunction()
