@@ -1,0 +1,89 @@
+// Arbitrary text as a scene, checked as by `pliant validate`; a tiny one is played for some frames.
+// Its meshes are those of the folder meshes/.
+
+#include <limits>
+#include <utility>
+
+#include "fuzz.hpp"
+#include "pliant/pliant.hpp"
+
+using namespace pliant;
+using namespace pliant::fuzzing;
+
+namespace {
+
+constexpr auto any_number = std::numeric_limits<std::size_t>::max();
+constexpr int most_frames = 100;    // that are checked
+constexpr int most_vertices = 400;  // that are played
+constexpr int most_levels = 2;
+constexpr int frames_played = 3;
+
+bool is_tiny(const Surface& surface) {
+  if (surface.subdivision && surface.subdivision->levels > most_levels) return false;
+  if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape))
+    return std::int64_t{sheet->columns} * sheet->rows <= most_vertices;
+  if (const auto* const net = std::get_if<NurbsNet>(&surface.shape))
+    return std::int64_t{samples_of(net->u)} * samples_of(net->v) <= most_vertices;
+  return true;  // the meshes there are tiny
+}
+
+bool is_tiny(const Scene& scene) {
+  return scene.surfaces.size() <= 4 && scene.forces.size() <= 8 &&
+         std::ranges::all_of(scene.surfaces, [](const Surface& one) { return is_tiny(one); });
+}
+
+// As a file it is the same scene.
+void check_written(const Scene& scene) {
+  const auto text = to_xml(scene);
+  if (!text) return check_error(text.error(), any_number);
+  const auto again = parse_scene(*text, "fuzz.xml", "");
+  require(again.has_value() && to_xml(*again).value() == *text);
+}
+
+// Requires: `Simulation::check` found nothing wrong.
+void play(Scene scene, const SimulationOptions& options) {
+  auto made = Simulation::make(std::move(scene), options);
+  if (!made) {
+    require(made.error().code == ErrorCode::OutOfMemory ||
+            made.error().code == ErrorCode::Interrupted);
+    return check_error(made.error(), any_number);
+  }
+  for (const RestShape& shape : made->rest_shapes()) {
+    require(check_mesh(shape.mesh).has_value());
+    require(shape.rest.allFinite());
+  }
+  int left = frames_played;
+  for (const int number : made->frames()) {
+    if (left-- == 0) return;
+    const auto frame = made->at(number);
+    if (!frame) return check_error(frame.error());
+    for (const SurfaceFrame& surface : frame->surfaces()) {
+      require(surface.object_positions().allFinite());
+    }
+  }
+  for (const Warning& warning : made->warnings()) require(!warning.message().empty());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const auto scene = parse_scene(text_of(bytes, size), "fuzz.xml", PLIANT_FUZZ_MESHES);
+  if (!scene) {
+    check_error(scene.error(), any_number);
+    return 0;
+  }
+  for (const SceneNote& note : scene->notes) require(!note.message.empty());
+  check_written(*scene);
+  if (scene->end - std::int64_t{scene->start} >= most_frames) return 0;
+  // A frame may have 10^5 steps.
+  int steps = 0;
+  SimulationOptions options;
+  options.max_memory = std::size_t{100} << 20;
+  options.should_stop = [&steps] { return ++steps > 200; };
+  if (const auto checked = Simulation::check(*scene, options); !checked) {
+    check_error(checked.error(), any_number);
+  } else if (is_tiny(*scene) && !scene->surfaces.empty()) {
+    play(*scene, options);
+  }
+  return 0;
+}
