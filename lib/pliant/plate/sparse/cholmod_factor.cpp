@@ -21,6 +21,7 @@ class CholmodFactor final : public SparseFactor {
     common_.nmethods = 1;
     common_.method[0].ordering = CHOLMOD_AMD;
     common_.postorder = 1;
+    common_.grow2 = 0;  // a column has as much room as the analysis found, and no more
     common_.print = 0;
     common_.try_catch = 1;
   }
@@ -41,7 +42,9 @@ class CholmodFactor final : public SparseFactor {
     return check(matrix.rows());
   }
 
-  std::size_t entries() const override { return static_cast<std::size_t>(common_.lnz); }
+  std::size_t entries() const override {
+    return factor_ ? factor_->nzmax : static_cast<std::size_t>(common_.lnz);
+  }
 
   // What `cholmod_factorize` does, but some rows at a time.
   Result<void> factorize(const SparseMatrix& matrix, const StopRequest& should_stop) override {
@@ -49,8 +52,9 @@ class CholmodFactor final : public SparseFactor {
     cholmod_sparse* const ordered = in_order(matrix);
     if (ordered) factor_ = cholmod_copy_factor(pattern_, &common_);
     bool is_stopped = false;
-    // LDL^T, by columns, each as long as the analysis found.
-    if (factor_ && cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, factor_, &common_)) {
+    // LDL^T, not packed: that would leave room for the diagonal alone, and each column would move
+    // whenever it grows.
+    if (factor_ && cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, factor_, &common_)) {
       constexpr std::size_t rows_at_a_time = 64;
       const auto size = static_cast<std::size_t>(matrix.rows());
       double beta[2] = {0, 0};

@@ -26,7 +26,8 @@ class SparseFactor {
   /// Orders a matrix and finds the pattern of its factor.
   virtual Result<void> analyze(const SparseMatrix& matrix) = 0;
 
-  /// Entries of the factor of the analysed matrix.
+  /// Entries that the factor has room for: those that the analysis finds, before and after it is
+  /// made.
   virtual std::size_t entries() const = 0;
 
   /// Factors a matrix with the pattern of the analysed one. CHOLMOD asks `should_stop` every now

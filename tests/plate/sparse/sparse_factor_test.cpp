@@ -1,0 +1,23 @@
+#include "pliant/plate/sparse/sparse_factor.hpp"
+
+#include "pliant/plate/sparse/operator.hpp"
+#include "support/catch.hpp"
+#include "support/plates.hpp"
+
+using namespace pliant;
+using pliant::testing::unit_grid;
+
+TEST_CASE("a factor has room for what the analysis finds, and no more", "[plate][factor]") {
+  const SparseMatrix matrix = assemble_upper({unit_grid(40, 30), {1, 2, 1}, 0});
+  for (const SolverChoice choice : available_solvers()) {
+    if (choice == SolverChoice::Spectral) continue;
+    CAPTURE(name_of(choice));
+    const auto factor = make_sparse_factor(choice);
+    REQUIRE(factor->analyze(matrix));
+    const std::size_t found = factor->entries();
+    REQUIRE(factor->factorize(matrix, {}));
+    CHECK(factor->entries() == found);
+    REQUIRE(factor->factorize(matrix, {}));
+    CHECK(factor->entries() == found);
+  }
+}
