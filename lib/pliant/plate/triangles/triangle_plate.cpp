@@ -106,9 +106,20 @@ Field TrianglePlate::reduced(const Field& forces) const {
     const int place = reduced_.places[unknown];
     if (place >= 0) result.row(place) = forces.row(unknown);
   }
+  const auto presses_on_inner = [&](int block) {
+    bool presses = false;
+    for (int k = cells_.block_starts[block]; k < cells_.block_starts[block + 1]; ++k) {
+      for_each_unknown(cells_, cells_.cells[k], [&](const CellUnknown& unknown) {
+        presses =
+            presses || (reduced_.places[unknown.index] < 0 && !forces.row(unknown.index).isZero(0));
+      });
+    }
+    return presses;
+  };
   CellBlock<double> block;
   std::vector<double> own;
   for (const int k : reduced_.blocks) {
+    if (!presses_on_inner(k)) continue;
     block.compute(cells_, k, reduced_, bending_);
     for (int component = 0; component < 3; ++component) {
       own.assign(static_cast<std::size_t>(block.size()), 0);
