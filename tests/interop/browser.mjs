@@ -57,7 +57,7 @@ try {
     if (["error", "warn"].includes(message.type())) complaints.push(message.text());
   });
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
-  await page.waitForFunction("window.look !== undefined", { timeout: 60000 });
+  await page.waitForFunction(() => window.look !== undefined, undefined, { timeout: 60000 });
   const results = [];
   for (const job of JSON.parse(input)) {
     complaints.length = 0;

@@ -19,7 +19,7 @@ try {
   const page = await (await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: "dark" })).newPage();
   page.setDefaultTimeout(120_000);
   await page.goto(`file://${folder}/page.html#frame=12`);
-  await page.waitForFunction("document.documentElement.dataset.ready === 'true'");
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
   await page.keyboard.press("c");
   await page.evaluate(() => new Promise((resume) => requestAnimationFrame(() => requestAnimationFrame(resume))));
   await page.mouse.move(560, 330);

@@ -73,7 +73,7 @@ async function open(url, { width = 900, height = 600, ...options } = {}) {
     if (!allowed) page.complaints.push(`asks for ${request.url()}`);
   });
   await page.goto(url);
-  await page.waitForFunction("document.documentElement.dataset.ready === 'true'");
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "true");
   return page;
 }
 
