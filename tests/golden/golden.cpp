@@ -22,7 +22,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/plate/spectral/spectral_kernels.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/replay.hpp"
 #include "pliant/scene/read.hpp"
@@ -58,7 +58,7 @@ struct Run {
 std::vector<Run> runs_to_do(std::string_view option) {
   if (option == "--once") return {Run{}};
   std::vector<Run> runs;
-  for (int k = 0; const SpectralKernels* kernels = runnable_kernels(k); ++k) {
+  for (int k = 0; const PlateKernels* kernels = runnable_kernels(k); ++k) {
     if (option != "--threads") runs.push_back({.lanes = kernels->lanes});
   }
   for (const int threads : {2, 3, 8}) {

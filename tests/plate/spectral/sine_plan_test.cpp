@@ -12,7 +12,7 @@ using namespace pliant;
 namespace {
 
 // Transforms `lanes` columns.
-std::vector<double> transformed(const SinePlan& plan, const SpectralKernels& kernels,
+std::vector<double> transformed(const SinePlan& plan, const PlateKernels& kernels,
                                 std::vector<double> points) {
   std::vector<double> work(static_cast<std::size_t>(sine_work(plan.view()) * kernels.lanes));
   kernels.sine_transform(plan.view(), points.data(), work.data());
@@ -69,7 +69,7 @@ std::vector<int> lengths() {
 TEST_CASE("kernels are as wide as they may be, but no narrower than there are",
           "[plate][spectral]") {
   for (int k = 0; runnable_kernels(k); ++k) {
-    const SpectralKernels* const kernels = runnable_kernels(k);
+    const PlateKernels* const kernels = runnable_kernels(k);
     CHECK(&kernels_of_width(kernels->lanes) == kernels);
     if (k > 0) CHECK(&kernels_of_width(runnable_kernels(k - 1)->lanes - 1) == kernels);
   }
@@ -92,7 +92,7 @@ TEST_CASE("a point of a turn is right to an ulp or two", "[plate][spectral]") {
 }
 
 TEST_CASE("the sine transform is what its definition says", "[plate][spectral]") {
-  const SpectralKernels& kernels = *runnable_kernels(0);
+  const PlateKernels& kernels = *runnable_kernels(0);
   for (const int length : lengths()) {
     CAPTURE(length);
     const SinePlan plan(length);
@@ -115,7 +115,7 @@ TEST_CASE("the sine transform is what its definition says", "[plate][spectral]")
 }
 
 TEST_CASE("the sine transform is its own inverse", "[plate][spectral]") {
-  const SpectralKernels& kernels = *runnable_kernels(0);
+  const PlateKernels& kernels = *runnable_kernels(0);
   for (const int length : {400, 401, 479, 719, 1000, 1006, 2000, 2003}) {
     const SinePlan plan(length);
     const std::vector<double> x = random_points((length - 1) * kernels.lanes);
@@ -133,7 +133,7 @@ TEST_CASE("every width of vectors transforms to the same bits", "[plate][spectra
     const std::vector<double> columns = random_points(points * 8);  // point by point
     std::vector<double> first;
     for (int which = 0; runnable_kernels(which); ++which) {
-      const SpectralKernels& kernels = *runnable_kernels(which);
+      const PlateKernels& kernels = *runnable_kernels(which);
       std::vector<double> result(columns.size());
       for (int begin = 0; begin < 8; begin += kernels.lanes) {
         std::vector<double> tile;
@@ -165,7 +165,7 @@ TEST_CASE("a sine transform keeps to the room that it asks for", "[plate][spectr
     CHECK(sine_work(view) <= 6L * length);
     if (length % 7 != 0 && !is_prime(length)) continue;
     for (int which = 0; runnable_kernels(which); ++which) {
-      const SpectralKernels& kernels = *runnable_kernels(which);
+      const PlateKernels& kernels = *runnable_kernels(which);
       const auto used = static_cast<std::size_t>(sine_work(view) * kernels.lanes);
       std::vector<double> work(used + 64, 7.0);
       const std::vector<double> x = random_points((length - 1) * kernels.lanes);

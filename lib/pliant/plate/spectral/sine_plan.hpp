@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pliant/plate/spectral/spectral_kernels.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 
 namespace pliant {
 

@@ -7,11 +7,11 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/spectral/sine_plan.hpp"
-#include "pliant/plate/spectral/spectral_kernels.hpp"
 #include "pliant/plate/time_steps.hpp"
 
 namespace pliant {
@@ -112,7 +112,7 @@ class SpectralPlate {
   void for_each(std::size_t count, const Work& work);
 
   RunContext context_;
-  const SpectralKernels& kernels_;
+  const PlateKernels& kernels_;
   MemoryShare memory_;
   SolverCounts counts_;
   std::optional<PlateSystem> prepared_;

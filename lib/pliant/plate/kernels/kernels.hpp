@@ -2,7 +2,7 @@
 
 namespace pliant {
 
-// The per-node work of the spectral solver, compiled several times: for the vectors that every
+// The per-node work of the solvers, compiled several times: for the vectors that every
 // machine of the architecture has, and for wider ones. Each number passes through the same
 // operations in the same order for every width, without fused multiply-add, so all are
 // bit-identical. The kernels include no other header: an inline function compiled here for a newer
@@ -112,7 +112,7 @@ struct StepFactors {
 };
 
 /// The kernels for one width of vectors.
-struct SpectralKernels {
+struct PlateKernels {
   const char* name;
   int lanes;  ///< doubles in a vector
 
@@ -147,15 +147,15 @@ struct SpectralKernels {
 
 /// The kernels that this machine can run, the widest first; the last one runs everywhere. nullptr
 /// for k beyond the last one. Requires: k >= 0.
-const SpectralKernels* runnable_kernels(int k);
+const PlateKernels* runnable_kernels(int k);
 
 /// The widest of them with at most `most_lanes` lanes; the narrowest if none has so few.
-const SpectralKernels& kernels_of_width(int most_lanes);
+const PlateKernels& kernels_of_width(int most_lanes);
 
-extern const SpectralKernels baseline_kernels;
+extern const PlateKernels baseline_kernels;
 #ifdef PLIANT_WIDE_KERNELS
-extern const SpectralKernels avx2_kernels;
-extern const SpectralKernels avx512_kernels;
+extern const PlateKernels avx2_kernels;
+extern const PlateKernels avx512_kernels;
 #endif
 
 }  // namespace pliant

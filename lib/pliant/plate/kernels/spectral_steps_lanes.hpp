@@ -1,6 +1,5 @@
-// Steps and the edge's matrix, and the table of all kernels: the last part of the kernels, after
-// spectral_fields_lanes.hpp.
-// No #pragma once, no other header: see spectral_kernels.hpp.
+// Steps and the edge's matrix: the part of the kernels after spectral_fields_lanes.hpp. No #pragma
+// once, no other header: see kernels.hpp.
 
 namespace pliant {
 namespace {
@@ -369,12 +368,5 @@ int invert_edge(const ParityView& parity, double beta, double delta, double* row
 }
 
 }  // namespace
-
-#define PLIANT_JOIN_(a, b) a##b
-#define PLIANT_JOIN(a, b) PLIANT_JOIN_(a, b)
-
-const SpectralKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {
-    PLIANT_KERNELS_NAME, lanes, sine_transform, in_across, in_along,   out_along,
-    out_across,          start, step,           last_step, invert_edge};
 
 }  // namespace pliant

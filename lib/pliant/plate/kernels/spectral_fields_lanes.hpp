@@ -1,6 +1,6 @@
 // Transfer of the columns of a field into the sine transform and of its coefficients out of it: the
 // second part of the kernels, after sine_transform_lanes.hpp.
-// No #pragma once, no other header: see spectral_kernels.hpp.
+// No #pragma once, no other header: see kernels.hpp.
 
 namespace pliant {
 namespace {

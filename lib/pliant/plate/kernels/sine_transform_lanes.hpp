@@ -1,6 +1,6 @@
 // Vectors of PLIANT_LANES doubles, and the sine transform of PLIANT_LANES columns: the first part
 // of the kernels, included once by each file that compiles them. No #pragma once, no other header:
-// see spectral_kernels.hpp.
+// see kernels.hpp.
 
 namespace pliant {
 namespace {

@@ -1,8 +1,8 @@
-#include "pliant/plate/spectral/spectral_kernels.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 
 namespace pliant {
 
-const SpectralKernels* runnable_kernels(int k) {
+const PlateKernels* runnable_kernels(int k) {
 #ifdef PLIANT_WIDE_KERNELS
   const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                           __builtin_cpu_supports("avx512vl");
@@ -12,7 +12,7 @@ const SpectralKernels* runnable_kernels(int k) {
   return k == 0 ? &baseline_kernels : nullptr;
 }
 
-const SpectralKernels& kernels_of_width(int most_lanes) {
+const PlateKernels& kernels_of_width(int most_lanes) {
   int k = 0;
   while (runnable_kernels(k)->lanes > most_lanes && runnable_kernels(k + 1)) ++k;
   return *runnable_kernels(k);

@@ -1,0 +1,12 @@
+// The table of the kernels: their last part. No #pragma once, no other header: see kernels.hpp.
+
+namespace pliant {
+
+#define PLIANT_JOIN_(a, b) a##b
+#define PLIANT_JOIN(a, b) PLIANT_JOIN_(a, b)
+
+const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {
+    PLIANT_KERNELS_NAME, lanes, sine_transform, in_across, in_along,   out_along,
+    out_across,          start, step,           last_step, invert_edge};
+
+}  // namespace pliant
