@@ -3,8 +3,8 @@
 //
 //   kept      a frame whose region and coefficients are those of the frame before
 //   sliding   a frame whose force, and with it region and factor, is new
-//   bound     of kept: 20 solves with the factor; of sliding: ordering and factor too
-//   rest      what a frame takes besides, as a part of its bound
+//   bound     of kept: 20 solves by the library; of sliding: its order and factor too
+//   ratio     of a frame to its bound
 //   read      an OBJ file; prepare: nodes, faces, triangles, and the tree for selecting
 //   select    a force that reaches a hundredth of the surface
 //
@@ -99,7 +99,7 @@ void measure_frames(int count, bool has_quads) {
   fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} |\n",
              body.last_step().unknown_count(), has_quads ? "quads" : "triangles",
              body.last_step().surface->pieces[0].cells.cells.size(), kept, bound.solves,
-             kept / bound.solves - 1, sliding, whole, sliding / whole - 1);
+             kept / bound.solves, sliding, whole, sliding / whole);
   std::fflush(stdout);
 }
 
@@ -150,7 +150,7 @@ int main(int count, char** arguments) {
     return 2;
   }
   fmt::print(
-      "| nodes inside | faces | cells | kept, ms | bound | rest | sliding, ms | bound | rest |\n"
+      "| nodes inside | faces | cells | kept, ms | bound | ratio | sliding, ms | bound | ratio |\n"
       "|---|---|---|---|---|---|---|---|---|\n");
   for (const int side : {40, 125}) {
     for (const bool has_quads : {false, true}) measure_frames(side, has_quads);

@@ -111,6 +111,25 @@ struct StepFactors {
   double keep = 0;
 };
 
+/// Neighbouring columns of a factor L that have the same rows below them.
+struct Supernode {
+  int first = 0, columns = 0;
+  int rows = 0;         ///< below it
+  long rows_at = 0;     ///< in `SupernodesView::rows`
+  long entries_at = 0;  ///< in `SupernodesView::entries`
+};
+
+/// A factor L D L^T in supernodes. The entries of each are the strict lower triangle of its own
+/// rows, column by column, then the rows below, row by row.
+struct SupernodesView {
+  int size = 0;  ///< rows of L
+  int count = 0;
+  const Supernode* supernodes = nullptr;  ///< in the order of their columns
+  const int* rows = nullptr;
+  const double* entries = nullptr;
+  const double* pivots = nullptr;  ///< D
+};
+
 /// The kernels for one width of vectors.
 struct PlateKernels {
   const char* name;
@@ -143,6 +162,10 @@ struct PlateKernels {
   /// the first column whose pivot is not positive, or -1.
   int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
                      double* inverse, double* panels);
+
+  /// Solves with a factor for three right-hand sides. `x`: #rows x 4, the right-hand sides and
+  /// zeros, then the solutions.
+  void (*solve_supernodes)(const SupernodesView& factor, double* x);
 };
 
 /// The kernels that this machine can run, the widest first; the last one runs everywhere. nullptr

@@ -6,4 +6,5 @@
 #include "pliant/plate/kernels/sine_transform_lanes.hpp"
 #include "pliant/plate/kernels/spectral_fields_lanes.hpp"
 #include "pliant/plate/kernels/spectral_steps_lanes.hpp"
+#include "pliant/plate/kernels/supernode_lanes.hpp"
 #include "pliant/plate/kernels/table_lanes.hpp"

@@ -26,18 +26,18 @@ PLIANT_INLINE Eight all8(double number) {
   for (int k = 0; k < parts; ++k) x.part[k] = number - Lanes{};
   return x;
 }
-#define PLIANT_EIGHT_OPERATOR(op)                                   \
-  PLIANT_INLINE Eight operator op(const Eight& a, const Eight& b) { \
-    Eight x;                                                        \
-    _Pragma("GCC unroll 4") for (int k = 0; k < parts; ++k) {       \
-      x.part[k] = a.part[k] op b.part[k];                           \
-    }                                                               \
-    return x;                                                       \
+// Of vectors in `count` parts, part by part.
+#define PLIANT_OPERATOR(Type, op, count)                         \
+  PLIANT_INLINE Type operator op(const Type& a, const Type& b) { \
+    Type x;                                                      \
+    _Pragma("GCC unroll 4") for (int k = 0; k < (count); ++k) {  \
+      x.part[k] = a.part[k] op b.part[k];                        \
+    }                                                            \
+    return x;                                                    \
   }
-PLIANT_EIGHT_OPERATOR(+)
-PLIANT_EIGHT_OPERATOR(-)
-PLIANT_EIGHT_OPERATOR(*)
-#undef PLIANT_EIGHT_OPERATOR
+PLIANT_OPERATOR(Eight, +, parts)
+PLIANT_OPERATOR(Eight, -, parts)
+PLIANT_OPERATOR(Eight, *, parts)
 PLIANT_INLINE Eight operator*(const Eight& a, double b) { return a * all8(b); }
 
 PLIANT_INLINE double sum_of(const Eight& x) {

@@ -95,6 +95,15 @@ class CholmodFactor final : public SparseFactor {
                                          right_hand_sides.rows(), 3));
   }
 
+  std::optional<FactorColumns> columns() const override {
+    return FactorColumns{
+        static_cast<int>(factor_->n),        static_cast<const int*>(factor_->Perm),
+        static_cast<const int*>(factor_->p), static_cast<const int*>(factor_->nz),
+        static_cast<const int*>(factor_->i), static_cast<const double*>(factor_->x)};
+  }
+
+  void release() override { cholmod_free_factor(&factor_, &common_); }
+
  private:
   // The matrix as CHOLMOD sees it, without a copy.
   static cholmod_sparse view_of(const SparseMatrix& matrix) {

@@ -37,18 +37,33 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
   if (!has_same_pattern) {
     ++counts_.analyses;
     if (auto analyzed = factor_->analyze(matrix); !analyzed) return analyzed;
-    const std::size_t bytes = bytes_of_entry * factor_->entries();
-    if (auto taken = take(size, bytes_to_factorize * size + bytes); !taken) return taken;
   }
+  has_supernodes_ = false;
+  if (supernodes_) supernodes_->release();
+  const std::size_t bytes = bytes_to_factorize * size + bytes_of_entry * factor_->entries();
+  if (auto taken = take(size, bytes); !taken) return taken;
   ++counts_.factorizations;
-  return factor_->factorize(matrix, should_stop_);
+  if (auto factored = factor_->factorize(matrix, should_stop_); !factored) return factored;
+  return supernodes_ ? join_columns(size) : Result<void>();
 } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
   return fail(no_memory_for_factor(size));
 }
 
+Result<void> FactoredMatrix::join_columns(long size) {
+  const auto columns = factor_->columns();
+  if (!columns) return {};
+  const std::size_t bytes = supernodes_->plan(*columns);
+  if (auto taken = take(size, memory_.bytes() + bytes); !taken) return taken;
+  supernodes_->take(*columns);
+  has_supernodes_ = true;
+  factor_->release();
+  return take(size, bytes_to_factorize * size + bytes);
+}
+
 Result<Field> FactoredMatrix::solve(const Field& right_hand_sides) try {
   PLIANT_EXPECTS(factor_ != nullptr);
-  return factor_->solve(right_hand_sides);
+  return has_supernodes_ ? Result<Field>(supernodes_->solve(right_hand_sides))
+                         : factor_->solve(right_hand_sides);
 } catch (const std::bad_alloc&) {
   return fail(no_memory_for_factor(right_hand_sides.rows()));
 }

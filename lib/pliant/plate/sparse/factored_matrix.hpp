@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
+#include "pliant/plate/sparse/supernodal_factor.hpp"
 
 namespace pliant {
 
@@ -17,6 +19,9 @@ class FactoredMatrix {
   /// Requires: the choice is available.
   FactoredMatrix(SolverChoice choice, const RunContext& context)
       : choice_(choice), memory_(context.memory), should_stop_(context.should_stop) {}
+
+  /// Solves by supernodes if the library shows its factor: twice as fast, but other bits.
+  void use_supernodes(const PlateKernels& kernels) { supernodes_.emplace(kernels); }
 
   /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
   /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
@@ -33,11 +38,14 @@ class FactoredMatrix {
 
  private:
   Result<void> take(long size, std::size_t bytes);
+  Result<void> join_columns(long size);
 
   SolverChoice choice_;
   MemoryShare memory_;
   StopRequest should_stop_;
   std::unique_ptr<SparseFactor> factor_;
+  std::optional<SupernodalFactor> supernodes_;
+  bool has_supernodes_ = false;  // of the last factor
   SolverCounts counts_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include <Eigen/SparseCore>
 
@@ -13,6 +14,16 @@
 namespace pliant {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// The columns of a factor L D L^T, in its library's memory.
+struct FactorColumns {
+  int size = 0;
+  const int* order = nullptr;       ///< row of the matrix for each row of L
+  const int* starts = nullptr;      ///< of each column in `rows` and `entries`
+  const int* counts = nullptr;      ///< entries of each column
+  const int* rows = nullptr;        ///< of the entries, ascending; a column's first is its own
+  const double* entries = nullptr;  ///< a column's first is its pivot in D, the others are L's
+};
 
 /// The factor L D L^T of a symmetric, positive definite matrix, of which the upper triangle is
 /// given, in the order of AMD: the interface of the libraries that compute it. Internal to plate.
@@ -36,6 +47,12 @@ class SparseFactor {
 
   /// Solves for three right-hand sides (#rows x 3).
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
+
+  /// Valid until the next call that is not const; nullopt if the library does not show them.
+  virtual std::optional<FactorColumns> columns() const { return std::nullopt; }
+
+  /// Frees the numbers: what follows is `factorize`.
+  virtual void release() {}
 };
 
 std::unique_ptr<SparseFactor> make_cholmod_factor();

@@ -30,6 +30,7 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       matrix_(choice, context),
       precise_share_(context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
+  matrix_.use_supernodes(kernels_of_width(context.most_lanes));
 }
 
 // Contributions are gathered by rows, in the order of the blocks, and those of one entry are added
