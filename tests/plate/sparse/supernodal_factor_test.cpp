@@ -36,8 +36,8 @@ SparseMatrix random_matrix(int size, int entries, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Eigen::Triplet<double>> upper;
   for (int k = 0; k < entries; ++k) {
-    const auto [row, column] = std::minmax(static_cast<int>(random() % size),  //
-                                           static_cast<int>(random() % size));
+    const int a = static_cast<int>(random() % size), b = static_cast<int>(random() % size);
+    const int row = std::min(a, b), column = std::max(a, b);
     const double value = static_cast<double>(random() % 2001) / 1000 - 1;
     if (row != column) upper.emplace_back(row, column, value);
   }
