@@ -41,7 +41,7 @@ class Documents:
                     self.pages[name] = file.read()
         # An equation's number ends its line in model.md and begins it, or a cell, in timeline.md.
         self.equations = {
-            "model.md": re.findall(r"^ {4}.* {2}\((\d+)\)$", self.pages["model.md"], re.MULTILINE),
+            "model.md": re.findall(r"^ {4}.* {2}\((\d+[a-z]?)\)$", self.pages["model.md"], re.MULTILINE),
             "timeline.md": re.findall(r"(?:^ {2}|\| |`: )\((\d+[a-z]?)\) (?!and )", self.pages["timeline.md"],
                                       re.MULTILINE)}
         parts = re.split(r"^## (\d+)\. ", self.pages["spec.md"], flags=re.MULTILINE)

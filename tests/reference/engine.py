@@ -173,6 +173,19 @@ def steps_of_frame(frame_length, dt, stepping):
             return count, dt
 
 
+def with_integrator(integrator, density, advance):
+    """`advance`, which ends in (count, dt) and makes backward Euler steps, for an integrator: a
+    step of Newmark's is one of half its length, reflected."""
+    def reflected(w, velocity, *rest):
+        *rest, count, dt = rest
+        for _ in range(count):
+            half_w, half_velocity = advance(w, velocity, *rest, 1, dt / 2)
+            w, velocity = 2 * half_w - w, 2 * half_velocity - velocity
+        return w, velocity
+
+    return reflected if integrator == "newmark" and density > 0 else advance
+
+
 def advance(w, velocity, load, hu, hv, material, tangents, count, dt):
     """`count` backward Euler steps of the region `w` (M x N x 3); returns w and velocity.
 
@@ -335,7 +348,8 @@ def unit_forces(force, frame, points, run):
         p = p.reshape(points.shape)
         acceleration = sum(weight * (transform.translate + p @ transform.linear.T)
                            for weight, transform in ((1, before), (-2, now), (1, after)))
-        return -run.surface.sample("density", frame) * acceleration * float(run.scene.fps)**2
+        length = run.surface.frame_length(frame, run.scene.fps)
+        return -run.surface.sample("density", frame) * acceleration / length**2
     if force.kind == "vortex":
         axis = force.sample("axis", frame)
         length = math.sqrt(axis @ axis)
@@ -571,8 +585,9 @@ class SurfaceRun:
         material = {name: surface.sample(name, frame)
                     for name in ("density", "damping", "b", "c", "d")}
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
-        count, dt = steps_of_frame(self.scene.frame_length, surface.sample("dt", frame),
-                                   surface.choices["stepping"])
+        length = surface.frame_length(frame, self.scene.fps)
+        count, dt = steps_of_frame(length, surface.sample("dt", frame), surface.choices["stepping"])
+        integrator, density = surface.choices["integrator"], material["density"]
         before, velocities = self.position.copy(), np.zeros_like(self.rest)
         self.unsettled[:] = False
         for region, interior in zip(regions, interiors):
@@ -588,12 +603,12 @@ class SurfaceRun:
             if len(region) == 1:
                 box = np.s_[ends[0]:ends[1] + 1, ends[2]:ends[3] + 1]
                 w, velocity = np.zeros_like(start), np.zeros_like(start)
-                w[box], velocity[box] = advance(
+                w[box], velocity[box] = with_integrator(integrator, density, advance)(
                     start[box], speed[box], load[box], surface.grid.hu, surface.grid.hv, material,
                     tangents, count, dt)
             else:
                 self.diagnostics.unions += 1
-                w, velocity = advance_union(
+                w, velocity = with_integrator(integrator, density, advance_union)(
                     start, speed, load, interior, ends, surface.grid.hu, surface.grid.hv, material,
                     tangents, count, dt)
             self.position[interior] = (origin + w)[interior]
@@ -620,16 +635,19 @@ class SurfaceRun:
             sphere = GroupSphere(group)
             radius = float(group.deformation_radius(frame)[0])
             self.diagnostics.note_distances(sphere, frame, points, is_untouched, [radius])
-        if self.surface.choices["stepping"] == "overshoot" and self.scene.fps.denominator != 1:
-            dt = self.surface.sample("dt", frame)
-            self.diagnostics.note_steps(self.scene.frame_length, dt)
+        is_scaled = self.surface.sample("timeScale", frame) != 1
+        if self.surface.choices["stepping"] == "overshoot" and (
+                self.scene.fps.denominator != 1 or is_scaled):
+            length = self.surface.frame_length(frame, self.scene.fps)
+            self.diagnostics.note_steps(length, self.surface.sample("dt", frame))
 
     def check_channels(self, frames):
         """SPEC 2: channels are checked at every integer frame before the first solve."""
         for frame in frames:
             check_coefficients(*(self.surface.sample(name, frame)
                                  for name in ("density", "damping", "b", "c", "d", "dt")))
-            assert self.scene.frame_length / self.surface.sample("dt", frame) <= 1e5
+            length = self.surface.frame_length(frame, self.scene.fps)
+            assert length / self.surface.sample("dt", frame) <= 1e5
         for force in self.scene.forces + [f for g in self.scene.groups for f in g.forces]:
             for name in ("deformationRadius", "forceRadius"):
                 assert all(force.sample(name, frame) >= 0 for frame in frames), name
@@ -644,7 +662,7 @@ class SurfaceRun:
             if frame <= self.surface.start_frame:
                 self.reset()
             yield self.surface.grid.to_vertices(self.position), Transform(self.surface, frame)
-            if self.surface.is_enabled and frame >= self.surface.start_frame:
+            if self.surface.is_solved_at(frame):
                 self.solve(frame)
 
 

@@ -231,6 +231,7 @@ class SceneMaker:
             self.tags.add("startFrame before" if frame < self.start else "startFrame after")
         for choice, values, probability in (
                 ("stepping", ("overshoot", "overshoot", "exact"), 0.4),
+                ("integrator", ("newmark",), 0.4),
                 ("reference", ("none", "none", "rest"), 0.3),
                 ("measure", ("rest", "rest", "current"), 0.4), ("combine", ("box", "islands", "union"), 0.4),
                 ("release", ("freeze", "recover", "recover"), 0.2)):
@@ -507,6 +508,9 @@ class SceneMaker:
         dt = [] if dt_text is None else [Channel("dt", dt_text)]
         if self.chance(0.05):
             dt = [Channel("dt", animate=self.animate("dt", [0.01, 0.03], is_safe=True))]
+        if self.chance(0.2):
+            self.tags.add("timeScale")
+            dt.append(self.channel("timeScale", lambda: rng.choice([0.3, 0.5, 1.7]), 0.5))
         write_element(out, 2, "solver", solver, dt)
         # World-space force for an object-space load of `amplitude`.
         stretch = self.size_of(world) / size

@@ -12,7 +12,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 from engine import (GroupSphere, Transform, check_coefficients, distances, falloff,
-                    steps_of_frame, unit_forces)
+                    steps_of_frame, unit_forces, with_integrator)
 from triangle_mesh import edge, joined
 
 SNAP = 0.1  # a cut nearer to the end of an edge than this part of it goes to that end
@@ -305,8 +305,8 @@ class Plate:
         self.right = right
 
 
-def advance(region, w, velocity, load, material, tangents, count, dt):
-    """`count` backward Euler steps of the nodes that move; returns their w and velocity."""
+def advance(w, velocity, region, load, material, tangents, count, dt):
+    """`count` backward Euler steps of the nodes that move; returns w and velocity."""
     plate = Plate(region, w, material, tangents)
     nodes = region.moving_nodes
     density, damping = material["density"], material["damping"]
@@ -325,7 +325,9 @@ def advance(region, w, velocity, load, material, tangents, count, dt):
         solution = solution[:len(nodes)]
         speed = (solution - unknown) / dt
         unknown = solution
-    return unknown, speed
+    w, velocity = w.copy(), np.zeros_like(velocity)
+    w[nodes], velocity[nodes] = unknown, speed
+    return w, velocity
 
 
 # The run (MESHES 5, SPEC 6)
@@ -421,9 +423,11 @@ class TriangleRun:
         material = {name: surface.sample(name, frame)
                     for name in ("density", "damping", "b", "c", "d", "poisson")}
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
-        count, dt = steps_of_frame(self.scene.frame_length, surface.sample("dt", frame),
-                                   surface.choices["stepping"])
-        w, speed = advance(region, self.w, self.velocity, load, material, tangents, count, dt)
+        length = surface.frame_length(frame, self.scene.fps)
+        count, dt = steps_of_frame(length, surface.sample("dt", frame), surface.choices["stepping"])
+        w, velocity = with_integrator(surface.choices["integrator"], material["density"], advance)(
+            self.w, self.velocity, region, load, material, tangents, count, dt)
+        w, speed = w[nodes], velocity[nodes]
         before = self.w[nodes]
         if self.noise is not None:  # simulates another implementation's rounding
             w = w * (1 + 1e-12 * self.noise.standard_normal(w.shape))
@@ -449,5 +453,5 @@ class TriangleRun:
             if frame <= self.surface.start_frame:
                 self.reset()
             yield self.mesh.displaced(self.w), Transform(self.surface, frame)
-            if self.surface.is_enabled and frame >= self.surface.start_frame:
+            if self.surface.is_solved_at(frame):
                 self.solve(frame)

@@ -34,6 +34,12 @@ bool StepPlan::is_held() const {
   return true;
 }
 
+TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings) {
+  TimeSteps steps = divide_interval(inputs.frame_length, inputs.dt, settings.stepping);
+  if (inputs.dynamics.density > 0) steps.integrator = settings.integrator;
+  return steps;
+}
+
 Body::Body(Field rest, const BodySettings& settings)
     : rest_(std::move(rest)), settings_(settings), state_(rest_state()) {}
 

@@ -30,6 +30,9 @@ struct BodyInputs {
   std::vector<int> selectors = {};
 };
 
+/// The steps of a frame. Without density there is nothing that swings: they are backward Euler's.
+TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings);
+
 /// One elastic surface: its state, and one frame's step. Thesis 5.3; SPEC 6.
 class Body {
  public:

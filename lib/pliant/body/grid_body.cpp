@@ -87,7 +87,7 @@ Result<void> GridBody::plan(const BodyInputs& inputs, BodyWorkspace& work) const
   if (!work.tiles.are_finite()) {
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
-  plan.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
+  plan.steps = steps_of(inputs, settings_);
   selection = reselected(std::move(selection), work.tiles, inputs.forces, settings_.combine,
                          inputs.selectors);
   if (settings_.measure == Measure::Current) find_lost(inputs, work);
@@ -201,7 +201,7 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
     if (!region.is_solved()) continue;
     const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
     for (const Patch& patch : region.patches) {
-      if (!patch.is_held() && !(inputs.dynamics.shift(plan.steps.length) > 0)) {
+      if (!patch.is_held() && !(inputs.dynamics.shift(plan.steps.solved_length()) > 0)) {
         return fail(ErrorCode::SolverFailed,
                     "nothing holds a static surface that is closed along u and v: the forces "
                     "select all of it; give it a density or a damping, or select less");

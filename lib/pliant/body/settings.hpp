@@ -27,6 +27,7 @@ enum class Release {
 
 /// The choices of a body that do not change over time.
 struct BodySettings {
+  Integrator integrator = Integrator::BackwardEuler;
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   Measure measure = Measure::Current;

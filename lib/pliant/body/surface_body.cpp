@@ -68,7 +68,7 @@ Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
 Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
   if (!plan.surface) plan.surface.emplace();
   SurfaceSelection& selection = *plan.surface;
-  plan.steps = divide_interval(inputs.frame_length, inputs.dt, settings_.stepping);
+  plan.steps = steps_of(inputs, settings_);
   LevelSet level_set =
       find_level_set(*surface_, tree_, inputs.transform, inputs.forces, inputs.selectors);
   snap(level_set);

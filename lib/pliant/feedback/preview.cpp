@@ -34,7 +34,7 @@ class SurfacePreviewer {
                    double most_searched, const RunContext& context)
       : scene_(scene),
         surface_(surface),
-        body_(rest_shape, surface_, context),
+        body_(rest_shape, surface_, 1 / scene_.fps, context),
         first_(first_solved_frame(scene_, surface_)),
         last_(std::max(first_, scene_.end - 1)),
         most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
@@ -73,11 +73,13 @@ class SurfacePreviewer {
     const bool is_plain = one.preview.of != Preview::Of::All;
     body_.begin(is_plain);
     for (int frame = first_; frame < scene_.end; ++frame) {
-      const BodyInputs inputs = inputs_of(one, frame);
-      auto stepped = body_.step(inputs);
-      if (!stepped) return located(stepped.error(), frame);
-      nodes_left -= *stepped;
-      if (nodes_left <= 0) return {};
+      if (is_solved_at(scene_, surface_, frame)) {
+        const BodyInputs inputs = inputs_of(one, frame);
+        auto stepped = body_.step(inputs);
+        if (!stepped) return located(stepped.error(), frame);
+        nodes_left -= *stepped;
+        if (nodes_left <= 0) return {};
+      }
       const Transform shown = sample_transform(surface_.transform, frame + 1);
       const double peak = body_.peak(shown).size;
       if (peak > played.peak) played = {peak, frame + 1};
@@ -97,6 +99,7 @@ class SurfacePreviewer {
     std::vector<int> enabled;
     bool has_magnitude = false;
     for (int frame = first_; frame <= last_; ++frame) {
+      if (!is_solved_at(scene_, surface_, frame)) continue;
       if (is_force ? !one.acting.is_enabled(preview.index, frame) : !one.acting.selects_at(frame)) {
         continue;
       }

@@ -31,8 +31,13 @@ double seen_lambda(std::span<const ExcitedMode> modes) {
 
 }  // namespace
 
-PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, RunContext context)
-    : shape_(shape), surface_(surface), context_(std::move(context)), share_(context_.memory) {}
+PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double frame_seconds,
+                         RunContext context)
+    : shape_(shape),
+      surface_(surface),
+      frame_seconds_(frame_seconds),
+      context_(std::move(context)),
+      share_(context_.memory) {}
 
 std::unique_ptr<Body> PreviewBody::make(Reference reference) const {
   BodySettings settings = body_settings(surface_, shape_.grid.has_value());
@@ -251,14 +256,15 @@ Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const Vibrati
     modes = *std::move(excited);
   }
   const Dynamics& dynamics = inputs.dynamics;
-  const TimeSteps steps = divide_interval(inputs.frame_length, inputs.dt, surface_.solver.stepping);
+  const TimeSteps steps = steps_of(inputs, real_->settings());
+  // Told in the scene's time, for those who watch it.
   if (dynamics.density > 0) {
     const Swing natural = natural_swing(*lambda, dynamics);
-    region.first_frequency = natural.frequency;
+    region.first_frequency = natural.frequency * (inputs.frame_length / frame_seconds_);
     region.damping_ratio = natural.damping_ratio;
   }
-  region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, inputs.frame_length);
-  region.settling = settling_of(modes, dynamics, steps, inputs.frame_length);
+  region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, frame_seconds_);
+  region.settling = settling_of(modes, dynamics, steps, frame_seconds_);
   region.has_vibration = true;
   return {};
 }

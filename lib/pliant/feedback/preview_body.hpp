@@ -23,8 +23,9 @@ std::vector<RegionPreview> regions_of(const StepPlan& plan);
 // without tangents, so that only forces move it.
 class PreviewBody {
  public:
-  /// Requires: shape and surface outlive it.
-  PreviewBody(const RestShape& shape, const Surface& surface, RunContext context);
+  /// `frame_seconds`: length of a frame of the scene [s]. Requires: shape and surface outlive it.
+  PreviewBody(const RestShape& shape, const Surface& surface, double frame_seconds,
+              RunContext context);
 
   /// Makes the bodies, unless they exist. Errors: OutOfMemory.
   Result<void> reserve();
@@ -84,6 +85,7 @@ class PreviewBody {
 
   const RestShape& shape_;
   const Surface& surface_;
+  double frame_seconds_;
   RunContext context_;
   MemoryShare share_;
   std::unique_ptr<Body> real_;   // as in the scene

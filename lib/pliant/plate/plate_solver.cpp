@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/plate/backward_euler.hpp"
+#include "pliant/plate/advance.hpp"
 #include "pliant/plate/overlap/rectangle_cover.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
@@ -95,7 +95,7 @@ class AutomaticPlateSolver final : public PlateSolver {
 
 Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeSteps& steps,
                                         PlateState state) {
-  return advance_backward_euler(*this, problem, steps, std::move(state));
+  return advance_in_steps(*this, problem, steps, std::move(state));
 }
 
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {

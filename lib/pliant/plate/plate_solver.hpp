@@ -33,7 +33,7 @@ class PlateSolver {
   /// `advance` was not called since. Errors: OutOfMemory; Interrupted.
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
 
-  /// Advances a plate over an interval as `advance_backward_euler` does, which is what happens
+  /// Advances a plate over an interval as `advance_in_steps` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.
   /// Its profile receives the times of set-up and solve. Reuse and errors: those of `prepare`;
   /// Interrupted.

@@ -39,7 +39,10 @@ Roots roots_of(double lambda, const Dynamics& dynamics) {
 // The rate of a root as seen from frame to frame: eq. (39) [1/s].
 Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
   if (std::isinf(root.real())) return -infinite;
-  return -static_cast<double>(steps.count) * std::log(1.0 - root * steps.length) / frame_length;
+  const Complex half = root * steps.solved_length();
+  const Complex step =
+      steps.are_reflected() ? std::log(1.0 + half) - std::log(1.0 - half) : -std::log(1.0 - half);
+  return static_cast<double>(steps.count) * step / frame_length;
 }
 
 // Eq. (40).
@@ -50,14 +53,19 @@ Swing swing_of(const Complex& slow, const Complex& fast) {
 }
 
 // e of eq. (41): the deviation of a mode from its final value, frame by frame, relative to the
-// displacement under the load: (q, q one step earlier).
+// displacement under the load: (q, q one step earlier); reflected, (q, velocity times half a step).
 class Deviation {
  public:
   Deviation(double lambda, const Dynamics& dynamics, const TimeSteps& steps) {
-    const double h = steps.length;
+    const double h = steps.solved_length();
     const double inertia = dynamics.density, drag = dynamics.damping * h;
     const double whole = inertia + drag + lambda * h * h;
     Matrix power = {(2 * inertia + drag) / whole, -inertia / whole, 1, 0};
+    if (steps.are_reflected()) {
+      const double kept = (inertia + drag) / whole, pushed = inertia / whole;
+      power = {2 * kept - 1, 2 * pushed, 2 * kept - 2, 2 * pushed - 1};
+      before_ = 0;
+    }
     for (int left = steps.count; left > 0; left /= 2) {
       if (left % 2 == 1) frame_ = product(power, frame_);
       power = product(power, power);
@@ -80,7 +88,7 @@ class Deviation {
   }
 
   Matrix frame_ = {1, 0, 0, 1};
-  double now_ = 1, before_ = 1;  // at rest, away from its final value
+  double now_ = 1, before_ = 1;  // at rest, away from its final value; reflected, 1 and 0
 };
 
 }  // namespace
@@ -109,6 +117,8 @@ Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamic
         -seen(roots_of(mode.lambda, dynamics).slow, steps, frame_length).real() * frame_length;
     if (std::abs(mode.share) > 1e-6) slowest = std::min(slowest, rate);
   }
+  // What is not damped, and steps that keep energy.
+  if (!(slowest > 1e-12)) return {infinite, 1'000'000'000, false};
   // Envelopes: after twice the time that the slowest one needs, all have decayed, even near a
   // double root, where a mode lasts a little longer than its rate suggests.
   const double envelope = std::log(std::max(1.0, shares) / part) / slowest;

@@ -32,7 +32,8 @@ struct Settling {
   double time = 0;         ///< between two frames, when it stays near from then on [s]
   int frames = 0;          ///< the first frame from which on it stays near; 0 is the load's
   bool is_counted = true;  ///< false: it takes too long to count; `time` is that of the slowest
-                           ///< part's envelope, and `frames` corresponds to it
+                           ///< part's envelope, infinite if it keeps its energy, and `frames`
+                           ///< corresponds to it, up to 10^9
 };
 
 /// The time from which on a node stays within `part` of its displacement under a load that is

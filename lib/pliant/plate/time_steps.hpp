@@ -10,10 +10,24 @@ enum class Stepping {
   Overshoot,  ///< steps of dt until the end is reached or passed: the loop of thesis 5.3 (L10)
 };
 
+/// How a step goes on in time. docs/model.md, "Time".
+enum class Integrator {
+  BackwardEuler,  ///< first order; takes energy away
+  Newmark,        ///< the trapezoidal rule: second order; keeps the energy of an undamped plate;
+                  ///< only of plates with density
+};
+
 /// Equal steps in time.
 struct TimeSteps {
   int count = 1;      ///< >= 1
   double length = 1;  ///< [s], > 0
+  Integrator integrator = Integrator::BackwardEuler;
+
+  bool are_reflected() const { return integrator == Integrator::Newmark; }
+
+  /// The length of the backward Euler steps that are solved: a step of Newmark's is one of half its
+  /// length, reflected. [s]
+  double solved_length() const { return are_reflected() ? length / 2 : length; }
 };
 
 /// The most steps in an interval.

@@ -31,14 +31,15 @@ Vector3d sample_tangent(const TangentChannel& channel, int frame) {
   return to_vector(std::get<Channel<3>>(channel).at(frame));
 }
 
-// -rho (X(f+1) - 2 X(f) + X(f-1)) p fps^2 for a surface's transform X, as a function of the point
-// X(f) p in the world. It is computed from differences of transforms, so that it is exactly 0 for a
-// surface at rest or in uniform motion if these differences are exact.
+// -rho (X(f+1) - 2 X(f) + X(f-1)) p / T^2 for a surface's transform X and its frame length T, as a
+// function of the point X(f) p in the world. It is computed from differences of transforms, so that
+// it is exactly 0 for a surface at rest or in uniform motion if these differences are exact.
 InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
   const Transform before = sample_transform(surface.transform, frame - 1);
   const Transform now = sample_transform(surface.transform, frame);
   const Transform after = sample_transform(surface.transform, frame + 1);
-  const double scale = -surface.material.density.at(frame)[0] * fps * fps;
+  const double rate = fps / surface.solver.time_scale.at(frame)[0];  // of frames, in its own time
+  const double scale = -surface.material.density.at(frame)[0] * rate * rate;
   const Matrix3d turning = (after.linear - now.linear) - (now.linear - before.linear);
   // Row k: the object-space vector of the world's axis k.
   const Matrix3d axes = inverse_linear(now).transpose();
@@ -190,7 +191,8 @@ int first_solved_frame(const Scene& scene, const Surface& surface) {
 }
 
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
-  return surface.enabled && !surface.is_driven() && frame >= first_solved_frame(scene, surface);
+  return surface.enabled && !surface.is_driven() && frame >= first_solved_frame(scene, surface) &&
+         surface.solver.time_scale.at(frame)[0] > 0;
 }
 
 Transform sample_transform(const TransformChannels& channels, int frame) {
@@ -201,7 +203,8 @@ Transform sample_transform(const TransformChannels& channels, int frame) {
 
 BodySettings body_settings(const Surface& surface, bool is_grid) {
   const SolverSettings& solver = surface.solver;
-  return {.stepping = solver.stepping,
+  return {.integrator = solver.integrator,
+          .stepping = solver.stepping,
           .reference = solver.reference,
           .measure = solver.measure.value_or(is_grid ? Measure::Current : Measure::Rest),
           .combine = solver.combine,
@@ -218,7 +221,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
           .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
                        sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
           .poisson = material.poisson.at(frame)[0],
-          .frame_length = 1 / scene.fps,
+          .frame_length = surface.solver.time_scale.at(frame)[0] / scene.fps,
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {}};
 }

@@ -68,6 +68,7 @@ class ChannelChecker {
     }
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
+    if (kept_.contains("dt") && kept_.contains("timeScale")) check_steps(surface);
   }
 
   // The channels of a part of a surface, or of a force or group. Notes which keep their rule.
@@ -88,18 +89,12 @@ class ChannelChecker {
   Complaint complaint(const Owner& owner, const Attribute& attribute,
                       const std::array<double, D>& value) const {
     if constexpr (std::is_same_v<Owner, Surface>) {
-      if (attribute.name == "dt") return complaint_of_step(value[0]);
       if (attribute.name == "scale") return complaint_of_scale(value);
       if (attribute.unit == edge_slope) return complaint_of_tangent(owner, value);
     }
     if (const auto rule = attribute.range.broken_rule(value))
       return fmt::format("is {}, but {}", spelled<D>(value), *rule);
     return {};
-  }
-
-  Complaint complaint_of_step(double dt) const {
-    const auto checked = check_time_step(1 / scene_.fps, dt);
-    return checked ? Complaint{} : checked.error().message;
   }
 
   static Complaint complaint_of_scale(std::span<const double> scale) {
@@ -135,6 +130,21 @@ class ChannelChecker {
       }
     }
     return true;
+  }
+
+  void check_steps(const Surface& surface) {
+    const Channel<1>& dt = surface.solver.dt;
+    const Channel<1>& time_scale = surface.solver.time_scale;
+    const bool is_animated = dt.is_animated() || time_scale.is_animated();
+    const int last = is_animated ? last_ : first_;
+    for (int frame = first_; frame <= last; ++frame) {
+      const double length = time_scale.at(frame)[0] / scene_.fps;
+      if (!(length > 0)) continue;
+      const auto checked = check_time_step(length, dt.at(frame)[0]);
+      if (checked) continue;
+      return add_error(surface.name, "dt", is_animated, frame, checked.error().message,
+                       scene_.origin.last_line_of(surface.name, {"dt", "timeScale"}));
+    }
   }
 
   // Whether it holds.

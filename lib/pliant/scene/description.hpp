@@ -126,8 +126,8 @@ inline constexpr std::string_view scheme_words[] = {"catmullClark", "loop"};
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
 // Choices that have one word so far, and the words that a later version will support.
-inline constexpr std::string_view integrator_words[] = {"backwardEuler"};
-inline constexpr std::string_view later_integrator_words[] = {"newmark", "exact"};
+inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark"};
+inline constexpr std::string_view later_integrator_words[] = {"exact"};
 inline constexpr std::string_view region_words[] = {"forces"};
 inline constexpr std::string_view later_region_words[] = {"all"};
 
@@ -434,6 +434,12 @@ struct Description<SolverSettings> {
                   .unit = "s",
                   .range = positive},
         of.dt...);
+    row(Attribute{.name = "timeScale",
+                  .meaning = "speed of the surface's own time: a frame lasts timeScale / fps "
+                             "seconds for it; 0 halts it. The forces keep the scene's time",
+                  .unit = "1",
+                  .range = {.least = 0, .most = 1000}},
+        of.time_scale...);
     row(Attribute{.name = "startFrame",
                   .meaning = "the surface is at rest up to this frame; one before the scene's "
                              "start counts as the start",
@@ -466,9 +472,11 @@ struct Description<SolverSettings> {
                   .absent = "current; rest on a surface"},
         of.measure...);
     row(Attribute{.name = "integrator",
-                  .meaning = "time integration",
+                  .meaning = "`backwardEuler`: of first order in dt, damps; `newmark`: the "
+                             "trapezoidal rule, of second order, keeps energy",
                   .words = integrator_words,
-                  .later = later_integrator_words});
+                  .later = later_integrator_words},
+        of.integrator...);
     row(Attribute{.name = "region",
                   .meaning = "only the selections of forces are solved",
                   .words = region_words,

@@ -69,7 +69,9 @@ struct TangentChannels {
 /// How a surface is solved.
 struct SolverSettings {
   Channel<1> dt = 0.01;                 ///< [s], > 0
+  Channel<1> time_scale = 1;            ///< the body's seconds in one of the scene, 0 to 1000
   std::optional<int> start_frame = {};  ///< absent: the scene's start
+  Integrator integrator = Integrator::BackwardEuler;
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   std::optional<Measure> measure = {};  ///< absent: current on a grid, rest on a surface

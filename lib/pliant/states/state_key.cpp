@@ -88,8 +88,8 @@ class HashedValues {
     add(surface.unit);
   }
   void add(const BodySettings& settings) {
-    const auto& [stepping, reference, measure, combine, release, border] = settings;
-    add_all(stepping, reference, measure, combine, release, border);
+    const auto& [integrator, stepping, reference, measure, combine, release, border] = settings;
+    add_all(integrator, stepping, reference, measure, combine, release, border);
   }
 
   void add(const Interpolation& interpolation) {

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/plate/backward_euler.hpp"
+#include "pliant/plate/advance.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/vibration.hpp"

@@ -167,10 +167,14 @@ TEST_CASE("steps in sine space are those of a factored matrix", "[plate][spectra
       const PlateState state = random_state(grid);
       const auto spectral = make_plate_solver(SolverChoice::Spectral);
       const auto direct = make_plate_solver(SolverChoice::Eigen);
-      for (const int count : {1, 2, 13}) {
-        CAPTURE(grid.columns, grid.rows, dynamics.density, dynamics.damping, dt, count);
-        const PlateState a = spectral->advance(problem, {count, dt}, state).value();
-        const PlateState b = direct->advance(problem, {count, dt}, state).value();
+      for (const TimeSteps& steps :
+           {TimeSteps{1, dt}, TimeSteps{2, dt}, TimeSteps{13, dt},
+            TimeSteps{1, dt, Integrator::Newmark}, TimeSteps{13, dt, Integrator::Newmark}}) {
+        if (steps.are_reflected() && dynamics.density == 0) continue;
+        CAPTURE(grid.columns, grid.rows, dynamics.density, dynamics.damping, dt, steps.count,
+                steps.are_reflected());
+        const PlateState a = spectral->advance(problem, steps, state).value();
+        const PlateState b = direct->advance(problem, steps, state).value();
         // A velocity is a difference divided by dt, so it has the rounding errors of the
         // displacement divided by dt.
         const double scale = b.displacement.norm();
@@ -188,14 +192,14 @@ TEST_CASE("no bit depends on threads, on the width of vectors or on what was kep
   const Grid grid = unit_grid(columns, rows);
   const PlateProblem problem = problem_on(grid, {1.5, 1, 2}, {40, 20});
   const PlateState state = random_state(grid);
-  const double dt = 1e-3;
+  const TimeSteps steps{7, 1e-3, GENERATE(Integrator::BackwardEuler, Integrator::Newmark)};
   const auto advance = [&](SpectralPlate& plate) {
     PlateState next = state;
-    const Dynamics& dynamics = problem.dynamics;
-    const double inertia = dynamics.density / dt;
-    REQUIRE(plate.prepare({grid, problem.stiffness, (inertia + dynamics.damping) / dt}));
+    const double inertia = problem.dynamics.inertia(steps.solved_length());
+    const double shift = problem.dynamics.shift(steps.solved_length());
+    REQUIRE(plate.prepare({grid, problem.stiffness, shift}));
     const long first = grid.node(1, 1), count = grid.node_count();
-    REQUIRE(plate.advance({problem.load.data() + first, grid.columns, count}, inertia, {7, dt},
+    REQUIRE(plate.advance({problem.load.data() + first, grid.columns, count}, inertia, steps,
                           {next.displacement.data() + first, grid.columns, count},
                           {next.velocity.data() + first, grid.columns, count}));
     return next;

@@ -105,10 +105,20 @@ constexpr long panel_size(int rows, int columns) {
 }
 
 /// One step: w' = pending - (xi + upsilon)/D, then the next pending = load/D + (grow w' - keep
-/// w)/D.
+/// w)/D. A reflected one leaves the load out of `pending`, so that the velocity loses no digits:
+/// w' = pending + load/D - (xi + upsilon)/D, then the next w = 2 w' - w, and the next pending =
+/// (grow w' - keep w)/D - pending.
 struct StepFactors {
   double grow = 0;
   double keep = 0;
+};
+
+/// What the velocity before the last reflected step is found from: v = (pending D - shift
+/// w)/inertia.
+struct ReflectedStep {
+  double shift = 0;
+  double inertia = 0;
+  double dt = 0;  ///< that is solved
 };
 
 /// Neighbouring columns of a factor L that have the same rows below them.
@@ -157,6 +167,13 @@ struct PlateKernels {
   void (*step)(const ParityView& parity, const ComponentView& component, StepFactors factors);
   /// The last step; leaves the velocity, (w' - w) times `rate`, in `pending`.
   void (*last_step)(const ParityView& parity, const ComponentView& component, double rate);
+  void (*reflected_start)(const ParityView& parity, const ComponentView& component, double shift,
+                          double inertia);
+  void (*reflected_step)(const ParityView& parity, const ComponentView& component,
+                         StepFactors factors);
+  /// The last step; leaves the velocity, 2 (w' - w)/dt - v, in `pending`.
+  void (*last_reflected_step)(const ParityView& parity, const ComponentView& component,
+                              const ReflectedStep& step);
 
   /// Computes `row_pivot`, and C's inverse in `inverse`. `panels` has `panel_size` doubles. Returns
   /// the first column whose pivot is not positive, or -1.

@@ -38,6 +38,7 @@ PLIANT_INLINE Eight all8(double number) {
 PLIANT_OPERATOR(Eight, +, parts)
 PLIANT_OPERATOR(Eight, -, parts)
 PLIANT_OPERATOR(Eight, *, parts)
+PLIANT_OPERATOR(Eight, /, parts)
 PLIANT_INLINE Eight operator*(const Eight& a, double b) { return a * all8(b); }
 
 PLIANT_INLINE double sum_of(const Eight& x) {
@@ -49,8 +50,16 @@ PLIANT_INLINE double sum_of(const Eight& x) {
 // Rows processed together share the values of the columns. As many as there are registers for.
 constexpr int rows_at_once = lanes == 8 ? 4 : lanes == 4 ? 2 : 1;
 
+// `pending`, to which reflected steps have not added the load yet.
+template <bool is_reflected>
+PLIANT_INLINE Eight pending_at(const ComponentView& component, long at) {
+  const Eight pending = load8(component.pending + at);
+  if constexpr (is_reflected) return pending + load8(component.load + at);
+  return pending;
+}
+
 // The sums over `Rows` rows of `pending` from row k on, and the remaining sums of the columns.
-template <int Rows>
+template <int Rows, bool is_reflected>
 PLIANT_INLINE void gather(const ParityView& parity, const ComponentView& component, int k,
                           const Eight (&sums)[Rows]) {
   double taken[Rows], weight[Rows];
@@ -66,14 +75,14 @@ PLIANT_INLINE void gather(const ParityView& parity, const ComponentView& compone
 #pragma GCC unroll 4
     for (int r = 0; r < Rows; ++r) {
       const long at = begin + static_cast<long>(r) * parity.pitch + l;
-      column = column + (load8(component.pending + at) - load8(parity.reciprocal + at) * taken[r]) *
-                            weight[r];
+      const Eight pending = pending_at<is_reflected>(component, at);
+      column = column + (pending - load8(parity.reciprocal + at) * taken[r]) * weight[r];
     }
     store8(component.column_sums + l, column);
   }
 }
 
-template <int Rows>
+template <int Rows, bool is_reflected>
 PLIANT_INLINE void start_rows(const ParityView& parity, const ComponentView& component,
                               double shift, double inertia, int k) {
   Eight sums[Rows] = {};
@@ -89,24 +98,35 @@ PLIANT_INLINE void start_rows(const ParityView& parity, const ComponentView& com
           load8(component.displacement + at) * shift + load8(component.pending + at) * inertia;
       const Eight pending = load + held * reciprocal;
       store8(component.load + at, load);
-      store8(component.pending + at, pending);
+      store8(component.pending + at, is_reflected ? held * reciprocal : pending);
       sums[r] = sums[r] + weight * pending;
     }
   }
-  gather<Rows>(parity, component, k, sums);
+  gather<Rows, is_reflected>(parity, component, k, sums);
 }
 
 PLIANT_INLINE void clear(double* numbers, int count) {
   for (int l = 0; l < count; l += 8) store8(numbers + l, Eight{});
 }
 
-void start(const ParityView& parity, const ComponentView& component, double shift, double inertia) {
+template <bool is_reflected>
+PLIANT_INLINE void start_steps(const ParityView& parity, const ComponentView& component,
+                               double shift, double inertia) {
   clear(component.column_sums, parity.columns);
   int k = 0;
   for (; k + rows_at_once <= parity.rows; k += rows_at_once) {
-    start_rows<rows_at_once>(parity, component, shift, inertia, k);
+    start_rows<rows_at_once, is_reflected>(parity, component, shift, inertia, k);
   }
-  for (; k < parity.rows; ++k) start_rows<1>(parity, component, shift, inertia, k);
+  for (; k < parity.rows; ++k) start_rows<1, is_reflected>(parity, component, shift, inertia, k);
+}
+
+void start(const ParityView& parity, const ComponentView& component, double shift, double inertia) {
+  start_steps<false>(parity, component, shift, inertia);
+}
+
+void reflected_start(const ParityView& parity, const ComponentView& component, double shift,
+                     double inertia) {
+  start_steps<true>(parity, component, shift, inertia);
 }
 
 // Eq. (26): y = C^-1 q sums; xi = y/q. Resets the sums to 0.
@@ -156,7 +176,7 @@ PLIANT_INLINE void solve_rows(const ParityView& parity, const ComponentView& com
   }
 }
 
-template <int Rows>
+template <int Rows, bool is_reflected>
 PLIANT_INLINE void step_rows(const ParityView& parity, const ComponentView& component,
                              StepFactors factors, int k) {
   double upsilon[Rows];
@@ -170,40 +190,80 @@ PLIANT_INLINE void step_rows(const ParityView& parity, const ComponentView& comp
     for (int r = 0; r < Rows; ++r) {
       const long at = begin + static_cast<long>(r) * parity.pitch + l;
       const Eight reciprocal = load8(parity.reciprocal + at);
-      const Eight next = load8(component.pending + at) - (xi + all8(upsilon[r])) * reciprocal;
-      const Eight held = next * factors.grow - load8(component.displacement + at) * factors.keep;
-      const Eight pending = load8(component.load + at) + held * reciprocal;
-      store8(component.displacement + at, next);
-      store8(component.pending + at, pending);
+      const Eight before = load8(component.displacement + at);
+      const Eight load = load8(component.load + at);
+      const Eight next =
+          pending_at<is_reflected>(component, at) - (xi + all8(upsilon[r])) * reciprocal;
+      const Eight held = (next * factors.grow - before * factors.keep) * reciprocal;
+      Eight pending = load + held;
+      if constexpr (is_reflected) {
+        const Eight waiting = held - load8(component.pending + at);
+        pending = load + waiting;
+        store8(component.displacement + at, next + next - before);
+        store8(component.pending + at, waiting);
+      } else {
+        store8(component.displacement + at, next);
+        store8(component.pending + at, pending);
+      }
       sums[r] = sums[r] + weight * pending;
     }
   }
-  gather<Rows>(parity, component, k, sums);
+  gather<Rows, is_reflected>(parity, component, k, sums);
 }
 
-void step(const ParityView& parity, const ComponentView& component, StepFactors factors) {
+template <bool is_reflected>
+PLIANT_INLINE void one_step(const ParityView& parity, const ComponentView& component,
+                            StepFactors factors) {
   solve_edge(parity, component);
   int k = 0;
   for (; k + rows_at_once <= parity.rows; k += rows_at_once) {
-    step_rows<rows_at_once>(parity, component, factors, k);
+    step_rows<rows_at_once, is_reflected>(parity, component, factors, k);
   }
-  for (; k < parity.rows; ++k) step_rows<1>(parity, component, factors, k);
+  for (; k < parity.rows; ++k) step_rows<1, is_reflected>(parity, component, factors, k);
 }
 
-void last_step(const ParityView& parity, const ComponentView& component, double rate) {
+void step(const ParityView& parity, const ComponentView& component, StepFactors factors) {
+  one_step<false>(parity, component, factors);
+}
+
+void reflected_step(const ParityView& parity, const ComponentView& component, StepFactors factors) {
+  one_step<true>(parity, component, factors);
+}
+
+// Calls take(at, w') for eight numbers at a time.
+template <bool is_reflected, class Take>
+PLIANT_INLINE void end_steps(const ParityView& parity, const ComponentView& component,
+                             const Take& take) {
   solve_edge(parity, component);
   for (int k = 0; k < parity.rows; ++k) {
     double upsilon[1];
     solve_rows<1>(parity, component, k, upsilon);
     for (int l = 0; l < parity.columns; l += 8) {
       const long at = static_cast<long>(k) * parity.pitch + l;
-      const Eight next =
-          load8(component.pending + at) -
-          (load8(component.edge + l) + all8(upsilon[0])) * load8(parity.reciprocal + at);
-      store8(component.pending + at, (next - load8(component.displacement + at)) * rate);
-      store8(component.displacement + at, next);
+      take(at, pending_at<is_reflected>(component, at) -
+                   (load8(component.edge + l) + all8(upsilon[0])) * load8(parity.reciprocal + at));
     }
   }
+}
+
+void last_step(const ParityView& parity, const ComponentView& component, double rate) {
+  end_steps<false>(parity, component, [&](long at, const Eight& next) PLIANT_INLINED {
+    store8(component.pending + at, (next - load8(component.displacement + at)) * rate);
+    store8(component.displacement + at, next);
+  });
+}
+
+void last_reflected_step(const ParityView& parity, const ComponentView& component,
+                         const ReflectedStep& step) {
+  // Keeps the padding of rows, whose 1/D is 0, at 0; changes no other number.
+  const Eight least = all8(2.3e-308);
+  end_steps<true>(parity, component, [&](long at, const Eight& next) PLIANT_INLINED {
+    const Eight before = load8(component.displacement + at);
+    const Eight held = load8(component.pending + at) / (load8(parity.reciprocal + at) + least);
+    const Eight velocity = (held - before * step.shift) * (1 / step.inertia);
+    store8(component.pending + at, (next - before) * (2 / step.dt) - velocity);
+    store8(component.displacement + at, next + next - before);
+  });
 }
 
 // C -= P_i^T P_j for `Rows` of the eight columns of panel i and for `Wide` panels from j on.

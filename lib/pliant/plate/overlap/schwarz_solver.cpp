@@ -44,6 +44,7 @@ class SchwarzSolver final : public PlateSolver {
                              PlateState state) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
+    if (steps.are_reflected()) return PlateSolver::advance(problem, steps, std::move(state));
     const double inertia = problem.dynamics.inertia(steps.length);
     const double shift = problem.dynamics.shift(steps.length);
     let_factor_go();

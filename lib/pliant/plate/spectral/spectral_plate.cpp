@@ -414,17 +414,20 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   to_sines(view(displacement), &Parity::displacement);
   to_sines(view(velocity), &Parity::pending);
 
-  // Eq. (28): shift w' + inertia v' with v' = (w' - w)/dt.
+  // Eq. (28): shift w' + inertia v' with v' = (w' - w)/dt; reflected, eq. (28a).
+  const double dt = steps.solved_length();
   const double shift = prepared_->shift;
-  const double keep = inertia / steps.length;
-  const StepFactors factors{shift + keep, keep};
+  const double keep = inertia / dt;
+  const bool is_reflected = steps.are_reflected();
+  const StepFactors factors =
+      is_reflected ? StepFactors{2 * (shift + keep), 2 * keep} : StepFactors{shift + keep, keep};
   std::atomic<bool> is_stopped = false;
   const Parts parts = moving_parts();
   for_each(parts.count, [&](std::size_t task) {
     const auto [k, index] = parts.part[task];
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, index);
-    kernels_.start(parity, component, shift, inertia);
+    (is_reflected ? kernels_.reflected_start : kernels_.start)(parity, component, shift, inertia);
     for (int step = 1; step <= steps.count; ++step) {
       if (is_stopped) return;
       // The parts ask in turn, so that the stop request is called once per step.
@@ -434,9 +437,11 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
         return;
       }
       if (step < steps.count) {
-        kernels_.step(parity, component, factors);
+        (is_reflected ? kernels_.reflected_step : kernels_.step)(parity, component, factors);
+      } else if (is_reflected) {
+        kernels_.last_reflected_step(parity, component, {shift, inertia, dt});
       } else {
-        kernels_.last_step(parity, component, 1 / steps.length);
+        kernels_.last_step(parity, component, 1 / dt);
       }
     }
   });

@@ -43,9 +43,9 @@ class SpectralPlate {
   /// Solves for three right-hand sides on the interior nodes. Requires: prepared.
   void solve(const ConstNodesView& load, const NodesView& solution);
 
-  /// Steps of backward Euler on the interior nodes with the prepared shift; the load excludes the
-  /// rim's part. Requires: prepared; inertia = rho/dt. Returns false if the context's stop request
-  /// returns true; displacement and velocity are then unchanged.
+  /// Steps on the interior nodes with the prepared shift; the load excludes the rim's part.
+  /// Requires: prepared; shift and inertia are those of steps.solved_length(). Returns false if the
+  /// context's stop request returns true; displacement and velocity are then unchanged.
   bool advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
                const NodesView& displacement, const NodesView& velocity);
 

@@ -36,8 +36,8 @@ class SpectralSolver final : public PlateSolver {
                              PlateState state) override try {
     const Grid& grid = problem.outline.grid();
     PLIANT_EXPECTS(is_on_nodes(problem, state));
-    const double inertia = problem.dynamics.inertia(steps.length);
-    const double shift = problem.dynamics.shift(steps.length);
+    const double inertia = problem.dynamics.inertia(steps.solved_length());
+    const double shift = problem.dynamics.shift(steps.solved_length());
     StageTimer set_up(context().profile, Stage::SetUp);
     if (auto prepared = prepare({problem.outline, problem.stiffness, shift}); !prepared) {
       return fail(prepared.error());

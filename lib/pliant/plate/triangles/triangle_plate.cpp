@@ -285,7 +285,7 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(state.displacement.rows() == cells_.point_count &&
                  state.velocity.rows() == points && problem.load.rows() == points);
-  const double dt = steps.length;
+  const double dt = steps.solved_length();
   const double inertia = problem.dynamics.inertia(dt);
   const double shift = problem.dynamics.shift(dt);
   StageTimer set_up(context_.profile, Stage::SetUp);
@@ -313,8 +313,14 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
       before = std::move(last);
       last = *next;
     }
-    v = (next->topRows(points) - w) / dt;
-    w = next->topRows(points);
+    const auto moved = next->topRows(points);
+    if (steps.are_reflected()) {
+      v = 2 * (moved - w) / dt - v;
+      w = 2 * moved - w;
+    } else {
+      v = (moved - w) / dt;
+      w = moved;
+    }
   }
   state.displacement.topRows(points) = w;
   state.velocity = std::move(v);

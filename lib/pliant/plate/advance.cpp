@@ -1,4 +1,4 @@
-#include "pliant/plate/backward_euler.hpp"
+#include "pliant/plate/advance.hpp"
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
@@ -6,13 +6,13 @@
 
 namespace pliant {
 
-Result<PlateState> advance_backward_euler(PlateSolver& solver, const PlateProblem& problem,
-                                          const TimeSteps& steps, PlateState state) {
+Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& problem,
+                                    const TimeSteps& steps, PlateState state) {
   const RunContext& context = solver.context();
   const Outline& outline = problem.outline;
   PLIANT_EXPECTS(is_on_nodes(problem, state));
 
-  const double dt = steps.length;
+  const double dt = steps.solved_length();
   const double inertia = problem.dynamics.inertia(dt);
   const double shift = problem.dynamics.shift(dt);
   StageTimer set_up(context.profile, Stage::SetUp);
@@ -32,8 +32,13 @@ Result<PlateState> advance_backward_euler(PlateSolver& solver, const PlateProble
     if (context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     auto next = solver.solve(known + shift * w + inertia * v);
     if (!next) return fail(next.error());
-    v = (*next - w) / dt;
-    w = *std::move(next);
+    if (steps.are_reflected()) {
+      v = 2 * (*next - w) / dt - v;
+      w = 2 * *next - w;
+    } else {
+      v = (*next - w) / dt;
+      w = *std::move(next);
+    }
   }
 
   state.displacement = with_interior(outline, std::move(state.displacement), w);

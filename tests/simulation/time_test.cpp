@@ -1,0 +1,85 @@
+#include <utility>
+#include <vector>
+
+#include "support/catch.hpp"
+#include "support/scenes.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+using Catch::Matchers::Contains;
+
+// `timeScale` and the integrators, in scenes.
+
+namespace {
+
+Force inertia() {
+  Force force = poke("sway", {});
+  force.kind = InertiaChannels{};
+  force.magnitude = 1;
+  force.deformation_radius = force.force_radius = 100;
+  return force;
+}
+
+// The key's value holds up to the next one.
+Curve<1> held(std::vector<std::pair<double, double>> keys) {
+  CurveKeys<1> curve;
+  for (const auto& [frame, value] : keys) {
+    Key<1> key{.frame = frame, .value = {value}};
+    key.next.kind = Interpolation::Kind::Step;
+    curve.keys.push_back(key);
+  }
+  return Curve<1>::make(std::move(curve)).value();
+}
+
+Scene swaying(Integrator integrator) {
+  Scene s = scene({sheet("s")}, {poke("p", {1.5, 0, -2}), inertia()});
+  s.surfaces[0].transform.translate =
+      vector_curve({{1, {0, 0, 0}}, {5, {0, 3, 1}}, {9, {0, 0, 0}}});
+  s.surfaces[0].solver.integrator = integrator;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("a surface at half its speed is that of twice the frame rate, to the bit",
+          "[simulation][time]") {
+  const Scene plain = swaying(GENERATE(Integrator::BackwardEuler, Integrator::Newmark));
+  Scene slow = plain, fine = plain;
+  slow.surfaces[0].solver.time_scale = 0.5;
+  fine.fps = 2 * plain.fps;
+  CHECK(baked(slow, "s") == baked(fine, "s"));
+  CHECK(baked(slow, "s") != baked(plain, "s"));
+}
+
+TEST_CASE("a surface that is halted goes on with its velocity", "[simulation][time]") {
+  const Scene plain = scene({sheet("s")}, {poke("p", {1.5, 0, -2})});
+  Scene halted = plain;
+  halted.surfaces[0].solver.time_scale = held({{1, 1}, {4, 0}, {7, 1}});
+  const auto expected = baked(plain, "s"), frames = baked(halted, "s");
+  for (int frame = 1; frame <= 12; ++frame) {
+    CAPTURE(frame);
+    const int reached = frame <= 4 ? frame : frame <= 7 ? 4 : frame - 3;
+    CHECK(frames[frame - 1] == expected[reached - 1]);
+  }
+}
+
+TEST_CASE("steps are counted in a surface's own time", "[simulation][time]") {
+  Scene s = scene({sheet("s")}, {poke("p", {0, 0, 0})});
+  s.surfaces[0].solver.dt = 1e-5;
+  CHECK(Simulation::make(s));
+  s.surfaces[0].solver.time_scale = 30;
+  const auto refused = Simulation::make(s);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message, Contains("s.dt is 1e-05") && Contains("125000 steps"));
+  s.surfaces[0].solver.time_scale = 0;
+  CHECK(Simulation::make(s));
+}
+
+TEST_CASE("without density Newmark's steps are those of backward Euler", "[simulation][time]") {
+  Scene euler = scene({sheet("s")}, {poke("p", {1.5, 0, -2})});
+  Scene newmark = euler;
+  newmark.surfaces[0].solver.integrator = Integrator::Newmark;
+  CHECK(baked(euler, "s") != baked(newmark, "s"));
+  euler.surfaces[0].material.density = newmark.surfaces[0].material.density = 0;
+  CHECK(baked(euler, "s") == baked(newmark, "s"));
+}
