@@ -183,9 +183,11 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
     return text + fmt::format("    its largest magnitude is {:g} (frame {})\n",
                               preview.largest_magnitude, preview.largest_magnitude_frame);
   }
+  const bool is_whole = scene.surfaces[preview.surface].solver.region == SolvedRegion::All;
+  const std::string_view verb = preview.of == Preview::Of::All ? "they select" : "it selects";
   text += fmt::format("at frame {}{} {} {}\n", *preview.frame,
                       is_force ? fmt::format(", at magnitude {:g},", preview.magnitude) : "",
-                      preview.of == Preview::Of::All ? "they select" : "it selects",
+                      is_whole ? "on the whole surface," : verb,
                       selected_text(preview.selected, preview.counts, grid));
   if (!preview.is_every_frame)
     text += "    not every frame was examined, because the range is long\n";

@@ -498,6 +498,8 @@ class SurfaceRun:
     def select(self, frame, points, forces, groups):
         """The deformation box of each force, None for none; of a group's forces, the group's."""
         own = {}
+        if self.surface.is_whole:
+            return own
         for force in forces:
             if not force.is_in_group:
                 delta = distances(force, frame, points)
@@ -513,6 +515,9 @@ class SurfaceRun:
     def regions(self, own):
         """The regions that are solved, including nodes not yet back at rest (SPEC 5, 6)."""
         how = self.surface.choices["combine"]
+        if self.surface.is_whole:
+            columns, rows = self.rest.shape[:2]
+            return [[(0, columns - 1, 0, rows - 1)]]
         boxes = [box for box in own.values() if box is not None]
         regions = combined(boxes, how)
         if self.surface.choices["release"] == "recover":
@@ -628,10 +633,10 @@ class SurfaceRun:
         is_untouched = at_rest & transform.is_identity
         for force in forces:
             radii = [force.sample("forceRadius", frame)]
-            if not force.is_in_group:
+            if not force.is_in_group and not self.surface.is_whole:
                 radii.append(force.sample("deformationRadius", frame))
             self.diagnostics.note_distances(force, frame, points, is_untouched, radii)
-        for group in groups:
+        for group in [] if self.surface.is_whole else groups:
             sphere = GroupSphere(group)
             radius = float(group.deformation_radius(frame)[0])
             self.diagnostics.note_distances(sphere, frame, points, is_untouched, [radius])

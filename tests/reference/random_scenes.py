@@ -239,6 +239,10 @@ class SceneMaker:
                 value = self.pick(*values)
                 solver.append((choice, value))
                 self.tags.add(f"{choice} {value}")
+        if self.chance(0.25):
+            solver = [choice for choice in solver if choice[0] in ("startFrame", "stepping", "integrator", "measure")]
+            solver.append(("region", "all"))
+            self.tags.add("region all")
         return out.lines, solver
 
     def transform(self, out):

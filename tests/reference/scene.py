@@ -20,7 +20,7 @@ SOLVER_CHOICES = {
     "stepping": ("exact", "overshoot"), "reference": ("rest", "none"),
     "combine": ("box", "islands", "union"), "release": ("freeze", "recover"), "measure": ("current", "rest"),
     "integrator": ("backwardEuler", "newmark"),
-    "region": ("forces",)}
+    "region": ("forces", "all")}
 FORCE_CHANNELS = {"magnitude": 0, "deformationRadius": 1, "forceRadius": 1}
 KIND_CHANNELS = {
     "point": {"center": (0, 0, 0), "direction": (0, 1, 0)},
@@ -206,6 +206,10 @@ class Surface:
         if isinstance(self.grid, TriangleMesh):
             assert self.choices["reference"] == "rest"
             self.choices["measure"] = solver.get("measure", "rest")
+        self.is_whole = self.choices["region"] == "all"
+        if self.is_whole:
+            assert self.choices["reference"] == "rest" and self.choices["combine"] == "box"
+            assert self.choices["release"] == "freeze"
         # An earlier start acts as the scene's start.
         self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
 

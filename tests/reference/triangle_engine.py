@@ -45,8 +45,9 @@ class Region:
     they stand along u and v.
     """
 
-    def __init__(self, mesh, phi):
+    def __init__(self, mesh, phi, may_float=False):
         self.mesh, self.phi, self.is_inside = mesh, phi, phi > 0
+        self.may_float = may_float  # whether a piece moves if nothing holds it
         self.cells, self.places = [], []
         self.part_corners = {}  # of the centre of a part
         self.cells_at = collections.defaultdict(list)  # pair of corners -> (cell, edge of it)
@@ -119,7 +120,7 @@ class Region:
         number = {name: k for k, name in enumerate(names)}
         piece_of = joined(len(names), ((number[cell[0]], number[name]) for cell in self.cells
                                        for name in cell[1:]))
-        held = {piece_of[number[name]] for name in names if self.is_held(name)}
+        held = {piece_of[number[name]] for name in names if self.may_float or self.is_held(name)}
         self.moving_cells = np.array([piece_of[number[cell[0]]] in held for cell in self.cells],
                                      dtype=bool)
         self.unknown_names = [name for name in names
@@ -365,6 +366,11 @@ class TriangleRun:
     def region(self, frame, selecting, transform):
         """MESHES 3, and 5 for `recover`."""
         mesh = self.mesh
+        if self.surface.is_whole:
+            if "all" not in self.regions:
+                phi = mesh.at_points(np.ones(len(mesh.rest)))
+                self.regions["all"] = Region(mesh, phi, may_float=True)
+            return self.regions["all"]
         points = transform.to_world(mesh.rest)
         is_untouched = np.full((len(points), 1), transform.is_identity)
         node_phi = np.full(len(points), -1.0)

@@ -81,6 +81,10 @@ class TriangleSceneMaker(SceneMaker):
                 value = self.pick(*values)
                 solver.append((choice, value))
                 self.tags.add(f"{choice} {value}")
+        if self.chance(0.25):
+            solver = [choice for choice in solver if choice[0] in ("stepping", "integrator", "measure")]
+            solver.append(("region", "all"))
+            self.tags.add("region all")
         if self.chance(0.2):
             solver.append(("startFrame", self.start + 2))
         return out.lines, solver

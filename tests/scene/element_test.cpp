@@ -50,7 +50,7 @@ TEST_CASE("what a later version brings is not taken for a misspelling", "[scene]
                       3,
                       {name, later}});
   }
-  for (const std::string given : {"integrator=\"exact\"", "region=\"all\""})
+  for (const std::string given : {"integrator=\"exact\""})
     scenes.push_back({surface_with("<solver " + given + "/>"), 3, {given, later, "allowed:"}});
   for (const std::string given : {"uv=\"virtual\"", "resolution=\"9\""})
     scenes.push_back(

@@ -31,7 +31,9 @@ bool StepPlan::is_held() const {
       if (!patch.is_held()) return false;
     }
   }
-  return true;
+  if (!surface) return true;
+  return std::all_of(surface->pieces.begin(), surface->pieces.end(),
+                     [](const SurfacePiece& piece) { return piece.is_held() || !piece.moves(); });
 }
 
 TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings) {

@@ -88,8 +88,10 @@ Result<void> GridBody::plan(const BodyInputs& inputs, BodyWorkspace& work) const
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
   plan.steps = steps_of(inputs, settings_);
+  plan.is_whole = settings_.region == SolvedRegion::All;
+  const Box all = grid_.box();
   selection = reselected(std::move(selection), work.tiles, inputs.forces, settings_.combine,
-                         inputs.selectors);
+                         inputs.selectors, std::span(&all, plan.is_whole ? 1 : 0));
   if (settings_.measure == Measure::Current) find_lost(inputs, work);
   if (recovers()) {
     plan.recovering = recovering_nodes(grid_, state_.unsettled, selection.regions, work.marks,
@@ -126,7 +128,7 @@ void GridBody::find_lost(const BodyInputs& inputs, BodyWorkspace& work) const {
 }
 
 Result<void> GridBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && !recovers()) {
+  if (inputs.forces.empty() && !recovers() && settings_.region == SolvedRegion::Forces) {
     work_.plan = {};
     return {};
   }

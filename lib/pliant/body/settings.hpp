@@ -25,12 +25,19 @@ enum class Release {
   Recover,  ///< they are solved until they are back at rest
 };
 
+/// What of a body is solved.
+enum class SolvedRegion {
+  Forces,  ///< the regions that the forces select
+  All,     ///< the whole body, in each frame
+};
+
 /// The choices of a body that do not change over time.
 struct BodySettings {
   Integrator integrator = Integrator::BackwardEuler;
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   Measure measure = Measure::Current;
+  SolvedRegion region = SolvedRegion::Forces;
   Combine combine = Combine::Box;
   Release release = Release::Freeze;
   Border border = Border::Clamped;  ///< of a surface of triangles

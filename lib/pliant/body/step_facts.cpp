@@ -39,6 +39,16 @@ bool merge_two(const Grid& grid, std::vector<Box>& boxes) {
   return false;
 }
 
+// Of a force that selects nothing: all is solved.
+ForceFacts facts_of_push(bool has_magnitude, bool pushes, bool is_lost) {
+  ForceFacts facts;
+  facts.touches = true;
+  facts.is_lost = is_lost;
+  facts.is_push_awaited = has_magnitude && !is_lost;
+  facts.pushes = pushes;
+  return facts;
+}
+
 ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const Selection& selection,
                     Combine combine) {
   const ForceSelection& selected = selection.forces[k];
@@ -93,7 +103,10 @@ StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan,
                   [](const SurfacePiece& piece) { return piece.free_nodes > 0 && !piece.moves(); });
   facts.forces.clear();
   for (std::size_t k = 0; k < selection.forces.size(); ++k) {
-    facts.forces.push_back(facts_of(k, inputs, selection, facts.is_solved));
+    const SurfaceForceSelection& force = selection.forces[k];
+    facts.forces.push_back(plan.is_whole ? facts_of_push(inputs.forces[k].magnitude != 0,
+                                                         force.push.node_count > 0, force.is_lost)
+                                         : facts_of(k, inputs, selection, facts.is_solved));
   }
   return facts;
 }
@@ -134,7 +147,10 @@ StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combi
   facts.is_solved = plan.solves();
   facts.forces.clear();
   for (std::size_t k = 0; k < selection.forces.size(); ++k) {
-    facts.forces.push_back(facts_of(k, inputs, selection, combine));
+    const ForceSelection& force = selection.forces[k];
+    facts.forces.push_back(
+        plan.is_whole ? facts_of_push(inputs.forces[k].magnitude != 0, force.pushes, force.is_lost)
+                      : facts_of(k, inputs, selection, combine));
   }
   if (combine == Combine::Box && facts.is_solved && falls_apart(selection, facts.room)) {
     for (std::size_t k = 0; k < facts.forces.size(); ++k) {

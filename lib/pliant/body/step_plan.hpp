@@ -14,6 +14,7 @@ namespace pliant {
 struct StepPlan {
   Selection selection;  ///< of the forces, in the order of the inputs, and of `recovering`
   std::optional<SurfaceSelection> surface;  ///< the same on a surface of triangles; null: a grid
+  bool is_whole = false;                    ///< all is solved, whatever the forces select
   TimeSteps steps;                          ///< of the solve
   std::vector<int> recovering;  ///< nodes solved because they are not back at rest, ascending
   std::vector<int> settling;    ///< nodes put at rest before the solve, ascending
@@ -21,7 +22,7 @@ struct StepPlan {
   bool selects() const;       ///< whether there is a region, even one that is not solved
   bool solves() const;        ///< whether any node moves
   int unknown_count() const;  ///< nodes that move, of all patches
-  bool is_held() const;       ///< false: nothing holds a patch of a closed grid
+  bool is_held() const;       ///< false: nothing holds a patch or piece that moves
 };
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,6 +70,11 @@ Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
   if (!plan.surface) plan.surface.emplace();
   SurfaceSelection& selection = *plan.surface;
   plan.steps = steps_of(inputs, settings_);
+  plan.is_whole = settings_.region == SolvedRegion::All;
+  if (plan.is_whole) {
+    if (selection.pieces.empty()) select_all(selection);
+    return weigh(inputs, selection);
+  }
   LevelSet level_set =
       find_level_set(*surface_, tree_, inputs.transform, inputs.forces, inputs.selectors);
   snap(level_set);
@@ -90,6 +96,15 @@ Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
     selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
   }
   return weigh(inputs, selection);
+}
+
+// Pieces that nothing holds move too.
+void SurfaceBody::select_all(SurfaceSelection& selection) const {
+  std::vector<int> nodes(static_cast<std::size_t>(surface_->node_count()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  selection.level_set = with_inside(*surface_, {}, nodes);
+  selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
+  for (SurfacePiece& piece : selection.pieces) piece.may_float = true;
 }
 
 // Computes the loads, and what each force does.
@@ -137,7 +152,7 @@ Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& sele
 }
 
 Result<void> SurfaceBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && !recovers()) {
+  if (inputs.forces.empty() && !recovers() && settings_.region == SolvedRegion::Forces) {
     plan_ = {};
     return {};
   }
@@ -194,6 +209,12 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
   for (std::size_t k = 0; k < selection.pieces.size(); ++k) {
     const SurfacePiece& piece = selection.pieces[k];
     if (!piece.moves()) continue;
+    if (!piece.is_held() && !(inputs.dynamics.shift(plan_.steps.solved_length()) > 0)) {
+      return fail(ErrorCode::SolverFailed,
+                  "nothing holds the piece with node " +
+                      std::to_string(selection.level_set.nodes[piece.points[0]]) +
+                      ", which is static: give it a density or a damping");
+    }
     PieceSolve& one = solves_[place++];
     one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
     one.problem.dynamics = inputs.dynamics;

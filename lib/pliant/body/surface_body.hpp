@@ -43,6 +43,7 @@ class SurfaceBody final : public Body {
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
+  void select_all(SurfaceSelection& selection) const;
   Result<void> weigh(const BodyInputs& inputs, SurfaceSelection& selection) const;
   void keep_plates();
   Result<void> solve(const BodyInputs& inputs);

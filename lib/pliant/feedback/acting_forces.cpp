@@ -68,6 +68,7 @@ BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& fault
     inputs.selectors.push_back(static_cast<int>(inputs.selectors.size()));
     selecting.push_back(group_of_[k]);
   }
+  if (surface_.solver.region == SolvedRegion::All) return inputs;
   for (const Group* const group : groups_) {
     if (!group->enabled.at(frame)) continue;
     const auto selector = static_cast<int>(inputs.forces.size());
@@ -97,6 +98,7 @@ bool ActingForces::is_enabled(std::size_t force, int frame) const {
 }
 
 bool ActingForces::selects_at(int frame) const {
+  if (surface_.solver.region == SolvedRegion::All) return true;
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     if (pliant::is_enabled(scene_.forces[forces_[k]], group_of_[k], frame)) return true;
   }

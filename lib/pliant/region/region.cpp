@@ -225,10 +225,12 @@ ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
 
 Selection reselected(Selection earlier, const NodeTiles& tiles,
                      std::span<const SampledForce> forces, Combine how,
-                     std::span<const int> selectors) {
+                     std::span<const int> selectors, std::span<const Box> others) {
   PLIANT_EXPECTS(selectors.empty() || selectors.size() == forces.size());
   Selection selection = std::move(earlier);
-  bool are_same = selection.forces.size() == forces.size() && selection.others.empty();
+  bool are_same = selection.forces.size() == forces.size() &&
+                  std::ranges::equal(selection.others, others) &&
+                  (others.empty() || !selection.regions.empty());
   selection.grid = tiles.grid();
   selection.forces.resize(forces.size());
   for (std::size_t k = 0; k < forces.size(); ++k) {
@@ -240,7 +242,8 @@ Selection reselected(Selection earlier, const NodeTiles& tiles,
         are_same && now.deformation == selected.deformation && now.selector == selected.selector;
     selected = now;
   }
-  return are_same ? std::move(selection) : recombined(std::move(selection), how);
+  if (are_same) return selection;
+  return recombined(std::move(selection), how, {others.begin(), others.end()});
 }
 
 bool overlaps(const Grid& grid, const Region& region, const Box& force) {

@@ -25,12 +25,12 @@ Selection select_region(const Grid& grid, const PlacedNodes& nodes,
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force);
 
 /// Selects again on the nodes of `tiles`, in the memory of `earlier`: an earlier result, or empty.
-/// If all deformation boxes are unchanged and no others took part, so are the regions, and nothing
-/// is allocated. A program's own function is called for every node, other forces only for nodes
-/// that can change a box.
+/// `others` are boxes that no force selects, but that are solved too. If all boxes are unchanged,
+/// so are the regions, and nothing is allocated. A program's own function is called for every node,
+/// other forces only for nodes that can change a box.
 Selection reselected(Selection earlier, const NodeTiles& tiles,
                      std::span<const SampledForce> forces, Combine how,
-                     std::span<const int> selectors = {});
+                     std::span<const int> selectors = {}, std::span<const Box> others = {});
 
 /// The same selection with regions formed from its boxes and from `others`, boxes that no force
 /// selects. In a box or union every force acts in the one region; with islands, in the one that

@@ -159,9 +159,10 @@ SceneSampling::SceneSampling(const Scene& scene) : targets_(targets_of(scene)) {
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
                           const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock) {
   const SampleShape sample{scene, force, surface, frame, faults, clock};
+  const bool selects = force.group.empty() && surface.solver.region == SolvedRegion::Forces;
   return {.kind = std::visit(sample, force.kind),
           .magnitude = force.magnitude.at(frame)[0],
-          .deformation_radius = force.group.empty() ? force.deformation_radius.at(frame)[0] : 0,
+          .deformation_radius = selects ? force.deformation_radius.at(frame)[0] : 0,
           .force_radius = force.force_radius.at(frame)[0],
           .falloff = force.falloff,
           .falloff_curve = force.falloff_curve ? &*force.falloff_curve : nullptr};
@@ -207,6 +208,7 @@ BodySettings body_settings(const Surface& surface, bool is_grid) {
           .stepping = solver.stepping,
           .reference = solver.reference,
           .measure = solver.measure.value_or(is_grid ? Measure::Current : Measure::Rest),
+          .region = solver.region,
           .combine = solver.combine,
           .release = solver.release,
           .border = surface.reading.border.value_or(Border::Clamped)};
@@ -229,6 +231,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
                             int frame, SurfaceInputs reuse) {
   const SurfaceTargets& targets = sampling.targets(surface);
+  const bool is_whole = scene.surfaces[surface].solver.region == SolvedRegion::All;
   SurfaceInputs inputs = std::move(reuse);
   BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
   body.forces = std::move(inputs.body.forces);
@@ -253,11 +256,13 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
     forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
                                   sampling.clock(index)));
     const auto* const custom = std::get_if<CustomForce>(&force.kind);
-    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group,
+    inputs.sources.push_back({force.name, kind_of(force), force.targets, !group && !is_whole,
                               custom ? std::string_view(custom->key) : std::string_view()});
     // The selectors of groups are not known yet: -1 - place stands for them.
-    selectors.push_back(group ? -1 - place : static_cast<int>(selectors.size()));
+    const bool follows = group && !is_whole;
+    selectors.push_back(follows ? -1 - place : static_cast<int>(selectors.size()));
   }
+  if (is_whole) return inputs;
   const std::size_t member_count = selectors.size();
   std::vector<int>& group_selectors = inputs.group_selectors;
   group_selectors.assign(targets.groups.size(), 0);

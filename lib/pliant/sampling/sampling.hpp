@@ -41,7 +41,8 @@ struct ForceSource {
 /// The inputs of one surface's step at a frame. Refers to the scene, which must outlive it and not
 /// change.
 struct SurfaceInputs {
-  BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups
+  BodyInputs body;  ///< its forces in the order of the scene, then the regions of groups, if they
+                    ///< select
   std::vector<ForceSource> sources;     ///< of `body.forces`; the selector of a force in a group is
                                         ///< that of the group
   std::shared_ptr<ForceFaults> faults;  ///< shared by the custom forces

@@ -125,11 +125,9 @@ inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the me
 inline constexpr std::string_view scheme_words[] = {"catmullClark", "loop"};
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
-// Choices that have one word so far, and the words that a later version will support.
 inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark"};
 inline constexpr std::string_view later_integrator_words[] = {"exact"};
-inline constexpr std::string_view region_words[] = {"forces"};
-inline constexpr std::string_view later_region_words[] = {"all"};
+inline constexpr std::string_view region_words[] = {"forces", "all"};
 
 inline constexpr Range frame_range{.least = -largest_frame, .most = largest_frame};
 
@@ -478,9 +476,10 @@ struct Description<SolverSettings> {
                   .later = later_integrator_words},
         of.integrator...);
     row(Attribute{.name = "region",
-                  .meaning = "only the selections of forces are solved",
-                  .words = region_words,
-                  .later = later_region_words});
+                  .meaning = "`forces`: only the selections of forces are solved; `all`: the whole "
+                             "surface in every frame, see below",
+                  .words = region_words},
+        of.region...);
   }
 };
 

@@ -107,6 +107,7 @@ class WholeChecker {
     check_reading(surface);
     check_subdivision(surface);
     check_driver(surface);
+    check_whole_body(surface);
     if (const auto* const net = std::get_if<NurbsNet>(&surface.shape)) check(surface, *net);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
     if (!sheet) return;
@@ -138,6 +139,23 @@ class WholeChecker {
     complain(surface.name, "levels",
              fmt::format("surface \"{}\" has a subdivision, but only a mesh is subdivided",
                          surface.name));
+  }
+
+  void check_whole_body(const Surface& surface) {
+    const SolverSettings& solver = surface.solver;
+    if (solver.region != SolvedRegion::All) return;
+    const auto refuse = [&](const char* attribute, std::string_view given,
+                            std::string_view needed) {
+      findings_.add_problem(
+          scene_.origin.last_line_of(surface.name, {"region", attribute}),
+          fmt::format("{0}.{1}: region=\"all\" solves the whole surface as one region about its "
+                      "rest shape, with {1}=\"{2}\", but {1} is \"{3}\"",
+                      surface.name, attribute, needed, given));
+    };
+    if (solver.reference != Reference::Rest) refuse("reference", "none", "rest");
+    if (solver.combine != Combine::Box)
+      refuse("combine", combine_words[static_cast<std::size_t>(solver.combine)], "box");
+    if (solver.release != Release::Freeze) refuse("release", "recover", "freeze");
   }
 
   void check_driver(const Surface& surface) {

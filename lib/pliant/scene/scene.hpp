@@ -75,6 +75,8 @@ struct SolverSettings {
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   std::optional<Measure> measure = {};  ///< absent: current on a grid, rest on a surface
+  /// All only with Reference::Rest, Combine::Box and Release::Freeze.
+  SolvedRegion region = SolvedRegion::Forces;
   Combine combine = Combine::Box;
   Release release = Release::Freeze;  ///< Recover only with tangents of 0
 };

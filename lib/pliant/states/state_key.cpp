@@ -88,8 +88,9 @@ class HashedValues {
     add(surface.unit);
   }
   void add(const BodySettings& settings) {
-    const auto& [integrator, stepping, reference, measure, combine, release, border] = settings;
-    add_all(integrator, stepping, reference, measure, combine, release, border);
+    const auto& [integrator, stepping, reference, measure, region, combine, release, border] =
+        settings;
+    add_all(integrator, stepping, reference, measure, region, combine, release, border);
   }
 
   void add(const Interpolation& interpolation) {

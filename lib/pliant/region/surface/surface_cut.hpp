@@ -42,8 +42,12 @@ struct SurfacePiece {
   int free_nodes = 0;
   std::vector<double> masses;  ///< #free_nodes: its share of the area [length^2]
 
-  /// Whether it is solved: it has a free node, and something is held.
-  bool moves() const { return free_nodes > 0 && cells.free_points < cells.point_count; }
+  bool may_float = false;  ///< whether it moves if nothing is held
+
+  bool is_held() const { return cells.free_points < cells.point_count; }
+
+  /// Whether it is solved.
+  bool moves() const { return free_nodes > 0 && (may_float || is_held()); }
 
   CutCounts counts(const LevelSet& level_set) const;
 

@@ -1,0 +1,154 @@
+#include <string>
+#include <vector>
+
+#include "pliant/scene/check.hpp"
+#include "support/catch.hpp"
+#include "support/meshes.hpp"
+#include "support/scenes.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+using Catch::Matchers::Contains;
+
+// `region="all"`: the whole surface is solved in every frame.
+
+namespace {
+
+Surface plain_mesh(Mesh mesh) {
+  Surface surface;
+  surface.name = "s";
+  surface.shape = std::move(mesh);
+  surface.material.density = 0.02;
+  surface.material.damping = 0.02;
+  return surface;
+}
+
+// A sheet and a mesh of triangles, each about a unit or so of displacement.
+struct Body {
+  std::string name;
+  Surface surface;
+  double magnitude;
+};
+std::vector<Body> bodies() {
+  Surface grid = sheet("s");
+  grid.tangents.su0 = TangentChannel(Channel<1>(0.3));
+  return {{"grid", grid, 3000}, {"triangles", plain_mesh(square(12, 6, 0.3)), 60}};
+}
+
+Force push(double magnitude, double deformation_radius) {
+  Force force = poke("p", {0.4, 0, -0.3}, magnitude);
+  force.deformation_radius = deformation_radius;
+  return force;
+}
+
+std::vector<std::string> problems_of(const Scene& scene) {
+  std::vector<std::string> problems;
+  for (const Error& error : check_scene(scene)) problems.push_back(error.message);
+  return problems;
+}
+
+}  // namespace
+
+TEST_CASE("a whole body moves as a region that holds all of it, to the bit", "[simulation][all]") {
+  for (auto& [name, surface, magnitude] : bodies()) {
+    CAPTURE(name);
+    const Scene selected = scene({surface}, {push(magnitude, 1e3)});
+    Surface whole = surface;
+    whole.solver.region = SolvedRegion::All;
+    const auto expected = baked(selected, "s");
+    CHECK(peak(expected) > 0.05);
+    CHECK(baked(scene({whole}, {push(magnitude, 1e3)}), "s") == expected);
+    // The deformation radius selects nothing.
+    CHECK(baked(scene({whole}, {push(magnitude, 0)}), "s") == expected);
+  }
+}
+
+TEST_CASE("a whole body goes on without a force", "[simulation][all]") {
+  for (auto& [name, surface, magnitude] : bodies()) {
+    CAPTURE(name);
+    Force force = push(magnitude, 1e3);
+    force.enabled = switch_at({{1, true}, {4, false}});
+    surface.tangents = {};
+    const auto frozen = baked(scene({surface}, {force}), "s");
+    CHECK(frozen[11] == frozen[3]);
+    surface.solver.region = SolvedRegion::All;
+    const auto whole = baked(scene({surface}, {force}, 600), "s");
+    CHECK(whole[3] == frozen[3]);
+    CHECK(whole[11] != whole[3]);
+    CHECK(largest_difference(whole[599], whole[0]) < 1e-3 * peak(whole));
+  }
+}
+
+TEST_CASE("tangents alone bend a whole body, and a group's sphere selects nothing of it",
+          "[simulation][all]") {
+  Surface surface = sheet("s");
+  surface.solver.region = SolvedRegion::All;
+  surface.tangents.su0 = TangentChannel(Channel<1>(0.5));
+  CHECK(peak(baked(scene({surface}, {}), "s")) > 0.05);
+
+  surface.tangents = {};
+  Scene grouped = scene({surface}, {push(3000, 0)});
+  const auto expected = baked(grouped, "s");
+  grouped.groups = {{.name = "g", .center = Value<3>{3, 0, 3}, .deformation_radius = 0.5}};
+  grouped.forces[0].group = "g";
+  CHECK(baked(grouped, "s") == expected);
+  grouped.groups[0].enabled = switch_at({{1, true}, {5, false}});
+  const auto silenced = baked(grouped, "s");
+  CHECK(silenced[4] == expected[4]);
+  CHECK(silenced[5] != expected[5]);
+}
+
+TEST_CASE("a body that nothing holds flies off evenly, unless it is static", "[simulation][all]") {
+  Surface ball = plain_mesh(sphere(1));
+  ball.material.damping = 0;
+  ball.solver.region = SolvedRegion::All;
+  ball.solver.dt = 1.0 / 24;
+  Force wind = poke("wind", {});
+  wind.kind = UniformChannels{};
+  wind.force_radius = 1e3;
+  wind.magnitude = 0.01;
+  const auto frames = baked(scene({ball}, {wind}), "s");
+  // Steps of backward Euler under an even force: v = n a T, and w is the sum of them.
+  for (int frame = 0; frame < 12; ++frame) {
+    const double way = 0.01 / 0.02 / (24.0 * 24) * frame * (frame + 1) / 2;
+    const Field moved = frames[frame] - frames[0];
+    CHECK((moved.col(1).array() - way).abs().maxCoeff() < 1e-9);
+    CHECK(moved.col(0).cwiseAbs().maxCoeff() < 1e-9);
+  }
+  ball.material.density = 0;
+  auto simulation = Simulation::make(scene({ball}, {wind})).value();
+  const auto failed = simulation.at(2);
+  REQUIRE_FALSE(failed);
+  CHECK_THAT(failed.error().message, Contains("nothing holds the piece") && Contains("static"));
+}
+
+TEST_CASE("a force that never reaches a whole body is told", "[simulation][all]") {
+  Surface surface = sheet("s");
+  surface.solver.region = SolvedRegion::All;
+  Force far = push(3000, 0);
+  far.kind = PointChannels{.center = Value<3>{0, 50, 0}};
+  const auto warnings_of = [&](const Force& force) {
+    auto simulation = Simulation::make(scene({surface}, {force})).value();
+    for (const int frame : simulation.frames()) REQUIRE(simulation.at(frame));
+    return simulation.warnings();
+  };
+  REQUIRE(warnings_of(far).size() == 1);
+  CHECK(warnings_of(far)[0].kind == Warning::Kind::PushesNothing);
+  CHECK(warnings_of(push(1000, 0)).empty());
+}
+
+TEST_CASE("a whole body has no other choice of regions", "[simulation][all]") {
+  Surface surface = sheet("s");
+  surface.solver.region = SolvedRegion::All;
+  CHECK(problems_of(scene({surface}, {})).empty());
+  const auto check = [&](const auto& change, const char* attribute) {
+    Surface changed = surface;
+    change(changed.solver);
+    const auto problems = problems_of(scene({changed}, {}));
+    REQUIRE(problems.size() == 1);
+    CHECK_THAT(problems[0], Contains("region=\"all\"") && Contains(attribute));
+  };
+  check([](SolverSettings& solver) { solver.reference = Reference::None; }, "s.reference");
+  check([](SolverSettings& solver) { solver.combine = Combine::Islands; }, "s.combine");
+  check([](SolverSettings& solver) { solver.release = Release::Recover; }, "s.release");
+}
