@@ -121,24 +121,3 @@ TEST_CASE("Newmark's steps are those of the trapezoidal rule", "[plate][newmark]
     CHECK(with_interior(outline, state.velocity, Field::Zero(n, 3)).isZero(0));
   }
 }
-
-TEST_CASE("Newmark's steps are of second order", "[plate][newmark]") {
-  // One mode of the 3 x 3 plate is the damped oscillator rho w'' + eta w' + k w = 0.
-  const Grid grid{3, 3, 1, 1};
-  const double rho = 2, eta = 3, k = 24, end = 0.7;
-  const double decay = eta / (2 * rho), omega = std::sqrt(k / rho - decay * decay);
-  const double exact =
-      std::exp(-decay * end) * (std::cos(omega * end) + decay / omega * std::sin(omega * end));
-  std::vector<double> errors;
-  for (const int count : {20, 40, 80}) {
-    PlateState state{Field::Zero(9, 3), Field::Zero(9, 3)};
-    state.displacement.row(4).setOnes();
-    const auto solver = make_plate_solver(SolverChoice::Spectral);
-    const PlateProblem problem{grid, {1, 2, 1}, {rho, eta}, {}, Field::Zero(9, 3)};
-    const TimeSteps steps{count, end / count, Integrator::Newmark};
-    state = solver->advance(problem, steps, std::move(state)).value();
-    errors.push_back(std::abs(state.displacement(4, 0) - exact));
-  }
-  CHECK_THAT(std::log2(errors[0] / errors[1]), WithinAbs(2, 0.05));
-  CHECK_THAT(std::log2(errors[1] / errors[2]), WithinAbs(2, 0.05));
-}
