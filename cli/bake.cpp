@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include "counted.hpp"
+#include "dt_check.hpp"
 #include "frame_range.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -193,7 +194,7 @@ Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regio
 
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
                              const FrameRange& frames, Output& output,
-                             std::optional<RegionsFile>& regions) {
+                             std::optional<RegionsFile>& regions, std::optional<DtCheck>& check) {
   Summary summary;
   for (const std::size_t k : output.surfaces)
     summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
@@ -206,7 +207,11 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     auto reached = simulation.at(number, std::move(frame));
     if (!reached) return fail(reached.error());
     frame = *std::move(reached);
+    if (check) {
+      if (auto advanced = check->advance(frame); !advanced) return fail(advanced.error());
+    }
     if (number >= frames.first) {
+      if (check) check->compare(frame, output.surfaces);
       auto written = write_frame(frame, options, simulation.scene(), output, summary);
       if (!written) return fail(written.error());
       if (regions) {
@@ -288,6 +293,10 @@ void add_bake(CLI::App& app, BakeOptions& options) {
   add_memory(*bake, options.resources);
   bake->add_option("--regions", options.regions,
                    "Write the regions that each frame solves, and their forces, to this JSON file");
+  bake->add_flag(
+      "--check-dt", options.checks_dt,
+      "Simulate again with half the time step, and print the largest difference over the "
+      "peak displacement");
   bake->add_flag("--profile", options.is_profiled,
                  "Print a table on stderr at the end: the time spent in each stage of the run");
   bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
@@ -316,6 +325,7 @@ int run_bake(const BakeOptions& options) {
   run.solver = *solver;
   run.profile = options.is_profiled;
   run.store = store->get();
+  if (options.checks_dt) run.max_memory /= 2;  // for each of the two runs
   const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
@@ -323,6 +333,12 @@ int run_bake(const BakeOptions& options) {
   auto output = open_output(*simulation, options, *frames);
   if (!output) return report(output.error());
 
+  std::optional<DtCheck> check;
+  if (options.checks_dt) {
+    auto made = DtCheck::make(simulation->scene(), run);
+    if (!made) return report(with_kept(made.error(), "no file was written"));
+    check.emplace(*std::move(made));
+  }
   std::optional<RegionsFile> regions;
   if (options.regions) {
     auto created = RegionsFile::create(*options.regions, simulation->scene());
@@ -330,7 +346,7 @@ int run_bake(const BakeOptions& options) {
     regions.emplace(*std::move(created));
   }
 
-  const auto summary = write_frames(*simulation, options, *frames, *output, regions);
+  const auto summary = write_frames(*simulation, options, *frames, *output, regions, check);
   print_warnings(*simulation);
   print_cache_notes(store->get(), options.cache);
   if (!summary) return report(with_kept(summary.error(), kept_text(options)));
@@ -343,6 +359,10 @@ int run_bake(const BakeOptions& options) {
                               summary->peak_displacement,
                               options.resume ? resume_summary(summary->files) : "",
                               *store ? cache_summary(simulation->frame_counts()) : ""));
+  }
+  if (check) {
+    print(stdout, fmt::format("{}: {}\n", printable(options.out),
+                              check->to_text(summary->peak_displacement)));
   }
   if (options.is_profiled) {
     Profile profile = simulation->profile();

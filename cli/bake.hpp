@@ -22,6 +22,7 @@ struct BakeOptions {
   bool resume = false;
   bool is_quiet = false;
   bool is_profiled = false;
+  bool checks_dt = false;
   Root root = {};
   CacheOptions cache;
   ResourceOptions resources;

@@ -75,6 +75,50 @@ class Bake(Command):
         result = self.run_pliant("bake", scene, "-o", "a.npy", "--quiet")
         self.assertEqual(result.stdout + result.stderr, "")
 
+    def test_check_dt_tells_what_half_the_step_changes(self):
+        def difference(scene, *flags):
+            result = self.run_pliant("bake", scene, "-o", "a.npy", "--quiet", "--check-dt", *flags)
+            self.assertEqual(result.stderr, "")
+            found = re.fullmatch(r"a\.npy: at half the time step positions differ by (\S+) of the peak "
+                                 r"displacement at most, (\S+) at frame (\d+)\n", result.stdout)
+            return [float(number) for number in found.groups()] if found else result.stdout
+
+        def scene_with(solver):
+            text = ('<scene start="1" end="12"><surface name="s"><grid columns="13" rows="11" width="12" '
+                    'depth="10"/><material density="40" damping="20"/>' + solver + '</surface>'
+                    '<point name="p" magnitude="3000" deformationRadius="4.5" forceRadius="2.5"/></scene>')
+            with open(self.path("dt.xml"), "w", encoding="utf-8") as file:
+                file.write(text)
+            return self.path("dt.xml")
+
+        baked = {}
+        for dt in ("0.005", "0.0025"):
+            self.bake(scene_with(f'<solver dt="{dt}"/>'), "-o", self.path("b.npy"), "--quiet")
+            baked[dt] = np.load(self.path("b.npy"))
+        apart = np.linalg.norm(baked["0.005"] - baked["0.0025"], axis=-1)
+        moved = np.linalg.norm(baked["0.005"] - baked["0.005"][0], axis=-1)
+        whole = scene_with('<solver dt="0.005"/>')
+        share, distance, frame = difference(whole)
+        self.assertAlmostEqual(share, apart.max() / moved.max(), delta=5e-3 * share)
+        self.assertAlmostEqual(distance, apart.max(), delta=1e-5 * distance)
+        self.assertEqual(frame, 1 + apart.max(axis=1).argmax())
+        # Of the frames that are written.
+        self.assertLess(difference(whole, "--frames", "1:4")[1], distance)
+        # A step may be longer than a frame, and keyed.
+        self.assertGreater(difference(scene_with('<solver dt="1"/>'))[0], share)
+        keyed = difference(scene_with(
+            '<solver><animate attribute="dt"><key frame="1" value="0.005"/></animate></solver>'))
+        self.assertEqual(keyed, [share, distance, frame])
+        newmark = difference(scene_with('<solver dt="0.005" integrator="newmark"/>'))
+        self.assertLess(newmark[0], share / 4)
+        still = scene_with('<solver dt="0.005"/>').replace("dt.xml", "still.xml")
+        with open(self.path("dt.xml"), encoding="utf-8") as file:
+            text = file.read().replace('magnitude="3000"', 'magnitude="0"')
+        with open(still, "w", encoding="utf-8") as file:
+            file.write(text)
+        result = self.run_pliant("bake", still, "-o", "a.npy", "--quiet", "--check-dt")
+        self.assertEqual(result.stdout, "a.npy: at half the time step all positions are the same\n")
+
     def test_profile_tells_where_the_time_went(self):
         scene = self.scene()
         for flags in ([], ["--quiet"], ["--threads", "2"]):

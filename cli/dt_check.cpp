@@ -1,0 +1,69 @@
+#include "dt_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace pliant::cli {
+namespace {
+
+// Half of the time step, or half a frame if a step is longer than a frame.
+double half_step(const Surface& surface, double fps, int frame) {
+  const double length = surface.solver.time_scale.at(frame)[0] / fps;
+  const double dt = surface.solver.dt.at(frame)[0];
+  return (length > 0 ? std::min(dt, length) : dt) / 2;
+}
+
+Channel<1> half_steps(const Surface& surface, const Scene& scene) {
+  const SolverSettings& solver = surface.solver;
+  if (!solver.dt.is_animated() && !solver.time_scale.is_animated())
+    return half_step(surface, scene.fps, scene.start);
+  CurveKeys<1> curve;
+  for (int frame = scene.start; frame <= scene.end; ++frame) {
+    Key<1> key{.frame = double(frame), .value = {half_step(surface, scene.fps, frame)}};
+    key.next.kind = Interpolation::Kind::Step;
+    curve.keys.push_back(key);
+  }
+  return Curve<1>::make(std::move(curve)).value();
+}
+
+}  // namespace
+
+Result<DtCheck> DtCheck::make(const Scene& scene, SimulationOptions options) {
+  Scene half = scene;
+  for (Surface& surface : half.surfaces) surface.solver.dt = half_steps(surface, scene);
+  options.profile = false;
+  auto simulation = Simulation::make(std::move(half), options);
+  if (!simulation) return fail(simulation.error());
+  return DtCheck(*std::move(simulation));
+}
+
+Result<void> DtCheck::advance(const Frame& frame) {
+  auto reached = simulation_.at(frame.number(), std::move(frame_));
+  if (!reached) return fail(reached.error());
+  frame_ = *std::move(reached);
+  return {};
+}
+
+void DtCheck::compare(const Frame& frame, std::span<const std::size_t> surfaces) {
+  for (const std::size_t k : surfaces) {
+    const Field apart = frame.surfaces()[k].positions() - frame_.surfaces()[k].positions();
+    const double farthest = std::sqrt(apart.rowwise().squaredNorm().maxCoeff());
+    if (farthest <= difference_) continue;
+    difference_ = farthest;
+    at_ = frame.number();
+  }
+}
+
+std::string DtCheck::to_text(double peak_displacement) const {
+  if (difference_ == 0) return "at half the time step all positions are the same";
+  return fmt::format(
+      "at half the time step positions differ by {:.3g} of the peak displacement at most, {:.6g} "
+      "at "
+      "frame {}",
+      difference_ / peak_displacement, difference_, at_);
+}
+
+}  // namespace pliant::cli
