@@ -79,7 +79,7 @@ std::string vibration_text(const RegionPreview& region, double fps) {
                                        frequency_text(region.first_frequency), region.damping_ratio)
                          : "    first natural frequency: none, the density is 0\n";
   const auto& [frequency, ratio] = region.animated;
-  text += "    in the animation, with the damping of backward Euler: ";
+  text += "    in the animation, with the damping of its steps: ";
   if (frequency > 0) {
     text += fmt::format("{}, damping ratio {:.3g}{}, it {}", frequency_text(frequency), ratio,
                         frequency > fps / 2 ? ", faster than frames can show" : "",

@@ -88,7 +88,7 @@ class Info(Command):
                       "poke (point) on sheet: at frame 9, at magnitude -4000, it selects 9 x 9 nodes, "
                       "columns 2 to 10, rows 1 to 9",
                       "static peak displacement", "; in the animation", " Hz, damping ratio",
-                      "with the damping of backward Euler", "settles to 5 % in",
+                      "with the damping of its steps", "settles to 5 % in",
                       "poke.magnitude  2 keys: 1 = 0, 9 = -4000", "memory"):
             self.assertIn(words, told)
 

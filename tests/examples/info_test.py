@@ -70,7 +70,10 @@ def info(scene):
 def bake(scene, surface):
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "a.npy")
-        run("bake", scene, "-o", out, "--surface", surface, "--quiet")
+        # Where a transform takes the surface is no part of the peak.
+        is_carried = tree.parse(scene).find(f"surface[@name='{surface}']/transform/animate") is not None
+        space = "object" if is_carried else "world"
+        run("bake", scene, "-o", out, "--surface", surface, "--space", space, "--quiet")
         return np.load(out)
 
 

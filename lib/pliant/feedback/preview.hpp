@@ -24,7 +24,7 @@ struct RegionPreview {
   double first_frequency = 0;     ///< of its slowest vibration, undamped [Hz]; 0 without density
   double damping_ratio = 0;       ///< of that vibration [1]; < 1: it rings; 0 without density
   Swing animated;                 ///< the vibration that the load excites most, as the animation
-                                  ///< shows it: including the damping of backward Euler at this dt
+                                  ///< shows it: including what its steps damp
   Settling settling;              ///< to 5 % at the node of the static peak, as the animation shows
                                   ///< it
   bool has_vibration = false;     ///< false: too many nodes, or none that moves; then the values of
