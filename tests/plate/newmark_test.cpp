@@ -42,8 +42,9 @@ std::vector<Case> cases() {
 }  // namespace
 
 TEST_CASE("Newmark's steps keep the energy of an undamped plate", "[plate][newmark]") {
-  for (const auto& [name, choice, outline] : cases()) {
-    CAPTURE(name);
+  for (const Case& one : cases()) {
+    const Outline& outline = one.outline;
+    CAPTURE(one.name);
     const double density = 2;
     const Eigen::MatrixXd L = dense_operator({outline, {1.5, 0.5, 2}, 0});
     const auto n = L.rows();
@@ -61,10 +62,10 @@ TEST_CASE("Newmark's steps keep the energy of an undamped plate", "[plate][newma
       return moving + bent - w.cwiseProduct(interior_of(outline, load)).sum();
     };
     const double first = energy();
-    const auto solver = make_plate_solver(choice);
+    const auto solver = make_plate_solver(one.choice);
     const PlateProblem problem{outline, {1.5, 0.5, 2}, {density, 0}, {}, load};
     double worst = 0;
-    const int intervals = name == "rectangles" ? 20 : 500;
+    const int intervals = one.name == "rectangles" ? 20 : 500;
     for (int interval = 0; interval < intervals; ++interval) {
       state = solver->advance(problem, {20, 0.003, Integrator::Newmark}, std::move(state)).value();
       worst = std::max(worst, std::abs(energy() - first));
