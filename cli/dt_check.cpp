@@ -9,20 +9,26 @@
 namespace pliant::cli {
 namespace {
 
-// Half of the time step, or half a frame if a step is longer than a frame.
-double half_step(const Surface& surface, double fps, int frame) {
-  const double length = surface.solver.time_scale.at(frame)[0] / fps;
+// Half of the step that a frame is divided into.
+double half_step(const Scene& scene, const Surface& surface, int frame) {
+  const double length = frame_length(scene, surface, frame);
   const double dt = surface.solver.dt.at(frame)[0];
-  return (length > 0 ? std::min(dt, length) : dt) / 2;
+  if (length == 0) return dt / 2;
+  return divide_interval(length, dt, surface.solver.stepping).length / 2;
+}
+
+Error of_second_run(Error error) {
+  error.message = "--check-dt, at half the time step: " + error.message;
+  return error;
 }
 
 Channel<1> half_steps(const Surface& surface, const Scene& scene) {
   const SolverSettings& solver = surface.solver;
   if (!solver.dt.is_animated() && !solver.time_scale.is_animated())
-    return half_step(surface, scene.fps, scene.start);
+    return half_step(scene, surface, scene.start);
   CurveKeys<1> curve;
   for (int frame = scene.start; frame <= scene.end; ++frame) {
-    Key<1> key{.frame = double(frame), .value = {half_step(surface, scene.fps, frame)}};
+    Key<1> key{.frame = double(frame), .value = {half_step(scene, surface, frame)}};
     key.next.kind = Interpolation::Kind::Step;
     curve.keys.push_back(key);
   }
@@ -36,13 +42,13 @@ Result<DtCheck> DtCheck::make(const Scene& scene, SimulationOptions options) {
   for (Surface& surface : half.surfaces) surface.solver.dt = half_steps(surface, scene);
   options.profile = false;
   auto simulation = Simulation::make(std::move(half), options);
-  if (!simulation) return fail(simulation.error());
+  if (!simulation) return fail(of_second_run(simulation.error()));
   return DtCheck(*std::move(simulation));
 }
 
 Result<void> DtCheck::advance(const Frame& frame) {
   auto reached = simulation_.at(frame.number(), std::move(frame_));
-  if (!reached) return fail(reached.error());
+  if (!reached) return fail(of_second_run(reached.error()));
   frame_ = *std::move(reached);
   return {};
 }

@@ -92,11 +92,12 @@ class Bake(Command):
             return self.path("dt.xml")
 
         baked = {}
-        for dt in ("0.005", "0.0025"):
-            self.bake(scene_with(f'<solver dt="{dt}"/>'), "-o", self.path("b.npy"), "--quiet")
+        for dt in (0.005, 1 / 24 / 18):  # 9 steps, and 18
+            self.bake(scene_with(f'<solver dt="{dt!r}"/>'), "-o", self.path("b.npy"), "--quiet")
             baked[dt] = np.load(self.path("b.npy"))
-        apart = np.linalg.norm(baked["0.005"] - baked["0.0025"], axis=-1)
-        moved = np.linalg.norm(baked["0.005"] - baked["0.005"][0], axis=-1)
+        usual, half = baked.values()
+        apart = np.linalg.norm(usual - half, axis=-1)
+        moved = np.linalg.norm(usual - usual[0], axis=-1)
         whole = scene_with('<solver dt="0.005"/>')
         share, distance, frame = difference(whole)
         self.assertAlmostEqual(share, apart.max() / moved.max(), delta=5e-3 * share)
@@ -104,6 +105,12 @@ class Bake(Command):
         self.assertEqual(frame, 1 + apart.max(axis=1).argmax())
         # Of the frames that are written.
         self.assertLess(difference(whole, "--frames", "1:4")[1], distance)
+        # What is halved is the step that divides a frame.
+        self.assertEqual(difference(scene_with('<solver dt="0.03"/>')),
+                         difference(scene_with('<solver dt="0.0208333333333333333"/>')))
+        many = self.run_pliant("bake", scene_with('<solver dt="5e-7"/>'), "-o", "a.npy", "--check-dt",
+                               code=2)
+        self.assertIn("error: --check-dt, at half the time step: s.dt is", many.stderr)
         # A step may be longer than a frame, and keyed.
         self.assertGreater(difference(scene_with('<solver dt="1"/>'))[0], share)
         keyed = difference(scene_with(

@@ -133,6 +133,25 @@ TEST_CASE("settling is counted as it is played", "[plate][swing]") {
   }
 }
 
+TEST_CASE("Newmark's steps ring on where a motion is faster than they are", "[plate][swing]") {
+  for (const int count : {1, 2, 5}) {
+    const TimeSteps steps{count, frame_length / count, Integrator::Newmark};
+    for (const double lambda : {400.0, 1e5}) {
+      for (const double eta : {200.0, 5e3, 1e6}) {
+        const Dynamics dynamics{0.1, eta};
+        CAPTURE(count, lambda, eta);
+        const Swing swing = stepped_swing(lambda, dynamics, steps, frame_length);
+        CHECK(std::isfinite(swing.frequency));
+        CHECK(swing.damping_ratio > 0);
+        const std::vector<ExcitedMode> modes = {{lambda, 1}};
+        const Settling settling = settling_of(modes, dynamics, steps, frame_length);
+        if (!settling.is_counted) continue;
+        CHECK(settling.frames == settled_frames(played(lambda, dynamics, steps, 100'000)));
+      }
+    }
+  }
+}
+
 TEST_CASE("what keeps its energy never settles", "[plate][swing]") {
   const std::vector<ExcitedMode> modes = {{400, 1}};
   const Settling settling =

@@ -63,6 +63,27 @@ TEST_CASE("a surface that is halted goes on with its velocity", "[simulation][ti
   }
 }
 
+TEST_CASE("a frame too short for anything to move halts a surface", "[simulation][time]") {
+  const Integrator integrator = GENERATE(Integrator::BackwardEuler, Integrator::Newmark);
+  Scene carried = swaying(integrator);  // inertia divides by the square of the frame's length
+  Scene pushed = scene({sheet("s")}, {poke("p", {1.5, 0, -2})});
+  pushed.surfaces[0].solver.integrator = integrator;
+  for (const double scale : {0.0, 5e-324, 1e-300, 1e-160, 1e-40, 1e-28, 1e-12}) {
+    CAPTURE(scale);
+    carried.surfaces[0].solver.time_scale = pushed.surfaces[0].solver.time_scale = scale;
+    for (const Scene& s : {carried, pushed}) {
+      auto simulation = Simulation::make(s).value();
+      CHECK(simulation.at(12));
+      CHECK(preview_forces(s, simulation.rest_shapes()));
+      // It is not one that starts too late.
+      for (const Warning& warning : simulation.warnings()) {
+        CHECK(warning.kind != Warning::Kind::NeverStarts);
+      }
+    }
+    CHECK(peak(baked(pushed, "s")) < 1e-9);
+  }
+}
+
 TEST_CASE("steps are counted in a surface's own time", "[simulation][time]") {
   Scene s = scene({sheet("s")}, {poke("p", {0, 0, 0})});
   s.surfaces[0].solver.dt = 1e-5;

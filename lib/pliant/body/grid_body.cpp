@@ -204,9 +204,11 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
     const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
     for (const Patch& patch : region.patches) {
       if (!patch.is_held() && !(inputs.dynamics.shift(plan.steps.solved_length()) > 0)) {
-        return fail(ErrorCode::SolverFailed,
-                    "nothing holds a static surface that is closed along u and v: the forces "
-                    "select all of it; give it a density or a damping, or select less");
+        std::string message =
+            "nothing holds a static surface that is closed along u and v: give it a density or a "
+            "damping";
+        if (!plan.is_whole) message += ", or select less: the forces select all of it";
+        return fail(ErrorCode::SolverFailed, std::move(message));
       }
       PatchSolve& one = work_.solves[place++];
       PlateProblem& problem = one.problem;

@@ -258,7 +258,8 @@ std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
   for (const std::size_t group : all_groups) {
     if (!members[group].empty()) add(Preview::Of::Group, group, members[group], {group});
   }
-  if (!all_forces.empty() || !all_groups.empty()) {
+  const bool is_whole = surface.solver.region == SolvedRegion::All;
+  if (is_whole || !all_forces.empty() || !all_groups.empty()) {
     add(Preview::Of::All, 0, std::move(all_forces), all_groups);
   }
   return cases;
@@ -266,9 +267,9 @@ std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
 
 // Whether the case acts at some frame.
 bool has_frames(const Case& one, const Scene& scene) {
-  const int first = std::max(
-      scene.start, scene.surfaces[one.preview.surface].solver.start_frame.value_or(scene.start));
-  for (int frame = first; frame <= scene.end; ++frame) {
+  const Surface& surface = scene.surfaces[one.preview.surface];
+  for (int frame = first_solved_frame(scene, surface); frame <= scene.end; ++frame) {
+    if (!is_solved_at(scene, surface, frame)) continue;
     if (one.preview.of == Preview::Of::All ? one.acting.selects_at(frame)
                                            : !one.acting.enabled_at(frame).empty()) {
       return true;

@@ -40,16 +40,27 @@ Roots roots_of(double lambda, const Dynamics& dynamics) {
 Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
   if (std::isinf(root.real())) return -infinite;
   const Complex half = root * steps.solved_length();
-  const Complex step =
-      steps.are_reflected() ? std::log(1.0 + half) - std::log(1.0 - half) : -std::log(1.0 - half);
-  return static_cast<double>(steps.count) * step / frame_length;
+  const double count = steps.count;
+  if (!steps.are_reflected()) return -count * std::log(1.0 - half) / frame_length;
+  if (half.imag() != 0) {
+    return count * (std::log(1.0 + half) - std::log(1.0 - half)) / frame_length;
+  }
+  // A motion that is faster than the steps changes its sign in each of them.
+  const double step = (1 + half.real()) / (1 - half.real());
+  const bool alternates = step < 0 && steps.count % 2 == 1;
+  return Complex(count * std::log(std::abs(step)), alternates ? std::numbers::pi : 0) /
+         frame_length;
 }
 
 // Eq. (40).
 Swing swing_of(const Complex& slow, const Complex& fast) {
   if (std::isinf(fast.real())) return {0, infinite};
+  if (slow.imag() != -fast.imag()) {  // one alternates: what lasts longer is seen
+    const Complex& seen = slow.real() >= fast.real() ? slow : fast;
+    return {std::abs(seen.imag()) / (2 * std::numbers::pi), -seen.real() / std::abs(seen)};
+  }
   const double omega = std::sqrt((slow * fast).real());
-  return {std::abs(slow.imag()) / (2 * std::numbers::pi), -(slow + fast).real() / (2 * omega)};
+  return {std::abs(slow.imag()) / (2 * std::numbers::pi), 0 - (slow + fast).real() / (2 * omega)};
 }
 
 // e of eq. (41): the deviation of a mode from its final value, frame by frame, relative to the
@@ -113,8 +124,11 @@ Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamic
   double shares = 0, slowest = infinite;  // [1/s]
   for (const ExcitedMode& mode : modes) {
     shares += std::abs(mode.share);
+    const auto [slow, fast] = roots_of(mode.lambda, dynamics);
+    // The faster root decays more slowly if it is much faster than reflected steps.
     const double rate =
-        -seen(roots_of(mode.lambda, dynamics).slow, steps, frame_length).real() * frame_length;
+        -std::max(seen(slow, steps, frame_length).real(), seen(fast, steps, frame_length).real()) *
+        frame_length;
     if (std::abs(mode.share) > 1e-6) slowest = std::min(slowest, rate);
   }
   // What is not damped, and steps that keep energy.

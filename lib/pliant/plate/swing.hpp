@@ -9,8 +9,8 @@ namespace pliant {
 
 struct ExcitedMode;
 
-// How a plate swings and comes to rest, in continuous time and under backward Euler, whose steps
-// remove energy. docs/model.md, eq. (38) to (42).
+// How a plate swings and comes to rest, in continuous time and in steps: those of backward
+// Euler remove energy. docs/model.md, eq. (38) to (42).
 
 /// A vibration as an observer sees it.
 struct Swing {

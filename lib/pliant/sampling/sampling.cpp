@@ -193,7 +193,7 @@ int first_solved_frame(const Scene& scene, const Surface& surface) {
 
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
   return surface.enabled && !surface.is_driven() && frame >= first_solved_frame(scene, surface) &&
-         surface.solver.time_scale.at(frame)[0] > 0;
+         frame_length(scene, surface, frame) > 0;
 }
 
 Transform sample_transform(const TransformChannels& channels, int frame) {
@@ -223,7 +223,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
           .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
                        sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
           .poisson = material.poisson.at(frame)[0],
-          .frame_length = surface.solver.time_scale.at(frame)[0] / scene.fps,
+          .frame_length = frame_length(scene, surface, frame),
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {}};
 }

@@ -138,8 +138,8 @@ class ChannelChecker {
     const bool is_animated = dt.is_animated() || time_scale.is_animated();
     const int last = is_animated ? last_ : first_;
     for (int frame = first_; frame <= last; ++frame) {
-      const double length = time_scale.at(frame)[0] / scene_.fps;
-      if (!(length > 0)) continue;
+      const double length = frame_length(scene_, surface, frame);
+      if (length == 0) continue;
       const auto checked = check_time_step(length, dt.at(frame)[0]);
       if (checked) continue;
       return add_error(surface.name, "dt", is_animated, frame, checked.error().message,

@@ -391,6 +391,7 @@ struct Description<MaterialChannels> {
         of.c...);
     row(Attribute{.name = "d", .meaning = "stiffness along v", .unit = "1", .range = positive},
         of.d...);
+    row(Attribute{.name = "dampingRatio", .need = Need::Later});
     row(Attribute{.name = "yield", .need = Need::Later});
     row(Attribute{.name = "hardening", .need = Need::Later});
     row(Attribute{.name = "poisson",
@@ -480,6 +481,9 @@ struct Description<SolverSettings> {
                              "surface in every frame, see below",
                   .words = region_words},
         of.region...);
+    row(Attribute{.name = "edges", .need = Need::Later});
+    row(Attribute{.name = "preroll", .need = Need::Later});
+    row(Attribute{.name = "loop", .need = Need::Later});
   }
 };
 

@@ -37,4 +37,11 @@ bool SceneOrigin::gives(const std::string& name, const std::string& attribute) c
   return find_line(lines, name + '.' + attribute) != 0;
 }
 
+double frame_length(const Scene& scene, const Surface& surface, int frame) {
+  // 1/dt^2, and forces of inertia of this size, stay finite.
+  constexpr double least = 1e-30;
+  const double length = surface.solver.time_scale.at(frame)[0] / scene.fps;
+  return length >= least ? length : 0;
+}
+
 }  // namespace pliant

@@ -228,6 +228,12 @@ struct SceneNote {
   friend bool operator==(const SceneNote&, const SceneNote&) = default;
 };
 
+struct Scene;
+
+/// The length of a frame in a surface's own time [s]. 0: it is halted. So it is if a frame would be
+/// shorter than 10^-30 s, in which nothing moves.
+double frame_length(const Scene& scene, const Surface& surface, int frame);
+
 /// A complete scene: values only, made by `load_scene` or in code.
 struct Scene {
   double fps = 24;  ///< [1/s], > 0

@@ -104,11 +104,12 @@ Result<void> Simulation::Player::step() {
   bool is_solved = false, is_read = false;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
-    if (surface.enabled && !surface.is_driven())
+    const bool is_early = frame_ < first_solved_frame(scene_, surface);
+    if (surface.enabled && !surface.is_driven() && is_early)
       warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
+    if (!is_early) warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
     const Bodies::Step& step = bodies_.last_step(k);
     if (!step.is_solved_now) continue;
-    warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
     if (auto done = bodies_.outcome(k, frame_); !done) return done;
     add_facts(warnings_, surface.name, frame_, step.inputs, step.facts);
     (step.is_read ? is_read : is_solved) = true;

@@ -49,7 +49,7 @@ class TrianglePlate {
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
   Result<Field> solve(const Field& forces);
 
-  /// Advances by backward Euler, as `advance_in_steps`. What is held keeps its displacement.
+  /// Advances as `advance_in_steps`. What is held keeps its displacement.
   /// Errors: those of `prepare`; Interrupted.
   Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                                 TriangleState state);
