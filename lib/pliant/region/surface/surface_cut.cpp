@@ -419,14 +419,13 @@ std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_
   each_cut_point(CutPoint::Kind::Part, [&](const CutPoint& point, double share) {
     for (const int corner : point.of) at_points[corner] += 0.25 * share;
   });
-  // A corner's place among the free nodes, which are in ascending order.
-  const auto nodes = std::span(piece.points).first(static_cast<std::size_t>(piece.free_nodes));
+  std::vector<int> places(level_set.nodes.size(), -1);  // of the free nodes among the points
+  for (int k = 0; k < piece.free_nodes; ++k) places[piece.points[k]] = k;
   each_cut_point(CutPoint::Kind::Centre, [&](const CutPoint& point, double share) {
     const std::span<const int> corners = level_set.corners_of(static_cast<std::size_t>(point.face));
     for (const int corner : corners) {
-      const auto place = std::lower_bound(nodes.begin(), nodes.end(), corner);
-      if (place == nodes.end() || *place != corner) continue;
-      at_points[place - nodes.begin()] += share / static_cast<double>(corners.size());
+      if (places[corner] < 0) continue;
+      at_points[places[corner]] += share / static_cast<double>(corners.size());
     }
   });
   at_points.resize(static_cast<std::size_t>(piece.free_nodes));
