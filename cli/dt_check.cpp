@@ -1,6 +1,5 @@
 #include "dt_check.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,7 +21,7 @@ Error of_second_run(Error error) {
   return error;
 }
 
-Channel<1> half_steps(const Surface& surface, const Scene& scene) {
+Channel<1> half_steps(const Scene& scene, const Surface& surface) {
   const SolverSettings& solver = surface.solver;
   if (!solver.dt.is_animated() && !solver.time_scale.is_animated())
     return half_step(scene, surface, scene.start);
@@ -39,7 +38,7 @@ Channel<1> half_steps(const Surface& surface, const Scene& scene) {
 
 Result<DtCheck> DtCheck::make(const Scene& scene, SimulationOptions options) {
   Scene half = scene;
-  for (Surface& surface : half.surfaces) surface.solver.dt = half_steps(surface, scene);
+  for (Surface& surface : half.surfaces) surface.solver.dt = half_steps(scene, surface);
   options.profile = false;
   auto simulation = Simulation::make(std::move(half), options);
   if (!simulation) return fail(of_second_run(simulation.error()));
@@ -66,9 +65,8 @@ void DtCheck::compare(const Frame& frame, std::span<const std::size_t> surfaces)
 std::string DtCheck::to_text(double peak_displacement) const {
   if (difference_ == 0) return "at half the time step all positions are the same";
   return fmt::format(
-      "at half the time step positions differ by {:.3g} of the peak displacement at most, {:.6g} "
-      "at "
-      "frame {}",
+      "at half the time step positions differ by {:.3g} of the peak displacement at most, "
+      "{:.6g} at frame {}",
       difference_ / peak_displacement, difference_, at_);
 }
 

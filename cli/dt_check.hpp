@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "pliant/simulation/simulation.hpp"
 

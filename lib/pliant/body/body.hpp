@@ -80,6 +80,9 @@ class Body {
 
   bool recovers() const { return settings_.release == Release::Recover; }
 
+  /// Whether a frame solves the body only where forces select.
+  bool waits_for_forces() const { return !recovers() && settings_.region == SolvedRegion::Forces; }
+
   Field rest_;
   BodySettings settings_;
   BodyState state_;

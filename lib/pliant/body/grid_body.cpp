@@ -128,7 +128,7 @@ void GridBody::find_lost(const BodyInputs& inputs, BodyWorkspace& work) const {
 }
 
 Result<void> GridBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && !recovers() && settings_.region == SolvedRegion::Forces) {
+  if (inputs.forces.empty() && waits_for_forces()) {
     work_.plan = {};
     return {};
   }

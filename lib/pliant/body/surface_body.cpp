@@ -152,7 +152,7 @@ Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& sele
 }
 
 Result<void> SurfaceBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && !recovers() && settings_.region == SolvedRegion::Forces) {
+  if (inputs.forces.empty() && waits_for_forces()) {
     plan_ = {};
     return {};
   }

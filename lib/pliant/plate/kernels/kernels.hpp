@@ -129,6 +129,9 @@ struct Supernode {
   long entries_at = 0;  ///< in `SupernodesView::entries`
 };
 
+/// Numbers of a row that is solved: three right-hand sides, and one that pads them.
+constexpr int row_numbers = 4;
+
 /// A factor L D L^T in supernodes. The entries of each are the strict lower triangle of its own
 /// rows, column by column, then the rows below, row by row.
 struct SupernodesView {
@@ -180,8 +183,8 @@ struct PlateKernels {
   int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
                      double* inverse, double* panels);
 
-  /// Solves with a factor for three right-hand sides. `x`: #rows x 4, the right-hand sides and
-  /// zeros, then the solutions.
+  /// Solves with a factor for three right-hand sides. `x`: #rows x `row_numbers`, the
+  /// right-hand sides and zeros, then the solutions.
   void (*solve_supernodes)(const SupernodesView& factor, double* x);
 };
 

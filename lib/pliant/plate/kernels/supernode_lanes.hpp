@@ -4,9 +4,7 @@
 namespace pliant {
 namespace {
 
-// The three numbers of a row, and a fourth that pads them, in one or more vectors: one operation
-// for each number, whatever the width.
-constexpr int row_numbers = 4;
+// The numbers of a row, in one or more vectors: one operation for each number, whatever the width.
 constexpr int row_lanes = lanes < row_numbers ? lanes : row_numbers;
 constexpr int row_parts = row_numbers / row_lanes;
 using RowLanes __attribute__((vector_size(8 * row_lanes))) = double;

@@ -5,8 +5,6 @@
 namespace pliant {
 namespace {
 
-constexpr int row_numbers = 4;  // of a row in the kernel: three, and a fourth that pads them
-
 constexpr long triangle(long columns) { return columns * (columns - 1) / 2; }
 
 // Whether the rows below a column are the next column's own row and the rows below that.
