@@ -6,7 +6,7 @@ install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.xml")
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj" PATTERN "*.[ch]pp" PATTERN "CMakeLists.txt")
+        FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj" PATTERN "*.pc2" PATTERN "*.png" PATTERN "*.[ch]pp" PATTERN "CMakeLists.txt")
 
 # The licence of the binary: its terms depend on the libraries that it is linked with.
 set(pliant_licence_of_binary "License: Apache-2.0")
@@ -68,7 +68,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 # For pictures and movies of `pliant view` and completion in Bash; then the build dependencies of
 # programs that link the library. Suggested only, because the command needs none of them.
 set(suggested chromium ffmpeg bash-completion
-    cmake g++ libeigen3-dev libexpected-dev libfmt-dev libsleef-dev libtinyxml2-dev libxxhash-dev)
+    cmake g++ libeigen3-dev libexpected-dev libfmt-dev libpng-dev libsleef-dev libtinyxml2-dev
+    libxxhash-dev)
 if(PLIANT_WITH_CHOLMOD)
   list(APPEND suggested libsuitesparse-dev)
 endif()

@@ -17,6 +17,24 @@ TEST_CASE("a file is read byte for byte", "[core][read_file]") {
   CHECK(read_file(folder.write("empty", "")).value().empty());
 }
 
+TEST_CASE("a file is passed on in pieces, as many as are wanted", "[core][read_file]") {
+  const ScratchFolder folder;
+  const std::string bytes = std::string(5u << 20, 'x') + "end";
+  const auto file = folder.write("f", bytes);
+  std::string all;
+  CHECK(read_pieces(file, [&](std::string_view piece) {
+    all += piece;
+    return true;
+  }));
+  CHECK(all == bytes);
+  int pieces = 0;
+  CHECK(read_pieces(file, [&](std::string_view) { return ++pieces < 2; }));
+  CHECK(pieces == 2);
+  const auto missing = read_pieces(folder.file("missing"), [](std::string_view) { return true; });
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().message == "cannot read the file: No such file or directory");
+}
+
 TEST_CASE("a file that cannot be read says which and why", "[core][read_file]") {
   const ScratchFolder folder;
   const auto missing = read_file(folder.file("missing.xml"));

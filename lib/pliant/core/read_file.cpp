@@ -24,24 +24,33 @@ Result<void> check_readable(const std::filesystem::path& file) {
   return {};
 }
 
-Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
-  const auto unreadable = [&](const std::string& reason) { return cannot_read(file, reason); };
-  if (auto readable = check_readable(file); !readable) return fail(readable.error());
+Result<void> read_pieces(const std::filesystem::path& file,
+                         const std::function<bool(std::string_view)>& take) {
+  if (auto readable = check_readable(file); !readable) return readable;
 
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
                                                                &std::fclose);
-  if (!stream) return unreadable(std::strerror(errno));
+  if (!stream) return cannot_read(file, std::strerror(errno));
   // Reads to the end instead of querying the size first: pipes have no size.
-  std::string bytes;
   std::string chunk(std::size_t{1} << 20, '\0');
   while (const std::size_t count = std::fread(chunk.data(), 1, chunk.size(), stream.get())) {
-    bytes.append(chunk, 0, count);
-    if (bytes.size() > max_bytes) {
-      return unreadable("it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
-    }
+    if (!take(std::string_view(chunk).substr(0, count))) return {};
   }
-  if (std::ferror(stream.get())) return unreadable(std::strerror(errno));
+  if (std::ferror(stream.get())) return cannot_read(file, std::strerror(errno));
+  return {};
+}
+
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes) {
+  std::string bytes;
+  const auto read = read_pieces(file, [&](std::string_view piece) {
+    bytes += piece;
+    return bytes.size() <= max_bytes;
+  });
+  if (!read) return fail(read.error());
+  if (bytes.size() > max_bytes) {
+    return cannot_read(file, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
+  }
   return bytes;
 }
 

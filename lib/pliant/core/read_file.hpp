@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "pliant/core/result.hpp"
 
@@ -11,6 +14,11 @@ namespace pliant {
 /// folder, may not be read, or is larger than `max_bytes`.
 Result<std::string> read_file(const std::filesystem::path& file,
                               std::size_t max_bytes = std::size_t{4} << 30);
+
+/// Passes the bytes of a file to `take`, in pieces, until it returns false. Errors: as `read_file`,
+/// for a file of any size.
+Result<void> read_pieces(const std::filesystem::path& file,
+                         const std::function<bool(std::string_view)>& take);
 
 /// Whether a file exists, is not a folder and may be read; does not open it. Errors: as
 /// `read_file`.

@@ -15,14 +15,6 @@ constexpr std::size_t most_listed = 10;
 // How much the last row of a transform may differ from 0 0 0 1: exporters work in float.
 constexpr double affine_tolerance = 1e-5;
 
-std::string listed(std::span<const std::string> names) {
-  std::string list;
-  for (const std::string& name : names.first(std::min(names.size(), most_listed)))
-    list += (list.empty() ? "" : ", ") + in_quotes(name);
-  if (names.size() > most_listed) list += fmt::format(", … ({} in all)", names.size());
-  return list;
-}
-
 }  // namespace
 
 std::string in_quotes(std::string_view text) {
@@ -33,18 +25,26 @@ std::string in_quotes(std::string_view text) {
   return fmt::format("\"{}{}\"", quoted, text.size() > longest ? "…" : "");
 }
 
+std::string listed_names(std::span<const std::string> names) {
+  std::string list;
+  for (const std::string& name : names.first(std::min(names.size(), most_listed)))
+    list += (list.empty() ? "" : ", ") + in_quotes(name);
+  if (names.size() > most_listed) list += fmt::format(", … ({} in all)", names.size());
+  return list;
+}
+
 Result<std::size_t> choose_object(std::span<const std::string> names, const std::string& object) {
   PLIANT_EXPECTS(!names.empty());
   if (object.empty()) {
     if (names.size() == 1) return 0;
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the file has {} objects; choose one with the attribute object: {}",
-                            names.size(), listed(names)));
+                            names.size(), listed_names(names)));
   }
   const auto found = std::find(names.begin(), names.end(), object);
   if (found == names.end()) {
     return fail(ErrorCode::InvalidInput, fmt::format("the file has no object {}; it has: {}",
-                                                     in_quotes(object), listed(names)));
+                                                     in_quotes(object), listed_names(names)));
   }
   if (const auto count = std::count(found, names.end(), object); count > 1) {
     return fail(ErrorCode::InvalidInput,

@@ -15,6 +15,9 @@ namespace pliant {
 /// Text from a file for a message: in quotes, and shortened.
 std::string in_quotes(std::string_view text);
 
+/// The first of some names, each in quotes.
+std::string listed_names(std::span<const std::string> names);
+
 /// The index of the object with the given name; if `object` is empty, of the only one. Errors,
 /// listing the first names: no object of that name, several of it, or no name given and several
 /// objects. Requires: names is not empty.

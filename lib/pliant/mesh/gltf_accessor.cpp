@@ -103,6 +103,16 @@ Result<std::vector<double>> AccessorReader::vectors(std::size_t accessor, int wi
   return this->read(read);
 }
 
+Result<std::vector<double>> AccessorReader::scalars(std::size_t accessor) {
+  const Read read{accessor, document_.accessors[accessor], 1};
+  if (read.accessor.type != "SCALAR")
+    return read.broken(fmt::format("is of type {}, not SCALAR", in_quotes(read.accessor.type)));
+  if (size_of(read.accessor.component_type) == 0)
+    return read.broken(fmt::format("has the componentType {}, which numbers must not have",
+                                   read.accessor.component_type));
+  return this->read(read);
+}
+
 Result<std::vector<std::uint32_t>> AccessorReader::indices(std::size_t accessor) {
   const Read read{accessor, document_.accessors[accessor], 1};
   if (read.accessor.type != "SCALAR")

@@ -26,6 +26,9 @@ class AccessorReader {
   /// keep their value; integers become numbers, or fractions of their largest value if normalized.
   Result<std::vector<double>> vectors(std::size_t accessor, int width);
 
+  /// SCALAR, any numbers: one per element, as `vectors`.
+  Result<std::vector<double>> scalars(std::size_t accessor);
+
   /// SCALAR, unsigned integers.
   Result<std::vector<std::uint32_t>> indices(std::size_t accessor);
 

@@ -316,6 +316,12 @@ class DocumentReader {
       const std::string key = fmt::format("TEXCOORD_{}", set);
       primitive.uvs[set] = index(*attributes, key.c_str(), "accessors");
     }
+    // One that is out of range only matters to who asks for it: then it is missing.
+    for (const auto& [name, value] : attributes->items()) {
+      const auto number = to_whole(value);
+      if (name.starts_with('_') && number && *number < list_size("accessors"))
+        primitive.customs.emplace_back(name, static_cast<std::size_t>(*number));
+    }
     return primitive;
   }
 

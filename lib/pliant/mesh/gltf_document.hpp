@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,6 +57,8 @@ struct Primitive {
   std::optional<std::size_t> positions = {};
   std::optional<std::size_t> normals = {};
   std::array<std::optional<std::size_t>, max_uv_sets> uvs = {};
+  /// Those of the author's own, such as `_SOFT`: name and accessor.
+  std::vector<std::pair<std::string, std::size_t>> customs = {};
   std::optional<std::size_t> indices = {};
   std::optional<std::size_t> material = {};
 };

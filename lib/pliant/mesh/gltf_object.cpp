@@ -52,8 +52,11 @@ struct Place {
 
 class Merger {
  public:
-  Merger(const Document& document, const Object& object, AccessorReader& accessors, int uv_set)
-      : document_(document), object_(object), accessors_(accessors), uv_set_(uv_set) {}
+  Merger(const Document& document, const Object& object, AccessorReader& accessors, int uv_set,
+         std::span<const std::string> attributes)
+      : document_(document), object_(object), accessors_(accessors), uv_set_(uv_set) {
+    for (const std::string& name : attributes) mesh_.attributes.push_back({name, {}});
+  }
 
   Result<Mesh> merge() {
     for (const std::size_t k : object_.primitives)
@@ -99,7 +102,9 @@ class Merger {
   Result<Place> place_of(std::size_t k) {
     const Primitive& from = primitive(k);
     const auto uvs = from.uvs[static_cast<std::size_t>(uv_set_)];
-    const std::tuple key(*from.positions, from.normals, uvs);
+    const auto customs = customs_of(k);
+    if (!customs) return fail(customs.error());
+    const std::tuple key(*from.positions, from.normals, uvs, *customs);
     if (const auto known = places_.find(key); known != places_.end()) return known->second;
     const auto positions = accessors_.vectors(*from.positions, 3);
     if (!positions) return fail(positions.error());
@@ -112,6 +117,10 @@ class Merger {
     }
     if (from.normals) {
       if (auto added = add_normals(k, *from.normals, place); !added) return fail(added.error());
+    }
+    for (std::size_t n = 0; n < customs->size(); ++n) {
+      if (auto added = add_attribute(k, (*customs)[n], place, mesh_.attributes[n]); !added)
+        return fail(added.error());
     }
     places_.emplace(key, place);
     return place;
@@ -126,6 +135,38 @@ class Merger {
     if (count == place.count) return numbers;
     return invalid(
         fmt::format("{} has {} vertices, but {} {}", name_of(k), place.count, count, thing));
+  }
+
+  // The accessors of the attributes that are asked for.
+  Result<std::vector<std::size_t>> customs_of(std::size_t k) const {
+    std::vector<std::size_t> accessors;
+    for (const VertexAttribute& attribute : mesh_.attributes) {
+      const auto& customs = primitive(k).customs;
+      const auto found = std::find_if(customs.begin(), customs.end(), [&](const auto& custom) {
+        return custom.first == attribute.name;
+      });
+      if (found == customs.end()) {
+        std::vector<std::string> names;
+        for (const auto& custom : customs) names.push_back(custom.first);
+        return invalid(fmt::format("{} has no attribute {}{}", name_of(k),
+                                   in_quotes(attribute.name),
+                                   names.empty() ? "" : "; it has " + listed_names(names)));
+      }
+      accessors.push_back(found->second);
+    }
+    return accessors;
+  }
+
+  Result<void> add_attribute(std::size_t k, std::size_t accessor, const Place& place,
+                             VertexAttribute& attribute) {
+    const auto numbers = accessors_.scalars(accessor);
+    if (!numbers) return fail(numbers.error());
+    if (numbers->size() != place.count) {
+      return invalid(fmt::format("{} has {} vertices, but {} numbers {}", name_of(k), place.count,
+                                 numbers->size(), in_quotes(attribute.name)));
+    }
+    attribute.values.insert(attribute.values.end(), numbers->begin(), numbers->end());
+    return {};
   }
 
   Result<void> add_uvs(std::size_t k, std::size_t accessor, Place& place) {
@@ -218,15 +259,16 @@ class Merger {
   std::vector<double> coordinates_;  // x y z of each vertex
   Shading shading_;
   using Index = std::optional<std::size_t>;
-  std::map<std::tuple<std::size_t, Index, Index>, Place> places_;  // by accessors
-  std::map<std::string, int> materials_;                           // by name
+  std::map<std::tuple<std::size_t, Index, Index, std::vector<std::size_t>>, Place>
+      places_;                            // by accessors
+  std::map<std::string, int> materials_;  // by name
 };
 
 }  // namespace
 
 Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
-                     int uv_set) {
-  auto mesh = Merger(document, object, accessors, uv_set).merge();
+                     int uv_set, std::span<const std::string> attributes) {
+  auto mesh = Merger(document, object, accessors, uv_set, attributes).merge();
   if (!mesh) return mesh;
   if (auto applied = to_file_space(object.to_file, mesh->positions); !applied)
     return fail(applied.error());

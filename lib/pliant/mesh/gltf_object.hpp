@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "pliant/core/result.hpp"
 #include "pliant/mesh/gltf_accessor.hpp"
 #include "pliant/mesh/gltf_document.hpp"
@@ -11,6 +14,6 @@ namespace pliant::gltf {
 /// The mesh of an object, its primitives combined, transformed to the place of its node in the
 /// file. Errors: as `parse_gltf`, without the file.
 Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
-                     int uv_set);
+                     int uv_set, std::span<const std::string> attributes = {});
 
 }  // namespace pliant::gltf

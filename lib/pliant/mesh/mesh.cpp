@@ -49,6 +49,24 @@ Result<void> check_normals(const Mesh& mesh) {
   return {};
 }
 
+Result<void> check_attributes(const Mesh& mesh) {
+  for (const VertexAttribute& attribute : mesh.attributes) {
+    if (attribute.values.size() != static_cast<std::size_t>(mesh.vertex_count())) {
+      return invalid(fmt::format("the attribute {} has {} values, but the mesh has {} vertices",
+                                 printable(attribute.name), attribute.values.size(),
+                                 mesh.vertex_count()));
+    }
+    for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+      const double value = attribute.values[static_cast<std::size_t>(vertex)];
+      if (!std::isfinite(value)) {
+        return invalid(fmt::format("vertex {}: the attribute {} is {}, which is not finite",
+                                   mesh.number_of(vertex), printable(attribute.name), value));
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> check_mesh(const Mesh& mesh) {
@@ -100,6 +118,7 @@ Result<void> check_mesh(const Mesh& mesh) {
     }
   }
   if (auto checked = check_normals(mesh); !checked) return checked;
+  if (auto checked = check_attributes(mesh); !checked) return checked;
   if (auto checked = check_names(mesh.materials, mesh, "material"); !checked) return checked;
   return check_names(mesh.groups, mesh, "group");
 }

@@ -18,6 +18,14 @@ struct FaceNames {
   friend bool operator==(const FaceNames&, const FaceNames&) = default;
 };
 
+/// A number at each vertex of a mesh.
+struct VertexAttribute {
+  std::string name;
+  std::vector<double> values;  ///< #vertices, finite
+
+  friend bool operator==(const VertexAttribute&, const VertexAttribute&) = default;
+};
+
 /// A polygon mesh with (u,v) at the corners of its faces, in the order of its author.
 struct Mesh {
   Field positions;                         ///< #vertices x 3, object space [length]
@@ -33,6 +41,9 @@ struct Mesh {
   FaceNames materials = {};
   FaceNames groups = {};
   std::string object = {};  ///< its name in the file
+
+  /// Numbers at the vertices, for maps of the material. Of a file: those asked for.
+  std::vector<VertexAttribute> attributes = {};
 
   int first_index = 0;  ///< first vertex number of its file, used in messages: 1 for OBJ
 
@@ -50,8 +61,9 @@ struct Mesh {
 
 /// Whether a mesh made by a program fulfils the comments on its members. Errors, naming the face,
 /// corner or vertex, counted from `first_index`: index arrays of different lengths, faces with
-/// fewer than three corners, indices out of range, coordinates that are not finite, no faces;
-/// numbers of normals with a gap; numbers of vertices for only a part of them.
+/// fewer than three corners, indices out of range, coordinates or attributes that are not finite,
+/// no faces; numbers of normals with a gap; numbers or attributes of vertices for only a part of
+/// them.
 Result<void> check_mesh(const Mesh& mesh);
 
 }  // namespace pliant

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using namespace gltf;
 
 Result<Mesh> parse(std::string_view bytes, const ReadReference& read_reference,
-                   const std::string& name, int uv_set) {
+                   const std::string& name, int uv_set, std::span<const std::string> attributes) {
   const auto container = open_container(bytes);
   if (!container) return fail(container.error());
   const auto document = read_document(container->json);
@@ -33,7 +33,7 @@ Result<Mesh> parse(std::string_view bytes, const ReadReference& read_reference,
   if (!object) return fail(object.error());
   Buffers buffers(*document, container->binary, bytes.size(), read_reference);
   AccessorReader accessors(*document, buffers);
-  return mesh_of(*document, *object, accessors, uv_set);
+  return mesh_of(*document, *object, accessors, uv_set, attributes);
 }
 
 std::vector<std::string> uris_in(std::string_view bytes) {
@@ -50,11 +50,11 @@ std::vector<std::string> uris_in(std::string_view bytes) {
 }  // namespace
 
 Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
-                        const ReadReference& read_reference, const std::string& object,
-                        int uv_set) {
+                        const ReadReference& read_reference, const std::string& object, int uv_set,
+                        std::span<const std::string> attributes) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
   try {
-    auto mesh = parse(bytes, read_reference, object, uv_set);
+    auto mesh = parse(bytes, read_reference, object, uv_set, attributes);
     if (!mesh) mesh.error().file = name;
     return mesh;
   } catch (const std::bad_alloc&) {
@@ -63,13 +63,13 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
 }
 
 Result<Mesh> read_gltf(const fs::path& file, const std::string& object, int uv_set,
-                       const fs::path& root) {
+                       const fs::path& root, std::span<const std::string> attributes) {
   const auto bytes = read_file(file);
   if (!bytes) return fail(bytes.error());
   const auto read = [&](const std::string& uri, std::size_t max_bytes) {
     return read_reference(uri, file, root, max_bytes);
   };
-  return parse_gltf(*bytes, file.string(), read, object, uv_set);
+  return parse_gltf(*bytes, file.string(), read, object, uv_set, attributes);
 }
 
 std::vector<fs::path> gltf_references(const fs::path& file, const fs::path& root) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,9 @@ using ReadReference =
 /// Materials keep their names; corners share a normal if the file's normals and the positions are
 /// equal. A primitive without normals is flat, as the format requires.
 ///
+/// `attributes` names attributes of the author's own, such as `_SOFT`, that the mesh keeps; every
+/// primitive must have them.
+///
 /// `object` is the name of the node or, if no node has it, of a mesh of the node. Empty: the only
 /// one.
 ///
@@ -39,17 +43,19 @@ using ReadReference =
 /// quoting the text, which may be of any file; a required extension that is not supported; an
 /// offset, count, stride or index out of range; a node that occurs twice in the scene; a reference
 /// that cannot be read; no faces; an object that does not exist, or no name given and several
-/// objects; a UV set that the object lacks; a transform that is not affine; more elements than the
-/// bytes allow; those of `check_mesh`; OutOfMemory. Requires: 0 <= uv_set < max_uv_sets.
+/// objects; a UV set or an attribute that the object lacks; a transform that is not affine; more
+/// elements than the bytes allow; those of `check_mesh`; OutOfMemory. Requires: 0 <= uv_set <
+/// max_uv_sets.
 Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
                         const ReadReference& read_reference = {}, const std::string& object = {},
-                        int uv_set = 0);
+                        int uv_set = 0, std::span<const std::string> attributes = {});
 
 /// Reads a file. Files that it refers to must be in the folder `root` or below (`find_reference`);
 /// empty: in its own folder. Errors: as `parse_gltf`; Unreadable: the file cannot be read, or is
 /// larger than 4 GiB with all that it refers to.
 Result<Mesh> read_gltf(const std::filesystem::path& file, const std::string& object = {},
-                       int uv_set = 0, const std::filesystem::path& root = {});
+                       int uv_set = 0, const std::filesystem::path& root = {},
+                       std::span<const std::string> attributes = {});
 
 /// The files with buffers of a glTF file, existing or not, each once; those that may not be read
 /// are omitted. Empty if the file is not glTF.

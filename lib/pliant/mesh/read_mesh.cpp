@@ -33,7 +33,8 @@ std::vector<std::string> mesh_endings() {
 }
 
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set,
-                       const std::filesystem::path& root, const RunContext& context) {
+                       const std::filesystem::path& root, const RunContext& context,
+                       std::span<const std::string> attributes) {
   const std::vector<std::string> endings = mesh_endings();
   const std::string ending = ending_of(file);
   if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
@@ -41,9 +42,17 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
                 fmt::format("no mesh format has the ending of {}; allowed: {}", file.string(),
                             fmt::join(endings, ", ")));
   }
+  if (!attributes.empty() && ending != ".ply" && !is_gltf(ending)) {
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("a mesh of the format {} has no attribute {}; only .ply, .gltf and .glb "
+                    "have numbers at vertices",
+                    ending, in_quotes(attributes.front())),
+        file.string());
+  }
   if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);
-  if (ending == ".ply") return with_only_set(read_ply(file, object), file, uv_set);
-  if (is_gltf(ending)) return read_gltf(file, object, uv_set, root);
+  if (ending == ".ply") return with_only_set(read_ply(file, object, attributes), file, uv_set);
+  if (is_gltf(ending)) return read_gltf(file, object, uv_set, root, attributes);
   return read_assimp(file, object, uv_set, context);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,13 @@ std::vector<std::string> mesh_endings();
 /// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses `context`.
 /// `object` names the object if the file has several; `uv_set`, counted from 0, is the set of
 /// (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root` or below;
-/// empty: in its own folder. Errors: InvalidInput for another ending; those of the readers.
-/// Requires: 0 <= uv_set < max_uv_sets.
+/// empty: in its own folder. `attributes` names numbers at the vertices that the mesh keeps, of PLY
+/// and glTF. Errors: InvalidInput for another ending, or for attributes of a format without; those
+/// of the readers. Requires: 0 <= uv_set < max_uv_sets.
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
-                       const RunContext& context = {});
+                       const RunContext& context = {},
+                       std::span<const std::string> attributes = {});
 
 /// The files that `read_mesh` may open besides this one, existing or not: buffers of a glTF. Empty
 /// for a file that cannot be read.

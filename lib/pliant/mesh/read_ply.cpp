@@ -254,8 +254,10 @@ class Numbers {
 
 class PlyReader {
  public:
-  PlyReader(const Header& header, std::string_view body)
-      : header_(header), numbers_(body, header.encoding, header.line_count + 1) {}
+  PlyReader(const Header& header, std::string_view body, std::span<const std::string> attributes)
+      : header_(header),
+        names_(attributes),
+        numbers_(body, header.encoding, header.line_count + 1) {}
 
   Result<Mesh> read() {
     for (const Element& element : header_.elements) {
@@ -318,9 +320,27 @@ class PlyReader {
     };
     for (const int property : {x_, y_, z_, u_, v_})
       if (is_list(property)) return invalid("a coordinate of the vertices is a list");
+    if (auto found = find_attributes(vertex); !found) return found;
     normal_ = {vertex.find({"nx"}), vertex.find({"ny"}), vertex.find({"nz"})};
     has_normals_ = std::all_of(normal_.begin(), normal_.end(),
                                [&](int property) { return property >= 0 && !is_list(property); });
+    return {};
+  }
+
+  Result<void> find_attributes(const Element& vertex) {
+    for (const std::string& name : names_) {
+      const int place = vertex.find({name});
+      std::vector<std::string> numbers;
+      for (const Property& property : vertex.properties) {
+        if (!property.count_type) numbers.push_back(property.name);
+      }
+      if (place < 0 || vertex.properties[static_cast<std::size_t>(place)].count_type) {
+        return invalid(fmt::format("the vertices have no number {}; they have {}", in_quotes(name),
+                                   listed_names(numbers)));
+      }
+      attributes_.push_back(place);
+      mesh_.attributes.push_back({name, {}});
+    }
     return {};
   }
 
@@ -370,6 +390,8 @@ class PlyReader {
     const auto number = [&](int property) { return values[static_cast<std::size_t>(property)][0]; };
     coordinates_.insert(coordinates_.end(), {number(x_), number(y_), number(z_)});
     if (u_ >= 0) mesh_.uvs.push_back({number(u_), number(v_)});
+    for (std::size_t k = 0; k < attributes_.size(); ++k)
+      mesh_.attributes[k].values.push_back(number(attributes_[k]));
     if (has_normals_)
       normals_.push_back({number(normal_[0]), number(normal_[1]), number(normal_[2])});
   }
@@ -432,6 +454,7 @@ class PlyReader {
   int line() const { return numbers_.line(); }
 
   const Header& header_;
+  std::span<const std::string> names_;  // of attributes
   Numbers numbers_;
   Mesh mesh_;
   std::vector<double> coordinates_;                  // x y z of each vertex
@@ -441,13 +464,15 @@ class PlyReader {
   int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;   // properties of a vertex
   std::array<int, 3> normal_ = {-1, -1, -1};         // likewise
   bool has_normals_ = false;
+  std::vector<int> attributes_;         // likewise, of each name
   int corners_ = -1, corner_uvs_ = -1;  // properties of a face
 };
 
-Result<Mesh> parse(std::string_view bytes, const std::string& object) {
+Result<Mesh> parse(std::string_view bytes, const std::string& object,
+                   std::span<const std::string> attributes) {
   const auto header = read_header(bytes);
   if (!header) return fail(header.error());
-  auto mesh = PlyReader(*header, bytes.substr(header->size)).read();
+  auto mesh = PlyReader(*header, bytes.substr(header->size), attributes).read();
   if (!mesh) return mesh;
   const std::vector<std::string> names = {""};
   if (const auto chosen = choose_object(names, object); !chosen) return fail(chosen.error());
@@ -456,9 +481,10 @@ Result<Mesh> parse(std::string_view bytes, const std::string& object) {
 
 }  // namespace
 
-Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const std::string& object) {
+Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const std::string& object,
+                       std::span<const std::string> attributes) {
   try {
-    auto mesh = parse(bytes, object);
+    auto mesh = parse(bytes, object, attributes);
     if (!mesh) mesh.error().file = name;
     return mesh;
   } catch (const std::bad_alloc&) {
@@ -466,10 +492,11 @@ Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const st
   }
 }
 
-Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object) {
+Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object,
+                      std::span<const std::string> attributes) {
   const auto bytes = read_file(file);
   if (!bytes) return fail(bytes.error());
-  return parse_ply(*bytes, file.string(), object);
+  return parse_ply(*bytes, file.string(), object, attributes);
 }
 
 }  // namespace pliant

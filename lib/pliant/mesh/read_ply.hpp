@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,15 +24,20 @@ namespace pliant {
 /// is skipped, also points without faces and faces of fewer than three corners, which are points
 /// and lines.
 ///
+/// `attributes` names properties of the element `vertex`, numbers, that the mesh keeps as its
+/// attributes.
+///
 /// The file's one object has no name; an `object` that is not empty is an error.
 ///
 /// Errors, with the line if the file has lines: no header, or one that does not end; an element or
-/// number that is missing or not finite; data after the last element; an index out of range; no
-/// faces. Unreadable: the file cannot be read. OutOfMemory.
-Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object = {});
+/// number that is missing or not finite; an attribute that is no property; data after the last
+/// element; an index out of range; no faces. Unreadable: the file cannot be read. OutOfMemory.
+Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object = {},
+                      std::span<const std::string> attributes = {});
 
 /// The same from bytes; `name` is the file's name in messages.
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name,
-                       const std::string& object = {});
+                       const std::string& object = {},
+                       std::span<const std::string> attributes = {});
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/mesh/triangle_frame.hpp"
 #include "pliant/mesh/weld.hpp"
 
@@ -297,6 +298,22 @@ Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& readin
 Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
                                          Field rest) {
   return SurfaceMaker(mesh, {}).make(std::move(vertex_nodes), std::move(rest));
+}
+
+TriangleSurface posed(TriangleSurface surface, const Field& nodes) {
+  PLIANT_EXPECTS(nodes.rows() == surface.rest.rows());
+  surface.rest = nodes;
+  surface.widest_face = 0;
+  for (int face = 0; face < surface.face_count(); ++face) {
+    Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+    for (const int node : surface.nodes_of(face)) centre += nodes.row(node);
+    centre /= surface.size_of(face);
+    for (const int node : surface.nodes_of(face)) {
+      const double way = 2 * (nodes.row(node) - centre).norm();
+      surface.widest_face = std::max(surface.widest_face, way);
+    }
+  }
+  return surface;
 }
 
 }  // namespace pliant

@@ -68,4 +68,7 @@ Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& readin
 Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
                                          Field rest);
 
+/// The same surface with its nodes in other places (#nodes x 3). Its triangles keep their shapes.
+TriangleSurface posed(TriangleSurface surface, const Field& nodes);
+
 }  // namespace pliant
