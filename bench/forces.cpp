@@ -92,7 +92,7 @@ void measure(Row& row, const std::vector<Batch>& batches) {
       nanoseconds(batches, [&](const Batch& batch) { sum += distances(force.kind, batch).of[0]; }));
   Batch sums = {};
   row.forces.push_back(
-      nanoseconds(batches, [&](const Batch& batch) { add_forces(force, batch, 0, sums); }));
+      nanoseconds(batches, [&](const Batch& batch) { add_forces(force, batch, 0, 0, sums); }));
   sum += sums.x[0];
   row.one_by_one.push_back(nanoseconds(batches, [&](const Batch& batch) {
     for (int k = 0; k < batch.count; ++k) sum += force_at(force, batch.at(k)).x();

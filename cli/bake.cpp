@@ -325,6 +325,7 @@ int run_bake(const BakeOptions& options) {
   run.solver = *solver;
   run.profile = options.is_profiled;
   run.store = store->get();
+  run.round_done = round_line(options.is_quiet);
   if (options.checks_dt) run.max_memory /= 2;  // for each of the two runs
   const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);

@@ -26,7 +26,8 @@ Channel<1> half_steps(const Scene& scene, const Surface& surface) {
   if (!solver.dt.is_animated() && !solver.time_scale.is_animated())
     return half_step(scene, surface, scene.start);
   CurveKeys<1> curve;
-  for (int frame = scene.start; frame <= scene.end; ++frame) {
+  const FrameSpan frames = sampled_frames(scene, surface);
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
     Key<1> key{.frame = double(frame), .value = {half_step(scene, surface, frame)}};
     key.next.kind = Interpolation::Kind::Step;
     curve.keys.push_back(key);
@@ -40,6 +41,7 @@ Result<DtCheck> DtCheck::make(const Scene& scene, SimulationOptions options) {
   Scene half = scene;
   for (Surface& surface : half.surfaces) surface.solver.dt = half_steps(scene, surface);
   options.profile = false;
+  options.exact_parts = 2;
   auto simulation = Simulation::make(std::move(half), options);
   if (!simulation) return fail(of_second_run(simulation.error()));
   return DtCheck(*std::move(simulation));

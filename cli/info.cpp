@@ -30,7 +30,8 @@ Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
     const RestShape& shape = simulation.rest_shapes()[k];
     facts.surfaces.push_back(
         {shape.grid, summary_of(shape), static_cast<std::size_t>(shape.mesh.vertex_count()),
-         bounding_box(rest->surfaces()[k].positions()), bounding_box(shape.mesh.positions)});
+         bounding_box(rest->surfaces()[k].positions()), bounding_box(shape.mesh.positions),
+         cache_summary_of(shape), map_summaries_of(shape)});
   }
   facts.surface_memory = simulation.surface_memory();
   for (const Preview& preview : facts.previews) {

@@ -4,6 +4,7 @@
 
 #include "info_formats.hpp"
 #include "json.hpp"
+#include "pliant/scene/description.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -32,6 +33,21 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
     json["borderEdges"] = border_edges;
     json["unit"] = unit;
   }
+  if (facts.cache) {
+    json["cache"] = {{"file", surface.cache.path},
+                     {"samples", facts.cache->samples},
+                     {"first", facts.cache->first},
+                     {"last", facts.cache->last}};
+  }
+  for (const MapSummary& map : facts.maps) {
+    const auto& own = *std::ranges::find(surface.maps, map.channel, &MaterialMap::channel);
+    Json told = {{"channel", map_channel_words[static_cast<std::size_t>(map.channel)]},
+                 {"file", own.file.empty() ? Json() : Json(own.file)},
+                 {"attribute", own.attribute.empty() ? Json() : Json(own.attribute)},
+                 {"least", map.least},
+                 {"most", map.most}};
+    json["maps"].push_back(std::move(told));
+  }
   json["vertices"] = facts.vertex_count;
   json["boundingBox"] = bounds_json(facts.placed);
   json["ownBoundingBox"] = bounds_json(facts.own);
@@ -49,6 +65,11 @@ Json region_json(const RegionPreview& region) {
   }
   json["solvable"] = region.is_solvable;
   json["staticPeak"] = region.static_peak;
+  if (!region.is_held) {
+    json["vibration"] = {{"naturalFrequency", region.first_frequency},
+                         {"naturalDampingRatio", region.damping_ratio}};
+    return json;
+  }
   if (!region.has_vibration) {
     json["vibration"] = nullptr;
     return json;

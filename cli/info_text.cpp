@@ -7,6 +7,7 @@
 
 #include "counted.hpp"
 #include "info_formats.hpp"
+#include "pliant/scene/description.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -62,7 +63,19 @@ std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts&
                   counted(facts.vertex_count, "vertex", "vertices"),
                   surface.enabled ? "" : "; disabled: written at rest", box_text(facts.placed));
   if (facts.own.low != facts.placed.low || facts.own.high != facts.placed.high) {
-    text += fmt::format("    {} before its transform\n", box_text(facts.own));
+    text += fmt::format("    {} before its transform{}\n", box_text(facts.own),
+                        facts.cache ? " and cache" : "");
+  }
+  if (facts.cache) {
+    text +=
+        fmt::format("    cache {}: {}, frames {} to {}\n", printable(surface.cache.path),
+                    counted(facts.cache->samples, "sample"), facts.cache->first, facts.cache->last);
+  }
+  for (const MapSummary& map : facts.maps) {
+    const auto& own = *std::ranges::find(surface.maps, map.channel, &MaterialMap::channel);
+    text += fmt::format("    {} times {:.4g} to {:.4g} by {}\n",
+                        map_channel_words[static_cast<std::size_t>(map.channel)], map.least,
+                        map.most, printable(own.file.empty() ? own.attribute : own.file));
   }
   return text;
 }
@@ -199,7 +212,12 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
   if (!preview.is_solvable) {
     text += grid ? "    fewer than 3 x 3 nodes: too few to solve\n" : "    none of them can move\n";
   } else if (!preview.is_held) {
-    text += "    nothing holds the surface: it has no static peak and no natural frequency\n";
+    text += "    nothing holds the surface: it has no static peak\n";
+    for (const RegionPreview& region : preview.regions) {
+      if (region.is_held || region.first_frequency == 0) continue;
+      text += fmt::format("    first natural frequency of its bending {}, damping ratio {:.3g}\n",
+                          frequency_text(region.first_frequency), region.damping_ratio);
+    }
   } else if (!preview.is_solved) {
     text += "    too many nodes to preview the static peak and the natural frequency\n";
   } else {
@@ -210,7 +228,9 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
                         preview.is_solved ? "; " : "    peak displacement ", preview.played->peak,
                         preview.played->frame);
   } else if (preview.is_solved) {
-    text += "; too many frames and nodes to play the animation\n";
+    const bool is_loop = scene.surfaces[preview.surface].solver.loop.has_value();
+    text += is_loop ? "; its loop is not played here\n"
+                    : "; too many frames and nodes to play the animation\n";
   }
   if (!preview.is_solved) return text;
   return text + shares_text(preview, scene) + regions_text(preview, grid, scene.fps);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include <fmt/format.h>
@@ -18,10 +20,12 @@ void draw(const std::string& line) {
   std::fflush(stderr);
 }
 
+bool is_visible(bool is_quiet) { return !is_quiet && isatty(STDERR_FILENO) != 0; }
+
 }  // namespace
 
 Progress::Progress(int frame_count, bool is_quiet)
-    : frame_count_(frame_count), is_shown_(!is_quiet && isatty(STDERR_FILENO) != 0) {}
+    : frame_count_(frame_count), is_shown_(is_visible(is_quiet)) {}
 
 Progress::~Progress() {
   if (is_shown_) draw("");
@@ -45,6 +49,21 @@ void Progress::draw_bar(Clock::time_point now) const {
   draw(fmt::format("[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left", std::string(filled, '#'),
                    std::string(width - filled, '.'), done_, frame_count_, rate, left / 60,
                    left % 60));
+}
+
+std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {
+  if (!is_visible(is_quiet)) return {};
+  struct Line {
+    std::mutex mutex;  // several surfaces are solved in parallel
+    std::chrono::steady_clock::time_point drawn = {};
+  };
+  return [line = std::make_shared<Line>()](std::string_view surface, int round, double gap) {
+    const std::lock_guard lock(line->mutex);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - line->drawn < std::chrono::milliseconds(100)) return;
+    line->drawn = now;
+    draw(fmt::format("looking for the cycle of \"{}\": round {}, gap {:.1e}", surface, round, gap));
+  };
 }
 
 }  // namespace pliant::cli

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <string_view>
 
 namespace pliant::cli {
 
@@ -27,5 +29,9 @@ class Progress {
   Clock::time_point begin_ = Clock::now();
   Clock::time_point drawn_ = {};
 };
+
+/// For `SimulationOptions::round_done`: a line on stderr that the bar replaces, drawn at most ten
+/// times a second. Empty if it would not be shown.
+std::function<void(std::string_view surface, int round, double gap)> round_line(bool is_quiet);
 
 }  // namespace pliant::cli

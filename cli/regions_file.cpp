@@ -41,7 +41,7 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
   return json;
 }
 
-Json surface_json(const Scene& scene, int frame, std::size_t surface, const SurfaceReport& report) {
+Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& report) {
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     const Region& region = report.regions[k];
@@ -54,12 +54,12 @@ Json surface_json(const Scene& scene, int frame, std::size_t surface, const Surf
   auto next = scene.forces.begin();  // reports are in the order of the scene
   for (const ForceReport& force : report.forces) {
     if (force.kind == "group") {
-      forces.push_back(force_json(force, report.is_surface, nullptr, frame));
+      forces.push_back(force_json(force, report.is_surface, nullptr, report.frame));
       continue;
     }
     next = std::find_if(next, scene.forces.end(),
                         [&](const Force& each) { return each.name == force.name; });
-    forces.push_back(force_json(force, report.is_surface, &*next, frame));
+    forces.push_back(force_json(force, report.is_surface, &*next, report.frame));
   }
   Json json = {{"name", scene.surfaces[surface].name},
                {"solved", report.is_solved},
@@ -95,7 +95,7 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
 Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
-    surfaces.push_back(surface_json(scene, report.frame, k, report.surfaces[k]));
+    surfaces.push_back(surface_json(scene, k, report.surfaces[k]));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

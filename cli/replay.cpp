@@ -38,6 +38,7 @@ auto with_progress(const ReplayCommandOptions& options, const Work& work) {
   ReplayOptions replay;
   replay.root = options.root.value_or("");
   replay.simulation = simulation_options(options.resources);
+  replay.simulation.round_done = round_line(options.is_quiet);
   replay.last_frame = options.last_frame;
   replay.states_every = options.states_every;
   replay.keeps_going = options.keeps_going;

@@ -25,7 +25,9 @@ struct SceneFacts {
     std::optional<SurfaceSummary> triangles;
     std::size_t vertex_count = 0;
     BoundingBox placed;  ///< in the world, at the first frame
-    BoundingBox own;     ///< before its transform
+    BoundingBox own;     ///< before its transform and its cache
+    std::optional<CacheSummary> cache = {};
+    std::vector<MapSummary> maps = {};
   };
   std::vector<SurfaceFacts> surfaces = {};
   std::vector<Preview> previews = {};

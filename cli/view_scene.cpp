@@ -33,6 +33,7 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   SimulationOptions run = simulation_options(options.resources);
   run.should_stop = should_stop;
   run.store = store;
+  run.round_done = round_line(options.is_quiet);
   if (store != nullptr) run.max_memory -= std::min(run.max_memory, store->byte_budget());
   const std::size_t note_count = scene.notes.size();
   auto simulation = Simulation::make(std::move(scene), run);

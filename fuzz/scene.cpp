@@ -1,5 +1,5 @@
 // Arbitrary text as a scene, checked as by `pliant validate`; a tiny one is played for some frames.
-// Its meshes are those of the folder meshes/.
+// Its meshes and caches are those of the folder meshes/.
 
 #include <limits>
 #include <utility>
@@ -74,7 +74,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   }
   for (const SceneNote& note : scene->notes) require(!note.message.empty());
   check_written(*scene);
-  if (scene->end - std::int64_t{scene->start} >= most_frames) return 0;
+  const FrameSpan frames = sampled_frames(*scene);
+  if (frames.last - std::int64_t{frames.first} >= most_frames) return 0;
   // A frame may have 10^5 steps.
   int steps = 0;
   SimulationOptions options;

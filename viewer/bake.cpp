@@ -92,6 +92,7 @@ class SurfaceView {
         surface_(surface),
         fps_(fps),
         motion_(shape.mesh.positions, node_order(shape.vertex_nodes)),
+        rest_motion_(shape.animation ? std::optional(motion_) : std::nullopt),
         marks_(shape) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
@@ -105,6 +106,9 @@ class SurfaceView {
       peak_speed_ = std::max(peak_speed_, moved * fps_);
     }
     before_ = std::move(positions);
+    if (rest_motion_) {
+      if (auto added = rest_motion_->add(frame.object_rest(), number); !added) return added;
+    }
     return motion_.add(frame.object_positions(), number);
   }
 
@@ -143,6 +147,13 @@ class SurfaceView {
         {"highBytes", arrays.add(motion.high)},
         {"marks", marks_.changes()}};
     if (shape_.grid && !shape_.grid->is_open()) json["wrap"] = wrap_word(*shape_.grid);
+    if (rest_motion_) {
+      const PackedMotion rest = rest_motion_->pack();
+      json["restMotion"] = {{"step", rest.step},
+                            {"predictors", arrays.add(rest.predictors)},
+                            {"lowBytes", arrays.add(rest.low)},
+                            {"highBytes", arrays.add(rest.high)}};
+    }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     return json;
   }
@@ -169,6 +180,7 @@ class SurfaceView {
   const Surface& surface_;
   double fps_;
   MotionPacker motion_;
+  std::optional<MotionPacker> rest_motion_;  // of a shape that is animated
   std::vector<Json> transforms_;
   SurfaceMarks marks_;
   double peak_displacement_ = 0;
@@ -206,7 +218,10 @@ std::string joined(const Json& head, const std::string& arrays) {
 Result<void> check_memory(const Simulation& simulation, const FrameRange& frames,
                           std::size_t max_memory) {
   std::size_t vertex_count = 0;
-  for (const RestShape& shape : simulation.rest_shapes()) vertex_count += shape.mesh.vertex_count();
+  for (const RestShape& shape : simulation.rest_shapes()) {
+    const int motions = shape.animation ? 2 : 1;
+    vertex_count += static_cast<std::size_t>(motions) * shape.mesh.vertex_count();
+  }
   // In addition to the packer's memory: the packed stream and its text in the page.
   const double bytes = static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
                        static_cast<double>(MotionPacker::bytes_a_vertex + 14);

@@ -33,6 +33,23 @@ BAD_SCENES = {
     "c too small at a frame in the middle": (
         GRID, GRID + "<material>" + animated("c", (1, 0), (5, -3), (9, 0)) + "</material>", 3,
         "sheet.c at frame 4 is -2."),
+    "a preroll below 0": (GRID, GRID + '<solver preroll="-1"/>', 3, "must be at least 0"),
+    "a preroll beyond all": (GRID, GRID + '<solver preroll="100001"/>', 3, "at most 100000"),
+    "a loop of 0 frames": (GRID, GRID + '<solver loop="0"/>', 3, "must be at least 1"),
+    "a preroll and a loop": (GRID, GRID + '<solver preroll="3" loop="8"/>', 3,
+                             "sheet.preroll is 3 and sheet.loop is 8"),
+    "a channel below 0 in a preroll": (
+        GRID, GRID + '<solver preroll="9"/><material><animate attribute="density" before="linear">'
+        '<key frame="1" value="4" interpolation="linear"/><key frame="5" value="8"/></animate>'
+        "</material>", 3, "sheet.density at frame -8 is -"),
+    "a channel below 0 in a loop": (
+        GRID, GRID + '<solver loop="12"/><material>' + animated("damping", (1, 4), (9, 0), (12, -1)) +
+        "</material>", 3, "sheet.damping at frame 10 is -"),
+    "a damping and its ratio": (GRID, GRID + '<material damping="1" dampingRatio="0.1"/>', 3,
+                                "sheet.damping and sheet.dampingRatio are both given"),
+    "a ratio below 0 at a frame": (
+        GRID, GRID + "<material>" + animated("dampingRatio", (1, 1), (9, -1)) + "</material>", 3,
+        "sheet.dampingRatio at frame 6 is -"),
     "a deformationRadius in a group": (POINT, f'<group name="g">{POINT}</group>', 4,
                                        "a force in a <group> must not have one"),
     "a group in a group": (POINT, '<group name="g"><group name="h"/></group>', 4,
@@ -105,6 +122,20 @@ class BadInput(Command):
                 self.assertEqual(len(lines), 1, lines)
                 self.assertRegex(lines[0], rf"^\S*s\.xml:{line}: error: ")
                 self.assertIn(words, lines[0])
+
+    def test_a_loop_that_does_not_close(self):
+        """Is found while it runs: exit code 1."""
+        with open(self.path("quad.obj"), "w", encoding="utf-8") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n")
+        scene = self.write("s.xml", """<scene version="1" start="1" end="9">
+          <surface name="quad"><mesh file="quad.obj" uv="surface" border="free"/>
+            <material damping="0"/><solver region="all" loop="4"/></surface>
+          <uniform name="wind" magnitude="2" forceRadius="9"/></scene>""")
+        result = subprocess.run([PLIANT, "bake", scene, "-o", self.path("out.npy")], timeout=60,
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, r's\.xml:2: error: surface "quad", frame \d: its motion does '
+                         r"not close to a cycle of 4 frames: after 1000 rounds .* damping")
 
     def test_all_at_once(self):
         text = SCENE.format(end=9)

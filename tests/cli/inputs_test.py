@@ -4,6 +4,7 @@ import json
 import os
 import selectors
 import shutil
+import struct
 import subprocess
 
 from command import Command, GRID, PLIANT, SCENE, main
@@ -163,8 +164,48 @@ class Inputs(Command):
                 with open(self.path(BUFFERS), "ab") as file:
                     file.write(b"more")
 
+    def write_mapped(self, file):
+        """mapped.xml, with a map of b from a file."""
+        surface = GRID + f'<material><map channel="b" file="{file}" low="1" high="2"/></material>'
+        self.write("mapped.xml", SCENE.format(end=3).replace(GRID, surface))
+
+    def write_numbers(self, name, number=0.5):
+        head = "{'descr': '<f8', 'fortran_order': False, 'shape': (11, 13), }\n".encode()
+        with open(self.path(name), "wb") as file:
+            file.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head +
+                       struct.pack("<143d", *[number] * 143))
+
+    def test_a_map_is_an_input(self):
+        self.write_numbers("soft.npy")
+        self.write_mapped("soft.npy")
+        self.run_pliant("bake", "mapped.xml", "-o", "a.npy")
+        self.refused("bake", "mapped.xml", "-o", "soft.npy", says=r"would overwrite \S*soft\.npy")
+        self.refused("bake", "mapped.xml", "-o", "a.npy", "--regions", "soft.npy",
+                     says="--regions soft.npy: it is a map of the scene")
+        self.run_pliant("replay", "record", "mapped.xml", "-o", "run.replay")
+        head = json.loads(self.read("run.replay").splitlines()[0])
+        self.assertEqual([file["name"] for file in head["files"]], ["soft.npy"])
+        self.run_pliant("replay", "verify", "run.replay")
+        self.write_numbers("soft.npy", 0.25)
+        told = self.run_pliant("replay", "verify", "run.replay", code=1)
+        self.assertIn("soft.npy was changed", told.stderr + told.stdout)
+
+    def test_a_map_that_is_not_there_or_is_bad_is_told_once(self):
+        self.write_mapped("none.png")
+        for command in (["validate"], ["info"], ["bake", "-o", "a.npy"]):
+            self.refused(*command, "mapped.xml",
+                         says=r"mapped\.xml:3: error: sheet\.map\.b: \S*none\.png: cannot read")
+        self.write_numbers("zero.npy", -1)
+        self.write_mapped("zero.npy")
+        self.refused("validate", "mapped.xml",
+                     says=r"mapped\.xml:3: error: sheet\.b is 0 at node \(0, 0\) by its map")
+
     def test_a_file_that_is_something_else_is_not_quoted(self):
         secret = "root:secret:0:0:the secret:/root\n"
+        for map_file in ("m.png", "m.npy"):
+            self.write(map_file, secret)
+            self.write_mapped(map_file)
+            self.assertNotIn("secret", self.run_pliant("validate", "mapped.xml", code=2).stderr)
         for name in ("scene.xml", "a.obj", "a.ply", "a.gltf", "a.glb", "a.replay", "frames"):
             self.write(name, secret)
         text = self.read("mesh.xml").decode("utf-8")

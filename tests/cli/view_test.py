@@ -41,10 +41,13 @@ def unpack(packed):
     return json.loads(unpacked[4:4 + length]), unpacked[4 + length:]
 
 
-def positions(head, arrays, surface):
-    """Frames x vertices x 3, world space, decoded by the page's rules, one number at a time."""
+def positions(head, arrays, surface, is_rest=False):
+    """Frames x vertices x 3, world space, decoded by the page's rules, one number at a time; of the
+    shape at rest if it is animated."""
+    motion = surface["restMotion"] if is_rest else surface
+
     def array(name, kind):
-        place = surface[name]
+        place = motion[name] if name in motion else surface[name]
         return np.frombuffer(arrays, kind, place["count"], place["begin"])
 
     count = surface["vertices"]
@@ -61,7 +64,7 @@ def positions(head, arrays, surface):
         now = now + [0, before, 2 * before - earlier][predictor & 3]
         steps[frame + 2] = (now + 2**15) % 2**16 - 2**15
     offsets = np.empty((len(missed), count, 3))
-    offsets[:, order] = surface["step"] * steps[2:].transpose(0, 2, 1)
+    offsets[:, order] = motion["step"] * steps[2:].transpose(0, 2, 1)
     rest = array("rest", "<f4").reshape(-1, 3).astype(float) + surface["origin"]
     frames = head["last"] - head["first"] + 1
     transforms = np.array(surface["transforms"] * (frames if len(surface["transforms"]) == 1 else 1))
@@ -121,6 +124,25 @@ class Page(View):
         head, _ = self.compare(self.scene(transform=transform))
         self.assertEqual(len(head["surfaces"][0]["transforms"]), 12)
         self.assertEqual(len(head["surfaces"][1]["transforms"]), 1)
+
+    def test_an_animated_shape_has_the_motion_of_its_rest(self):
+        k, vertex = np.meshgrid(np.arange(12), np.arange(99), indexing="ij")
+        i, j = vertex % 11, vertex // 11
+        rest = np.stack([(i - 5) / 10, 0 * i, (j - 4) / 8], axis=-1)
+        shapes = rest + np.stack([0.05 * k, 0.02 * k * np.sin(i + k), 0 * k], axis=-1)
+        np.save(self.path("walk.npy"), shapes)
+        scene = self.write("scene.xml", """<scene version="1" start="1" end="12"><surface name="hide">
+            <grid columns="11" rows="9" cache="walk.npy"/><transform translate="1 2 3" rotate="10 20 30"/>
+            <material density="2" damping="3"/><solver region="all"/></surface>
+            <inertia name="sway" forceRadius="9"/></scene>""")
+        head, arrays = self.compare(scene)
+        surface = head["surfaces"][0]
+        still = self.write("still.xml", self.read("scene.xml").decode().replace('region="all"', 'startFrame="99"'))
+        self.run_pliant("bake", still, "-o", "still.npy", "--quiet")
+        error = np.abs(positions(head, arrays, surface, is_rest=True) - np.load(self.path("still.npy"))).max()
+        self.assertLess(error, 1.75 * (surface["restMotion"]["step"] + surface["error"]))
+        baked = np.load(self.path("bake.npy")) - np.load(self.path("still.npy"))
+        self.assertAlmostEqual(surface["peakDisplacement"], np.linalg.norm(baked, axis=-1).max(), places=6)
 
     def test_some_of_the_frames(self):
         head, _ = self.compare(self.scene(start=-3), "--frames", "-1:7")

@@ -182,3 +182,33 @@ TEST_CASE("what takes years to settle is told by its envelope", "[plate][swing]"
   CHECK_THAT(settling.time, WithinRel(4e6 * std::log(20), 1e-3));
   CHECK(settling.frames >= settling.time * 24);
 }
+
+TEST_CASE("what is seen of the exact solution is the natural swing", "[plate][swing]") {
+  const TimeSteps steps{1, frame_length, Integrator::Exact};
+  for (const double lambda : {30.0, 400.0, 90'000.0}) {
+    for (const double eta : {0.0, 1.0, 80.0, 4000.0}) {
+      const Dynamics dynamics{2, eta};
+      CAPTURE(lambda, eta);
+      const Swing natural = natural_swing(lambda, dynamics);
+      const Swing seen = stepped_swing(lambda, dynamics, steps, frame_length);
+      const double ratio = natural.damping_ratio;
+      CHECK(seen.damping_ratio == Approx(ratio));
+      CHECK(seen.frequency ==
+            Approx(ratio < 1 ? natural.frequency * std::sqrt(1 - ratio * ratio) : 0));
+      if (eta == 0) continue;
+      // q = 1 - e^(-a t) (cos(w t) + a/w sin(w t)), or the same with two real roots.
+      const double a = eta / 4, square = lambda / 2 - a * a, root = std::sqrt(std::abs(square));
+      const auto deviation = [&](double t) {
+        if (square > 0)
+          return std::exp(-a * t) * (std::cos(root * t) + a / root * std::sin(root * t));
+        return ((root + a) * std::exp((root - a) * t) + (root - a) * std::exp(-(root + a) * t)) /
+               (2 * root);
+      };
+      const std::vector<ExcitedMode> modes = {{lambda, 1}};
+      const Settling settling = settling_of(modes, dynamics, steps, frame_length);
+      if (!settling.is_counted) continue;
+      CHECK(std::abs(deviation(settling.frames * frame_length)) <= 0.05 + 1e-9);
+      CHECK(std::abs(deviation((settling.frames - 1) * frame_length)) > 0.05 - 1e-9);
+    }
+  }
+}

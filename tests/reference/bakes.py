@@ -15,10 +15,12 @@ class Bake:
         kind = TriangleRun if self.is_triangles else SurfaceRun
         self.run = kind(scene, surface, diagnostics, noise)
         frames = list(self.run.run())
+        self.frames = range(scene.start, scene.end + 1)
         self.object = np.array([positions for positions, _ in frames])
         self.world = np.array([transform.to_world(positions) for positions, transform in frames])
-        self.world_rest = np.array([transform.to_world(surface.grid.vertices)
-                                    for _, transform in frames])
+        self.object_rest = np.array([surface.shape.at(frame) for frame in self.frames])
+        self.world_rest = np.array([transform.to_world(surface.shape.at(scene.start + k))
+                                    for k, (_, transform) in enumerate(frames)])
         self.is_always_identity = all(
             Transform(surface, frame).is_identity for frame in range(scene.start, scene.end + 1))
 

@@ -12,7 +12,13 @@ import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
 
+from bending import Bending, advance_bending
 from curves import Curve
+from exact_motion import exact_motion
+from maps import check_material
+
+# u0, u1, v0, v1.
+EDGE_LINES = np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1]
 
 # The 13-point stencil (SPEC 4), as {(di, dj): weight} of each of the three derivatives.
 FOURTH = {-2: 1, -1: -4, 0: 6, 1: -4, 2: 1}
@@ -112,19 +118,18 @@ def interior_of(region, shape):
     return cells[:-1, :-1] & cells[1:, :-1] & cells[:-1, 1:] & cells[1:, 1:]
 
 
-def advance_union(w, velocity, load, interior, ends, hu, hv, material, tangents, count, dt):
-    """`advance` for a region of any outline, node by node; the arrays are those of the whole grid.
+def union_operator(interior, hu, hv, material):
+    """The matrix of L on the interior nodes of a region of any outline, and for each of them what
+    it leaves out: (row, name of the tangent and its end, weight times length), (row, node, weight).
 
     A neighbour two away across a rim node is the node itself, plus a tangent where that rim node
-    is at one of the ends (i0, i1, j0, j1) of the whole region.
+    is at one of the ends of the whole region.
     """
-    density, damping = material["density"], material["damping"]
     number = {tuple(node): k for k, node in enumerate(np.argwhere(interior))}
-    mass = density / dt**2 + damping / dt
     matrix = scipy.sparse.lil_matrix((len(number), len(number)))
-    known = np.zeros((len(number), 3))
-    edges = {(-1, 0): ("su0", ends[0], -2 * hu), (1, 0): ("su1", ends[1], 2 * hu),
-             (0, -1): ("sv0", ends[2], -2 * hv), (0, 1): ("sv1", ends[3], 2 * hv)}
+    ghosts, rim = [], []
+    edges = {(-1, 0): ("su0", 0, -2 * hu), (1, 0): ("su1", 1, 2 * hu),
+             (0, -1): ("sv0", 2, -2 * hv), (0, 1): ("sv1", 3, 2 * hv)}
     weights = stencil(hu, hv, material["b"], material["c"], material["d"])
     for (i, j), row in number.items():
         for (di, dj), weight in weights.items():
@@ -133,23 +138,91 @@ def advance_union(w, velocity, load, interior, ends, hu, hv, material, tangents,
             if max(abs(di), abs(dj)) == 2 and (i + step[0], j + step[1]) not in number:
                 node = i, j
                 name, end, length = edges[step]
-                if (i + di // 2 if di else j + dj // 2) == end:
-                    known[row] += weight * length * tangents[name]
+                ghosts.append((row, name, end, i + di // 2 if di else j + dj // 2,
+                               weight * length))
             if node in number:
                 matrix[row, number[node]] += weight
             else:
-                known[row] += weight * w[node]
-    matrix = (matrix + mass * scipy.sparse.identity(len(number))).tocsc()
+                rim.append((row, node, weight))
+    return matrix.tocsc(), ghosts, rim
+
+
+def union_system(w, load, interior, ends, hu, hv, material, tangents):
+    """L and the force of a region of any outline; the arrays are those of the whole grid, and (i0,
+    i1, j0, j1) are the ends of the whole region."""
+    matrix, ghosts, rim = union_operator(interior, hu, hv, material)
+    known = np.zeros((matrix.shape[0], 3))
+    for row, name, end, place, weight in ghosts:
+        if place == ends[end]:
+            known[row] += weight * tangents[name]
+    for row, node, weight in rim:
+        known[row] += weight * w[node]
+    return matrix, load[interior] - known
+
+
+def advance_union(w, velocity, load, interior, ends, hu, hv, material, tangents, count, dt):
+    """`advance` for a region of any outline."""
+    density, damping = (np.broadcast_to(material[name], interior.shape)[interior][:, None]
+                        for name in ("density", "damping"))
+    mass = density / dt**2 + damping / dt
+    matrix, force = union_system(w, load, interior, ends, hu, hv, material, tangents)
+    matrix = (matrix + scipy.sparse.diags(mass[:, 0])).tocsc()
     factor = scipy.sparse.linalg.splu(matrix)
-    unknown, speed, force = w[interior], velocity[interior], load[interior]
+    unknown, speed = w[interior], velocity[interior]
     for _ in range(count):
-        right = force - known + mass * unknown + density / dt * speed
+        right = force + mass * unknown + density / dt * speed
         solution = factor.solve(right)
         solution += factor.solve(right - matrix @ solution)
         speed = (solution - unknown) / dt
         unknown = solution
     w, velocity = w.copy(), np.zeros_like(w)
     w[interior], velocity[interior] = unknown, speed
+    return w, velocity
+
+
+def smallest_eigenvalue(matrix, masses):
+    """Of K w = lambda M w, rigid motions left out; 0 if there are no others."""
+    root = np.sqrt(masses)
+    values = np.linalg.eigvalsh(matrix / np.outer(root, root))
+    values = values[values > 1e-11 * values[-1]]
+    return float(values[0]) if len(values) else 0.0
+
+
+def damping_of(ratio, density, eigenvalue):
+    """eta = 2 zeta omega rho (SPEC 9)."""
+    return 2 * ratio * math.sqrt(eigenvalue * density)
+
+
+def find_cycle(run, frames):
+    """The states of a run at these frames, which lead back to the first one: going round from rest.
+    `run.parts` names what a state is made of."""
+    def state():
+        return [getattr(run, part).copy() for part in run.parts]
+
+    run.reset()
+    for _ in range(5000):
+        states = []
+        for frame in frames:
+            states.append(state())
+            if run.surface.is_solved_at(frame):
+                run.solve(frame)
+        peak = max(run.displacement(parts[0]) for parts in states)
+        now = state()
+        gap = max(np.abs(now[0] - states[0][0]).max(),
+                  np.abs(now[1] - states[0][1]).max() / float(run.scene.fps))
+        if gap <= (1e-12 if run.noise is None else 1e-10) * peak:
+            return states
+    raise AssertionError("the motion does not close to a cycle")
+
+
+def advance_exactly(w, velocity, loads, interior, ends, hu, hv, material, tangents, time):
+    """The exact solution in a region of any outline; `loads` and `tangents` are those at both ends
+    of the frame."""
+    (matrix, first), (_, last) = (union_system(w, load, interior, ends, hu, hv, material, slopes)
+                                  for load, slopes in zip(loads, tangents))
+    w, velocity, start, speed = w.copy(), np.zeros_like(w), w[interior], velocity[interior]
+    w[interior], velocity[interior] = exact_motion(
+        matrix, np.ones(len(start)), material, (first, last), start, speed, time)
     return w, velocity
 
 
@@ -183,7 +256,7 @@ def with_integrator(integrator, density, advance):
             w, velocity = 2 * half_w - w, 2 * half_velocity - velocity
         return w, velocity
 
-    return reflected if integrator == "newmark" and density > 0 else advance
+    return reflected if integrator == "newmark" and np.any(density > 0) else advance
 
 
 def advance(w, velocity, load, hu, hv, material, tangents, count, dt):
@@ -333,21 +406,26 @@ def noise(seed, places):
     return total
 
 
-def unit_forces(force, frame, points, run):
-    """The force per magnitude and falloff at each point, in world space; `run` is the surface's."""
+def unit_forces(force, frame, points, run, nodes):
+    """The force per magnitude and falloff at each point, in world space; `run` is the surface's, of
+    which the points are these `nodes`."""
     if force.kind == "noise":
         place = force.sample("frequency", frame) * (points - force.sample("center", frame))
         # Each frame since the start at its own rate.
-        rates = [force.sample("rate", before) for before in range(run.scene.start, frame)]
-        time = (force.sample("rate", run.scene.start) * run.scene.start + sum(rates)) / float(run.scene.fps)
+        start = run.scene.start
+        rates = [force.sample("rate", before) for before in range(start, frame)]
+        rates += [-force.sample("rate", before) for before in range(frame, start)]  # in a preroll
+        time = (force.sample("rate", start) * start + sum(rates)) / float(run.scene.fps)
         time = np.broadcast_to(time, points.shape[:-1] + (1,))
         return noise(force.seed, np.concatenate([place, time], axis=-1))
     if force.kind == "inertia":
         before, now, after = (Transform(run.surface, frame + step) for step in (-1, 0, 1))
         p = np.linalg.solve(now.linear, (points - now.translate).reshape(-1, 3).T).T
-        p = p.reshape(points.shape)
-        acceleration = sum(weight * (transform.translate + p @ transform.linear.T)
-                           for weight, transform in ((1, before), (-2, now), (1, after)))
+        # The places of the point with this displacement (SPEC 9): 0 with measure="rest".
+        shapes = [run.surface.grid.of_nodes(shape)[nodes] for shape in run.surface.shape.around(frame)]
+        w = p.reshape(points.shape) - shapes[1]
+        acceleration = sum(weight * (transform.translate + (shape + w) @ transform.linear.T)
+                           for weight, transform, shape in zip((1, -2, 1), (before, now, after), shapes))
         length = run.surface.frame_length(frame, run.scene.fps)
         return -run.surface.sample("density", frame) * acceleration / length**2
     if force.kind == "vortex":
@@ -469,14 +547,35 @@ class SurfaceRun:
     def __init__(self, scene, surface, diagnostics, noise=None):
         self.scene, self.surface, self.noise = scene, surface, noise
         self.diagnostics = diagnostics
-        self.rest = surface.grid.rest
+        self.show(scene.start)
         self.reset()
+
+    def show(self, frame):
+        """Takes the shape at rest of a frame."""
+        self.vertices = self.surface.shape.at(frame)
+        self.rest = self.surface.grid.of_nodes(self.vertices)
+
+    def ride(self, frame):
+        """Goes on to the shape at rest of the next frame, on which everything rides."""
+        before = self.rest
+        self.show(frame + 1)
+        is_moved = (self.rest != before).any(axis=-1)
+        at_rest = (self.position == before).all(axis=-1)
+        self.position[is_moved] += (self.rest - before)[is_moved]
+        self.position[at_rest] = self.rest[at_rest]
 
     def reset(self):
         self.position = self.rest.copy()
         # Zero where the last solve did not reach: such nodes start from velocity 0 (SPEC 6).
         self.velocity = np.zeros_like(self.rest)
         self.unsettled = np.zeros(self.rest.shape[:2], dtype=bool)
+        self.forget_push()
+
+    def forget_push(self):
+        """What `exact` starts from: loads, unknowns and tangents of the last solve."""
+        self.last_load = np.zeros_like(self.rest)
+        self.was_unknown = np.zeros(self.rest.shape[:2], dtype=bool)
+        self.last_tangents = {}
 
     def enabled_forces(self, frame):
         """Lists of the forces and groups that act on this surface: (force, selects a region) and
@@ -532,6 +631,45 @@ class SurfaceRun:
                 regions = combined(boxes + islands_of(around), how)
         return regions
 
+    def interior(self, region):
+        """The nodes that move."""
+        interior = interior_of(region, self.rest.shape[:2])
+        if set(self.surface.edges) != {"clamped"}:
+            edges = self.surface.edges
+            interior[:] = True
+            for edge, line in zip(edges, EDGE_LINES):
+                if edge != "free":
+                    interior[line] = False
+        return interior
+
+    def advance_energy(self, frame):
+        """`advance` with the surface's edges."""
+        def advance_edges(w, velocity, load, hu, hv, material, tangents, count, dt):
+            bending = Bending(w.shape[:2], hu, hv, self.surface.edges, material["b"],
+                              material["c"], material["d"], self.surface.sample("poisson", frame),
+                              tangents)
+            return advance_bending(bending, w, velocity, load, material["density"],
+                                   material["damping"], count, dt)
+
+        return advance_edges
+
+    def advance_edges_exactly(self, frame, w, velocity, loads, material, tangents, time):
+        """The exact solution of the whole surface with its edges."""
+        forces = []
+        for load, slopes in zip(loads, tangents):
+            bending = Bending(w.shape[:2], self.surface.grid.hu, self.surface.grid.hv,
+                              self.surface.edges, material["b"], material["c"], material["d"],
+                              self.surface.sample("poisson", frame), slopes)
+            free, matrix = bending.is_free.ravel(), bending.matrix()
+            known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
+            forces.append(known[free] - matrix[free][:, ~free] @ w.reshape(-1, 3)[~free])
+        w, velocity, start, speed = (w.copy(), np.zeros_like(w), w.reshape(-1, 3)[free],
+                                     velocity.reshape(-1, 3)[free])
+        end, end_speed = exact_motion(matrix[free][:, free].tocsc(), bending.area.ravel()[free],
+                                      material, forces, start, speed, time)
+        w.reshape(-1, 3)[free], velocity.reshape(-1, 3)[free] = end, end_speed
+        return w, velocity
+
     def settle(self, regions):
         """Sets all nodes that are not interior to a region to rest."""
         moving = np.zeros(self.rest.shape[:2], dtype=bool)
@@ -539,6 +677,7 @@ class SurfaceRun:
             moving |= interior_of(region, moving.shape)
         self.position[~moving] = self.rest[~moving]
         self.velocity[~moving] = 0
+        self.was_unknown[~moving] = False
 
     def note_settling(self, before, interior, region):
         """The solved nodes that are not yet at rest."""
@@ -564,9 +703,30 @@ class SurfaceRun:
             i0, i1, j0, j1 = box
             inside = np.s_[i0:i1 + 1, j0:j1 + 1]
             strength = force.sample("magnitude", frame) * falloff(force, delta[inside] / radius)
-            push = unit_forces(force, frame, points[inside], self)
+            push = unit_forces(force, frame, points[inside], self, inside)
+            if force.kind == "inertia" and "density" in self.surface.maps:
+                push = push * self.surface.maps["density"][inside][..., None]
             total[inside] += strength[..., None] * push
         return transform.vector_to_object(total)
+
+    def smallest_eigenvalue(self, region, interior, material, frame):
+        """Of the whole region."""
+        hu, hv = self.surface.grid.hu, self.surface.grid.hv
+        if self.surface.has_energy:
+            tangents = {name: np.zeros(3) for name in ("su0", "su1", "sv0", "sv1")}
+            bending = Bending(interior.shape, hu, hv, self.surface.edges, material["b"],
+                              material["c"], material["d"], self.surface.sample("poisson", frame),
+                              tangents)
+            free = bending.is_free.ravel()
+            return smallest_eigenvalue(bending.matrix()[free][:, free].toarray(),
+                                       bending.area.ravel()[free])
+        matrix, _, _ = union_operator(interior, hu, hv, material)
+        return smallest_eigenvalue(matrix.toarray(), np.ones(matrix.shape[0]))
+
+    parts = ("position", "velocity", "unsettled", "last_load", "was_unknown", "last_tangents")
+
+    def displacement(self, position):
+        return float(np.linalg.norm(position - self.rest, axis=-1).max())
 
     def solve(self, frame):
         """The solve at `frame`, which computes the mesh of frame + 1."""
@@ -580,20 +740,23 @@ class SurfaceRun:
         recovers = surface.choices["release"] == "recover"
         if recovers:
             self.settle(regions)
-        interiors = [interior_of(region, points.shape[:2]) for region in regions]
+        interiors = [self.interior(region) for region in regions]
         if not any(interior.any() for interior in interiors):
             self.diagnostics.skips.append((frame, surface.name, "below 3x3" if regions or any(
                 own.values()) else "no node"))
             return
         is_displacement = surface.choices["reference"] == "rest"
         origin = self.rest if is_displacement else np.zeros_like(self.rest)
-        material = {name: surface.sample(name, frame)
-                    for name in ("density", "damping", "b", "c", "d")}
+        material = surface.material(frame)
+        if surface.channels["dampingRatio"]:
+            material["damping"] = 0.0
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
         length = surface.frame_length(frame, self.scene.fps)
         count, dt = steps_of_frame(length, surface.sample("dt", frame), surface.choices["stepping"])
         integrator, density = surface.choices["integrator"], material["density"]
         before, velocities = self.position.copy(), np.zeros_like(self.rest)
+        next_load, is_unknown = np.zeros_like(self.rest), np.zeros_like(self.was_unknown)
+        first_tangents = self.last_tangents if self.was_unknown.any() else tangents
         self.unsettled[:] = False
         for region, interior in zip(regions, interiors):
             if not interior.any():
@@ -605,11 +768,32 @@ class SurfaceRun:
                 force for force in forces if own[force] is not None and do_meet(own[force], ends)]
             load = self.load(frame, points, acting, transform)
             start, speed = before - origin, self.velocity
-            if len(region) == 1:
+            if surface.channels["dampingRatio"] and density > 0:
+                material["damping"] = damping_of(
+                    surface.sample("dampingRatio", frame), density,
+                    self.smallest_eigenvalue(region, interior, material, frame))
+            next_load[interior] = load[interior]
+            is_unknown |= interior
+            if integrator == "exact":
+                first = np.where(self.was_unknown[..., None], self.last_load, load)
+                self.diagnostics.unions += len(region) > 1
+                both = (first, load), (first_tangents, tangents)
+                if surface.has_energy:
+                    w, velocity = self.advance_edges_exactly(frame, start, speed, both[0],
+                                                             material, both[1], length)
+                else:
+                    w, velocity = advance_exactly(
+                        start, speed, both[0], interior, ends, surface.grid.hu, surface.grid.hv,
+                        material, both[1], length)
+            elif len(region) == 1:
                 box = np.s_[ends[0]:ends[1] + 1, ends[2]:ends[3] + 1]
                 w, velocity = np.zeros_like(start), np.zeros_like(start)
-                w[box], velocity[box] = with_integrator(integrator, density, advance)(
-                    start[box], speed[box], load[box], surface.grid.hu, surface.grid.hv, material,
+                has_energy = surface.has_energy
+                steps = self.advance_energy(frame) if has_energy else advance
+                in_box = {name: value[box] if name in surface.maps else value
+                          for name, value in material.items()}
+                w[box], velocity[box] = with_integrator(integrator, density, steps)(
+                    start[box], speed[box], load[box], surface.grid.hu, surface.grid.hv, in_box,
                     tangents, count, dt)
             else:
                 self.diagnostics.unions += 1
@@ -625,6 +809,7 @@ class SurfaceRun:
             if recovers:
                 self.note_settling(before, interior, region)
         self.velocity = velocities
+        self.last_load, self.was_unknown, self.last_tangents = next_load, is_unknown, tangents
         assert np.isfinite(self.position).all(), f"not finite after frame {frame}"
 
     def diagnose(self, frame, points, forces, groups, transform):
@@ -651,6 +836,12 @@ class SurfaceRun:
         for frame in frames:
             check_coefficients(*(self.surface.sample(name, frame)
                                  for name in ("density", "damping", "b", "c", "d", "dt")))
+            if self.surface.channels["dampingRatio"]:
+                assert self.surface.sample("dampingRatio", frame) >= 0
+            if self.surface.has_stiffness_map:
+                material = self.surface.material(frame)
+                check_material(material["b"], material["c"], material["d"],
+                               self.surface.sample("poisson", frame))
             length = self.surface.frame_length(frame, self.scene.fps)
             assert length / self.surface.sample("dt", frame) <= 1e5
         for force in self.scene.forces + [f for g in self.scene.groups for f in g.forces]:
@@ -661,14 +852,24 @@ class SurfaceRun:
 
     def run(self):
         """Yields (object positions of the vertices, transform) of each frame."""
-        frames = range(self.scene.start, self.scene.end + 1)
+        first, loop = self.surface.start_frame, self.surface.loop
+        frames = range(min(self.scene.start, first), self.scene.end + 1)
         self.check_channels(frames)
+        if loop:
+            self.check_channels(range(first, first + loop))
+            states = find_cycle(self, range(first, first + loop))
+            for frame in frames:
+                position = self.rest if frame < first else states[(frame - first) % loop][0]
+                yield self.surface.grid.to_vertices(position), Transform(self.surface, frame)
+            return
         for frame in frames:
             if frame <= self.surface.start_frame:
                 self.reset()
-            yield self.surface.grid.to_vertices(self.position), Transform(self.surface, frame)
+            if frame >= self.scene.start:
+                yield self.surface.grid.to_vertices(self.position), Transform(self.surface, frame)
             if self.surface.is_solved_at(frame):
                 self.solve(frame)
+            self.ride(frame)
 
 
 class GroupSphere:

@@ -14,11 +14,13 @@ import math
 import os
 import sys
 import tempfile
+import zlib
 
 import numpy as np
 
 from engine import Transform
 from random_mesh import Mesh, text_of
+from random_maps import grey_png
 from scene import Scene
 from well_posed import trouble_of
 
@@ -64,6 +66,8 @@ def write_element(out, depth, tag, attributes, channels, closing_lines=()):
 class SceneMaker:
     """Draws one random scene; `tags` are the features it uses."""
 
+    has_edges = True  # of grids
+
     def __init__(self, rng, folder, name):
         self.rng, self.folder, self.name = rng, folder, name
         self.tags = set()
@@ -76,7 +80,11 @@ class SceneMaker:
         self.fps = float(numerator) / float(denominator or 1)
         self.start = int(rng.integers(-5, 11))
         self.end = self.start + int(rng.integers(10, 31))
+        self.caches = {}  # samples, by file
         self.meshes = {}
+        self.pictures = {}  # of maps, as bytes
+        # Its own numbers, so that maps change no other choice.
+        self.map_rng = np.random.default_rng(zlib.crc32(name.encode()))
         self.surfaces = []  # (header line list before the material, choices)
         self.magnitude_factor = 1.0
 
@@ -231,7 +239,7 @@ class SceneMaker:
             self.tags.add("startFrame before" if frame < self.start else "startFrame after")
         for choice, values, probability in (
                 ("stepping", ("overshoot", "overshoot", "exact"), 0.4),
-                ("integrator", ("newmark",), 0.4),
+                ("integrator", ("newmark", "exact"), 0.4),
                 ("reference", ("none", "none", "rest"), 0.3),
                 ("measure", ("rest", "rest", "current"), 0.4), ("combine", ("box", "islands", "union"), 0.4),
                 ("release", ("freeze", "recover", "recover"), 0.2)):
@@ -416,6 +424,28 @@ class SceneMaker:
 
     # The whole
 
+    def add_cache(self, surface, lines, solver):
+        """Animates the shape of some surfaces: a wave that drifts. Draws nothing from the scene's numbers."""
+        rng = np.random.default_rng(zlib.crc32(f"{self.name} {surface.name}".encode()))
+        if self.is_lattice or ("reference", "none") in solver or rng.random() > 0.25:
+            return
+        self.tags.add("cache")
+        vertices = surface.grid.vertices
+        size = float(np.ptp(vertices, axis=0).max())
+        times = np.arange(int(rng.integers(1, self.end - self.start + 4)), dtype=float)
+        along, wave = rng.uniform(-3, 3, 3) / size, 0.05 * size * rng.uniform(-1, 1, 3)
+        drift = 0.02 * size * rng.uniform(-1, 1, 3)
+        phases = (vertices @ along)[None, :] + rng.uniform(0.1, 0.8) * times[:, None]
+        samples = (vertices + np.sin(phases)[:, :, None] * wave + times[:, None, None] * drift)
+        file = f"{self.name}-{surface.name}.npy"
+        self.caches[file] = samples
+        np.save(os.path.join(self.folder, file), samples)
+        first = float(self.start + rng.integers(-4, 6) + rng.choice([0, 0, 0.5]))
+        for k, line in enumerate(lines):
+            for shape in ("<grid", "<mesh"):
+                if shape in line:
+                    lines[k] = line.replace("/>", f' cache="{file}" cacheStart="{first!r}"/>')
+
     def make(self):
         """Returns a function of a magnitude factor that gives the scene's text."""
         rng = self.rng
@@ -424,6 +454,8 @@ class SceneMaker:
             self.tags.add("several surfaces")
         heads = [self.surface_head(k) for k in range(count)]
         scene = self.probe(heads)
+        for surface, (lines, solver) in zip(scene.surfaces, heads):
+            self.add_cache(surface, lines, solver)
         middle = (self.start + self.end) // 2
         worlds, blocks = [], []
         for surface, (lines, solver) in zip(scene.surfaces, heads):
@@ -463,12 +495,15 @@ class SceneMaker:
         length_u = grid.hu * (grid.columns - 1) * rng.uniform(0.5, 0.9)
         length_v = grid.hv * (grid.rows - 1) * rng.uniform(0.5, 0.9)
         b, c, d = 1.0, 2.0, 1.0
+        self.least_ratio = 0.9
         channels = []
         if self.chance(0.6):
             b, d = np.exp(rng.uniform(-1, 1, 2))
             c = math.sqrt(b * d) * rng.uniform(-1.6, 3.0)
             if c < 0:
                 self.tags.add("negative c")
+            # c > 2 poisson sqrt(b d), whatever the factors below are.
+            self.least_ratio = c * (0.8 if c > 0 else 1.05 / 0.9 * 1.4) / (2.8 * math.sqrt(b * d))
             animated = 0.25
             channels += [self.channel("b", lambda: b * rng.uniform(0.9, 1.4), animated),
                          self.channel("d", lambda: d * rng.uniform(0.9, 1.4), animated),
@@ -477,10 +512,61 @@ class SceneMaker:
                      d / length_v**4) / (PEAK * (2 + 2 * MIXED_SHARE))
         return channels, stiffness, length_u, length_v
 
+    def edges(self, solver, is_static):
+        """Edges of a whole surface; one that is static must be held."""
+        while True:
+            edges = [self.pick("clamped", "pinned", "free") for _ in range(self.pick(1, 4, 4))] * 4
+            edges = edges[:4]
+            if not is_static or "clamped" in edges or edges.count("pinned") >= 2:
+                break
+        is_one = len(set(edges)) == 1 and self.chance(0.5)
+        solver.append(("edges", edges[0] if is_one else " ".join(edges)))
+        self.tags.update(f"edge {edge}" for edge in edges)
+        return edges
+
+    def maps(self, solver, surface):
+        """Lines of the maps of a surface: pictures, one for all of b, c and d, so that c keeps its
+        ratio to sqrt(b d)."""
+        rng = self.map_rng
+        if rng.random() < 0.6 or ("integrator", "exact") in solver:
+            return []
+        groups = [("density",), ("damping",), ("b", "c", "d")]
+        is_grid = hasattr(surface.grid, "columns")
+        if is_grid and ("combine", "union") in solver:
+            groups.pop()
+        lines = []
+        for group in groups:
+            if rng.random() < 0.4:
+                continue
+            file = f"{self.name}-{surface.name}-{group[0]}.png"
+            height, width = rng.integers(1, 12, 2)
+            self.pictures[file] = grey_png(rng.integers(0, 256, (height, width)))
+            with open(os.path.join(self.folder, file), "wb") as stream:
+                stream.write(self.pictures[file])
+            low, high = rng.uniform(0.6, 1.4, 2)
+            for channel in group:
+                lines.append(f'<map channel="{channel}" file="{file}" low="{text_of(low)}" '
+                             f'high="{text_of(high)}"/>')
+                self.tags.add(f"map {channel}")
+        if any(uv is None or np.isnan(uv).any() for uv in surface.grid.uvs):
+            return []
+        return lines
+
     def surface_tail(self, lines, solver, surface, world):
         """Material, tangents and solver of a surface; returns its lines and the load's scale."""
         rng, out = self.rng, Writer()
         channels, stiffness, length_u, length_v = self.stiffness_of(surface)
+        maps = self.maps(solver, surface)
+        is_grid = hasattr(surface.grid, "columns")
+        is_whole_grid = self.has_edges and ("region", "all") in solver
+        if is_whole_grid:
+            bound = self.least_ratio - 0.02
+            least = min(-0.9, bound - 0.03)
+            channels.append(
+                self.channel("poisson", lambda: rng.uniform(least, min(0.9, bound)), 0.2))
+        elif any(f'channel="{name}"' in line for line in maps for name in "bcd") and (
+                is_grid or surface.grid.border != "free"):
+            channels.append(Channel("poisson", text_of(min(0.3, self.least_ratio - 0.05))))
         omega = 2 * math.pi * self.fps / rng.uniform(4, 40)
         density = FREQUENCY_SHARE * stiffness / omega**2
         damping = 2 * rng.choice([0.02, 0.2, 1.0]) * omega * density
@@ -494,7 +580,10 @@ class SceneMaker:
                                   0.15 if density else 0),
                      self.channel("damping", lambda: damping * rng.uniform(0.7, 1.4),
                                   0.15 if damping else 0)]
-        write_element(out, 2, "material", [], channels)
+        write_element(out, 2, "material", [], channels, maps)
+        edges = ["clamped"] * 4
+        if is_whole_grid and self.chance(0.6):
+            edges = self.edges(solver, kind == "static")
         size = self.size_of(surface.grid.rest)
         if self.chance(0.3) and ("release", "recover") not in solver:
             self.tags.add("tangents")
@@ -502,6 +591,8 @@ class SceneMaker:
             for edge, length in (("su0", length_u), ("su1", length_u), ("sv0", length_v),
                                  ("sv1", length_v)):
                 components = self.pick(0, 1, 3)
+                if edges[("su0", "su1", "sv0", "sv1").index(edge)] != "clamped":
+                    components = 0
                 if components:
                     self.tags.add(f"tangent of {components} numbers")
                     channels.append(self.channel(
@@ -560,9 +651,14 @@ def make_scene(kind, prefix, seed, index, folder, rejections):
             comment = f"<!-- {', '.join(sorted(maker.tags))} -->"
             with open(path, "w", encoding="utf-8") as stream:
                 stream.write(f"{head}\n{comment}\n{body}")
+            for file, samples in maker.caches.items():
+                np.save(os.path.join(folder, file), samples)
             for file, mesh_text in maker.meshes.items():
                 with open(os.path.join(folder, file), "w", encoding="utf-8") as stream:
                     stream.write(mesh_text)
+            for file, picture in maker.pictures.items():
+                with open(os.path.join(folder, file), "wb") as stream:
+                    stream.write(picture)
             return maker.tags, peak, diagnostics
     raise AssertionError(f"no well-posed scene for {name}")
 

@@ -9,17 +9,20 @@ from fractions import Fraction
 
 import numpy as np
 
+from caches import Cache, NoCache
 from curves import Constant, Curve, Key
+from maps import node_uvs, read_maps
 from triangle_mesh import TriangleMesh, read_obj_corners
 
 TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
-MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1, "poisson": 0.3}
+MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1, "poisson": 0.3,
+                     "dampingRatio": None}
 TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
 SOLVER_CHANNELS = {"dt": 0.01, "timeScale": 1}
 SOLVER_CHOICES = {
     "stepping": ("exact", "overshoot"), "reference": ("rest", "none"),
     "combine": ("box", "islands", "union"), "release": ("freeze", "recover"), "measure": ("current", "rest"),
-    "integrator": ("backwardEuler", "newmark"),
+    "integrator": ("backwardEuler", "newmark", "exact"),
     "region": ("forces", "all")}
 FORCE_CHANNELS = {"magnitude": 0, "deformationRadius": 1, "forceRadius": 1}
 KIND_CHANNELS = {
@@ -113,10 +116,20 @@ class Grid:
             assert is_new or (self.rest[i, j] == position).all(), f"node {i},{j} has two positions"
             self.rest[i, j] = position
         assert not np.isnan(self.rest).any(), "a node without a vertex"
+        self.uvs = np.full((self.columns, self.rows, 2), np.nan)
+        for k in range(len(vertices) - 1, -1, -1):  # the lowest vertex last
+            self.uvs[tuple(self.node_of[k])] = u[k], v[k]
 
     def to_vertices(self, node_values):
         """Values per vertex, in the order of the source mesh."""
         return node_values[self.node_of[:, 0], self.node_of[:, 1]]
+
+    def of_nodes(self, vertices):
+        """Positions of vertices as those of nodes: of the lowest vertex of each."""
+        result = np.empty_like(self.rest)
+        for (i, j), position in zip(self.node_of[::-1], vertices[::-1]):
+            result[i, j] = position
+        return result
 
 
 def lattice_index(values):
@@ -165,7 +178,9 @@ def read_surface(element, folder):
     if "weld" in read:
         read["weld"] = float(read["weld"][0])
     vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
-    return TriangleMesh(vertices, faces, border=element.get("border", "clamped"), **read)
+    mesh = TriangleMesh(vertices, faces, border=element.get("border", "clamped"), **read)
+    mesh.uvs = node_uvs(mesh.node_of, faces, (len(mesh.rest),))
+    return mesh
 
 
 # Elements
@@ -179,10 +194,15 @@ def child_or_empty(element, tag):
 class Surface:
     """A <surface> with its channels."""
 
-    def __init__(self, element, folder, scene_start):
+    def __init__(self, element, folder, scene_start, fps):
         self.name = element.get("name")
         self.is_enabled = element.get("enabled", "true") == "true"
         grid, mesh = element.find("grid"), element.find("mesh")
+        shape = mesh if grid is None else grid
+        cache, first = shape.get("cache"), shape.get("cacheStart")
+        # Not among what the readers of meshes know.
+        for name in ("cache", "cacheStart"):
+            shape.attrib.pop(name, None)
         if grid is not None:
             self.grid = flat_grid(grid)
         elif mesh.get("uv") == "surface":
@@ -191,6 +211,11 @@ class Surface:
             assert set(mesh.keys()) <= {"file", "uv", "wrap"} and mesh.get("uv", "grid") == "grid"
             assert mesh.get("wrap", "none") == "none"
             self.grid = read_obj(os.path.join(folder, mesh.get("file")))
+        self.shape = NoCache(self.grid.vertices)
+        if cache is not None:
+            first = None if first is None else float(first)
+            self.shape = Cache(os.path.join(folder, cache), fps, scene_start, first)
+            assert self.shape.samples.shape[1] == len(self.grid.vertices)
         self.channels = {}
         solver = child_or_empty(element, "solver")
         for tag, defaults in (("transform", TRANSFORM_CHANNELS), ("material", MATERIAL_CHANNELS),
@@ -203,6 +228,7 @@ class Surface:
         for name, allowed in SOLVER_CHOICES.items():
             self.choices[name] = solver.get(name, allowed[0])
             assert self.choices[name] in allowed, f"{name}={self.choices[name]}"
+        assert cache is None or self.choices["reference"] == "rest"
         if isinstance(self.grid, TriangleMesh):
             assert self.choices["reference"] == "rest"
             self.choices["measure"] = solver.get("measure", "rest")
@@ -210,14 +236,34 @@ class Surface:
         if self.is_whole:
             assert self.choices["reference"] == "rest" and self.choices["combine"] == "box"
             assert self.choices["release"] == "freeze"
+        self.maps = read_maps(child_or_empty(element, "material"),
+                              lambda file: os.path.join(folder, file), self.grid.uvs)
+        self.has_stiffness_map = any(channel in self.maps for channel in "bcd")
+        assert not (self.has_stiffness_map and self.choices["combine"] == "union" and
+                    not isinstance(self.grid, TriangleMesh))
+        edges = solver.get("edges", "clamped").split()
+        self.edges = tuple(edges * 4 if len(edges) == 1 else edges)
+        assert len(self.edges) == 4 and set(self.edges) <= {"clamped", "pinned", "free"}
+        assert self.is_whole or set(self.edges) == {"clamped"}
+        self.has_energy = set(self.edges) != {"clamped"} or bool(self.maps)
         # An earlier start acts as the scene's start.
         self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
+        self.start_frame -= int(solver.get("preroll", 0))
+        self.loop = int(solver.get("loop")) if "loop" in solver.keys() else None
+        assert self.loop is None or "preroll" not in solver.keys()
+        material = child_or_empty(element, "material")
+        assert self.channels["dampingRatio"] is None or "damping" not in material.keys()
 
     def sample(self, name, frame):
         """A scalar channel at a frame."""
         value = self.channels[name](frame)
         assert len(value) == 1
         return float(value[0])
+
+    def material(self, frame):
+        """The material at a frame: numbers, and arrays of the nodes where there is a map."""
+        return {name: self.sample(name, frame) * self.maps.get(name, 1.0)
+                for name in ("density", "damping", "b", "c", "d")}
 
     def frame_length(self, frame, fps):
         """Seconds of a frame in the surface's own time."""
@@ -282,7 +328,7 @@ class Scene:
         self.surfaces, self.forces, self.groups = [], [], []
         for element in root:
             if element.tag == "surface":
-                self.surfaces.append(Surface(element, folder, self.start))
+                self.surfaces.append(Surface(element, folder, self.start, self.fps))
             elif element.tag in KIND_CHANNELS:
                 self.forces.append(Force(element, False, seed))
             else:

@@ -9,10 +9,13 @@ import math
 
 import numpy as np
 import scipy.sparse
+import scipy.sparse.csgraph
 import scipy.sparse.linalg
 
-from engine import (GroupSphere, Transform, check_coefficients, distances, falloff,
-                    steps_of_frame, unit_forces, with_integrator)
+from exact_motion import exact_motion
+from engine import (GroupSphere, Transform, check_coefficients, damping_of, distances, falloff,
+                    find_cycle, smallest_eigenvalue, steps_of_frame, unit_forces, with_integrator)
+from maps import check_material
 from triangle_mesh import edge, joined
 
 SNAP = 0.1  # a cut nearer to the end of an edge than this part of it goes to that end
@@ -49,6 +52,7 @@ class Region:
         self.mesh, self.phi, self.is_inside = mesh, phi, phi > 0
         self.may_float = may_float  # whether a piece moves if nothing holds it
         self.cells, self.places = [], []
+        self.triangles = []  # of the cells
         self.part_corners = {}  # of the centre of a part
         self.cells_at = collections.defaultdict(list)  # pair of corners -> (cell, edge of it)
         self.edge_of = {}  # pair of corners on an edge of the mesh's triangles -> that edge
@@ -84,7 +88,7 @@ class Region:
                 self.edge_of[pair(names[k], names[following])] = edge(
                     corners[side], corners[(side + 1) % 3])
         if count == 3:
-            self.add_cell(names, places)
+            self.add_cell(names, places, t)
             return
         assert count == 4
         centre = ("part", t)
@@ -92,17 +96,18 @@ class Region:
         for k in range(4):
             following = (k + 1) % 4
             self.add_cell([names[k], names[following], centre],
-                          [places[k], places[following], sum(places) / 4])
+                          [places[k], places[following], sum(places) / 4], t)
 
     def share(self, a, b):
         """How far from a to b the rim point stands."""
         return self.phi[a] / (self.phi[a] - self.phi[b])
 
-    def add_cell(self, names, places):
+    def add_cell(self, names, places, triangle):
         for k in range(3):
             key = pair(names[k], names[(k + 1) % 3])
             self.cells_at[key].append((len(self.cells), k))
         self.cells.append(names)
+        self.triangles.append(triangle)
         self.places.append(places)
 
     def is_held(self, name):
@@ -238,6 +243,34 @@ def given_slope(normal, tangents, unit):
     return np.broadcast_to(x * x * along_u + y * y * along_v, 3)
 
 
+def form_of(b, c, d, mesh, unit, material):
+    """The quadratic form of H in one triangle."""
+    if mesh.border == "free" or material["has map"]:
+        poisson = material["poisson"]
+    else:
+        poisson = min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
+    b, c, d = b * unit[0]**4, c * unit[0]**2 * unit[1]**2, d * unit[1]**4
+    both = poisson * math.sqrt(b * d)
+    return np.array([[b, both, 0], [both, d, 0], [0, 0, c - 2 * both]])
+
+
+def triangle_material(surface, frame):
+    """b, c and d of each triangle: the mean of its corners'; density and damping of each node."""
+    mesh, material = surface.grid, surface.material(frame)
+    for name in "bcd":
+        at_points = mesh.at_points(np.broadcast_to(material[name], len(mesh.rest)))
+        material[name] = np.array([at_points[list(corners)].mean() for corners in mesh.triangles])
+        if name not in surface.maps:
+            material[name][:] = surface.sample(name, frame)
+    material["poisson"] = surface.sample("poisson", frame)
+    material["has map"] = surface.has_stiffness_map
+    if surface.has_stiffness_map:
+        check_material(material["b"], material["c"], material["d"], material["poisson"])
+        nodes = surface.material(frame)
+        check_material(nodes["b"], nodes["c"], nodes["d"], material["poisson"])
+    return material
+
+
 class Plate:
     """K and the right-hand side of what is held, for the region's unknowns.
 
@@ -246,14 +279,8 @@ class Plate:
 
     def __init__(self, region, w, material, tangents):
         mesh, unit = region.mesh, region.mesh.unit
-        b, c, d = (material[name] for name in "bcd")
-        if mesh.border == "free":
-            poisson = material["poisson"]
-        else:
-            poisson = min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
-        b, c, d = b * unit[0]**4, c * unit[0]**2 * unit[1]**2, d * unit[1]**4
-        both = poisson * math.sqrt(b * d)
-        form = np.array([[b, both, 0], [both, d, 0], [0, 0, c - 2 * both]])
+        forms = [form_of(*stiffness, mesh, unit, material)
+                 for stiffness in zip(*(material[name] for name in "bcd"))]
 
         others = [name for name in region.unknown_names if name not in set(region.moving_nodes)]
         number = {name: k for k, name in enumerate(list(region.moving_nodes) + others)}
@@ -295,6 +322,7 @@ class Plate:
                 terms, known[3 + k] = slopes[cell, k]
                 place += [(3 + k, unknown, sign) for unknown, sign in terms]
             strain = region.bending[cell]
+            form = forms[region.triangles[cell]]
             matrix = region.areas[cell] * strain.T @ form @ strain
             of_six, unknowns, signs = (np.array(column) for column in zip(*place))
             np.add.at(right, unknowns, -signs[:, None] * (matrix @ known)[of_six])
@@ -305,22 +333,48 @@ class Plate:
         self.stiffness = scipy.sparse.csc_matrix(triplets, shape=(count, count))
         self.right = right
 
+    def dampings(self, masses, density, ratio):
+        """Of each node that moves, by the slowest vibration of its piece."""
+        nodes = int((masses > 0).sum())
+        damping = np.zeros(nodes)
+        count, piece_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
+        for piece in range(count):
+            own = np.nonzero(piece_of == piece)[0]
+            heavy, light = own[own < nodes], own[own >= nodes]
+            if density == 0 or not len(heavy):
+                continue
+            stiffness = self.stiffness[heavy][:, heavy].toarray()
+            if len(light):
+                across = self.stiffness[heavy][:, light].toarray()
+                stiffness -= across @ np.linalg.solve(self.stiffness[light][:, light].toarray(),
+                                                      across.T)
+            damping[heavy] = damping_of(ratio, density,
+                                        smallest_eigenvalue(stiffness, masses[heavy]))
+        return damping
+
 
 def advance(w, velocity, region, load, material, tangents, count, dt):
     """`count` backward Euler steps of the nodes that move; returns w and velocity."""
     plate = Plate(region, w, material, tangents)
     nodes = region.moving_nodes
-    density, damping = material["density"], material["damping"]
+    # Numbers, or a column of the nodes where there is a map.
+    density, damping = (value if np.ndim(value) == 0 else value[nodes][:, None]
+                        for value in (material["density"], material["damping"]))
     masses = np.zeros(len(plate.right))
     masses[:len(nodes)] = region.masses()
-    inertia = density / dt**2 + damping / dt
-    matrix = (plate.stiffness + scipy.sparse.diags(inertia * masses)).tocsc()
+    if material["dampingRatio"] is not None:
+        damping = plate.dampings(masses, density, material["dampingRatio"])[:, None]
+    inertia = np.broadcast_to(density / dt**2 + damping / dt, (len(nodes), 1))
+    shifts = np.zeros(len(masses))
+    shifts[:len(nodes)] = inertia[:, 0] * masses[:len(nodes)]
+    matrix = (plate.stiffness + scipy.sparse.diags(shifts)).tocsc()
     factor = scipy.sparse.linalg.splu(matrix)
     unknown, speed = w[nodes], velocity[nodes]
     weight = masses[:len(nodes), None]
     for _ in range(count):
         right = plate.right.copy()
-        right[:len(nodes)] += load + weight * (inertia * unknown + density / dt * speed)
+        right[:len(nodes)] += load + weight * (
+            inertia * unknown + density / dt * speed)
         solution = factor.solve(right)
         solution += factor.solve(right - matrix @ solution)  # iterative refinement
         solution = solution[:len(nodes)]
@@ -328,6 +382,21 @@ def advance(w, velocity, region, load, material, tangents, count, dt):
         unknown = solution
     w, velocity = w.copy(), np.zeros_like(velocity)
     w[nodes], velocity[nodes] = unknown, speed
+    return w, velocity
+
+
+def advance_exactly(w, velocity, region, loads, material, tangents, time):
+    """The exact solution; `loads` and `tangents` are those at both ends of the frame."""
+    nodes = region.moving_nodes
+    forces = []
+    for load, slopes in zip(loads, tangents):
+        plate = Plate(region, w, material, slopes)
+        force = plate.right.copy()
+        force[:len(nodes)] += load
+        forces.append(force)
+    w, velocity, start, speed = w.copy(), np.zeros_like(velocity), w[nodes], velocity[nodes]
+    w[nodes], velocity[nodes] = exact_motion(
+        plate.stiffness.tocsc(), region.masses(), material, forces, start, speed, time)
     return w, velocity
 
 
@@ -348,6 +417,17 @@ class TriangleRun:
         self.w = np.zeros_like(self.mesh.rest)
         self.velocity = np.zeros_like(self.w)
         self.unsettled = np.zeros(len(self.w), dtype=bool)
+        self.last_load, self.last_tangents = np.zeros_like(self.w), {}
+        self.was_unknown = np.zeros(len(self.w), dtype=bool)
+
+    def rest_at(self, frame):
+        """R of the nodes."""
+        return self.mesh.of_nodes(self.surface.shape.at(frame))
+
+    parts = ("w", "velocity", "unsettled", "last_load", "was_unknown", "last_tangents")
+
+    def displacement(self, w):
+        return float(np.linalg.norm(w, axis=-1).max())
 
     def enabled_forces(self, frame):
         """The forces that push, groups' included, and what selects: (force, radius)."""
@@ -371,7 +451,7 @@ class TriangleRun:
                 phi = mesh.at_points(np.ones(len(mesh.rest)))
                 self.regions["all"] = Region(mesh, phi, may_float=True)
             return self.regions["all"]
-        points = transform.to_world(mesh.rest)
+        points = transform.to_world(self.rest_at(frame))
         is_untouched = np.full((len(points), 1), transform.is_identity)
         node_phi = np.full(len(points), -1.0)
         for k, (force, radius) in enumerate(selecting):
@@ -400,7 +480,8 @@ class TriangleRun:
         pushing, selecting = self.enabled_forces(frame)
         transform = Transform(surface, frame)
         is_current = surface.choices["measure"] == "current"
-        points = transform.to_world(mesh.rest + self.w if is_current else mesh.rest)
+        rest = self.rest_at(frame)
+        points = transform.to_world(rest + self.w if is_current else rest)
         region = self.region(frame, selecting, transform)
         nodes = region.moving_nodes
         self.regions_at[frame] = region
@@ -409,6 +490,7 @@ class TriangleRun:
             is_back = np.array([region.is_held(node) for node in range(len(self.w))])
             self.w[is_back] = 0
             self.velocity[is_back] = 0
+            self.was_unknown[is_back] = False
         if not nodes:
             self.diagnostics.skips.append((frame, surface.name, "no node"))
             return
@@ -423,16 +505,29 @@ class TriangleRun:
                 continue
             at = np.array(nodes)[is_pushed]
             strength = force.sample("magnitude", frame) * falloff(force, delta[at] / radius)
-            push = unit_forces(force, frame, points[at], self)
+            push = unit_forces(force, frame, points[at], self, at)
+            if force.kind == "inertia" and "density" in surface.maps:
+                push = push * surface.maps["density"][at][:, None]
             load[is_pushed] += (share[is_pushed] * strength)[:, None] * push
         load = transform.vector_to_object(load)
-        material = {name: surface.sample(name, frame)
-                    for name in ("density", "damping", "b", "c", "d", "poisson")}
+        material = triangle_material(surface, frame)
+        ratio = surface.channels["dampingRatio"]
+        material["dampingRatio"] = None if ratio is None else surface.sample("dampingRatio", frame)
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
         length = surface.frame_length(frame, self.scene.fps)
         count, dt = steps_of_frame(length, surface.sample("dt", frame), surface.choices["stepping"])
-        w, velocity = with_integrator(surface.choices["integrator"], material["density"], advance)(
-            self.w, self.velocity, region, load, material, tangents, count, dt)
+        if surface.choices["integrator"] == "exact":
+            first = np.where(self.was_unknown[nodes][:, None], self.last_load[nodes], load)
+            first_tangents = self.last_tangents if self.was_unknown.any() else tangents
+            w, velocity = advance_exactly(self.w, self.velocity, region, (first, load), material,
+                                          (first_tangents, tangents), length)
+        else:
+            w, velocity = with_integrator(
+                surface.choices["integrator"], material["density"], advance)(
+                self.w, self.velocity, region, load, material, tangents, count, dt)
+        self.last_load, self.was_unknown = np.zeros_like(self.w), np.zeros_like(self.was_unknown)
+        self.last_load[nodes], self.was_unknown[nodes] = load, True
+        self.last_tangents = tangents
         w, speed = w[nodes], velocity[nodes]
         before = self.w[nodes]
         if self.noise is not None:  # simulates another implementation's rounding
@@ -452,12 +547,28 @@ class TriangleRun:
 
     def run(self):
         """Yields (object positions of the vertices, transform) of each frame."""
-        for frame in range(self.scene.start, self.scene.end + 1):
+        frames = range(min(self.scene.start, self.surface.start_frame), self.scene.end + 1)
+        for frame in frames:
             check_coefficients(*(self.surface.sample(name, frame)
                                  for name in ("density", "damping", "b", "c", "d", "dt")))
-        for frame in range(self.scene.start, self.scene.end + 1):
+        first, loop = self.surface.start_frame, self.surface.loop
+        if loop:
+            states = find_cycle(self, range(first, first + loop))
+            for frame in frames:
+                w = np.zeros_like(self.w)
+                solved = first + (frame - first) % loop
+                if frame >= first:
+                    w = states[solved - first][0]
+                    if solved in self.regions_at:
+                        self.regions_at[frame] = self.regions_at[solved]
+                shape = self.surface.shape.at(solved)
+                yield self.mesh.displaced(shape, w), Transform(self.surface, frame)
+            return
+        for frame in frames:
             if frame <= self.surface.start_frame:
                 self.reset()
-            yield self.mesh.displaced(self.w), Transform(self.surface, frame)
+            if frame >= self.scene.start:
+                shape = self.surface.shape.at(frame)
+                yield self.mesh.displaced(shape, self.w), Transform(self.surface, frame)
             if self.surface.is_solved_at(frame):
                 self.solve(frame)

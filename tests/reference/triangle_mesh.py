@@ -81,7 +81,8 @@ class TriangleMesh:
         self.node_of = np.full(len(vertices), -1)  # -1: a vertex in no face
         for vertex, first in zip(used, lowest):
             self.node_of[vertex] = number[first]
-        self.rest = vertices[[used[first] for first in number]]
+        self.lowest = [used[first] for first in number]
+        self.rest = vertices[self.lowest]
 
         self.centre_corners, self.triangles, coordinates = [], [], []
         self.faces_of_node = collections.defaultdict(list)  # the centres' faces, by number
@@ -138,9 +139,13 @@ class TriangleMesh:
         means = [np.mean(node_values[nodes], axis=0) for nodes in self.centre_corners]
         return np.concatenate([node_values, means])
 
-    def displaced(self, w):
-        """Positions of all vertices; those of a node share its displacement."""
-        result = self.vertices.copy()
+    def of_nodes(self, vertices):
+        """Positions of vertices as those of nodes."""
+        return vertices[self.lowest]
+
+    def displaced(self, vertices, w):
+        """The positions of all vertices, displaced; those of a node share its displacement."""
+        result = vertices.copy()
         is_used = self.node_of >= 0
         result[is_used] += w[self.node_of[is_used]]
         return result

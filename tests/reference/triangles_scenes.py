@@ -27,6 +27,8 @@ UNITS = (None, "two", "one")
 class TriangleSceneMaker(SceneMaker):
     """Draws one random scene; `name` ends with its number, by which the kinds take turns."""
 
+    has_edges = False
+
     def __init__(self, rng, folder, name):
         super().__init__(rng, folder, name)
         self.number = int(name[-3:])
@@ -75,7 +77,7 @@ class TriangleSceneMaker(SceneMaker):
             self.transform(out)
         solver = []
         for choice, values, probability in (
-                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark",), 0.4), ("measure", ("rest", "current"), 0.7),
+                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark", "exact"), 0.4), ("measure", ("rest", "current"), 0.7),
                 ("release", ("recover",), 0.35), ("combine", ("islands", "union"), 0.2)):
             if self.chance(probability):
                 value = self.pick(*values)
@@ -113,6 +115,8 @@ class TriangleSceneMaker(SceneMaker):
             if is_free:
                 channels[-3:] = [Channel("b", text_of(b)), Channel("d", text_of(d)),
                                  Channel("c", text_of(c))]
+        # Of c to 2 sqrt(b d), whatever the factors above are.
+        self.least_ratio = c * (0.95 / 1.2 if c > 0 else 1.05 / 0.95) / (2 * math.sqrt(b * d))
         stiffness = (b / length_u**4 + MIXED_SHARE * max(c, 0) / (length_u * length_v)**2 +
                      d / length_v**4) / (PEAK * (2 + 2 * MIXED_SHARE))
         return channels, stiffness, length_u, length_v

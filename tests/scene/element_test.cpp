@@ -50,8 +50,6 @@ TEST_CASE("what a later version brings is not taken for a misspelling", "[scene]
                       3,
                       {name, later}});
   }
-  for (const std::string given : {"integrator=\"exact\""})
-    scenes.push_back({surface_with("<solver " + given + "/>"), 3, {given, later, "allowed:"}});
   for (const std::string given : {"uv=\"virtual\"", "resolution=\"9\""})
     scenes.push_back(
         {scene_with("<surface name=\"s\"><mesh file=\"/etc/passwd\" " + given + "/></surface>"),

@@ -140,7 +140,11 @@ std::string scene_around(const std::string& element, const std::string& attribut
                             : element == "nurbs" || element == "knots"
                                 ? net
                                 : begin("grid", " columns=\"3\" rows=\"3\"") + "/>";
-  const std::string part = parts.contains(element) ? begin(element, "") + "/>" : "";
+  const std::string part = element == "map"
+                               ? fmt::format("<material>{}/></material>",
+                                             begin("map", " channel=\"b\" file=\"soft.png\""))
+                           : parts.contains(element) ? begin(element, "") + "/>"
+                                                     : "";
   const std::string path =
       fmt::format("{}>{}/><waypoint at=\"1 0 0\"/><waypoint at=\"1 1 0\"/></path>",
                   begin("path", " attribute=\"center\""), begin("waypoint", " at=\"0 0 0\""));
@@ -263,7 +267,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 4);
+  CHECK(examples == 6);
 }
 
 }  // namespace

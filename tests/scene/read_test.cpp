@@ -187,7 +187,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
   <surface name="sheet">
     <grid columns="2" rows="61.5" width="1,5"/>
     <material density="-1" damping="nan"/>
-    <solver dt="0.01" integrator="exact"/>
+    <solver dt="0.01" integrator="rk4"/>
     <solver/>
   </surface>
   <radial name="bulge" falof="smooth" targets="sheat"/>
@@ -208,7 +208,7 @@ TEST_CASE("all problems of a file are told in one run, in the order of lines", "
       "3: <grid> width=\"1,5\"",
       "4: <material> density=\"-1\"",
       "4: <material> damping=\"nan\"",
-      "5: <solver> integrator=\"exact\"",
+      "5: <solver> integrator=\"rk4\"",
       "6: <surface> \"sheet\" has a second <solver>",
       "8: <radial> has no attribute \"falof\"",
       "8: bulge.targets: no surface is named \"sheat\"",

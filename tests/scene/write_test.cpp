@@ -68,6 +68,9 @@ class Says {
   void add(const std::vector<T>& values) {
     for (const T& value : values) add(value);
   }
+  void add(const Edges& edges) {
+    for (const Edge edge : {edges.u0, edges.u1, edges.v0, edges.v1}) add(edge);
+  }
   void add(const Value<1>& value) { add(value[0]); }
   void add(const Value<2>& value) {
     for (const double number : value) add(number);

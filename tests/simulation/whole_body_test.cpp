@@ -122,6 +122,96 @@ TEST_CASE("a body that nothing holds flies off evenly, unless it is static", "[s
   CHECK_THAT(failed.error().message, Contains("nothing holds the piece") && Contains("static"));
 }
 
+TEST_CASE("a sheet with free edges flies off evenly, unless it is static",
+          "[simulation][all][edges]") {
+  Surface kite = sheet("s");
+  kite.tangents = {};
+  kite.material.density = 0.02;
+  kite.material.damping = 0;
+  kite.solver.region = SolvedRegion::All;
+  kite.solver.edges = {Edge::Free, Edge::Free, Edge::Free, Edge::Free};
+  kite.solver.dt = 1.0 / 24;
+  Force wind = poke("wind", {});
+  wind.kind = UniformChannels{};
+  wind.force_radius = 1e3;
+  wind.magnitude = 0.01;
+  const auto frames = baked(scene({kite}, {wind}), "s");
+  for (int frame = 0; frame < 12; ++frame) {
+    const double way = 0.01 / 0.02 / (24.0 * 24) * frame * (frame + 1) / 2;
+    const Field moved = frames[frame] - frames[0];
+    CHECK((moved.col(1).array() - way).abs().maxCoeff() < 1e-9);
+  }
+  // A single hinge does not hold a static sheet, two do.
+  kite.material.density = 0;
+  for (const Edge second : {Edge::Free, Edge::Pinned}) {
+    kite.solver.edges = {Edge::Pinned, Edge::Free, second, Edge::Free};
+    auto simulation = Simulation::make(scene({kite}, {wind})).value();
+    const auto last = simulation.at(2);
+    CHECK(last.has_value() == (second == Edge::Pinned));
+    if (!last) CHECK_THAT(last.error().message, Contains("nothing holds") && Contains("frame 1"));
+  }
+}
+
+TEST_CASE("edges that are clamped leave every bit as it is", "[simulation][all][edges]") {
+  Surface whole = sheet("s");
+  whole.solver.region = SolvedRegion::All;
+  const auto expected = baked(scene({whole}, {push(3000, 0)}), "s");
+  whole.material.poisson = 7;  // acts with free edges only
+  CHECK(baked(scene({whole}, {push(3000, 0)}), "s") == expected);
+  whole.solver.edges.v1 = Edge::Pinned;
+  const auto pinned = baked(scene({whole}, {push(3000, 0)}), "s");
+  CHECK(pinned != expected);
+  whole.material.poisson = 0.3;
+  CHECK(baked(scene({whole}, {push(3000, 0)}), "s") == pinned);
+}
+
+TEST_CASE("a plate of one edge is the mirror of one of the other", "[simulation][all][edges]") {
+  // u0 <-> u1 mirrors the columns.
+  Surface surface = sheet("s");
+  surface.tangents = {};
+  surface.solver.region = SolvedRegion::All;
+  Force middle = poke("p", {0, 0, 0.5}, 2000);
+  const auto with = [&](const Edges& edges) {
+    surface.solver.edges = edges;
+    return baked(scene({surface}, {middle}), "s").back();
+  };
+  const auto& grid = std::get<GridSheet>(surface.shape);
+  for (const Edge edge : {Edge::Pinned, Edge::Free}) {
+    const Field first = with({edge, Edge::Clamped, Edge::Clamped, Edge::Pinned});
+    const Field last = with({Edge::Clamped, edge, Edge::Clamped, Edge::Pinned});
+    for (int j = 0; j < grid.rows; ++j) {
+      for (int i = 0; i < grid.columns; ++i) {
+        const int here = j * grid.columns + i, there = j * grid.columns + grid.columns - 1 - i;
+        CHECK_THAT(first(here, 1), WithinAbs(last(there, 1), 1e-10));
+      }
+    }
+  }
+}
+
+TEST_CASE("edges need a whole grid, tangents a clamped edge", "[simulation][all][edges]") {
+  Surface surface = sheet("s");
+  surface.solver.edges.u1 = Edge::Free;
+  const auto needs = problems_of(scene({surface}, {}));
+  REQUIRE(needs.size() == 1);
+  CHECK_THAT(needs[0], Contains("s.edges") && Contains("region=\"all\""));
+  surface.solver.region = SolvedRegion::All;
+  CHECK(problems_of(scene({surface}, {})).empty());
+  surface.tangents.su1 = TangentChannel(Channel<1>(0.5));
+  surface.tangents.su0 = TangentChannel(Channel<1>(0.5));
+  const auto error = [&] { return Simulation::make(scene({surface}, {})).error().message; };
+  CHECK_THAT(error(), Contains("s.su1 is 0.5") && Contains("makes free") && !Contains("s.su0"));
+  surface.tangents = {};
+  surface.material.poisson = 1.2;
+  CHECK_THAT(error(), Contains("s.poisson is 1.2") && Contains("smaller poisson helps"));
+
+  Surface mesh = plain_mesh(sphere(1));
+  mesh.solver.region = SolvedRegion::All;
+  mesh.solver.edges = surface.solver.edges;
+  const auto made = Simulation::make(scene({mesh}, {}));
+  REQUIRE_FALSE(made);
+  CHECK_THAT(made.error().message, Contains("edges are those of a grid"));
+}
+
 TEST_CASE("a force that never reaches a whole body is told", "[simulation][all]") {
   Surface surface = sheet("s");
   surface.solver.region = SolvedRegion::All;

@@ -210,6 +210,19 @@ void fade(const SampledForce& force, std::span<double> distances) {
   }
 }
 
+// What a force has for each node; null: nothing.
+const Field* vectors_of_nodes(const SampledForce& force) {
+  const auto* const inertia = std::get_if<InertiaForce>(&force.kind);
+  return inertia ? inertia->of_nodes.get() : nullptr;
+}
+
+// Magnitude x falloff of a force whose distance is 0 everywhere.
+double strength_everywhere(const SampledForce& force) {
+  double strength = 0;
+  fade(force, {&strength, 1});
+  return strength;
+}
+
 }  // namespace
 
 double PointForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
@@ -246,11 +259,27 @@ Vector3d force_at(const SampledForce& force, const Vector3d& p) {
   });
 }
 
+Vector3d force_on(const SampledForce& force, const Vector3d& p, int node) {
+  const Vector3d load = force_at(force, p);
+  const Field* const of_nodes = vectors_of_nodes(force);
+  if (!of_nodes) return load;
+  return load + strength_everywhere(force) * of_nodes->row(node).transpose();
+}
+
 BatchNumbers distances(const ForceKind& force, const Batch& points) {
   return with_kernel(force, [&](const auto& kind) { return distances_from(kind, points); });
 }
 
-void add_forces(const SampledForce& force, const Batch& points, int first, Batch& sums) {
+void add_forces(const SampledForce& force, const Batch& points, int node, int first, Batch& sums) {
+  if (vectors_of_nodes(force)) {
+    for (int k = 0; k < points.count; ++k) {
+      const Vector3d load = force_on(force, points.at(k), node + k);
+      sums.x[first + k] += load.x();
+      sums.y[first + k] += load.y();
+      sums.z[first + k] += load.z();
+    }
+    return;
+  }
   with_kernel(force.kind, [&](const auto& kind) {
     BatchNumbers strength = distances_from(kind, points);
     fade(force, {strength.of, static_cast<std::size_t>(points.count)});

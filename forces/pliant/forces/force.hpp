@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <variant>
@@ -85,15 +86,16 @@ struct NoiseForce {
 };
 
 /// The inertial load of a surface's own motion; every distance is 0. An affine function, offset +
-/// linear (p - origin).
+/// linear (p - origin), and of a rest shape that is animated a vector for each node.
 struct InertiaForce {
   Matrix3d linear = Matrix3d::Zero();
   Vector3d origin = {0, 0, 0};  ///< world [length]
   Vector3d offset = {0, 0, 0};
+  std::shared_ptr<const Field> of_nodes = {};  ///< #nodes x 3, world; null: none
 
-  auto values() const { return std::tie(linear, origin, offset); }
+  auto values() const { return std::tie(linear, origin, offset, of_nodes); }
   double distance(const Vector3d& p) const;
-  Vector3d unit_force(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;  ///< without that of nodes
 };
 
 /// A kind of force of an embedding program, at one frame. Requires: neither function is empty.
@@ -133,5 +135,8 @@ Vector3d unit_force(const ForceKind& force, const Vector3d& p);
 /// The force on a node at p, for any p: the caller checks the force box. Requires: force_radius >
 /// 0. [length b/uv^4]
 Vector3d force_at(const SampledForce& force, const Vector3d& p);
+
+/// The same on a node of a surface at p, by its number, with what the force has for that node.
+Vector3d force_on(const SampledForce& force, const Vector3d& p, int node);
 
 }  // namespace pliant

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "pliant/body/settings.hpp"
@@ -10,28 +12,45 @@
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/force.hpp"
 #include "pliant/plate/plate.hpp"
+#include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
 
 namespace pliant {
 
 /// All inputs that act on a body during one frame, sampled at the frame.
 struct BodyInputs {
-  Transform transform;               ///< object to world; invertible
-  Stiffness stiffness;               ///< elliptic
-  Dynamics dynamics;                 ///< density, damping >= 0
+  Transform transform;  ///< object to world; invertible
+  Stiffness stiffness;  ///< elliptic
+  Dynamics dynamics;    ///< density, damping >= 0; see `damping_ratio`
+  /// >= 0, of the slowest vibration of each region: its damping follows; null: it is `dynamics`'
+  std::optional<double> damping_ratio = {};
   EdgeTangents tangents;             ///< object space
-  double poisson = 0.3;              ///< of a surface with a free border [1]
+  double poisson = 0.3;              ///< acts with a free border or edge, and maps of b, c, d [1]
   double frame_length = 0;           ///< [s], > 0
   double dt = 0;                     ///< [s], accepted by `check_time_step`
   std::vector<SampledForce> forces;  ///< the enabled ones that target the body, world space
 
+  /// The rest shape at the frame if it is animated (#nodes x 3, object space); null otherwise.
+  std::shared_ptr<const Field> shape = {};
+
   /// For each force the index of the force whose deformation box it uses, which determines the
   /// island it acts in; empty: each uses its own.
   std::vector<int> selectors = {};
+
+  /// Whether the damping depends on the slowest vibrations.
+  bool asks_for_vibrations() const {
+    return damping_ratio && *damping_ratio > 0 && dynamics.density > 0;
+  }
 };
 
-/// The steps of a frame. Without density there is nothing that swings: they are backward Euler's.
-TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings);
+/// The dynamics that act: density is 0 if its map is 0 everywhere, and so is damping. `factors` are
+/// those of the nodes; null: the material is even.
+Dynamics acting_dynamics(const Dynamics& dynamics, const NodeFactors* factors);
+
+/// The steps of a frame. Without density there is nothing that swings: they are backward Euler's,
+/// unless they are exact; static frames have one step of backward Euler then.
+TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
+                   const NodeFactors* factors = nullptr);
 
 /// One elastic surface: its state, and one frame's step. Thesis 5.3; SPEC 6.
 class Body {
@@ -61,14 +80,18 @@ class Body {
 
   virtual SolverCounts solver_counts() const = 0;
 
-  const Field& rest() const { return rest_; }  ///< #nodes x 3, object space [length]
+  /// The positions of its state at rest, #nodes x 3, object space [length]: 0 if the rest shape is
+  /// animated.
+  const Field& rest() const { return rest_; }
   const BodyState& state() const { return state_; }
   const BodySettings& settings() const { return settings_; }
 
-  /// The nodes from which the forces' distances are measured (#nodes x 3, object space).
-  const Field& measured() const {
-    return settings_.measure == Measure::Rest ? rest_ : state_.positions;
-  }
+  /// The factors of the material at the nodes; null: it is even.
+  const std::shared_ptr<const NodeFactors>& factors() const { return factors_; }
+
+  /// The nodes from which the forces' distances are measured (#nodes x 3, object space); `room` is
+  /// memory for them.
+  const Field& measured(const BodyInputs& inputs, Field& room) const;
 
   BodyState rest_state() const;  ///< after a `reset`
 
@@ -76,15 +99,45 @@ class Body {
   void restore(BodyState state);
 
  protected:
-  Body(Field rest, const BodySettings& settings);
+  Body(Field rest, const BodySettings& settings, std::shared_ptr<const NodeFactors> factors);
+
+  /// The nodes' factors of density; null: 1.
+  const std::vector<double>* densities() const { return factors_ ? &factors_->density : nullptr; }
+
+  /// Whether inertia or drag hold some node back in a step of `dt` [s].
+  bool resists_motion(const Dynamics& dynamics, double dt) const {
+    return acting_dynamics(dynamics, factors_.get()).shift(dt) > 0;
+  }
+
+  /// Whether the inputs have a rest shape if and only if it is animated.
+  bool fits(const BodyInputs& inputs) const {
+    return settings_.is_animated == (inputs.shape != nullptr);
+  }
+
+  /// The nodes at rest at the frame.
+  const Field& rest_at(const BodyInputs& inputs) const {
+    return inputs.shape ? *inputs.shape : rest_;
+  }
 
   bool recovers() const { return settings_.release == Release::Recover; }
+
+  /// Whether the next solve needs what pushed in the last one.
+  bool remembers_push() const { return settings_.integrator == Integrator::Exact; }
+
+  LastPush nothing_pushed() const;
+
+  /// The tangents that a frame begins with, if they are `now` at its end.
+  EdgeTangents first_tangents(const EdgeTangents& now) const;
+
+  /// Puts nodes at rest that no solve moves. Requires: the body recovers.
+  void put_at_rest(const std::vector<int>& nodes);
 
   /// Whether a frame solves the body only where forces select.
   bool waits_for_forces() const { return !recovers() && settings_.region == SolvedRegion::Forces; }
 
   Field rest_;
   BodySettings settings_;
+  std::shared_ptr<const NodeFactors> factors_;
   BodyState state_;
 };
 

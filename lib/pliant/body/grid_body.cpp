@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/swing.hpp"
 #include "pliant/region/region.hpp"
 
 namespace pliant {
@@ -54,14 +56,55 @@ Box lone_rectangle(const Grid& grid, std::span<const Region> regions) {
 
 bool is_outline_of(const Outline& outline, const Patch& patch) {
   const Grid& grid = outline.grid();
-  return grid == patch.grid(grid) && outline.mask() == patch.interior;
+  return grid == patch.grid(grid) && outline.mask() == patch.interior &&
+         outline.edges() == Outline(grid, patch.edges).edges();
+}
+
+std::string not_held(bool is_whole) {
+  if (is_whole) {
+    return "nothing holds a static surface: give it a density or a damping, or a clamped edge or "
+           "two pinned ones";
+  }
+  return "nothing holds a static surface that is closed along u and v: give it a density or a "
+         "damping, or select less: the forces select all of it";
 }
 
 }  // namespace
 
+// A patch with a mask has clamped edges.
+Outline outline_of(const Grid& grid, const Patch& patch) {
+  if (!patch.interior.empty()) return {patch.grid(grid), patch.interior};
+  return {patch.grid(grid), patch.edges};
+}
+
+std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& patch,
+                                              const std::shared_ptr<const NodeFactors>& factors) {
+  if (!factors || patch.box == grid.box()) return factors;
+  const auto part_of = [&](const std::vector<double>& all) {
+    std::vector<double> part;
+    if (all.empty()) return part;
+    const Box& box = patch.box;
+    part.reserve(static_cast<std::size_t>(box.columns()) * static_cast<std::size_t>(box.rows()));
+    for (int j = box.j0; j <= box.j1; ++j) {
+      for (int i = box.i0; i <= box.i1; ++i)
+        part.push_back(all[static_cast<std::size_t>(grid.node_round(i, j))]);
+    }
+    return part;
+  };
+  const auto& [density, damping, b, c, d, yield, hardening] = *factors;
+  NodeFactors part{part_of(density), part_of(damping), part_of(b),        part_of(c),
+                   part_of(d),       part_of(yield),   part_of(hardening)};
+  return std::make_shared<const NodeFactors>(std::move(part));
+}
+
+double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactors* factors) {
+  const bool acts = patch.edges.have_free() || (factors && factors->have_stiffness());
+  return acts ? inputs.poisson : 0;
+}
+
 GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
-                   RunContext context)
-    : Body(std::move(rest), settings),
+                   RunContext context, std::shared_ptr<const NodeFactors> factors)
+    : Body(std::move(rest), settings, std::move(factors)),
       grid_(grid),
       profile_(context.profile),
       solvers_(solver, std::move(context)) {
@@ -75,23 +118,28 @@ Result<StepPlan> GridBody::look(const BodyInputs& inputs) const {
 }
 
 Push GridBody::push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const {
-  return pliant::push_of(grid_, {measured(), inputs.transform}, inputs.forces[force],
-                         plan.selection.forces[force].force,
+  Field room;
+  return pliant::push_of(grid_, {measured(inputs, room), inputs.transform, densities()},
+                         inputs.forces[force], plan.selection.forces[force].force,
                          plan.selection.patches_of_force(force));
 }
 
 Result<void> GridBody::plan(const BodyInputs& inputs, BodyWorkspace& work) const {
   StepPlan& plan = work.plan;
   Selection& selection = plan.selection;
-  work.tiles.update(grid_, {measured(), inputs.transform});
+  PLIANT_EXPECTS(fits(inputs));
+  work.tiles.update(grid_, {measured(inputs, work.measured), inputs.transform, densities()});
   if (!work.tiles.are_finite()) {
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }
-  plan.steps = steps_of(inputs, settings_);
+  plan.steps = steps_of(inputs, settings_, factors_.get());
   plan.is_whole = settings_.region == SolvedRegion::All;
   const Box all = grid_.box();
   selection = reselected(std::move(selection), work.tiles, inputs.forces, settings_.combine,
                          inputs.selectors, std::span(&all, plan.is_whole ? 1 : 0));
+  if (plan.is_whole) {
+    for (Patch& patch : selection.regions[0].patches) patch.edges = settings_.edges;
+  }
   if (settings_.measure == Measure::Current) find_lost(inputs, work);
   if (recovers()) {
     plan.recovering = recovering_nodes(grid_, state_.unsettled, selection.regions, work.marks,
@@ -121,7 +169,7 @@ void GridBody::find_lost(const BodyInputs& inputs, BodyWorkspace& work) const {
     const bool holds_region = force.deformation_radius == 0 || !now.deformation.is_empty();
     const bool holds_load = force.force_radius == 0 || !now.force.is_empty();
     if (holds_region && holds_load) continue;
-    if (!has_rest_tiles) work.rest_tiles.update(grid_, {rest_, inputs.transform});
+    if (!has_rest_tiles) work.rest_tiles.update(grid_, {rest_at(inputs), inputs.transform});
     has_rest_tiles = true;
     now.is_lost = is_lost(boxes_of(work.rest_tiles, force), now);
   }
@@ -136,7 +184,7 @@ Result<void> GridBody::step(const BodyInputs& inputs) {
   if (auto planned = plan(inputs, work_); !planned) return planned;
   planning.stop();
   if (!work_.plan.solves()) {
-    settle(work_.plan.settling);
+    put_at_rest(work_.plan.settling);
     return {};
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
@@ -145,15 +193,8 @@ Result<void> GridBody::step(const BodyInputs& inputs) {
   beginning.stop();
   if (auto solved = solve(inputs); !solved) return solved;
   const StageTimer ending(profile_, Stage::StateOut);
+  if (remembers_push()) keep_push(inputs);
   return take();
-}
-
-void GridBody::settle(const std::vector<int>& nodes) {
-  for (const int node : nodes) {
-    state_.positions.row(node) = rest_.row(node);
-    state_.velocities.row(node).setZero();
-    state_.unsettled[static_cast<std::size_t>(node)] = 0;
-  }
 }
 
 // Nodes that no solve moves: they stay in place or are put at rest, without velocity.
@@ -182,12 +223,39 @@ void GridBody::keep_solvers() {
   std::vector<Outline> outlines;
   for (const Region& region : regions) {
     for (const Patch& patch : region.patches) {
-      outlines.emplace_back(patch.grid(grid_), patch.interior);
+      outlines.push_back(outline_of(grid_, patch));
     }
   }
   solvers_.keep_only(outlines);
   solves.resize(count);
   for (std::size_t k = 0; k < count; ++k) solves[k].problem.outline = std::move(outlines[k]);
+}
+
+// Takes the factors of a patch, unless it has them already.
+void GridBody::fit_factors(const Patch& patch, PatchSolve& one) const {
+  if (one.box == patch.box) return;
+  one.problem.factors = factors_on(grid_, patch, factors_);
+  one.box = patch.box;
+}
+
+// Those of a region, whose patches begin at `place` among the solves: with a damping ratio, the
+// slowest vibration of all its patches decides.
+Result<Dynamics> GridBody::dynamics_of(const BodyInputs& inputs, const Region& region,
+                                       std::size_t place) {
+  if (!inputs.asks_for_vibrations()) return inputs.dynamics;
+  const StageTimer timer(profile_, Stage::SetUp);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < region.patches.size(); ++k) {
+    PatchSolve& one = work_.solves[place + k];
+    fit_factors(region.patches[k], one);
+    PlateSystem system{one.problem.outline, inputs.stiffness, 0};
+    system.poisson = poisson_of(inputs, region.patches[k], factors_.get());
+    system.factors = one.problem.factors;
+    const auto lambda = vibrations_.smallest(solvers_.solver_of(system.outline), system);
+    if (!lambda) return fail(lambda.error());
+    least = std::min(least, *lambda);
+  }
+  return damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, least);
 }
 
 Result<void> GridBody::solve(const BodyInputs& inputs) {
@@ -201,14 +269,12 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
   for (std::size_t k = 0; k < plan.selection.regions.size(); ++k) {
     const Region& region = plan.selection.regions[k];
     if (!region.is_solved()) continue;
-    const double length = recovers() ? settling_length(grid_, rest_, region) : 0;
+    const double length = recovers() ? settling_length(grid_, rest_at(inputs), region) : 0;
+    const auto dynamics = dynamics_of(inputs, region, place);
+    if (!dynamics) return fail(dynamics.error());
     for (const Patch& patch : region.patches) {
-      if (!patch.is_held() && !(inputs.dynamics.shift(plan.steps.solved_length()) > 0)) {
-        std::string message =
-            "nothing holds a static surface that is closed along u and v: give it a density or a "
-            "damping";
-        if (!plan.is_whole) message += ", or select less: the forces select all of it";
-        return fail(ErrorCode::SolverFailed, std::move(message));
+      if (!patch.is_held() && !resists_motion(*dynamics, plan.steps.solved_length())) {
+        return fail(ErrorCode::SolverFailed, not_held(plan.is_whole));
       }
       PatchSolve& one = work_.solves[place++];
       PlateProblem& problem = one.problem;
@@ -216,12 +282,19 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
       one.patch = &patch;
       one.settling_length = length;
       problem.stiffness = inputs.stiffness;
-      problem.dynamics = inputs.dynamics;
+      problem.poisson = poisson_of(inputs, patch, factors_.get());
+      fit_factors(patch, one);
+      problem.dynamics = *dynamics;
       problem.tangents = tangents_of(grid_, patch, region, inputs.tangents);
       {
         const StageTimer timer(profile_, Stage::Load);
         problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, plan.selection, k,
                                      box, to_object, std::move(problem.load));
+        if (remembers_push()) {
+          begin_load(box, problem);
+          problem.first_tangents =
+              tangents_of(grid_, patch, region, first_tangents(inputs.tangents));
+        }
       }
       {
         const StageTimer timer(profile_, Stage::StateIn);
@@ -240,6 +313,45 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
   return {};
 }
 
+// The load that a patch begins with: that of the last solve, at nodes which it moved.
+void GridBody::begin_load(const Box& box, PlateProblem& problem) const {
+  problem.first_load = problem.load;
+  for (int j = box.j0; j <= box.j1; ++j) {
+    for (int i = box.i0; i <= box.i1; ++i) {
+      const int node = grid_.node_round(i, j);
+      if (!state_.last.unknowns[static_cast<std::size_t>(node)]) continue;
+      const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns() + (i - box.i0);
+      problem.first_load.row(row) = state_.last.loads.row(node);
+    }
+  }
+}
+
+// Calls f(solve, i, j) for the nodes that the solves move.
+template <class F>
+void GridBody::for_each_moved(const F& f) const {
+  for (const PatchSolve& one : work_.solves) {
+    const Box inner = one.patch->inner();
+    for (int j = inner.j0; j <= inner.j1; ++j) {
+      for (int i = inner.i0; i <= inner.i1; ++i) {
+        if (one.patch->holds(i, j)) f(one, i, j);
+      }
+    }
+  }
+}
+
+void GridBody::keep_push(const BodyInputs& inputs) {
+  LastPush& next = work_.next_push;
+  next = nothing_pushed();
+  next.tangents = inputs.tangents;
+  for_each_moved([&](const PatchSolve& one, int i, int j) {
+    const int node = grid_.node_round(i, j);
+    const Box& box = one.patch->box;
+    const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns() + (i - box.i0);
+    next.loads.row(node) = one.problem.load.row(row);
+    next.unknowns[static_cast<std::size_t>(node)] = 1;
+  });
+}
+
 // Makes the solution the state, all of it or nothing. The rim is not written: rest + (position -
 // rest) may round.
 Result<void> GridBody::take() {
@@ -253,27 +365,21 @@ Result<void> GridBody::take() {
   if (recovers()) mark_unsettled();
   state_.positions.swap(work_.next_positions);
   state_.velocities.swap(work_.next_velocities);
+  if (remembers_push()) std::swap(state_.last, work_.next_push);
   return {};
 }
 
 // Requires: the next positions are complete, but not yet in the state.
 void GridBody::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  for (const PatchSolve& one : work_.solves) {
-    const Box inner = one.patch->inner();
-    for (int j = inner.j0; j <= inner.j1; ++j) {
-      for (int i = inner.i0; i <= inner.i1; ++i) {
-        if (!one.patch->holds(i, j)) continue;
-        const int node = grid_.node_round(i, j);
-        const auto position = work_.next_positions.row(node);
-        const double displacement = length(position - rest_.row(node));
-        const double motion = length(position - state_.positions.row(node));
-        const double larger = std::max(displacement, motion);
-        state_.unsettled[static_cast<std::size_t>(node)] =
-            larger > 0 && larger >= one.settling_length;
-      }
-    }
-  }
+  for_each_moved([&](const PatchSolve& one, int i, int j) {
+    const int node = grid_.node_round(i, j);
+    const auto position = work_.next_positions.row(node);
+    const double displacement = length(position - rest_.row(node));
+    const double motion = length(position - state_.positions.row(node));
+    const double larger = std::max(displacement, motion);
+    state_.unsettled[static_cast<std::size_t>(node)] = larger > 0 && larger >= one.settling_length;
+  });
 }
 
 }  // namespace pliant

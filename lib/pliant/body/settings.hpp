@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pliant/core/edges.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/region/combine.hpp"
@@ -41,6 +42,9 @@ struct BodySettings {
   Combine combine = Combine::Box;
   Release release = Release::Freeze;
   Border border = Border::Clamped;  ///< of a surface of triangles
+  Edges edges = {};                 ///< of a grid that is solved as a whole
+  bool is_animated = false;         ///< its rest shape moves: its state holds displacements from it
+  int exact_parts = 1;              ///< of each step that `Integrator::Exact` chooses, >= 1
 };
 
 }  // namespace pliant

@@ -10,6 +10,8 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/swing.hpp"
+#include "pliant/plate/vibration.hpp"
 
 namespace pliant {
 namespace {
@@ -37,18 +39,73 @@ SolverChoice factor_of(SolverChoice choice) {
 
 }  // namespace
 
-Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border) {
-  const bool is_free = border == Border::Free;
-  return bending_of(inputs.stiffness, unit, is_free ? std::optional(inputs.poisson) : std::nullopt);
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border,
+                   const NodeFactors* factors) {
+  const bool acts = border == Border::Free || (factors && factors->have_stiffness());
+  return bending_of(inputs.stiffness, unit, acts ? std::optional(inputs.poisson) : std::nullopt);
+}
+
+std::vector<double> means_on_triangles(const TriangleSurface& surface,
+                                       const std::vector<double>& at_nodes) {
+  std::vector<double> means;
+  if (at_nodes.empty()) return means;
+  means.reserve(surface.triangles.size());
+  for (int face = 0; face < surface.face_count(); ++face) {
+    const std::span<const int> nodes = surface.nodes_of(face);
+    double sum = 0;
+    for (const int node : nodes) sum += at_nodes[static_cast<std::size_t>(node)];
+    if (!surface.has_centre(face)) {
+      means.push_back(sum / 3);
+      continue;
+    }
+    const double at_centre = sum / static_cast<double>(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const int next = nodes[(k + 1) % nodes.size()];
+      means.push_back((at_nodes[static_cast<std::size_t>(nodes[k])] +
+                       at_nodes[static_cast<std::size_t>(next)] + at_centre) /
+                      3);
+    }
+  }
+  return means;
+}
+
+std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
+                                              const LevelSet& level_set, const SurfacePiece& piece,
+                                              const NodeFactors* factors) {
+  if (!factors) return nullptr;
+  CellFactors own;
+  const auto at_points = [&](const std::vector<double>& at_nodes) {
+    std::vector<double> at;
+    for (int k = 0; !at_nodes.empty() && k < piece.free_nodes; ++k) {
+      const int node = level_set.nodes[static_cast<std::size_t>(piece.points[k])];
+      at.push_back(at_nodes[static_cast<std::size_t>(node)]);
+    }
+    return at;
+  };
+  const auto at_cells = [&](const std::vector<double>& at_nodes) {
+    const std::vector<double> means = means_on_triangles(surface, at_nodes);
+    std::vector<double> at;
+    for (std::size_t k = 0; !means.empty() && k < piece.cells.cells.size(); ++k)
+      at.push_back(means[static_cast<std::size_t>(piece.cells.cells[k].triangle)]);
+    return at;
+  };
+  own.density = at_points(factors->density);
+  own.damping = at_points(factors->damping);
+  own.b = at_cells(factors->b);
+  own.c = at_cells(factors->c);
+  own.d = at_cells(factors->d);
+  return std::make_shared<const CellFactors>(std::move(own));
 }
 
 SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface,
-                         const BodySettings& settings, SolverChoice solver, RunContext context)
-    : Body(surface->rest, settings),
+                         const BodySettings& settings, SolverChoice solver, RunContext context,
+                         std::shared_ptr<const NodeFactors> factors)
+    : Body(surface->rest, settings, std::move(factors)),
       surface_(std::move(surface)),
-      tree_(rest_),
+      tree_(surface_->rest),
       is_border_(border_nodes(*surface_)),
-      settling_length_(1e-6 * length_of(rest_.colwise().maxCoeff() - rest_.colwise().minCoeff())),
+      settling_length_(1e-6 * length_of(surface_->rest.colwise().maxCoeff() -
+                                        surface_->rest.colwise().minCoeff())),
       solver_(factor_of(solver)),
       context_(std::move(context)) {
   PLIANT_EXPECTS(settings.reference == Reference::Rest);
@@ -67,16 +124,25 @@ Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
 }
 
 Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
+  PLIANT_EXPECTS(fits(inputs));
+  if (!settings_.is_animated) return plan_on(*surface_, tree_, inputs, plan);
+  const TriangleSurface moved = posed(*surface_, *inputs.shape);
+  return plan_on(moved, PointTree(moved.rest), inputs, plan);
+}
+
+// `surface` and `tree` are those at the frame.
+Result<void> SurfaceBody::plan_on(const TriangleSurface& surface, const PointTree& tree,
+                                  const BodyInputs& inputs, StepPlan& plan) const {
   if (!plan.surface) plan.surface.emplace();
   SurfaceSelection& selection = *plan.surface;
-  plan.steps = steps_of(inputs, settings_);
+  plan.steps = steps_of(inputs, settings_, factors_.get());
   plan.is_whole = settings_.region == SolvedRegion::All;
   if (plan.is_whole) {
     if (selection.pieces.empty()) select_all(selection);
-    return weigh(inputs, selection);
+    return weigh(surface, tree, inputs, selection);
   }
   LevelSet level_set =
-      find_level_set(*surface_, tree_, inputs.transform, inputs.forces, inputs.selectors);
+      find_level_set(surface, tree, inputs.transform, inputs.forces, inputs.selectors);
   snap(level_set);
   plan.recovering.clear();
   plan.settling.clear();
@@ -95,7 +161,7 @@ Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
     selection.level_set = std::move(level_set);
     selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
   }
-  return weigh(inputs, selection);
+  return weigh(surface, tree, inputs, selection);
 }
 
 // Pieces that nothing holds move too.
@@ -108,8 +174,11 @@ void SurfaceBody::select_all(SurfaceSelection& selection) const {
 }
 
 // Computes the loads, and what each force does.
-Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& selection) const {
-  const PlacedNodes nodes(measured(), inputs.transform), rest_nodes(rest_, inputs.transform);
+Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree& tree,
+                                const BodyInputs& inputs, SurfaceSelection& selection) const {
+  Field room;
+  const PlacedNodes nodes(measured(inputs, room), inputs.transform, densities());
+  const PlacedNodes rest_nodes(surface.rest, inputs.transform, densities());
   for (const int node : selection.level_set.nodes) {
     if (!nodes.at(node).allFinite()) {
       return fail(ErrorCode::NotFinite, "a position in world space is not finite");
@@ -125,11 +194,11 @@ Result<void> SurfaceBody::weigh(const BodyInputs& inputs, SurfaceSelection& sele
     const SampledForce& force = inputs.forces[k];
     SurfaceForceSelection& told = selection.forces[k];
     const auto reach = [&](double radius, bool with_faces) {
-      return reaches(*surface_, tree_, inputs.transform, force, radius, with_faces);
+      return reaches(surface, tree, inputs.transform, force, radius, with_faces);
     };
     told.selects = inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
     const std::vector<bool> within =
-        nodes_within(*surface_, selection.level_set, inputs.transform, force);
+        nodes_within(surface, selection.level_set, inputs.transform, force);
     for (const SurfacePiece& piece : selection.pieces) {
       told.counts = told.counts + piece.counts_of(within);
     }
@@ -160,17 +229,17 @@ Result<void> SurfaceBody::step(const BodyInputs& inputs) {
   if (auto planned = plan(inputs, plan_); !planned) return planned;
   planning.stop();
   if (!plan_.solves()) {
-    for (const int node : plan_.settling) {
-      state_.positions.row(node) = rest_.row(node);
-      state_.velocities.row(node).setZero();
-      state_.unsettled[static_cast<std::size_t>(node)] = 0;
-    }
+    put_at_rest(plan_.settling);
     return {};
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
   next_positions_ = state_.positions;
   for (const int node : plan_.settling) next_positions_.row(node) = rest_.row(node);
   next_velocities_.setZero(rest_.rows(), 3);
+  if (remembers_push()) {
+    next_push_ = nothing_pushed();
+    next_push_.tangents = inputs.tangents;
+  }
   keep_plates();
   if (auto solved = solve(inputs); !solved) return solved;
   const StageTimer ending(context_.profile, Stage::StateOut);
@@ -197,30 +266,53 @@ void SurfaceBody::keep_plates() {
     if (!piece.moves()) continue;
     std::unique_ptr<TrianglePlate>& plate = solves_[place++].plate;
     if (plate) continue;
-    plate = std::make_unique<TrianglePlate>(piece.cells, piece.masses, solver_, context_);
+    plate = std::make_unique<TrianglePlate>(
+        piece.cells, piece.masses, solver_, context_,
+        factors_of(*surface_, plan_.surface->level_set, piece, factors_.get()));
   }
+}
+
+// Those of a piece: with a damping ratio, its slowest vibration decides.
+Result<Dynamics> SurfaceBody::dynamics_of(const BodyInputs& inputs, const SurfacePiece& piece,
+                                          PieceSolve& one) const {
+  if (!inputs.asks_for_vibrations()) return inputs.dynamics;
+  const StageTimer timer(context_.profile, Stage::SetUp);
+  if (!one.lambda || one.bending != one.problem.bending) {
+    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, piece.is_held());
+    if (!lambda) return fail(lambda.error());
+    one.lambda = *lambda;
+    one.bending = one.problem.bending;
+  }
+  return damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, *one.lambda);
 }
 
 Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
   const SurfaceSelection& selection = *plan_.surface;
-  const auto& [unit_u, unit_v] = surface_->unit;
-  const EdgeTangents& tangents = inputs.tangents;
+  const auto slopes_of = [&](const EdgeTangents& tangents) -> std::array<Vector3d, 4> {
+    return {tangents.su0 / surface_->unit[0], tangents.su1 / surface_->unit[0],
+            tangents.sv0 / surface_->unit[1], tangents.sv1 / surface_->unit[1]};
+  };
   std::size_t place = 0;
   for (std::size_t k = 0; k < selection.pieces.size(); ++k) {
     const SurfacePiece& piece = selection.pieces[k];
     if (!piece.moves()) continue;
-    if (!piece.is_held() && !(inputs.dynamics.shift(plan_.steps.solved_length()) > 0)) {
+    PieceSolve& one = solves_[place++];
+    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border, factors_.get());
+    const auto dynamics = dynamics_of(inputs, piece, one);
+    if (!dynamics) return fail(dynamics.error());
+    if (!piece.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {
       return fail(ErrorCode::SolverFailed,
                   "nothing holds the piece with node " +
                       std::to_string(selection.level_set.nodes[piece.points[0]]) +
                       ", which is static: give it a density or a damping");
     }
-    PieceSolve& one = solves_[place++];
-    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
-    one.problem.dynamics = inputs.dynamics;
-    one.problem.slopes = {tangents.su0 / unit_u, tangents.su1 / unit_u, tangents.sv0 / unit_v,
-                          tangents.sv1 / unit_v};
+    one.problem.dynamics = *dynamics;
+    one.problem.slopes = slopes_of(inputs.tangents);
     one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
+    if (remembers_push()) {
+      begin_load(piece, one.problem);
+      one.problem.first_slopes = slopes_of(first_tangents(inputs.tangents));
+    }
     one.state = state_of(piece);
     auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
     if (!next) {
@@ -234,6 +326,16 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     one.state = *std::move(next);
   }
   return {};
+}
+
+// The load that a piece begins with: that of the last solve, at nodes which it moved.
+void SurfaceBody::begin_load(const SurfacePiece& piece, TriangleProblem& problem) const {
+  problem.first_load = problem.load;
+  for (int k = 0; k < piece.free_nodes; ++k) {
+    const int node = plan_.surface->level_set.nodes[piece.points[k]];
+    if (state_.last.unknowns[static_cast<std::size_t>(node)])
+      problem.first_load.row(k) = state_.last.loads.row(node);
+  }
 }
 
 // Displacement and velocity of a piece's points.
@@ -281,7 +383,8 @@ Result<void> SurfaceBody::take() {
   std::size_t place = 0;
   for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
-    const TriangleState& state = solves_[place++].state;
+    const PieceSolve& one = solves_[place++];
+    const TriangleState& state = one.state;
     for (int k = 0; k < piece.free_nodes; ++k) {
       const int node = nodes[piece.points[k]];
       next_positions_.row(node) = rest_.row(node) + state.displacement.row(k);
@@ -289,11 +392,15 @@ Result<void> SurfaceBody::take() {
       if (!next_positions_.row(node).allFinite() || !next_velocities_.row(node).allFinite()) {
         return fail(ErrorCode::NotFinite, "the state stopped being finite");
       }
+      if (!remembers_push()) continue;
+      next_push_.loads.row(node) = one.problem.load.row(k);
+      next_push_.unknowns[static_cast<std::size_t>(node)] = 1;
     }
   }
   if (recovers()) mark_unsettled();
   state_.positions.swap(next_positions_);
   state_.velocities.swap(next_velocities_);
+  if (remembers_push()) std::swap(state_.last, next_push_);
   return {};
 }
 

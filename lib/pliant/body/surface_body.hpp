@@ -13,16 +13,30 @@
 
 namespace pliant {
 
-/// The bending form of a surface's plates; `unit` is that of its `TriangleSurface`.
-Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border);
+/// The bending form of a surface's plates, without the factors; `unit` is that of its
+/// `TriangleSurface`.
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border,
+                   const NodeFactors* factors = nullptr);
+
+/// Factors at the nodes of a surface as means over the corners of each of its triangles
+/// (#triangles); a centre has the mean of its face's corners. None stay none.
+std::vector<double> means_on_triangles(const TriangleSurface& surface,
+                                       const std::vector<double>& at_nodes);
+
+/// The factors of a piece's plate. Null: the material is even.
+std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
+                                              const LevelSet& level_set, const SurfacePiece& piece,
+                                              const NodeFactors* factors);
 
 /// One elastic surface as triangles, of any mesh. docs/model.md, "Surfaces".
 class SurfaceBody final : public Body {
  public:
   /// Starts at rest. Requires: settings.reference is Rest. `solver` and `context` are those of its
-  /// plates; the context's profile receives the times of its steps.
+  /// plates; the context's profile receives the times of its steps. `factors` null: the material is
+  /// even.
   SurfaceBody(std::shared_ptr<const TriangleSurface> surface, const BodySettings& settings,
-              SolverChoice solver = SolverChoice::Auto, RunContext context = {});
+              SolverChoice solver = SolverChoice::Auto, RunContext context = {},
+              std::shared_ptr<const NodeFactors> factors = {});
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
   Result<void> step(const BodyInputs& inputs) override;
@@ -40,19 +54,27 @@ class SurfaceBody final : public Body {
     std::unique_ptr<TrianglePlate> plate;
     TriangleProblem problem;
     TriangleState state;
+    std::optional<double> lambda;  // of the plate's slowest vibration with `bending`, if known
+    Bending bending;
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
   void select_all(SurfaceSelection& selection) const;
-  Result<void> weigh(const BodyInputs& inputs, SurfaceSelection& selection) const;
+  Result<void> plan_on(const TriangleSurface& surface, const PointTree& tree,
+                       const BodyInputs& inputs, StepPlan& plan) const;
+  Result<void> weigh(const TriangleSurface& surface, const PointTree& tree,
+                     const BodyInputs& inputs, SurfaceSelection& selection) const;
   void keep_plates();
   Result<void> solve(const BodyInputs& inputs);
+  Result<Dynamics> dynamics_of(const BodyInputs& inputs, const SurfacePiece& piece,
+                               PieceSolve& one) const;
   TriangleState state_of(const SurfacePiece& piece) const;
+  void begin_load(const SurfacePiece& piece, TriangleProblem& problem) const;
   Result<void> take();
   void mark_unsettled();
 
   std::shared_ptr<const TriangleSurface> surface_;
-  PointTree tree_;               // of the rest positions
+  PointTree tree_;               // of the surface's nodes
   std::vector<bool> is_border_;  // of nodes
   double settling_length_;       // with `Release::Recover` [length]
   SolverChoice solver_;
@@ -61,6 +83,7 @@ class SurfaceBody final : public Body {
   std::vector<PieceSolve> solves_;  // of the pieces that move, in their order
   SolverCounts past_counts_;        // of the plates that are gone
   Field next_positions_, next_velocities_;
+  LastPush next_push_;  // only if the body remembers it
 };
 
 }  // namespace pliant

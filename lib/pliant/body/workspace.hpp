@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pliant/body/state.hpp"
 #include "pliant/body/step_plan.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/region/node_tiles.hpp"
@@ -12,6 +13,7 @@ namespace pliant {
 /// A patch while it is solved: what the solver is given, and its answer. Internal to body.
 struct PatchSolve {
   const Patch* patch = nullptr;
+  Box box = {};                ///< that of the problem's factors; empty: of none yet
   double settling_length = 0;  ///< with `Release::Recover` [length]
   PlateProblem problem;
   PlateState plate;
@@ -22,11 +24,13 @@ struct PatchSolve {
 struct BodyWorkspace {
   StepPlan plan;
   NodeTiles tiles;       ///< of the nodes that forces measure
+  Field measured;        ///< these nodes, if the rest shape is animated
   NodeTiles rest_tiles;  ///< of the nodes at rest, if needed
   std::vector<std::uint8_t> marks;
   std::vector<PatchSolve> solves;  ///< one for each patch and solver, in the order of the regions
   Field next_positions;            ///< the next state, until it is complete
   Field next_velocities;
+  LastPush next_push;  ///< only if the body remembers it
 };
 
 }  // namespace pliant

@@ -31,6 +31,7 @@ struct TriangleCell {
   std::array<int, 3> points = {};
   std::array<SideSlope, 3> slopes = {};
   FlatTriangle shape;
+  int triangle = 0;  ///< of the surface, of which it is a part
 
   friend bool operator==(const TriangleCell&, const TriangleCell&) = default;
 };

@@ -30,8 +30,9 @@ struct Changes {
 bool changes(const Surface& surface) {
   const auto& [translate, rotate, scale, order] = surface.transform;
   const MaterialChannels& material = surface.material;
-  return translate.is_animated() || rotate.is_animated() || scale.is_animated() ||
-         material.b.is_animated() || material.c.is_animated() || material.d.is_animated();
+  return surface.is_animated() || translate.is_animated() || rotate.is_animated() ||
+         scale.is_animated() || material.b.is_animated() || material.c.is_animated() ||
+         material.d.is_animated();
 }
 
 bool changes(const Force& force) {
@@ -46,8 +47,12 @@ bool changes(const Group& group) {
 }  // namespace
 
 ActingForces::ActingForces(const Scene& scene, const Surface& surface,
-                           std::vector<std::size_t> forces, const std::vector<std::size_t>& groups)
-    : scene_(scene), surface_(surface), forces_(std::move(forces)) {
+                           std::vector<std::size_t> forces, const std::vector<std::size_t>& groups,
+                           std::shared_ptr<const AnimatedShape> animation)
+    : scene_(scene),
+      surface_(surface),
+      forces_(std::move(forces)),
+      animation_(std::move(animation)) {
   std::map<std::string_view, const Group*> named;
   for (const Group& group : scene.groups) named.emplace(group.name, &group);
   for (const std::size_t force : forces_) {
@@ -59,12 +64,14 @@ ActingForces::ActingForces(const Scene& scene, const Surface& surface,
 }
 
 BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& faults) const {
-  BodyInputs inputs = sample_body(scene_, surface_, frame);
+  const ShapeFrames shape = sample_shape(animation_.get(), frame, *faults);
+  BodyInputs inputs = sample_body(scene_, surface_, frame, shape);
   std::vector<const Group*> selecting;  // one for each enabled force
   for (std::size_t k = 0; k < forces_.size(); ++k) {
     const Force& force = scene_.forces[forces_[k]];
     if (!pliant::is_enabled(force, group_of_[k], frame)) continue;
-    inputs.forces.push_back(sample_force(scene_, force, surface_, frame, faults, clocks_[k].get()));
+    inputs.forces.push_back(
+        sample_force(scene_, force, surface_, frame, faults, clocks_[k].get(), shape));
     inputs.selectors.push_back(static_cast<int>(inputs.selectors.size()));
     selecting.push_back(group_of_[k]);
   }

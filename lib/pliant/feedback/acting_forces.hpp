@@ -14,8 +14,10 @@ class ActingForces {
  public:
   /// Indices in the scene, ascending, of forces that target the surface and of groups that select
   /// on it. Requires: the scene outlives this.
+  /// `animation`: of the surface's rest shape; null: none.
   ActingForces(const Scene& scene, const Surface& surface, std::vector<std::size_t> forces,
-               const std::vector<std::size_t>& groups);
+               const std::vector<std::size_t>& groups,
+               std::shared_ptr<const AnimatedShape> animation = {});
 
   /// The inputs at a frame, as `sample_inputs` would return them with only these forces and groups.
   BodyInputs at(int frame, const std::shared_ptr<ForceFaults>& faults) const;
@@ -40,6 +42,7 @@ class ActingForces {
   std::vector<const Group*> group_of_;  // of each force; null: no group
   std::vector<const Group*> groups_;
   std::vector<std::unique_ptr<NoiseClock>> clocks_;  // of each force; null: not needed
+  std::shared_ptr<const AnimatedShape> animation_;
 };
 
 }  // namespace pliant

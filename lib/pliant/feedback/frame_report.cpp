@@ -34,7 +34,8 @@ Hash hash_of_cut(const SurfaceSelection& selection) {
 SurfaceLines pushed_part(const Body& body, const SurfaceInputs& inputs,
                          const SurfaceSelection& selection, const SampledForce& force) {
   if (!(force.force_radius > 0)) return {};
-  const PlacedNodes measured(body.measured(), inputs.body.transform);
+  Field room;
+  const PlacedNodes measured(body.measured(inputs.body, room), inputs.body.transform);
   const std::vector<double> depths =
       depths_of(measured, selection.level_set.nodes, force.kind, force.force_radius);
   return outline_of(selection.pieces, selection.level_set, depths);

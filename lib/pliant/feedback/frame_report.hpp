@@ -36,6 +36,7 @@ struct ForceReport {
 /// The solve at a frame, on one surface. SPEC 5, 6.
 struct SurfaceReport {
   bool is_solved = false;           ///< false: the state does not change
+  int frame = 0;                    ///< whose channels it uses: in a loop, of the first cycle
   TimeSteps steps;                  ///< of the solve
   int unknown_count = 0;            ///< nodes that move
   int recovering = 0;               ///< nodes solved because they are not back at rest

@@ -36,7 +36,8 @@ class SurfacePreviewer {
         surface_(surface),
         body_(rest_shape, surface_, 1 / scene_.fps, context),
         first_(first_solved_frame(scene_, surface_)),
-        last_(std::max(first_, scene_.end - 1)),
+        last_(surface_.solver.loop ? first_ + *surface_.solver.loop - 1
+                                   : std::max(first_, scene_.end - 1)),
         most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
 
   Result<void> look(Case& one) {
@@ -68,6 +69,7 @@ class SurfacePreviewer {
 
   // Plays the case, unless that needs more steps of nodes than `nodes_left`.
   Result<void> play(Case& one, double& nodes_left) {
+    if (surface_.solver.loop) return {};  // a cycle is not what the first frames show
     if (nodes_left < body_.least_cost() * (scene_.end - first_)) return {};
     PlayedPeak played{0, scene_.start};
     const bool is_plain = one.preview.of != Preview::Of::All;
@@ -80,6 +82,7 @@ class SurfacePreviewer {
         nodes_left -= *stepped;
         if (nodes_left <= 0) return {};
       }
+      if (frame + 1 < scene_.start) continue;  // of the preroll, which is not shown
       const Transform shown = sample_transform(surface_.transform, frame + 1);
       const double peak = body_.peak(shown).size;
       if (peak > played.peak) played = {peak, frame + 1};
@@ -176,6 +179,13 @@ class SurfacePreviewer {
     for (std::size_t k = 0; k < preview.regions.size(); ++k) {
       RegionPreview& region = preview.regions[k];
       preview.counts = preview.counts + region.counts;
+      const bool is_free = preview.is_solvable && !preview.is_held && region.is_solvable &&
+                           unknowns <= most_factored_unknowns && inputs.dynamics.density > 0;
+      if (is_free) {
+        auto vibration = body_.unheld_vibration(inputs, *step, k, std::move(region));
+        if (!vibration) return fail(vibration.error());
+        region = *std::move(vibration);
+      }
       if (!preview.is_solved || !region.is_solvable) continue;
       auto vibrations = body_.vibrations(inputs, *step, k, std::move(region));
       if (!vibrations) return fail(vibrations.error());
@@ -223,7 +233,7 @@ class SurfacePreviewer {
 };
 
 // The cases of a surface, in the order of the results.
-std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
+std::vector<Case> cases_of(const Scene& scene, const RestShape& shape, std::size_t index) {
   const Surface& surface = scene.surfaces[index];
   std::vector<std::size_t> all_forces, all_groups;
   std::vector<Case> cases;
@@ -233,7 +243,8 @@ std::vector<Case> cases_of(const Scene& scene, std::size_t index) {
     preview.surface = index;
     preview.of = of;
     preview.index = which;
-    cases.push_back({std::move(preview), {scene, surface, std::move(forces), groups}});
+    cases.push_back(
+        {std::move(preview), {scene, surface, std::move(forces), groups, shape.animation}});
   };
   std::map<std::string_view, std::size_t> group_named;
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {
@@ -289,7 +300,7 @@ Result<std::vector<Preview>> preview_forces(const Scene& scene,
   for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
     cases.emplace_back();
     if (!scene.surfaces[k].enabled || scene.surfaces[k].is_driven()) continue;
-    for (Case& one : cases_of(scene, k)) {
+    for (Case& one : cases_of(scene, rest_shapes[k], k)) {
       if (has_frames(one, scene)) cases[k].push_back(std::move(one));
     }
     count += cases[k].size();

@@ -27,6 +27,7 @@ struct RegionPreview {
                                   ///< shows it: including what its steps damp
   Settling settling;              ///< to 5 % at the node of the static peak, as the animation shows
                                   ///< it
+  bool is_held = true;            ///< false: then only the frequency and its ratio are known
   bool has_vibration = false;     ///< false: too many nodes, or none that moves; then the values of
                                   ///< vibrations are 0
   std::size_t solver_memory = 0;  ///< of the solver that found the vibrations [bytes]
@@ -88,7 +89,8 @@ struct Preview {
   std::vector<RegionPreview> regions;  ///< in the order given by `combine`
   std::vector<ForceShare> shares;      ///< for `Group` and `All`: in the order of the scene
 
-  std::optional<PlayedPeak> played;  ///< in the whole animation; null: too costly to play
+  std::optional<PlayedPeak> played;  ///< in the whole animation; null: too costly to play, or a
+                                     ///< loop
   std::optional<Gap> gap;            ///< of a force or group that selects nothing
 };
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
+#include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
@@ -12,10 +14,6 @@
 
 namespace pliant {
 namespace {
-
-// Surfaces, and patches whose outline is not a rectangle, need a sparse factor, which is slow for
-// many nodes.
-constexpr int most_factored_unknowns = 50'000;
 
 // The vibration of a node that is most visible: the one with the largest product of share and
 // period. By share alone it might be one of a bundle of fast ones, which fade at once.
@@ -27,6 +25,30 @@ double seen_lambda(std::span<const ExcitedMode> modes) {
              modes.begin(), modes.end(),
              [&](const auto& one, const auto& other) { return weight(one) < weight(other); })
       ->lambda;
+}
+
+// The dynamics that a vibration of a shape feels: a map of damping counts by its mean over the
+// shape's squares, relative to that of density, which the shape's eigenvalue knows already. `maps`:
+// the factors of density and damping of each unknown; `shape`: its displacements.
+Dynamics felt_dynamics(const Dynamics& dynamics, const Field& maps, const Field& shape) {
+  const bool has_shape = !shape.isZero(0);
+  double inertia = 0, drag = 0;
+  for (Eigen::Index k = 0; k < shape.rows(); ++k) {
+    const double weight = has_shape ? shape.row(k).squaredNorm() : 1;
+    inertia += weight * maps(k, 0);
+    drag += weight * maps(k, 1);
+  }
+  return {dynamics.density, inertia > 0 ? dynamics.damping * (drag / inertia) : dynamics.damping};
+}
+
+// The factors of density and damping at nodes, in the first two of three columns.
+Field maps_of(const NodeFactors& factors, std::span<const int> nodes) {
+  Field maps = Field::Zero(static_cast<Eigen::Index>(nodes.size()), 3);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    maps(static_cast<Eigen::Index>(k), 0) = factor_at(factors.density, nodes[k]);
+    maps(static_cast<Eigen::Index>(k), 1) = factor_at(factors.damping, nodes[k]);
+  }
+  return maps;
 }
 
 }  // namespace
@@ -78,6 +100,7 @@ Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
 Result<void> PreviewBody::settle(BodyInputs inputs, bool is_plain) {
   PLIANT_EXPECTS(real_ != nullptr);
   inputs.dynamics = {0, 0};
+  inputs.damping_ratio = {};
   inputs.dt = inputs.frame_length;
   begin(is_plain);
   is_at_rest_ = false;
@@ -104,7 +127,9 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   if (auto sound = check_faults(); !sound) return fail(sound.error());
   if (!stepped) return fail(stepped.error());
   const StepPlan& plan = body(is_plain_).last_step();
-  return least_cost() + static_cast<double>(plan.unknown_count()) * plan.steps.count;
+  // Exact ones are divided further.
+  const int solves = plan.steps.count * (plan.steps.are_exact() ? 24 : 1);
+  return least_cost() + static_cast<double>(plan.unknown_count()) * solves;
 }
 
 // The displacements of a box's nodes, row by row; object space.
@@ -160,7 +185,7 @@ Vector3d PreviewBody::displacement(const Transform& transform, int node) const {
 
 std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
                                                  const SampledForce& force) const {
-  const Field nodes = to_world(inputs.transform, shape_.rest);
+  const Field nodes = to_world(inputs.transform, inputs.shape ? *inputs.shape : shape_.rest);
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
     nearest = std::min(nearest, distance(force.kind, nodes.row(node).transpose()));
@@ -192,6 +217,48 @@ Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs, const St
   return patch_vibrations(inputs, std::move(region));
 }
 
+PlateSystem PreviewBody::system_of(const BodyInputs& inputs, const Patch& patch) const {
+  PlateSystem system{outline_of(*shape_.grid, patch), inputs.stiffness, 0};
+  system.poisson = poisson_of(inputs, patch, shape_.factors.get());
+  system.factors = factors_on(*shape_.grid, patch, shape_.factors);
+  return system;
+}
+
+// Told in the scene's time, for those who watch it.
+void PreviewBody::set_natural(const BodyInputs& inputs, const Dynamics& dynamics, double lambda,
+                              RegionPreview& region) const {
+  const Swing natural = natural_swing(lambda, dynamics);
+  region.first_frequency = natural.frequency * (inputs.frame_length / frame_seconds_);
+  region.damping_ratio = natural.damping_ratio;
+}
+
+Result<RegionPreview> PreviewBody::unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
+                                                    std::size_t k, RegionPreview region) const {
+  const auto smallest = [&]() -> Result<double> {
+    if (!plan.surface) {
+      const auto solver = make_plate_solver(SolverChoice::Auto, context_);
+      return smallest_eigenvalue(*solver, system_of(inputs, region.region.patches[0]));
+    }
+    const SurfacePiece& piece = plan.surface->pieces[k];
+    const NodeFactors* const factors = shape_.factors.get();
+    TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), context_,
+                        factors_of(*shape_.surface, plan.surface->level_set, piece, factors));
+    const Border border = body_settings(surface_, false).border;
+    return smallest_eigenvalue(plate, bending_of(inputs, shape_.surface->unit, border, factors),
+                               piece.is_held());
+  };
+  const auto lambda = smallest();
+  if (!lambda) return fail(lambda.error());
+  region.is_held = false;
+  if (*lambda == 0) return region;
+  const bool has_ratio = inputs.asks_for_vibrations();
+  set_natural(inputs,
+              has_ratio ? damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, *lambda)
+                        : inputs.dynamics,
+              *lambda, region);
+  return region;
+}
+
 Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
                                                     RegionPreview region) const {
   const std::vector<Patch>& patches = region.region.patches;
@@ -206,13 +273,30 @@ Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
     moved = &patch;
   }
   const Box& box = moved->box;
-  const PlateSystem system{{moved->grid(*shape_.grid), moved->interior}, inputs.stiffness, 0};
+  const PlateSystem system = system_of(inputs, *moved);
   if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) return region;
   const auto solver = make_plate_solver(SolverChoice::Auto, context_);
   const auto plate = vibrating(*solver, system);
   if (!plate) return fail(plate.error());
+  // A damping ratio is that of the slowest vibration of all patches.
+  double least = std::numeric_limits<double>::infinity();
+  for (const Patch& patch : patches) {
+    if (!inputs.asks_for_vibrations() || &patch == moved) continue;
+    const auto other = make_plate_solver(SolverChoice::Auto, context_);
+    const auto lambda = smallest_eigenvalue(*other, system_of(inputs, patch));
+    if (!lambda) return fail(lambda.error());
+    least = std::min(least, *lambda);
+  }
   const Field ways = interior_of(system.outline, displacements(box));
-  if (auto added = add_vibrations(inputs, *plate, ways, region); !added) return fail(added.error());
+  Dynamics felt = inputs.dynamics;
+  if (system.factors) {
+    std::vector<int> nodes(static_cast<std::size_t>(system.outline.grid().node_count()));
+    std::iota(nodes.begin(), nodes.end(), 0);
+    felt = felt_dynamics(felt, interior_of(system.outline, maps_of(*system.factors, nodes)), ways);
+  }
+  if (auto added = add_vibrations(inputs, *plate, felt, ways, least, region); !added) {
+    return fail(added.error());
+  }
   region.solver_memory = solver->memory();
   return region;
 }
@@ -229,22 +313,30 @@ Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   const Field world = vectors_to_world(inputs.transform, ways);
   region.static_peak = std::sqrt(world.rowwise().squaredNorm().maxCoeff());
   if (piece.free_nodes > most_factored_unknowns) return region;
-  TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_);
+  const NodeFactors* const factors = shape_.factors.get();
+  TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
+                          factors_of(*shape_.surface, selection.level_set, piece, factors));
   const Border border = body_settings(surface_, false).border;
-  const Bending bending = bending_of(inputs, shape_.surface->unit, border);
+  const Bending bending = bending_of(inputs, shape_.surface->unit, border, factors);
   const auto plate = vibrating(triangles, bending);
   if (!plate) return fail(plate.error());
-  if (auto added = add_vibrations(inputs, *plate, ways, region); !added) return fail(added.error());
+  const Dynamics felt =
+      factors ? felt_dynamics(inputs.dynamics, maps_of(*factors, nodes), ways) : inputs.dynamics;
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (auto added = add_vibrations(inputs, *plate, felt, ways, none, region); !added) {
+    return fail(added.error());
+  }
   region.solver_memory = triangles.memory();
   return region;
 }
 
-// `ways`: the displacement of each unknown, object space.
+// `ways`: the displacement of each unknown, object space. `least`: the smallest eigenvalue of other
+// plates of the region, if that matters.
 Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
-                                         const Field& ways, RegionPreview& region) const {
-  const auto lambda = smallest_eigenvalue(plate);
-  if (!lambda) return fail(lambda.error());
-  std::vector<ExcitedMode> modes = {{*lambda, 1}};
+                                         const Dynamics& felt, const Field& ways, double least,
+                                         RegionPreview& region) const {
+  if (!(plate.masses.sum() > 0)) return {};  // a map makes all of it weightless
+  std::vector<ExcitedMode> modes;
   Eigen::Index node = 0;
   const Field world = vectors_to_world(inputs.transform, ways);
   const double size = std::sqrt(world.rowwise().squaredNorm().maxCoeff(&node));
@@ -255,14 +347,16 @@ Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const Vibrati
     if (!excited) return fail(excited.error());
     modes = *std::move(excited);
   }
-  const Dynamics& dynamics = inputs.dynamics;
-  const TimeSteps steps = steps_of(inputs, real_->settings());
-  // Told in the scene's time, for those who watch it.
-  if (dynamics.density > 0) {
-    const Swing natural = natural_swing(*lambda, dynamics);
-    region.first_frequency = natural.frequency * (inputs.frame_length / frame_seconds_);
-    region.damping_ratio = natural.damping_ratio;
-  }
+  // Last: it may change what the plate is prepared for.
+  const auto lambda = smallest_eigenvalue(plate);
+  if (!lambda) return fail(lambda.error());
+  if (modes.empty()) modes.push_back({*lambda, 1});
+  least = std::min(least, *lambda);
+  const Dynamics dynamics = inputs.asks_for_vibrations()
+                                ? damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, least)
+                                : felt;
+  const TimeSteps steps = steps_of(inputs, real_->settings(), shape_.factors.get());
+  if (dynamics.density > 0) set_natural(inputs, dynamics, least, region);
   region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, frame_seconds_);
   region.settling = settling_of(modes, dynamics, steps, frame_seconds_);
   region.has_vibration = true;

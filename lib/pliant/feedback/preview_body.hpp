@@ -15,6 +15,10 @@
 
 namespace pliant {
 
+/// Surfaces, and patches whose outline is not a rectangle, need a sparse factor, which is slow for
+/// many nodes.
+inline constexpr int most_factored_unknowns = 50'000;
+
 /// The regions of a plan, or its pieces, without their vibrations. Internal to feedback.
 std::vector<RegionPreview> regions_of(const StepPlan& plan);
 
@@ -71,6 +75,11 @@ class PreviewBody {
   Result<RegionPreview> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
                                    RegionPreview region) const;
 
+  /// The frequency of the slowest vibration and its damping ratio, of region or piece `k` of a plan
+  /// that nothing holds. Requires: `region.is_solvable`; inputs with density.
+  Result<RegionPreview> unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
+                                         std::size_t k, RegionPreview region) const;
+
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   std::unique_ptr<Body> make(Reference reference) const;
@@ -80,8 +89,12 @@ class PreviewBody {
   Result<RegionPreview> piece_vibrations(const BodyInputs& inputs,
                                          const SurfaceSelection& selection, std::size_t k,
                                          RegionPreview region) const;
+  PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;
+  void set_natural(const BodyInputs& inputs, const Dynamics& dynamics, double lambda,
+                   RegionPreview& region) const;
   Result<void> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
-                              const Field& ways, RegionPreview& region) const;
+                              const Dynamics& felt, const Field& ways, double least,
+                              RegionPreview& region) const;
 
   const RestShape& shape_;
   const Surface& surface_;

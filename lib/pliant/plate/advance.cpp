@@ -3,6 +3,7 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/rim_load.hpp"
+#include "pliant/plate/step_loop.hpp"
 
 namespace pliant {
 
@@ -10,39 +11,35 @@ Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& pro
                                     const TimeSteps& steps, PlateState state) {
   const RunContext& context = solver.context();
   const Outline& outline = problem.outline;
-  PLIANT_EXPECTS(is_on_nodes(problem, state));
+  PLIANT_EXPECTS(is_on_nodes(problem, state) && !steps.are_exact());
 
   const double dt = steps.solved_length();
   const double inertia = problem.dynamics.inertia(dt);
   const double shift = problem.dynamics.shift(dt);
   StageTimer set_up(context.profile, Stage::SetUp);
-  if (auto factored = solver.prepare({outline, problem.stiffness, shift}); !factored) {
+  if (auto factored = solver.prepare(problem.system(dt)); !factored) {
     return fail(factored.error());
   }
   set_up.stop();
   const StageTimer solve(context.profile, Stage::Solve);
 
-  Field w = interior_of(outline, state.displacement);
-  Field v = interior_of(outline, state.velocity);
+  Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
   Field load = problem.load;
   subtract_rim(outline, problem.stiffness, problem.tangents, state.displacement, load);
   const Field known = interior_of(outline, load);
 
-  for (int step = 0; step < steps.count; ++step) {
-    if (context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-    auto next = solver.solve(known + shift * w + inertia * v);
-    if (!next) return fail(next.error());
-    if (steps.are_reflected()) {
-      v = 2 * (*next - w) / dt - v;
-      w = 2 * *next - w;
-    } else {
-      v = (*next - w) / dt;
-      w = *std::move(next);
-    }
+  const auto solve_step = [&](const Field& w, const Field& v) {
+    return solver.solve(known + shift * w + inertia * v);
+  };
+  const auto watch = [&](const Field& w) {
+    return !problem.watch || (*problem.watch)(with_interior(outline, state.displacement, w));
+  };
+  if (auto done = run_steps(context, steps, motion, solve_step, watch); !done) {
+    return fail(done.error());
   }
 
-  state.displacement = with_interior(outline, std::move(state.displacement), w);
-  state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), v);
+  state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
+  state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), motion.velocity);
   return state;
 }
 

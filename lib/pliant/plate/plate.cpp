@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pliant/plate/plate_problem.hpp"
+
 namespace pliant {
 
 double Stiffness::least_c() const {
@@ -12,5 +14,16 @@ double Stiffness::least_c() const {
 }
 
 bool Stiffness::is_elliptic() const { return b > 0 && d > 0 && c > least_c(); }
+
+bool operator==(const PlateSystem& one, const PlateSystem& other) {
+  if (!(one.outline == other.outline) || !(one.stiffness == other.stiffness) ||
+      one.shift != other.shift || one.is_even() != other.is_even()) {
+    return false;
+  }
+  if (one.is_even()) return true;
+  if (one.poisson != other.poisson || one.drag != other.drag) return false;
+  return one.factors == other.factors ||
+         (one.factors && other.factors && *one.factors == *other.factors);
+}
 
 }  // namespace pliant

@@ -46,13 +46,27 @@ struct EdgeTangents {
   Vector3d sv0 = {0, 0, 0};
   Vector3d sv1 = {0, 0, 0};
 
+  friend bool operator==(const EdgeTangents&, const EdgeTangents&) = default;
+
   bool are_zero() const { return su0.isZero(0) && su1.isZero(0) && sv0.isZero(0) && sv1.isZero(0); }
+};
+
+/// Plastic curvatures, one row for each node or triangle: uu in x, y, z, then vv, then uv.
+using PlasticField = Eigen::Matrix<double, Eigen::Dynamic, 9>;
+
+/// When a plate bends for good. SPEC 9; docs/model.md, "Plasticity".
+struct PlasticLaw {
+  double yield = 0;      ///< Y, the norm of the stress from which on it flows, > 0 [length/uv^2]
+  double hardening = 0;  ///< H >= 0, kinematic [1]
+
+  friend bool operator==(const PlasticLaw&, const PlasticLaw&) = default;
 };
 
 /// Displacement and velocity on all nodes of the outline's grid, rim included.
 struct PlateState {
-  Field displacement;  ///< #nodes x 3, row = grid.node(i, j) [length]
-  Field velocity;      ///< #nodes x 3 [length/s]
+  Field displacement;         ///< #nodes x 3, row = grid.node(i, j) [length]
+  Field velocity;             ///< #nodes x 3 [length/s]
+  PlasticField plastic = {};  ///< of a plate that yields: #nodes x 9 [length/uv^2]
 };
 
 }  // namespace pliant

@@ -1,20 +1,52 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
 #include "pliant/core/field.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
 
 namespace pliant {
 
+/// Factors by which the coefficients of a plate differ from node to node (#nodes of the outline's
+/// grid); an empty one is 1 everywhere. docs/model.md, "Maps".
+struct NodeFactors {
+  std::vector<double> density, damping;
+  std::vector<double> b, c, d;
+  std::vector<double> yield, hardening;
+
+  bool have_stiffness() const { return !b.empty() || !c.empty() || !d.empty(); }
+
+  friend bool operator==(const NodeFactors&, const NodeFactors&) = default;
+};
+
+/// The factor at a node.
+inline double factor_at(const std::vector<double>& factors, int node) {
+  return factors.empty() ? 1 : factors[static_cast<std::size_t>(node)];
+}
+
 /// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped plate,
 /// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
 /// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
+///
+/// With free edges or uneven material L is K of docs/model.md, "One energy", and the shift at a
+/// node is weighted by its share of area. If no edge is clamped, K can be singular without a shift.
 struct PlateSystem {
   Outline outline;      ///< of at least 3 x 3 nodes
   Stiffness stiffness;  ///< elliptic
   double shift = 0;     ///< rho/dt^2 + eta/dt, >= 0 [1/uv^4]
 
-  friend bool operator==(const PlateSystem&, const PlateSystem&) = default;
+  double poisson = 0;  ///< matters with free edges and uneven stiffness [1]
+  std::shared_ptr<const NodeFactors> factors = {};  ///< null: the material is even
+  double drag = 0;  ///< eta/dt, the part of `shift` that a map of damping changes [1/uv^4]
+
+  /// Whether the edges, as far as they are no others, and the material are those of (1).
+  bool is_even() const { return !factors && !outline.edges().have_free(); }
+
+  friend bool operator==(const PlateSystem& one, const PlateSystem& other);
 };
 
 /// One plate over one interval: everything that stays the same while its steps run. SPEC 4.
@@ -24,6 +56,26 @@ struct PlateProblem {
   Dynamics dynamics;
   EdgeTangents tangents;
   Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
+
+  double poisson = 0;                               ///< as in `PlateSystem`
+  std::shared_ptr<const NodeFactors> factors = {};  ///< as there
+
+  std::optional<PlasticLaw> law = {};  ///< of a plate that yields; nullopt: it is elastic
+
+  /// Asked after each step with the displacement of all nodes (#nodes x 3); false: the steps that
+  /// follow are not needed, and the result is not either. Null: nobody asks.
+  const std::function<bool(const Field& displacement)>* watch = nullptr;
+
+  /// What load and tangents change from, evenly over the interval; only for `Integrator::Exact`.
+  Field first_load = {};
+  EdgeTangents first_tangents = {};
+
+  bool is_even() const { return !factors && !outline.edges().have_free(); }
+
+  /// The system of steps of `dt`. [s]
+  PlateSystem system(double dt) const {
+    return {outline, stiffness, dynamics.shift(dt), poisson, factors, dynamics.damping / dt};
+  }
 };
 
 /// Whether the problem's load and the state have a row for each node.

@@ -5,7 +5,9 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/advance.hpp"
+#include "pliant/plate/energy/advance_plastic.hpp"
 #include "pliant/plate/overlap/rectangle_cover.hpp"
+#include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
 namespace pliant {
@@ -15,11 +17,11 @@ namespace {
 // kind.
 class AutomaticPlateSolver final : public PlateSolver {
  public:
-  AutomaticPlateSolver(bool prefers_spectral, const RunContext& context)
-      : PlateSolver(context), prefers_spectral_(prefers_spectral) {}
+  AutomaticPlateSolver(SolverChoice choice, const RunContext& context)
+      : PlateSolver(context), choice_(choice) {}
 
   Result<void> prepare(const PlateSystem& system) override {
-    return suited(system.outline, system.stiffness).prepare(system);
+    return suited(system.outline, system.stiffness, system.is_even()).prepare(system);
   }
 
   Result<Field> solve(const Field& right_hand_sides) override {
@@ -29,7 +31,15 @@ class AutomaticPlateSolver final : public PlateSolver {
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                              PlateState state) override {
-    return suited(problem.outline, problem.stiffness).advance(problem, steps, std::move(state));
+    PlateSolver& solver =
+        suited(problem.outline, problem.stiffness, problem.is_even(), steps.are_exact());
+    if (problem.law) return advance_plastic(solver, problem, steps, std::move(state));
+    return solver.advance(problem, steps, std::move(state));
+  }
+
+  StepTerms terms(const PlateProblem& problem, double dt, const Field& displacement) override {
+    PLIANT_EXPECTS(solver_ != nullptr);
+    return solver_->terms(problem, dt, displacement);
   }
 
   SolverCounts counts() const override {
@@ -39,10 +49,11 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
 
  private:
-  enum class Way { Spectral, Schwarz, Direct };
+  enum class Way { Spectral, Schwarz, Direct, Energy };
 
-  PlateSolver& suited(const Outline& outline, const Stiffness& stiffness) {
-    const Way way = way_of(outline, stiffness);
+  PlateSolver& suited(const Outline& outline, const Stiffness& stiffness, bool is_even,
+                      bool is_exact = false) {
+    const Way way = is_even ? way_of(outline, stiffness, is_exact) : Way::Energy;
     if (!solver_ || way != way_) {
       past_counts_ = counts();
       solver_.reset();
@@ -52,14 +63,20 @@ class AutomaticPlateSolver final : public PlateSolver {
     return *solver_;
   }
 
-  Way way_of(const Outline& outline, const Stiffness& stiffness) {
-    if (outline.is_periodic()) return Way::Direct;
+  Way way_of(const Outline& outline, const Stiffness& stiffness, bool is_exact) {
+    // Sparse factors of the stencil have clamped edges only.
+    const Way factored = outline.edges().are_clamped() ? Way::Direct : Way::Energy;
+    if (!transforms() || outline.is_periodic()) return factored;
+    // So have exact steps in sine space.
+    if (is_exact && factored == Way::Energy) return factored;
     if (outline.is_rectangle()) {
-      const bool is_worth_it = prefers_spectral_ || worth_transforming(outline.grid(), stiffness);
-      return is_worth_it ? Way::Spectral : Way::Direct;
+      const bool is_worth_it =
+          choice_ == SolverChoice::Spectral || worth_transforming(outline.grid(), stiffness);
+      return is_worth_it ? Way::Spectral : factored;
     }
+    // Overlapping rectangles have no complex shifts.
     const bool is_worth_it =
-        worth_iterating(outline.unknown_count(), stiffness) && is_covered(outline);
+        !is_exact && worth_iterating(outline.unknown_count(), stiffness) && is_covered(outline);
     return is_worth_it ? Way::Schwarz : Way::Direct;
   }
 
@@ -78,12 +95,19 @@ class AutomaticPlateSolver final : public PlateSolver {
         return make_spectral_solver(context());
       case Way::Schwarz:
         return make_schwarz_solver(context());
+      case Way::Energy:
+        return make_energy_solver(factor(), context());
       default:
-        return make_sparse_solver(available_solvers().front(), context());
+        return make_sparse_solver(factor(), context());
     }
   }
 
-  bool prefers_spectral_;
+  bool transforms() const {
+    return choice_ == SolverChoice::Auto || choice_ == SolverChoice::Spectral;
+  }
+  SolverChoice factor() const { return transforms() ? available_solvers().front() : choice_; }
+
+  SolverChoice choice_;
   std::unique_ptr<PlateSolver> solver_;
   Way way_ = Way::Direct;
   Outline asked_for_;
@@ -96,6 +120,15 @@ class AutomaticPlateSolver final : public PlateSolver {
 Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeSteps& steps,
                                         PlateState state) {
   return advance_in_steps(*this, problem, steps, std::move(state));
+}
+
+StepTerms PlateSolver::terms(const PlateProblem& problem, double dt, const Field& displacement) {
+  Field load = problem.load;
+  subtract_rim(problem.outline, problem.stiffness, problem.tangents, displacement, load);
+  const Eigen::Index count = problem.outline.unknown_count();
+  return {interior_of(problem.outline, load),
+          Eigen::VectorXd::Constant(count, problem.dynamics.shift(dt)),
+          Eigen::VectorXd::Constant(count, problem.dynamics.inertia(dt))};
 }
 
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
@@ -121,10 +154,7 @@ bool worth_iterating(int unknowns, const Stiffness& stiffness) {
 
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice, const RunContext& context) {
   PLIANT_EXPECTS(is_available(choice));
-  if (choice == SolverChoice::Auto || choice == SolverChoice::Spectral) {
-    return std::make_unique<AutomaticPlateSolver>(choice == SolverChoice::Spectral, context);
-  }
-  return make_sparse_solver(choice, context);
+  return std::make_unique<AutomaticPlateSolver>(choice, context);
 }
 
 }  // namespace pliant

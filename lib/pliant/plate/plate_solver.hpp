@@ -12,6 +12,13 @@
 
 namespace pliant {
 
+/// The right-hand side of a step: known + shift w + inertia v, on the unknowns.
+struct StepTerms {
+  Field known;            ///< #unknowns x 3: by the load, the rim and the tangents
+  Eigen::VectorXd shift;  ///< of each unknown [1/uv^4]
+  Eigen::VectorXd inertia;
+};
+
 /// Solves plates: the interface between all that needs a solution and all that compute one. Every
 /// implementation gives the same errors, keeps the same tolerance and passes the same tests;
 /// results may differ in the last digits. Not thread-safe; give each body its own.
@@ -35,10 +42,16 @@ class PlateSolver {
 
   /// Advances a plate over an interval as `advance_in_steps` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.
-  /// Its profile receives the times of set-up and solve. Reuse and errors: those of `prepare`;
+  /// Requires: the implementation overrides it, if the steps are exact.
+  /// Its profile receives the times of set-up and solve. The plate is elastic, except for the
+  /// solvers of `make_plate_solver`. Reuse and errors: those of `prepare`;
   /// Interrupted.
   virtual Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                                      PlateState state);
+
+  /// What steps of `dt` add on the right-hand side, with the rim's displacement. Requires:
+  /// `prepare` succeeded for problem.system(dt).
+  virtual StepTerms terms(const PlateProblem& problem, double dt, const Field& displacement);
 
   virtual SolverCounts counts() const = 0;
 

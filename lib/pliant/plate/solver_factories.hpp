@@ -12,7 +12,11 @@ namespace pliant {
 std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice = available_solvers().front(),
                                                 const RunContext& context = {});
 
-/// For rectangles.
+/// For plates that are not even, and for pinned edges. Factors a sparse matrix.
+std::unique_ptr<PlateSolver> make_energy_solver(SolverChoice choice = available_solvers().front(),
+                                                const RunContext& context = {});
+
+/// For rectangles, clamped or pinned.
 std::unique_ptr<PlateSolver> make_spectral_solver(const RunContext& context);
 
 /// For outlines that `cover_by_rectangles` covers. If a system needs more than `max_rounds`, its

@@ -39,6 +39,7 @@ Roots roots_of(double lambda, const Dynamics& dynamics) {
 // The rate of a root as seen from frame to frame: eq. (39) [1/s].
 Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
   if (std::isinf(root.real())) return -infinite;
+  if (steps.are_exact()) return root * (steps.length / frame_length);
   const Complex half = root * steps.solved_length();
   const double count = steps.count;
   if (!steps.are_reflected()) return -count * std::log(1.0 - half) / frame_length;
@@ -64,10 +65,16 @@ Swing swing_of(const Complex& slow, const Complex& fast) {
 }
 
 // e of eq. (41): the deviation of a mode from its final value, frame by frame, relative to the
-// displacement under the load: (q, q one step earlier); reflected, (q, velocity times half a step).
+// displacement under the load: (q, q one step earlier); reflected, (q, velocity times half a step);
+// exact, (q, velocity times the frame).
 class Deviation {
  public:
   Deviation(double lambda, const Dynamics& dynamics, const TimeSteps& steps) {
+    if (steps.are_exact()) {
+      frame_ = exactly(lambda, dynamics, steps.length);
+      before_ = 0;
+      return;
+    }
     const double h = steps.solved_length();
     const double inertia = dynamics.density, drag = dynamics.damping * h;
     const double whole = inertia + drag + lambda * h * h;
@@ -93,6 +100,24 @@ class Deviation {
  private:
   using Matrix = std::array<double, 4>;
 
+  // e^(T A), from the roots x of x^2 + (eta T/rho) x + lambda T^2/rho = 0, half their sum and half
+  // their difference.
+  static Matrix exactly(double lambda, const Dynamics& dynamics, double interval) {
+    const Roots roots = roots_of(lambda, dynamics);
+    const Complex slow = roots.slow * interval, fast = roots.fast * interval;
+    if (std::isinf(fast.real())) {
+      const double kept = std::isinf(slow.real()) ? 0 : std::exp(slow.real());
+      return {kept, 0, 0, 0};
+    }
+    const Complex apart = slow - fast;
+    // (e^slow - e^fast)/(slow - fast)
+    const Complex of_slow = std::exp(slow), of_fast = std::exp(fast);
+    const double slope =
+        std::abs(apart) < 1e-6 ? of_slow.real() : ((of_slow - of_fast) / apart).real();
+    const double kept = (of_slow - slow * slope).real();
+    return {kept, slope, -(slow * fast).real() * slope, kept + (slow + fast).real() * slope};
+  }
+
   static Matrix product(const Matrix& a, const Matrix& b) {
     return {a[0] * b[0] + a[1] * b[2], a[0] * b[1] + a[1] * b[3], a[2] * b[0] + a[3] * b[2],
             a[2] * b[1] + a[3] * b[3]};
@@ -102,6 +127,21 @@ class Deviation {
   double now_ = 1, before_ = 1;  // at rest, away from its final value; reflected, 1 and 0
 };
 
+// The share up to which modes do not matter: together they are a hundredth of `part`. Fast modes
+// ring on for long in reflected steps.
+double least_share(std::span<const ExcitedMode> modes, double part) {
+  std::vector<double> shares;
+  for (const ExcitedMode& mode : modes) shares.push_back(std::abs(mode.share));
+  std::sort(shares.begin(), shares.end());
+  double least = 0, sum = 0;
+  for (const double share : shares) {
+    sum += share;
+    if (sum > 0.01 * part) break;
+    least = share;
+  }
+  return least;
+}
+
 }  // namespace
 
 Swing natural_swing(double lambda, const Dynamics& dynamics) {
@@ -109,6 +149,12 @@ Swing natural_swing(double lambda, const Dynamics& dynamics) {
   const auto& [rho, eta] = dynamics;
   if (rho == 0) return {0, infinite};
   return {std::sqrt(lambda / rho) / (2 * std::numbers::pi), eta / (2 * std::sqrt(lambda * rho))};
+}
+
+Dynamics damped_by_ratio(const Dynamics& dynamics, double ratio, double lambda) {
+  PLIANT_EXPECTS(lambda >= 0 && ratio >= 0);
+  const double rho = dynamics.density;
+  return {rho, 2 * ratio * (std::sqrt(lambda) * std::sqrt(rho))};
 }
 
 Swing stepped_swing(double lambda, const Dynamics& dynamics, const TimeSteps& steps,
@@ -122,6 +168,7 @@ Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamic
                      const TimeSteps& steps, double frame_length, double part) {
   PLIANT_EXPECTS(!modes.empty() && part > 0 && part < 1 && frame_length > 0);
   double shares = 0, slowest = infinite;  // [1/s]
+  const double least = least_share(modes, part);
   for (const ExcitedMode& mode : modes) {
     shares += std::abs(mode.share);
     const auto [slow, fast] = roots_of(mode.lambda, dynamics);
@@ -129,7 +176,7 @@ Settling settling_of(std::span<const ExcitedMode> modes, const Dynamics& dynamic
     const double rate =
         -std::max(seen(slow, steps, frame_length).real(), seen(fast, steps, frame_length).real()) *
         frame_length;
-    if (std::abs(mode.share) > 1e-6) slowest = std::min(slowest, rate);
+    if (std::abs(mode.share) > least) slowest = std::min(slowest, rate);
   }
   // What is not damped, and steps that keep energy.
   if (!(slowest > 1e-12)) return {infinite, 1'000'000'000, false};

@@ -22,6 +22,10 @@ struct Swing {
 /// rho q'' + eta q' + lambda q = 0. Requires: lambda > 0.
 Swing natural_swing(double lambda, const Dynamics& dynamics);
 
+/// These dynamics with the damping that gives the vibration of eigenvalue `lambda` this damping
+/// ratio: eta = 2 zeta omega rho, eq. (42a); none without density. Requires: lambda, ratio >= 0.
+Dynamics damped_by_ratio(const Dynamics& dynamics, double ratio, double lambda);
+
 /// The same vibration in an animation with frames of `frame_length` [s], each computed by `steps`;
 /// its frequency too is that of the animation. Requires: lambda > 0, frame_length > 0.
 Swing stepped_swing(double lambda, const Dynamics& dynamics, const TimeSteps& steps,

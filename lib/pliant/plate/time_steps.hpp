@@ -15,14 +15,17 @@ enum class Integrator {
   BackwardEuler,  ///< first order; takes energy away
   Newmark,        ///< the trapezoidal rule: second order; keeps the energy of an undamped plate;
                   ///< only of plates with density
+  Exact,          ///< the solution of the equation at the end, of load and tangents that change
+                  ///< evenly; only of plates with density or damping
 };
 
 /// Equal steps in time.
 struct TimeSteps {
-  int count = 1;      ///< >= 1
-  double length = 1;  ///< [s], > 0
+  int count = 1;      ///< >= 1; Exact: the parts that each of its own steps is divided into
+  double length = 1;  ///< [s], > 0; Exact: of the whole interval
   Integrator integrator = Integrator::BackwardEuler;
 
+  bool are_exact() const { return integrator == Integrator::Exact; }
   bool are_reflected() const { return integrator == Integrator::Newmark; }
 
   /// The length of the backward Euler steps that are solved: a step of Newmark's is one of half its

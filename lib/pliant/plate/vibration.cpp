@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/energy/plate_energy.hpp"
 
 namespace pliant {
 namespace {
@@ -41,57 +44,129 @@ Field irregular_shapes(Eigen::Index count) {
   return shapes;
 }
 
-Field times_masses(const VibratingPlate& plate, const Field& w) {
-  return w.array().colwise() * plate.masses.array();
+// The slowest vibration of a plate that nothing holds: first with a shift of about its size, then,
+// if that was far off, with one of its own size, of which less is lost to rounding.
+Result<double> find_unheld(const std::function<Result<double>(double shift)>& find, double shift) {
+  constexpr double far = 30;
+  const auto rough = find(shift);
+  if (!rough || *rough == 0 || (*rough < far * shift && shift < far * *rough)) return rough;
+  return find(*rough);
+}
+
+// The motions of a rectangle that bend nothing: 1, u and v, as far as its edges allow them. A mask
+// has a rim.
+Eigen::MatrixXd rigid_motions(const Outline& outline) {
+  const Grid& grid = outline.grid();
+  const Edges& edges = outline.edges();
+  int pinned = 0;
+  bool is_clamped = !outline.mask().empty() && !outline.is_unheld();
+  Eigen::RowVector2d hinge(0, 0);  // where a line of u or v is 0: at the pinned edge
+  const auto look = [&](Edge edge, int direction, double place) {
+    is_clamped = is_clamped || edge == Edge::Clamped;
+    if (edge != Edge::Pinned) return;
+    ++pinned;
+    hinge(direction) = place;
+  };
+  if (!grid.is_closed_u) {
+    look(edges.u0, 0, 0);
+    look(edges.u1, 0, grid.columns - 1);
+  }
+  if (!grid.is_closed_v) {
+    look(edges.v0, 1, 0);
+    look(edges.v1, 1, grid.rows - 1);
+  }
+  if (is_clamped || pinned > 1) return {};
+  Field nodes(grid.node_count(), 3);
+  for (int j = 0; j < grid.rows; ++j) {
+    for (int i = 0; i < grid.columns; ++i)
+      nodes.row(grid.node(i, j)) << 1, i - hinge(0), j - hinge(1);
+  }
+  const Field all = interior_of(outline, nodes);
+  const auto is_pinned = [](Edge a, Edge b) { return a == Edge::Pinned || b == Edge::Pinned; };
+  std::vector<int> columns;
+  if (pinned == 0) columns.push_back(0);
+  if (!grid.is_closed_u && (pinned == 0 || is_pinned(edges.u0, edges.u1))) columns.push_back(1);
+  if (!grid.is_closed_v && (pinned == 0 || is_pinned(edges.v0, edges.v1))) columns.push_back(2);
+  return all(Eigen::all, columns);
 }
 
 }  // namespace
 
 Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system) {
-  PLIANT_EXPECTS(system.shift == 0 && unknown_count(system.outline) >= 1);
+  PLIANT_EXPECTS(system.shift >= 0 && unknown_count(system.outline) >= 1);
   if (auto ready = solver.prepare(system); !ready) return fail(ready.error());
-  return VibratingPlate{[&solver](const Field& forces) { return solver.solve(forces); },
-                        Eigen::VectorXd::Ones(unknown_count(system.outline)),
-                        starting_shapes(system), solver.context()};
-}
-
-Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending) {
-  PLIANT_EXPECTS(!plate.masses().empty());
-  if (auto ready = plate.prepare(bending, 0); !ready) return fail(ready.error());
-  const auto count = static_cast<Eigen::Index>(plate.masses().size());
-  return VibratingPlate{[&plate](const Field& forces) { return plate.solve(forces); },
-                        Eigen::Map<const Eigen::VectorXd>(plate.masses().data(), count),
-                        irregular_shapes(count), plate.context()};
-}
-
-Result<double> smallest_eigenvalue(const VibratingPlate& plate) {
-  // Inverse iteration on three shapes at once. In their span the eigenvalues mu of the inverse are
-  // those of x^T M x = mu x^T K x for the solutions x of K x = M shapes; the largest mu is 1 /
-  // lambda.
-  Field forces = times_masses(plate, plate.shapes);
-  double lambda = std::numeric_limits<double>::infinity();
-  constexpr int most_passes = 500;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    if (plate.context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-    auto solutions = plate.solve(forces);
-    if (!solutions) return fail(solutions.error());
-    if (forces.rows() == 1) return forces(0, 0) / ((*solutions)(0, 0) * plate.masses(0));
-    const Eigen::Matrix3d energy = solutions->transpose() * forces;  // x^T K x
-    const Eigen::Matrix3d mass = solutions->transpose() * times_masses(plate, *solutions);
-    // With fewer than three unknowns the shapes are dependent; the diagonal is then shifted by a
-    // negligible amount.
-    const double shift = 1e-14 * energy.trace();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> modes(
-        mass, 0.5 * (energy + energy.transpose()) + shift * Eigen::Matrix3d::Identity());
-    const double next = 1 / modes.eigenvalues()(2);
-    const bool is_settled = std::abs(lambda - next) <= 1e-10 * next;
-    lambda = next;
-    if (is_settled) break;
-    Field shapes = *solutions * modes.eigenvectors();
-    for (int k = 0; k < 3; ++k) shapes.col(k) /= shapes.col(k).norm();
-    forces = times_masses(plate, shapes);
+  const Eigen::Index count = unknown_count(system.outline);
+  const bool is_clamped = system.is_even() && system.shift == 0;
+  VibratingPlate plate{.solve = [&solver](const Field& forces) { return solver.solve(forces); },
+                       .masses = node_masses(system),
+                       .shapes = is_clamped ? starting_shapes(system) : irregular_shapes(count),
+                       .context = solver.context(),
+                       .shift = system.shift};
+  if (system.shift > 0) {
+    plate.rigid = rigid_motions(system.outline);
+    return plate;
   }
-  return lambda;
+  // By a factor, which a shift below 0 does not matter to.
+  plate.shifted = [moved = system, direct = std::shared_ptr<PlateSolver>(),
+                   context =
+                       solver.context()](double shift) mutable -> Result<VibratingPlate::Solve> {
+    if (!direct) direct = make_plate_solver(available_solvers().front(), context);
+    moved.shift = shift;
+    if (auto ready = direct->prepare(moved); !ready) return fail(ready.error());
+    return [direct](const Field& forces) { return direct->solve(forces); };
+  };
+  return plate;
+}
+
+Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift) {
+  PLIANT_EXPECTS(!plate.masses().empty());
+  if (auto ready = plate.prepare(bending, shift); !ready) return fail(ready.error());
+  const auto count = static_cast<Eigen::Index>(plate.masses().size());
+  const VibratingPlate::Solve solve = [&plate](const Field& forces) { return plate.solve(forces); };
+  VibratingPlate vibrating{.solve = solve,
+                           .masses = plate.weighted_masses(),
+                           .shapes = irregular_shapes(count),
+                           .context = plate.context(),
+                           .shift = shift};
+  if (shift > 0) return vibrating;
+  vibrating.shifted = [&plate, bending, solve](double other) -> Result<VibratingPlate::Solve> {
+    if (auto ready = plate.prepare(bending, other); !ready) return fail(ready.error());
+    return solve;
+  };
+  return vibrating;
+}
+
+Result<double> smallest_eigenvalue(PlateSolver& solver, PlateSystem system) {
+  const auto find = [&](double shift) -> Result<double> {
+    system.shift = shift;
+    const auto plate = vibrating(solver, system);
+    if (!plate) return fail(plate.error());
+    return smallest_eigenvalue(*plate);
+  };
+  const Eigen::Index rigid = rigid_motions(system.outline).cols();
+  if (rigid == 0) return find(0);
+  if (rigid == unknown_count(system.outline)) return 0.0;
+  // As slow as a beam of the longer side.
+  const auto& [columns, rows, hu, hv, is_closed_u, is_closed_v] = system.outline.grid();
+  const auto slow = [](double stiffness, double length) {
+    const double square = length * length;
+    return 100 * stiffness / (square * square);
+  };
+  return find_unheld(
+      find, std::min(slow(system.stiffness.b, columns * hu), slow(system.stiffness.d, rows * hv)));
+}
+
+Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held) {
+  const auto find = [&](double shift) -> Result<double> {
+    const auto vibrates = vibrating(plate, bending, shift);
+    if (!vibrates) return fail(vibrates.error());
+    return smallest_eigenvalue(*vibrates);
+  };
+  if (is_held) return find(0);
+  // As slow as a square.
+  double area = 0;
+  for (const double mass : plate.masses()) area += mass;
+  return find_unheld(find, 100 * std::min(bending.uu, bending.vv) / (area * area));
 }
 
 Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,

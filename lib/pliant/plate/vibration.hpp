@@ -11,26 +11,42 @@ namespace pliant {
 
 /// A plate that can vibrate: K w = lambda M w, with M a diagonal of masses.
 struct VibratingPlate {
-  /// Solves K w = f (#unknowns x 3).
-  std::function<Result<Field>(const Field& forces)> solve;
-  Eigen::VectorXd masses;  ///< #unknowns
+  using Solve = std::function<Result<Field>(const Field& forces)>;
+
+  Solve solve;             ///< of (K + shift M) w = f (#unknowns x 3)
+  Eigen::VectorXd masses;  ///< #unknowns, > 0
   Field shapes;            ///< #unknowns x 3: with a part along each slow vibration, to start with
   RunContext context;      ///< its stop request is called before every pass
+  double shift = 0;        ///< >= 0; > 0 if nothing holds the plate [1/uv^4]
+  /// #unknowns x up to 3: motions K w = 0 that are known.
+  Eigen::MatrixXd rigid = {};
+  /// Makes a solve for another shift, perhaps in place of `solve`: for a shift < 0 too, if K +
+  /// shift M is positive definite. Errors: SolverFailed if it is not. Empty: none is made.
+  std::function<Result<Solve>(double shift)> shifted = {};
 };
 
-/// The interior of a clamped plate, rim and tangents 0, with masses of 1. Requires: system.shift is
-/// 0; at least one unknown; the solver outlives the result. Errors: those of `prepare`.
+/// The unknowns of a plate, rim and tangents 0, with the nodes' shares of area as masses, times the
+/// factors of a map of density. Requires: system.shift is 0, or > 0 if nothing holds the plate; at
+/// least one unknown; the solver outlives the result. Errors: those of `prepare`.
 Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system);
 
 /// A plate of triangles, its held points and slopes at 0. Requires: it has masses, and outlives the
-/// result. Errors: those of `prepare`.
-Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending);
+/// result; shift > 0 if nothing holds it. Errors: those of `prepare`.
+Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift = 0);
 
-/// The smallest eigenvalue lambda of a plate [1/uv^4]: the slowest free vibration of a plate of
-/// density rho has the angular frequency sqrt(lambda / rho) [1/s]. By subspace iteration, to 1e-9
-/// if the eigenvalues are far apart and to 1e-4 if many are close together, as for a sliver.
-/// Errors: those of the solver; Interrupted.
+/// The smallest eigenvalue lambda of a plate that is not that of a rigid motion [1/uv^4]: the
+/// slowest free vibration of a plate of density rho has the angular frequency sqrt(lambda / rho)
+/// [1/s]. 0 if every motion is rigid. Right to 1e-7, usually to 1e-9, with the same bits
+/// everywhere; docs/model.md, eq. (42b). Errors: those of the solver; SolverFailed if it is not
+/// found; OutOfMemory; Interrupted. Afterwards a `shifted` plate may no longer solve. Source: Wu,
+/// Simon, Thick-restart Lanczos method for large symmetric eigenvalue problems (2000).
 Result<double> smallest_eigenvalue(const VibratingPlate& plate);
+
+/// The same of a plate of a grid, whose shift is not read. Prepares the solver.
+Result<double> smallest_eigenvalue(PlateSolver& solver, PlateSystem system);
+
+/// The same of a plate of triangles; `is_held`: whether anything holds it.
+Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held);
 
 /// A vibration of a plate that is released, as seen at one of its nodes.
 struct ExcitedMode {

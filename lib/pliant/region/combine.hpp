@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "pliant/core/edges.hpp"
 #include "pliant/core/grid.hpp"
 
 namespace pliant {
@@ -24,16 +25,22 @@ struct Patch {
 
   bool is_ring_u = false;  ///< it goes all round a closed grid along u, and has no rim at i0 and i1
   bool is_ring_v = false;  ///< likewise along v
+  Edges edges = {};        ///< those of its box; along a ring they do not matter
 
   /// Whether its plate is a rectangle with a rim all around.
-  bool is_rectangle() const { return interior.empty() && !is_ring_u && !is_ring_v; }
+  bool is_rectangle() const {
+    return interior.empty() && !is_ring_u && !is_ring_v && !edges.have_free();
+  }
 
-  /// Whether a rim holds it. A static plate without one has no solution.
-  bool is_held() const { return !(interior.empty() && is_ring_u && is_ring_v); }
+  /// Whether its edges hold it: a clamped one, or two pinned ones, since it turns about a single
+  /// one. A static plate has no solution otherwise.
+  bool is_held() const;
 
-  /// The box without its outermost columns and rows, but for those of a ring.
+  /// The box without its outermost columns and rows, but for those of a ring and free ones.
   Box inner() const {
-    return {box.i0 + !is_ring_u, box.i1 - !is_ring_u, box.j0 + !is_ring_v, box.j1 - !is_ring_v};
+    const auto rim = [](bool is_ring, Edge edge) { return !is_ring && edge != Edge::Free ? 1 : 0; };
+    return {box.i0 + rim(is_ring_u, edges.u0), box.i1 - rim(is_ring_u, edges.u1),
+            box.j0 + rim(is_ring_v, edges.v0), box.j1 - rim(is_ring_v, edges.v1)};
   }
 
   /// Whether node (i,j) is interior; counted as in `box`.

@@ -38,4 +38,20 @@ Batch PlacedNodes::batch(std::span<const int> nodes) const {
   return batch;
 }
 
+Vector3d PlacedNodes::load_on(int node, const SampledForce& force) const {
+  const Vector3d load = force_on(force, at(node), node);
+  return is_weighted(force) ? Vector3d(load * (*densities_)[static_cast<std::size_t>(node)]) : load;
+}
+
+void PlacedNodes::add_loads(int first, int count, const SampledForce& force, int place,
+                            Batch& sums) const {
+  if (!is_weighted(force)) return add_forces(force, batch(first, count), first, place, sums);
+  for (int k = 0; k < count; ++k) {
+    const Vector3d load = load_on(first + k, force);
+    sums.x[place + k] += load.x();
+    sums.y[place + k] += load.y();
+    sums.z[place + k] += load.z();
+  }
+}
+
 }  // namespace pliant

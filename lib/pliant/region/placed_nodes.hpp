@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/transform.hpp"
@@ -10,15 +11,20 @@
 namespace pliant {
 
 /// Nodes in world space, as forces use them; transformed on demand, so that there is no copy. Keeps
-/// a reference to the positions, which must outlive it.
+/// a reference to the positions, and to the factors of density, which must outlive it.
 class PlacedNodes {
  public:
   /// #nodes x 3, in world space. Not explicit: the positions are used unchanged.
   PlacedNodes(const Field& positions) : positions_(&positions) {}
 
   /// #nodes x 3, in object space.
-  PlacedNodes(const Field& positions, const Transform& transform)
-      : positions_(&positions), transform_(transform) {}
+  /// `densities`: the factor of each node's density, which its inertia is multiplied by; null or
+  /// empty: 1.
+  PlacedNodes(const Field& positions, const Transform& transform,
+              const std::vector<double>* densities = nullptr)
+      : positions_(&positions),
+        transform_(transform),
+        densities_(densities && !densities->empty() ? densities : nullptr) {}
 
   Eigen::Index count() const { return positions_->rows(); }
 
@@ -35,9 +41,22 @@ class PlacedNodes {
   /// The same for any nodes.
   Batch batch(std::span<const int> nodes) const;
 
+  /// The force on a node [length b/uv^4]. Requires: force.force_radius > 0.
+  Vector3d load_on(int node, const SampledForce& force) const;
+
+  /// Adds `load_on` of `count` nodes from node `first` on to `sums`, from index `place` on.
+  /// Requires: as for `batch` and `load_on`.
+  void add_loads(int first, int count, const SampledForce& force, int place, Batch& sums) const;
+
  private:
+  // Whether the force on a node is multiplied by the factor of its density.
+  bool is_weighted(const SampledForce& force) const {
+    return densities_ && std::holds_alternative<InertiaForce>(force.kind);
+  }
+
   const Field* positions_;
   std::optional<Transform> transform_;
+  const std::vector<double>* densities_ = nullptr;
 };
 
 }  // namespace pliant

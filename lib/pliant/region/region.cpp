@@ -33,7 +33,7 @@ void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce&
       for (int j = inside.j0; j <= inside.j1 && goes_on; ++j) {
         for (int i = inside.i0; i <= inside.i1 && goes_on; ++i) {
           if (!patch.holds(i, j)) continue;
-          goes_on = f(force_at(force, nodes.at(grid.node_round(i, j))));
+          goes_on = f(nodes.load_on(grid.node_round(i, j), force));
         }
       }
     });
@@ -154,8 +154,8 @@ Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const Sampl
     const ForceSelection& selected = selection.forces[k];
     if (selected.region != static_cast<int>(region)) continue;
     for_each_shared(grid, {i, i + count - 1, j, j}, selected.force, [&](const Box& pushed) {
-      add_forces(forces[k], nodes.batch(grid.node_round(pushed.i0, j), pushed.columns()),
-                 pushed.i0 - i, load);
+      nodes.add_loads(grid.node_round(pushed.i0, j), pushed.columns(), forces[k], pushed.i0 - i,
+                      load);
     });
   }
   return load;

@@ -10,7 +10,8 @@ namespace {
 
 // The input of the solve at a frame, as in docs/replay.md: a line `region solved i0 i1 j0 j1` for
 // each part of each region, or a hash of what is cut out of triangles; then, for a body that
-// recovers, a byte for each node.
+// recovers, a byte for each node; then, for one that remembers what pushed, a byte for each node,
+// and hashes of loads and tangents.
 std::string region_text(const SurfaceReport& report, const BodyState& state) {
   std::string text;
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -21,6 +22,14 @@ std::string region_text(const SurfaceReport& report, const BodyState& state) {
   }
   if (report.cut) text += fmt::format("{}\n", to_text(*report.cut));
   text.append(state.unsettled.begin(), state.unsettled.end());
+  const auto& [loads, unknowns, tangents] = state.last;
+  if (unknowns.empty()) return text;
+  text.append(unknowns.begin(), unknowns.end());
+  text += fmt::format("{}\n", to_text(hash_of(loads)));
+  Field slopes(4, 3);
+  const Vector3d* const sides[] = {&tangents.su0, &tangents.su1, &tangents.sv0, &tangents.sv1};
+  for (int side = 0; side < 4; ++side) slopes.row(side) = sides[side]->transpose();
+  text += fmt::format("{}\n", to_text(hash_of(slopes)));
   return text;
 }
 
@@ -46,7 +55,10 @@ Result<ReplayFrame> digest(Simulation& simulation, int frame, ThreadPool& thread
   if (with_states) digests.states.resize(count);
   threads.for_each(count, [&](std::size_t k) {
     const BodyState& state = simulation.state(k);
-    const Field& rest = simulation.rest_shapes()[k].rest;
+    const RestShape& shape = simulation.rest_shapes()[k];
+    // The state of an animated shape holds displacements.
+    const Field none = Field::Zero(shape.animation ? shape.rest.rows() : 0, 3);
+    const Field& rest = shape.animation ? none : shape.rest;
     digests.surfaces[k] = {hash_of(state.positions), hash_of(state.velocities),
                            hash_of(region_text(report->surfaces[k], state)),
                            peak_displacement(state.positions, rest)};

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/plate/solver_choice.hpp"
@@ -71,8 +72,13 @@ ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs
     // The scene is stored as text. Reading a pipe or a device could block, or never end.
     std::error_code ignored;
     if (input.file == scene.origin.file || !fs::is_regular_file(input.file, ignored)) continue;
-    const auto bytes = read_file(input.file);
-    if (bytes) header.files.push_back({name_of(input, written), hash_of(*bytes)});
+    // In pieces: a cache may be larger than the memory.
+    HashStream stream;
+    const auto read = read_pieces(input.file, [&](std::string_view piece) {
+      stream.add(piece);
+      return true;
+    });
+    if (read) header.files.push_back({name_of(input, written), stream.hash()});
   }
   header.solver = name_of(solver);
   header.factors = name_of(available_solvers().front());

@@ -20,6 +20,8 @@
 #include "pliant/mesh/subdivide.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
 #include "pliant/mesh/vertex_weights.hpp"
+#include "pliant/sampling/animated_shape.hpp"
+#include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/memory.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/check.hpp"
@@ -133,8 +135,8 @@ class ShapeMaker {
 
   // Only reserves what a sheet or a net needs, which then can be made.
   Result<CheckedShape> check() {
-    if (std::holds_alternative<GridSheet>(surface_.shape) ||
-        std::holds_alternative<NurbsNet>(surface_.shape)) {
+    if (surface_.maps.empty() && (std::holds_alternative<GridSheet>(surface_.shape) ||
+                                  std::holds_alternative<NurbsNet>(surface_.shape))) {
       if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
         return fail(taken.error());
       return CheckedShape{std::move(memory_)};
@@ -156,6 +158,7 @@ class ShapeMaker {
                     .rest = net.points,
                     .grid = made.grid};
     shape.weights = std::make_shared<const VertexWeights>(std::move(made.weights));
+    if (auto added = add_maps(shape); !added) return fail(added.error());
     return shape;
   }
 
@@ -174,8 +177,9 @@ class ShapeMaker {
       return fail(about_mesh(shape.error(), is_closed ? "wrap" : "file"));
     }
     if (auto sound = check_as_surface(*shape); !sound) return fail(sound.error());
+    if (auto added = add_maps(*shape); !added) return fail(added.error());
     if (!surface_.subdivision) return shape;
-    return subdivided(*std::move(shape), bytes);
+    return subdivided(*std::move(shape), memory_.bytes());
   }
 
   Result<Mesh> make_mesh_of_shape() {
@@ -189,7 +193,8 @@ class ShapeMaker {
     if (file) {
       ahead += BytesToMake::of_references(*file);
       if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-      auto mesh = read_mesh(file->path, file->object, file->uv_set, file->root, context_);
+      auto mesh = read_mesh(file->path, file->object, file->uv_set, file->root, context_,
+                            attributes_of_maps(surface_));
       if (!mesh) return fail(at_scene(mesh.error()));
       return mesh;
     }
@@ -232,18 +237,41 @@ class ShapeMaker {
     return std::vector<int>(static_cast<std::size_t>(mesh.vertex_count()), -1);
   }
 
+  // The memory of the files is kept: a map is small.
+  Result<void> add_maps(RestShape& shape) {
+    if (surface_.maps.empty() || surface_.is_driven()) return {};
+    auto factors = read_maps(surface_, shape, origin_, [&](std::size_t bytes) {
+      return take_bytes(memory_.bytes() + bytes);
+    });
+    if (!factors) return fail(factors.error());
+    // By a ratio each node is damped by its own density.
+    if (surface_.material.damping_ratio) factors->damping = factors->density;
+    shape.factors = std::make_shared<const NodeFactors>(*std::move(factors));
+    return {};
+  }
+
   // What a surface of triangles cannot do.
   Result<void> check_as_surface(const RestShape& shape) const {
-    if (shape.grid || surface_.is_driven() || surface_.solver.reference == Reference::Rest)
-      return {};
-    return fail(
-        {.code = ErrorCode::InvalidInput,
-         .message = fmt::format(
-             "{}: reference=\"none\" needs a grid, whose sides determine the shape at rest, "
-             "but the mesh is read as a surface{}",
-             title_of(surface_), shape.note.empty() ? "" : ", since it is no even grid"),
-         .file = origin_.file,
-         .line = origin_.line_of(surface_.name, "reference")});
+    if (shape.grid || surface_.is_driven()) return {};
+    const auto refuse = [&](const char* attribute, std::string_view reason) {
+      return fail(
+          {.code = ErrorCode::InvalidInput,
+           .message = fmt::format("{}: {}, but the mesh is read as a surface{}", title_of(surface_),
+                                  reason, shape.note.empty() ? "" : ", since it is no even grid"),
+           .file = origin_.file,
+           .line = origin_.line_of(surface_.name, attribute)});
+    };
+    const SolverSettings& solver = surface_.solver;
+    if (solver.reference != Reference::Rest) {
+      return refuse("reference",
+                    "reference=\"none\" needs a grid, whose sides determine the shape at rest");
+    }
+    if (!solver.edges.are_clamped()) {
+      return refuse("edges",
+                    "edges are those of a grid, and border=\"free\" or \"pinned\" those "
+                    "of a surface");
+    }
+    return {};
   }
 
   Result<void> take_bytes(std::size_t bytes) {
@@ -347,13 +375,26 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
   return summary;
 }
 
+std::optional<CacheSummary> cache_summary_of(const RestShape& shape) {
+  if (!shape.animation) return {};
+  const AnimatedShape& animation = *shape.animation;
+  return CacheSummary{animation.sample_count(), animation.first_frame(), animation.last_frame()};
+}
+
+const std::vector<int>& RestShape::cache_nodes() const {
+  if (!weights) return vertex_nodes;
+  return cage ? cage->vertex_nodes : surface->vertex_nodes;
+}
+
 std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
                                 SolverChoice solver, RunContext context) {
   if (shape.rest.rows() == 0) return std::make_unique<DrivenBody>(settings);
   if (shape.surface) {
-    return std::make_unique<SurfaceBody>(shape.surface, settings, solver, std::move(context));
+    return std::make_unique<SurfaceBody>(shape.surface, settings, solver, std::move(context),
+                                         shape.factors);
   }
-  return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context));
+  return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
+                                    shape.factors);
 }
 
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
@@ -375,6 +416,11 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
       driven.memory.bytes() + bytes_to_bind(vertex_count, driver.surface.get(), driver.mesh);
   if (auto taken = take(bytes, own.name, scene.origin, driven.memory); !taken) return taken;
   auto triangles = triangles_of(driving, driver);
+  if (triangles && driver.animation) {
+    const auto nodes = driver.animation->nodes_at(scene.start);
+    if (!nodes) return fail(nodes.error());
+    triangles = std::make_shared<const TriangleSurface>(posed(**triangles, **nodes));
+  }
   if (!triangles) {
     return fail({.code = ErrorCode::InvalidInput,
                  .message = fmt::format("{} cannot drive {}: {}", title_of(driving), own.name,

@@ -18,8 +18,10 @@
 
 namespace pliant {
 
+class AnimatedShape;
 class Binding;
 class Body;
+struct NodeFactors;
 struct TriangleSurface;
 struct VertexWeights;
 
@@ -36,9 +38,16 @@ struct RestShape {
   std::shared_ptr<const TriangleSurface> surface = {};  ///< null: a grid
   std::string note = {};  ///< a remark for the author on how the mesh was read; may be empty
 
+  /// The factors of the material's maps at the nodes; null: there is no map.
+  std::shared_ptr<const NodeFactors> factors = {};
+
   /// Vertices of a net or a cage as weighted sums of nodes; null: each moves as its node.
   std::shared_ptr<const VertexWeights> weights = {};
   std::shared_ptr<const TriangleSurface> cage = {};  ///< the triangles of a cage that is a grid
+
+  /// How its rest positions move; null: they do not. Then `mesh` and `rest` give faces, areas and
+  /// directions only, and the state of its body holds displacements.
+  std::shared_ptr<const AnimatedShape> animation = {};
 
   /// How a driven surface follows its driver; null: it is not driven, or not bound yet.
   std::shared_ptr<const Binding> binding = {};
@@ -46,6 +55,10 @@ struct RestShape {
   /// The vertices for positions of the nodes (#nodes x 3 -> #vertices x 3), in the memory of
   /// `reuse`. Vertices of one node keep their offsets from each other.
   Field to_vertices(const Field& nodes, Field reuse = {}) const;
+
+  /// The node of each vertex of the mesh that the scene names, of a subdivision that of its cage:
+  /// the vertices of a cache. -1: it never moves by itself.
+  const std::vector<int>& cache_nodes() const;
 };
 
 /// What a mesh that is read as a surface of triangles consists of.
@@ -59,6 +72,26 @@ struct SurfaceSummary {
 
 /// Of a shape that is a surface; null: it is a grid, or driven.
 std::optional<SurfaceSummary> summary_of(const RestShape& shape);
+
+/// The samples of a cache that animates a shape.
+struct CacheSummary {
+  int samples = 0;
+  double first = 0;  ///< [frame]
+  double last = 0;   ///< [frame]
+};
+
+/// Null: the shape is not animated.
+std::optional<CacheSummary> cache_summary_of(const RestShape& shape);
+
+/// What a map makes of its channel.
+struct MapSummary {
+  MapChannel channel = MapChannel::Density;
+  double least = 1;  ///< the smallest factor at a node [1]
+  double most = 1;   ///< the largest
+};
+
+/// Those of a shape's maps, in the order of the channels.
+std::vector<MapSummary> map_summaries_of(const RestShape& shape);
 
 /// The body of a rest shape, at rest; that of a driven surface has no nodes. `solver` and `context`
 /// are those of its plates.

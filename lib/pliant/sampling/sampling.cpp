@@ -34,7 +34,11 @@ Vector3d sample_tangent(const TangentChannel& channel, int frame) {
 // -rho (X(f+1) - 2 X(f) + X(f-1)) p / T^2 for a surface's transform X and its frame length T, as a
 // function of the point X(f) p in the world. It is computed from differences of transforms, so that
 // it is exactly 0 for a surface at rest or in uniform motion if these differences are exact.
-InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
+//
+// Of an animated shape R, X(k) (R(k) + w) is X(k) applied to the point's own place in object space,
+// R(f) + w, and to R(k) - R(f): the part of each node.
+InertiaForce sample_inertia(const Surface& surface, double fps, int frame,
+                            const ShapeFrames& shape) {
   const Transform before = sample_transform(surface.transform, frame - 1);
   const Transform now = sample_transform(surface.transform, frame);
   const Transform after = sample_transform(surface.transform, frame + 1);
@@ -54,6 +58,10 @@ InertiaForce sample_inertia(const Surface& surface, double fps, int frame) {
                    turning(row, 2) * axes(k, 2));
     }
   }
+  if (!shape.now) return inertia;
+  const Field ways_after = vectors_to_world(after, *shape.after - *shape.now);
+  const Field ways_before = vectors_to_world(before, *shape.now - *shape.before);
+  inertia.of_nodes = std::make_shared<const Field>(scale * (ways_after - ways_before));
   return inertia;
 }
 
@@ -92,13 +100,14 @@ struct SampleShape {
   int frame;
   const std::shared_ptr<ForceFaults>& faults;
   NoiseClock* clock;  // null: the sum is computed here
+  const ShapeFrames& shape;
 
   double seconds() const { return frame / scene.fps; }
 
   // The time in cells at the frame, summed with the rate of each frame, so that the pattern never
   // jumps. docs/model.md, "Forces".
   double noise_cells(const Channel<1>& rate) const {
-    if (!rate.is_animated() || frame <= scene.start) return rate.at(frame)[0] * seconds();
+    if (!rate.is_animated() || frame == scene.start) return rate.at(frame)[0] * seconds();
     const auto rate_at = [&](int earlier) { return rate.at(earlier)[0]; };
     if (clock) return clock->sum(frame, rate_at) / scene.fps;
     return NoiseClock(scene.start).sum(frame, rate_at) / scene.fps;
@@ -118,7 +127,7 @@ struct SampleShape {
                       noise_cells(noise.rate), noise.seed.value_or(scene.seed)};
   }
   ForceKind operator()(const InertiaChannels&) const {
-    return sample_inertia(surface, scene.fps, frame);
+    return sample_inertia(surface, scene.fps, frame, shape);
   }
   ForceKind operator()(const CustomForce& custom) const {
     return sample_custom(custom, force.name, {frame, seconds()}, faults);
@@ -152,13 +161,27 @@ std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
   return std::make_unique<NoiseClock>(start);
 }
 
-SceneSampling::SceneSampling(const Scene& scene) : targets_(targets_of(scene)) {
+SceneSampling::SceneSampling(const Scene& scene)
+    : targets_(targets_of(scene)), animations_(scene.surfaces.size()) {
   for (const Force& force : scene.forces) clocks_.push_back(clock_of(force, scene.start));
 }
 
+void SceneSampling::animate(std::size_t surface, std::shared_ptr<const AnimatedShape> animation) {
+  animations_[surface] = std::move(animation);
+}
+
+ShapeFrames sample_shape(const AnimatedShape* animation, int frame, ForceFaults& faults) {
+  if (!animation) return {};
+  auto shape = animation->frames_around(frame);
+  if (shape) return *std::move(shape);
+  faults.add(shape.error().message);
+  return {animation->at_rest(), animation->at_rest(), animation->at_rest()};
+}
+
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock) {
-  const SampleShape sample{scene, force, surface, frame, faults, clock};
+                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock,
+                          const ShapeFrames& shape) {
+  const SampleShape sample{scene, force, surface, frame, faults, clock, shape};
   const bool selects = force.group.empty() && surface.solver.region == SolvedRegion::Forces;
   return {.kind = std::visit(sample, force.kind),
           .magnitude = force.magnitude.at(frame)[0],
@@ -187,13 +210,29 @@ bool targets(const Force& force, const Group* group, const std::string& surface)
   return holds(force.targets, surface) && (!group || holds(group->targets, surface));
 }
 
-int first_solved_frame(const Scene& scene, const Surface& surface) {
-  return std::max(scene.start, surface.solver.start_frame.value_or(scene.start));
+int first_frame_of_run(const Scene& scene) {
+  int first = sampled_frames(scene).first;
+  for (const Surface& surface : scene.surfaces) {
+    if (begins_cycle(scene, surface, scene.start)) first = std::min(first, scene.start - 1);
+  }
+  return first;
+}
+
+int solved_frame(const Scene& scene, const Surface& surface, int frame) {
+  const int first = first_solved_frame(scene, surface);
+  const std::optional<int> loop = surface.solver.loop;
+  return loop && frame > first ? first + (frame - first) % *loop : frame;
+}
+
+bool begins_cycle(const Scene& scene, const Surface& surface, int frame) {
+  const int first = first_solved_frame(scene, surface);
+  return surface.enabled && !surface.is_driven() && surface.solver.loop && frame >= first &&
+         (frame - first) % *surface.solver.loop == 0;
 }
 
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
   return surface.enabled && !surface.is_driven() && frame >= first_solved_frame(scene, surface) &&
-         frame_length(scene, surface, frame) > 0;
+         frame_length(scene, surface, solved_frame(scene, surface, frame)) > 0;
 }
 
 Transform sample_transform(const TransformChannels& channels, int frame) {
@@ -211,29 +250,45 @@ BodySettings body_settings(const Surface& surface, bool is_grid) {
           .region = solver.region,
           .combine = solver.combine,
           .release = solver.release,
-          .border = surface.reading.border.value_or(Border::Clamped)};
+          .border = surface.reading.border.value_or(Border::Clamped),
+          .edges = solver.edges,
+          .is_animated = surface.is_animated()};
 }
 
-BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame) {
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
+                       const ShapeFrames& shape) {
   const MaterialChannels& material = surface.material;
   const TangentChannels& tangents = surface.tangents;
   return {.transform = sample_transform(surface.transform, frame),
           .stiffness = {material.b.at(frame)[0], material.c.at(frame)[0], material.d.at(frame)[0]},
-          .dynamics = {material.density.at(frame)[0], material.damping.at(frame)[0]},
+          .dynamics = {material.density.at(frame)[0],
+                       material.damping_ratio ? 0 : material.damping.at(frame)[0]},
+          .damping_ratio = material.damping_ratio
+                               ? std::optional(material.damping_ratio->at(frame)[0])
+                               : std::nullopt,
           .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
                        sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
           .poisson = material.poisson.at(frame)[0],
           .frame_length = frame_length(scene, surface, frame),
           .dt = surface.solver.dt.at(frame)[0],
-          .forces = {}};
+          .forces = {},
+          .shape = shape.now};
 }
 
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
                             int frame, SurfaceInputs reuse) {
+  frame = solved_frame(scene, scene.surfaces[surface], frame);
   const SurfaceTargets& targets = sampling.targets(surface);
   const bool is_whole = scene.surfaces[surface].solver.region == SolvedRegion::All;
   SurfaceInputs inputs = std::move(reuse);
-  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame);
+  // Reports of earlier frames may still refer to theirs.
+  if (inputs.faults.use_count() == 1) {
+    inputs.faults->clear();
+  } else {
+    inputs.faults = std::make_shared<ForceFaults>();
+  }
+  const ShapeFrames shape = sample_shape(sampling.animation(surface), frame, *inputs.faults);
+  BodyInputs body = sample_body(scene, scene.surfaces[surface], frame, shape);
   body.forces = std::move(inputs.body.forces);
   body.selectors = std::move(inputs.body.selectors);
   inputs.body = std::move(body);
@@ -242,19 +297,13 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
   forces.clear();
   selectors.clear();
   inputs.sources.clear();
-  // Reports of earlier frames may still refer to theirs.
-  if (inputs.faults.use_count() == 1) {
-    inputs.faults->clear();
-  } else {
-    inputs.faults = std::make_shared<ForceFaults>();
-  }
 
   for (const auto& [index, place] : targets.forces) {
     const Force& force = scene.forces[index];
     const Group* const group = place >= 0 ? &scene.groups[targets.groups[place]] : nullptr;
     if (!is_enabled(force, group, frame)) continue;
     forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
-                                  sampling.clock(index)));
+                                  sampling.clock(index), shape));
     const auto* const custom = std::get_if<CustomForce>(&force.kind);
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group && !is_whole,
                               custom ? std::string_view(custom->key) : std::string_view()});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/body/body.hpp"
+#include "pliant/sampling/animated_shape.hpp"
 #include "pliant/sampling/noise_clock.hpp"
 #include "pliant/sampling/targets.hpp"
 #include "pliant/scene/scene.hpp"
@@ -17,7 +18,8 @@ namespace pliant {
 // From channels to the values of one frame; not for programs.
 
 /// Invalid results of custom forces: a negative or NaN distance, a force that is not finite. They
-/// are replaced by "out of reach" and 0; the caller that sampled the inputs must end the run.
+/// are replaced by "out of reach" and 0; likewise a cache that cannot be read. The caller that
+/// sampled the inputs must end the run.
 class ForceFaults {
  public:
   void add(std::string message);
@@ -54,44 +56,66 @@ struct SurfaceInputs {
 std::unique_ptr<NoiseClock> clock_of(const Force& force, int start);
 
 /// Data for sampling that are the same at all frames of a scene: which forces act on which surface,
-/// and the clocks of noises with a keyed rate. Stores only indices, so the scene may move, but its
-/// surfaces, forces, groups and targets must not change. Thread-safe.
+/// the clocks of noises with a keyed rate, and animated rest shapes. Stores only indices, so the
+/// scene may move, but its surfaces, forces, groups and targets must not change. Thread-safe.
 class SceneSampling {
  public:
   explicit SceneSampling(const Scene& scene);
 
   const SurfaceTargets& targets(std::size_t surface) const { return targets_[surface]; }
 
+  /// Gives a surface the animation of its rest shape, before anything of it is sampled.
+  void animate(std::size_t surface, std::shared_ptr<const AnimatedShape> animation);
+
+  /// The animation of a surface's rest shape; null: it stays the same.
+  const AnimatedShape* animation(std::size_t surface) const { return animations_[surface].get(); }
+
   /// The clock of a noise with a keyed rate; null for any other force.
   NoiseClock* clock(std::size_t force) const { return clocks_[force].get(); }
 
  private:
   std::vector<SurfaceTargets> targets_;
-  std::vector<std::unique_ptr<NoiseClock>> clocks_;  // one per force
+  std::vector<std::unique_ptr<NoiseClock>> clocks_;               // one per force
+  std::vector<std::shared_ptr<const AnimatedShape>> animations_;  // one per surface
 };
 
 /// The choices of a surface's body; `is_grid`: whether its nodes form a grid.
 BodySettings body_settings(const Surface& surface, bool is_grid);
 
-/// The inputs of a surface without forces.
-BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame);
+/// The rest shape of a surface's body at a frame and at its neighbours. An error is added to
+/// `faults`, and the shape then stands still. `animation` null: none.
+ShapeFrames sample_shape(const AnimatedShape* animation, int frame, ForceFaults& faults);
 
-/// The inputs of a surface, by its index in the scene for which `sampling` was made. Reuses the
-/// memory of `reuse`, earlier inputs or empty ones: then only custom functions allocate.
+/// The inputs of a surface without forces.
+BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
+                       const ShapeFrames& shape = {});
+
+/// The inputs of a surface's solve at a frame, as of `solved_frame`; the surface by its index in
+/// the scene for which `sampling` was made. Reuses the memory of `reuse`, earlier inputs or empty
+/// ones: then only custom functions allocate.
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
                             int frame, SurfaceInputs reuse = {});
 
 /// A force as it acts on `surface`; a force in a group selects no region. Invalid results of custom
 /// forces are added to `faults`. `clock` is that of the force; null: the time of a noise with a
-/// keyed rate is summed again from the start.
+/// keyed rate is summed again from the start. `shape` is that of `sample_shape`.
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock = nullptr);
+                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock = nullptr,
+                          const ShapeFrames& shape = {});
 
 /// The region of a group.
 SampledForce sample_group(const Group& group, int frame);
 
-/// The first frame at which an enabled surface is solved; before it is at rest.
-int first_solved_frame(const Scene& scene, const Surface& surface);
+/// The first frame of a run, at which all surfaces are at rest: the scene's start, unless a surface
+/// is solved ahead of it or begins a cycle at it, which it enters from the frame before.
+int first_frame_of_run(const Scene& scene);
+
+/// The frame whose inputs a surface's solve at `frame` uses: that frame, or in a loop that of its
+/// first cycle.
+int solved_frame(const Scene& scene, const Surface& surface, int frame);
+
+/// Whether a frame shows the beginning of a cycle of the surface, once more or for the first time.
+bool begins_cycle(const Scene& scene, const Surface& surface, int frame);
 
 /// Whether a surface is solved at a frame; otherwise its state does not change.
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame);

@@ -78,6 +78,10 @@ struct CurveOfChannel {
     read_into<3>(animate, ValueKind::Vector, path, findings,
                  [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });
   }
+  void operator()(std::optional<Channel<1>>* place) const {
+    read_into<1>(animate, ValueKind::Number, path, findings,
+                 [&](Curve<1> curve) { *place = Channel<1>(std::move(curve)); });
+  }
   void operator()(std::optional<Channel<3>>* place) const {
     read_into<3>(animate, ValueKind::Vector, path, findings,
                  [&](Curve<3> curve) { *place = Channel<3>(std::move(curve)); });

@@ -42,16 +42,17 @@ bool is_finite(const Value<D>& value) {
 
 class ChannelChecker {
  public:
-  ChannelChecker(const Scene& scene, int first, int last, const ChannelFilter& is_checked,
+  /// At one frame, or at all that are sampled.
+  ChannelChecker(const Scene& scene, std::optional<int> frame, const ChannelFilter& is_checked,
                  const StopRequest& should_stop)
-      : scene_(scene),
-        first_(first),
-        last_(last),
-        is_checked_(is_checked),
-        should_stop_(should_stop) {}
+      : scene_(scene), frame_(frame), is_checked_(is_checked), should_stop_(should_stop) {}
 
   void check_all() {
-    for (const Surface& surface : scene_.surfaces) check(surface);
+    for (const Surface& surface : scene_.surfaces) {
+      set_frames(sampled_frames(scene_, surface));
+      check(surface);
+    }
+    set_frames(sampled_frames(scene_));
     for (const Force& force : scene_.forces) check_channels(force, force);
     for (const Group& group : scene_.groups) check_channels(group, group);
   }
@@ -59,6 +60,11 @@ class ChannelChecker {
   std::vector<Error> take_errors() { return std::move(errors_); }
 
  private:
+  void set_frames(const FrameSpan& frames) {
+    first_ = frame_.value_or(frames.first);
+    last_ = frame_.value_or(frames.last);
+  }
+
   void check(const Surface& surface) {
     check_channels(surface, surface.transform);
     check_channels(surface, surface.material);
@@ -90,7 +96,7 @@ class ChannelChecker {
                       const std::array<double, D>& value) const {
     if constexpr (std::is_same_v<Owner, Surface>) {
       if (attribute.name == "scale") return complaint_of_scale(value);
-      if (attribute.unit == edge_slope) return complaint_of_tangent(owner, value);
+      if (attribute.unit == edge_slope) return complaint_of_tangent(owner, attribute.name, value);
     }
     if (const auto rule = attribute.range.broken_rule(value))
       return fmt::format("is {}, but {}", spelled<D>(value), *rule);
@@ -105,11 +111,20 @@ class ChannelChecker {
                        fmt::join(scale, " "));
   }
 
-  // A body with tangents never comes to rest, so it cannot recover: SPEC 6.
-  static Complaint complaint_of_tangent(const Surface& surface, std::span<const double> slopes) {
-    const bool is_zero = std::all_of(slopes.begin(), slopes.end(), [](double x) { return x == 0; });
-    if (surface.solver.release == Release::Freeze || is_zero) return {};
-    return fmt::format("is {}, but must be 0 with release=\"recover\"", fmt::join(slopes, " "));
+  // A body with tangents never comes to rest, so it cannot recover: SPEC 6. Only a clamped edge has
+  // a slope that is given: SPEC 9.
+  static Complaint complaint_of_tangent(const Surface& surface, std::string_view name,
+                                        std::span<const double> slopes) {
+    if (std::all_of(slopes.begin(), slopes.end(), [](double x) { return x == 0; })) return {};
+    const auto refused = [&](std::string_view reason) {
+      return fmt::format("is {}, but must be 0 {}", fmt::join(slopes, " "), reason);
+    };
+    if (surface.solver.release == Release::Recover) return refused("with release=\"recover\"");
+    const auto& [u0, u1, v0, v1] = surface.solver.edges;
+    const Edge edge = name == "su0" ? u0 : name == "su1" ? u1 : name == "sv0" ? v0 : v1;
+    if (edge == Edge::Clamped) return {};
+    return refused(fmt::format("at an edge that edges makes {}",
+                               border_words[static_cast<std::size_t>(edge)]));
   }
 
   // Whether the channel keeps `rule` at every frame; a constant one is checked once.
@@ -150,7 +165,7 @@ class ChannelChecker {
   // Whether it holds.
   bool check_ellipticity(const Surface& surface) {
     if (!is_checked(surface.name, "c")) return false;
-    const auto& [density, damping, b, c, d, poisson] = surface.material;
+    const auto& [density, damping, damping_ratio, b, c, d, poisson] = surface.material;
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
     const int last = is_animated ? last_ : first_;
     for (int frame = first_; frame <= last; ++frame) {
@@ -169,8 +184,9 @@ class ChannelChecker {
 
   // Requires: the stiffness is elliptic.
   void check_free_border(const Surface& surface) {
-    if (surface.reading.border != Border::Free) return;
-    const auto& [density, damping, b, c, d, poisson] = surface.material;
+    const bool has_free_edge = surface.solver.edges.have_free();
+    if (surface.reading.border != Border::Free && !has_free_edge) return;
+    const auto& [density, damping, damping_ratio, b, c, d, poisson] = surface.material;
     const bool is_animated =
         b.is_animated() || c.is_animated() || d.is_animated() || poisson.is_animated();
     const int last = is_animated ? last_ : first_;
@@ -181,10 +197,10 @@ class ChannelChecker {
       const double least_c = -ratio * stiffness.least_c();
       if (std::abs(ratio) < 1 && stiffness.c > least_c) continue;
       return add_error(surface.name, "poisson", is_animated, frame,
-                       fmt::format("is {}, but with a free border it must be between -1 and 1, and "
+                       fmt::format("is {}, but with a free {} it must be between -1 and 1, and "
                                    "c = {} must be greater than 2 poisson sqrt(b d) = {}; a "
                                    "smaller poisson helps",
-                                   ratio, stiffness.c, least_c),
+                                   ratio, has_free_edge ? "edge" : "border", stiffness.c, least_c),
                        scene_.origin.last_line_of(surface.name, {"poisson", "b", "c", "d"}));
     }
   }
@@ -204,7 +220,8 @@ class ChannelChecker {
   }
 
   const Scene& scene_;
-  int first_, last_;  // frames
+  std::optional<int> frame_;  // null: all that are sampled
+  int first_ = 0, last_ = 0;  // the present part's
   const ChannelFilter& is_checked_;
   const StopRequest& should_stop_;
   std::set<std::string, std::less<>> kept_;  // channels of the present part that keep their rule
@@ -215,7 +232,7 @@ class ChannelChecker {
 
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,
                                   const StopRequest& should_stop) {
-  ChannelChecker checker(scene, scene.start, scene.end, is_checked, should_stop);
+  ChannelChecker checker(scene, {}, is_checked, should_stop);
   checker.check_all();
   return checker.take_errors();
 }
@@ -223,7 +240,7 @@ std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_ch
 std::vector<Error> check_channels_at(const Scene& scene, int frame,
                                      const ChannelFilter& is_checked) {
   const StopRequest never;
-  ChannelChecker checker(scene, frame, frame, is_checked, never);
+  ChannelChecker checker(scene, frame, is_checked, never);
   checker.check_all();
   return checker.take_errors();
 }

@@ -15,8 +15,8 @@ namespace pliant {
 /// attribute. Empty: all.
 using ChannelFilter = std::function<bool(const std::string& name, std::string_view attribute)>;
 
-/// Checks every channel at every integer frame of the scene's range against the rules of SPEC 2 and
-/// 7: finite values; density, damping >= 0; b, d > 0; c > -2 sqrt(b d); dt > 0 and at most 10^5
+/// Checks every channel at every integer frame at which it is sampled against the rules of SPEC 2
+/// and 7: finite values; density, damping >= 0; b, d > 0; c > -2 sqrt(b d); dt > 0 and at most 10^5
 /// steps a frame; radii >= 0; progress within 0 to 1; a transform that can be inverted. At most one
 /// error per channel, at the first frame that breaks its rule, with channel, frame and value. c is
 /// checked only if b and d are checked and keep their rules. `should_stop` is called before each

@@ -27,11 +27,12 @@ Result<void> check_mesh_file(const std::filesystem::path& file) {
               file.string());
 }
 
-Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin) {
+Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
+                      const std::string& attribute) {
   return {.code = ErrorCode::Unreadable,
           .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message),
           .file = origin.file,
-          .line = origin.line_of(surface, "file")};
+          .line = origin.line_of(surface, attribute)};
 }
 
 std::vector<Error> check_scene(const Scene& scene) {

@@ -25,8 +25,9 @@ std::vector<Error> check_scene(const Scene& scene);
 /// never end. Errors: Unreadable.
 Result<void> check_mesh_file(const std::filesystem::path& file);
 
-/// The mesh reader's error (Unreadable) as a problem of the scene: it names the surface, and the
-/// line where the scene names the file.
-Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin);
+/// The error (Unreadable) of a reader of meshes or caches as a problem of the scene: it names the
+/// surface, and the line of the attribute by which the scene names the file.
+Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
+                      const std::string& attribute = "file");
 
 }  // namespace pliant

@@ -32,4 +32,8 @@ std::string Range::to_text() const {
   return text;
 }
 
+std::string name_of(MapChannel channel) {
+  return "map." + std::string(map_channel_words[static_cast<std::size_t>(channel)]);
+}
+
 }  // namespace pliant

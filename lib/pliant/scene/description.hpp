@@ -26,6 +26,10 @@ inline constexpr int max_frames = 1'000'000;
 /// The largest absolute value of a frame number.
 inline constexpr int largest_frame = 1'000'000'000;
 
+/// The most frames of a preroll, and of a cycle.
+inline constexpr int max_preroll = 100'000;
+inline constexpr int max_loop = 100'000;
+
 /// The most vertices that a grid sheet may have.
 inline constexpr int max_sheet_vertices = 100'000'000;
 
@@ -125,9 +129,10 @@ inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the me
 inline constexpr std::string_view scheme_words[] = {"catmullClark", "loop"};
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
-inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark"};
-inline constexpr std::string_view later_integrator_words[] = {"exact"};
+inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark", "exact"};
 inline constexpr std::string_view region_words[] = {"forces", "all"};
+inline constexpr std::string_view map_channel_words[] = {"density", "damping", "b", "c", "d"};
+inline constexpr std::string_view later_map_channel_words[] = {"yield", "hardening"};
 
 inline constexpr Range frame_range{.least = -largest_frame, .most = largest_frame};
 
@@ -234,6 +239,27 @@ struct Description<MeshFile> {
                   .meaning = "the set of UVs to read, if the file contains several",
                   .range = {.least = 0, .most = max_uv_sets - 1}},
         of.uv_set...);
+  }
+};
+
+/// The attributes of a sheet or a mesh that animate its shape.
+template <>
+struct Description<CacheFile> {
+  static constexpr std::string_view element = "mesh";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "cache",
+                  .meaning = "the shape at rest over time, .pc2, .mdd or .npy, relative to the "
+                             "scene file; its vertices are those of the shape",
+                  .absent = "none: it stays the same",
+                  .syntax = Syntax::Path},
+        of.path...);
+    row(Attribute{.name = "cacheStart",
+                  .meaning = "frame of the cache's first sample",
+                  .unit = "frame",
+                  .absent = "that of a .pc2; otherwise the scene's start"},
+        of.first...);
   }
 };
 
@@ -391,14 +417,57 @@ struct Description<MaterialChannels> {
         of.c...);
     row(Attribute{.name = "d", .meaning = "stiffness along v", .unit = "1", .range = positive},
         of.d...);
-    row(Attribute{.name = "dampingRatio", .need = Need::Later});
+    row(Attribute{.name = "dampingRatio",
+                  .meaning = "ζ: the damping ratio of the slowest vibration of each region that is "
+                             "solved, in place of `damping`, see below",
+                  .unit = "1",
+                  .range = not_negative,
+                  .absent = "damping counts"},
+        of.damping_ratio...);
     row(Attribute{.name = "yield", .need = Need::Later});
     row(Attribute{.name = "hardening", .need = Need::Later});
     row(Attribute{.name = "poisson",
-                  .meaning = "ν: how much bending along one direction bends the other; acts on a "
-                             "surface with a free border, and must be between −1 and 1 there",
+                  .meaning =
+                      "ν: how much bending along one direction bends the other; acts with "
+                      "a free border or edge, or a map of b, c or d, and must be between −1 and 1 "
+                      "there",
                   .unit = "1"},
         of.poisson...);
+  }
+};
+
+/// A map among the parts of its surface, as their lines are named: `map.b`.
+std::string name_of(MapChannel channel);
+
+template <>
+struct Description<MaterialMap> {
+  static constexpr std::string_view element = "map";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "channel",
+                  .meaning = "the channel of the material that it multiplies; one map a channel",
+                  .words = map_channel_words,
+                  .later = later_map_channel_words,
+                  .need = Need::Required},
+        of.channel...);
+    row(Attribute{.name = "file",
+                  .meaning = "picture (`.png`) or numbers of a grid's nodes (`.npy`), relative to "
+                             "the scene file",
+                  .absent = "none: an attribute",
+                  .syntax = Syntax::Path},
+        of.file...);
+    row(Attribute{.name = "attribute",
+                  .meaning = "vertex property of a `.ply`, or `_NAME` of a glTF, in place of a "
+                             "file",
+                  .absent = "none: a file"},
+        of.attribute...);
+    row(Attribute{.name = "low", .meaning = "the factor where the map is 0, or black", .unit = "1"},
+        of.low...);
+    row(
+        Attribute{
+            .name = "high", .meaning = "the factor where the map is 1, or white", .unit = "1"},
+        of.high...);
   }
 };
 
@@ -471,19 +540,35 @@ struct Description<SolverSettings> {
                   .absent = "current; rest on a surface"},
         of.measure...);
     row(Attribute{.name = "integrator",
-                  .meaning = "`backwardEuler`: of first order in dt, damps; `newmark`: the "
-                             "trapezoidal rule, of second order, keeps energy",
-                  .words = integrator_words,
-                  .later = later_integrator_words},
+                  .meaning =
+                      "`backwardEuler`: of first order in dt, damps; `newmark`: the "
+                      "trapezoidal rule, of second order, keeps energy; `exact`: the solution "
+                      "itself, whatever dt is, see below",
+                  .words = integrator_words},
         of.integrator...);
     row(Attribute{.name = "region",
                   .meaning = "`forces`: only the selections of forces are solved; `all`: the whole "
                              "surface in every frame, see below",
                   .words = region_words},
         of.region...);
-    row(Attribute{.name = "edges", .need = Need::Later});
-    row(Attribute{.name = "preroll", .need = Need::Later});
-    row(Attribute{.name = "loop", .need = Need::Later});
+    row(Attribute{.name = "edges",
+                  .meaning = "what holds the edges u0, u1, v0 and v1 of a grid: place and slope, "
+                             "place only, or nothing; only with `region=\"all\"`, see below",
+                  .words = border_words},
+        of.edges...);
+    row(Attribute{.name = "preroll",
+                  .meaning = "frames that are solved ahead of the surface's start, with the "
+                             "channels' values there; they are not written",
+                  .unit = "frame",
+                  .range = {.least = 0, .most = max_preroll}},
+        of.preroll...);
+    row(Attribute{.name = "loop",
+                  .meaning = "the surface moves in a cycle of so many frames from its start on, "
+                             "see below",
+                  .unit = "frame",
+                  .range = {.least = 1, .most = max_loop},
+                  .absent = "none"},
+        of.loop...);
   }
 };
 
@@ -680,7 +765,8 @@ struct ChannelFinder {
     if constexpr (std::is_same_v<M, Channel<1>> || std::is_same_v<M, Channel<3>> ||
                   std::is_same_v<M, Switch>) {
       visit(std::string(attribute.name), attribute, member);
-    } else if constexpr (std::is_same_v<M, std::optional<Channel<3>>>) {
+    } else if constexpr (std::is_same_v<M, std::optional<Channel<1>>> ||
+                         std::is_same_v<M, std::optional<Channel<3>>>) {
       if (member) (*this)(attribute, *member);
     } else if constexpr (std::is_same_v<M, TangentChannel>) {
       std::visit([&](auto& channel) { (*this)(attribute, channel); }, member);
@@ -702,7 +788,12 @@ void for_each_channel(T& thing, Visit&& visit) {
     describe(finder, thing);
     describe(finder, thing.transform);
     if (thing.is_driven()) return;
-    describe(finder, thing.material);
+    // With a damping ratio, the damping follows from it.
+    const auto row = [&](const Attribute& attribute, auto&... member) {
+      if (attribute.name != "damping" || !thing.material.damping_ratio)
+        finder(attribute, member...);
+    };
+    describe(row, thing.material);
     describe(finder, thing.tangents);
     describe(finder, thing.solver);
   } else if constexpr (std::is_same_v<Thing, Force>) {

@@ -50,23 +50,34 @@ std::vector<std::string_view> with_groups(std::vector<std::string_view> parents)
   return parents;
 }
 
+ElementFormat sheet_element() {
+  GridSheet sheet;
+  CacheFile cache;
+  return {Description<GridSheet>::element,
+          {"surface"},
+          Need::Optional,
+          formats_of(table_of(sheet, cache))};
+}
+
 ElementFormat mesh_element() {
   MeshFile mesh;
   MeshReading reading;
+  CacheFile cache;
   return {Description<MeshFile>::element,
           {"surface"},
           Need::Optional,
-          formats_of(table_of(mesh, reading))};
+          formats_of(table_of(mesh, reading, cache))};
 }
 
 ElementFormat cage_element() {
   MeshFile mesh;
   MeshReading reading;
+  CacheFile cache;
   Subdivision subdivision;
   return {Description<Subdivision>::element,
           {"surface"},
           Need::Optional,
-          formats_of(table_of(mesh, reading, subdivision))};
+          formats_of(table_of(mesh, reading, cache, subdivision))};
 }
 
 /// An element of a <nurbs> that contains numbers.
@@ -101,7 +112,7 @@ std::vector<ElementFormat> scene_format() {
   std::vector<ElementFormat> formats = {
       element<Scene>({}, Need::Required),
       element<Surface>({"scene"}),
-      element<GridSheet>({"surface"}),
+      sheet_element(),
       mesh_element(),
       element<NurbsNet>({"surface"}),
       numbers_element("points", Need::Required, "`x y z` of each control point, along u first"),
@@ -110,6 +121,7 @@ std::vector<ElementFormat> scene_format() {
       cage_element(),
       element<TransformChannels>({"surface"}),
       element<MaterialChannels>({"surface"}),
+      element<MaterialMap>({"material"}),
       element<TangentChannels>({"surface"}),
       element<SolverSettings>({"surface"}),
       element<Group>({"scene"}),

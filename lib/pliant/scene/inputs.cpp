@@ -18,6 +18,10 @@ std::vector<SceneInput> inputs_of(const Scene& scene) {
   };
   if (!scene.origin.file.empty()) add(scene.origin.file, "the scene");
   for (const Surface& surface : scene.surfaces) {
+    if (surface.is_animated()) add(surface.cache.path, "a cache of the scene");
+    for (const MaterialMap& map : surface.maps) {
+      if (!map.file.empty()) add(map.file, "a map of the scene");
+    }
     const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
     if (!mesh || !add(mesh->path, "a mesh of the scene")) continue;
     for (auto& file : mesh_references(mesh->path, mesh->root))

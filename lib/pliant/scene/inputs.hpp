@@ -11,12 +11,15 @@ namespace pliant {
 /// A file that a scene is made from.
 struct SceneInput {
   std::filesystem::path file;
-  std::string_view role;  ///< "the scene", "a mesh of the scene", "…that a mesh … refers to"
+  /// "the scene", "a mesh of the scene", "a cache of the scene", "a map of the scene", "…that a
+  /// mesh … refers to"
+  std::string_view role;
 };
 
 /// All files that reading a scene and its meshes opens: the scene's own, if it came from one, its
-/// meshes, and what these refer to, each once. For a mesh that cannot be read, only its own file.
-/// Cost: each mesh of a format that may refer to files is read to find their names.
+/// meshes with their caches and maps, and what meshes refer to, each once. For a mesh that cannot
+/// be read, only its own file. Cost: each mesh of a format that may refer to files is read to find
+/// their names.
 std::vector<SceneInput> inputs_of(const Scene& scene);
 
 }  // namespace pliant

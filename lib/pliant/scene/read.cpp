@@ -81,7 +81,8 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
   for (const NamedMesh& mesh : file.meshes)
     if (const auto readable = check_mesh_file(mesh.path); !readable)
       file.findings.add_problem(
-          mesh.line, unreadable_mesh(readable.error(), mesh.surface, scene.origin).message);
+          mesh.line,
+          unreadable_mesh(readable.error(), mesh.surface, scene.origin, mesh.attribute).message);
 }
 
 Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -14,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/mesh/vertex_weights.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
@@ -108,6 +110,10 @@ class WholeChecker {
     check_subdivision(surface);
     check_driver(surface);
     check_whole_body(surface);
+    check_cache(surface);
+    check_time(surface);
+    check_damping(surface);
+    check_maps(surface);
     if (const auto* const net = std::get_if<NurbsNet>(&surface.shape)) check(surface, *net);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
     if (!sheet) return;
@@ -143,7 +149,15 @@ class WholeChecker {
 
   void check_whole_body(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
-    if (solver.region != SolvedRegion::All) return;
+    if (solver.region != SolvedRegion::All) {
+      if (!solver.edges.are_clamped())
+        findings_.add_problem(
+            scene_.origin.last_line_of(surface.name, {"region", "edges"}),
+            fmt::format("{0}.edges: edges that are not clamped need region=\"all\", but "
+                        "{0}.region is \"forces\": the edges of a force's region are clamped",
+                        surface.name));
+      return;
+    }
     const auto refuse = [&](const char* attribute, std::string_view given,
                             std::string_view needed) {
       findings_.add_problem(
@@ -156,6 +170,98 @@ class WholeChecker {
     if (solver.combine != Combine::Box)
       refuse("combine", combine_words[static_cast<std::size_t>(solver.combine)], "box");
     if (solver.release != Release::Freeze) refuse("release", "recover", "freeze");
+  }
+
+  void check_cache(const Surface& surface) {
+    check_ranges(surface.name, surface.cache);
+    if (!surface.is_animated()) {
+      if (surface.cache.first && is_sound(surface.name, "cache"))
+        complain(surface.name, "cacheStart",
+                 fmt::format("{}.cacheStart is given, but no cache", surface.name));
+      return;
+    }
+    if (std::holds_alternative<NurbsNet>(surface.shape))
+      complain(
+          surface.name, "cache",
+          fmt::format("surface \"{}\" is a net, but a cache is of a grid or a mesh", surface.name));
+    if (surface.is_driven())
+      complain(surface.name, "cache",
+               fmt::format("{0}.cache: {0} is driven by {1} and follows the cache of that",
+                           surface.name, in_quotes(surface.driven_by)));
+    if (surface.solver.reference == Reference::None)
+      findings_.add_problem(
+          scene_.origin.last_line_of(surface.name, {"cache", "reference"}),
+          fmt::format("{}.reference: a cache moves the shape at rest, but reference=\"none\" has "
+                      "none",
+                      surface.name));
+  }
+
+  void check_time(const Surface& surface) {
+    const auto& [preroll, loop] = std::tie(surface.solver.preroll, surface.solver.loop);
+    if (preroll == 0 || !loop) return;
+    findings_.add_problem(
+        scene_.origin.last_line_of(surface.name, {"preroll", "loop"}),
+        fmt::format("{0}.preroll is {1} and {0}.loop is {2}, but a cycle has no frame ahead of its "
+                    "start; remove one of them",
+                    surface.name, preroll, *loop));
+  }
+
+  void check_damping(const Surface& surface) {
+    const MaterialChannels& material = surface.material;
+    if (!material.damping_ratio || !is_sound(surface.name, "damping")) return;
+    const Channel<1> standard = MaterialChannels().damping;
+    const bool is_given = scene_.origin.gives(surface.name, "damping") ||
+                          material.damping.is_animated() ||
+                          material.damping.at(0) != standard.at(0);
+    if (!is_given) return;
+    findings_.add_problem(
+        scene_.origin.last_line_of(surface.name, {"damping", "dampingRatio"}),
+        fmt::format("{0}.damping and {0}.dampingRatio are both given, but the damping follows from "
+                    "the ratio; remove one of them",
+                    surface.name));
+  }
+
+  void check_maps(const Surface& surface) {
+    for (auto map = surface.maps.begin(); map != surface.maps.end(); ++map) {
+      const std::string channel = name_of(map->channel);
+      const std::string name = fmt::format("{}.{}", surface.name, channel);
+      check_ranges(name, *map);
+      const auto refuse = [&](const char* attribute, std::string_view reason) {
+        complain(name, attribute, fmt::format("{}: {}", name, reason));
+      };
+      if (std::ranges::find(surface.maps.begin(), map, map->channel, &MaterialMap::channel) != map)
+        refuse("", "the channel has a map already");
+      const bool has_file = !map->file.empty(), has_attribute = !map->attribute.empty();
+      const int sources = has_file + has_attribute + !map->values.empty();
+      if (sources == 0) refuse("", "a map needs a file or an attribute");
+      if (sources > 1)
+        refuse("attribute", "a map has a file or an attribute, but this one has both");
+      const std::string ending = ending_of(map->file);
+      if (has_file && ending != ".png" && ending != ".npy")
+        refuse("file", fmt::format("the file is {}, but its name must end in .png or .npy",
+                                   in_quotes(map->file)));
+      const bool has_vertices = std::holds_alternative<MeshFile>(surface.shape) ||
+                                std::holds_alternative<Mesh>(surface.shape);
+      if (has_attribute && !has_vertices)
+        refuse("attribute", fmt::format("the attribute {} is one of a mesh's vertices, but the "
+                                        "surface is no <mesh> and no <subdivision>",
+                                        in_quotes(map->attribute)));
+      if (map->channel == MapChannel::Damping && surface.material.damping_ratio)
+        findings_.add_problem(
+            scene_.origin.last_line_of(surface.name, {"dampingRatio", channel}),
+            fmt::format(
+                "{0}: {1}.dampingRatio gives the damping by the density of each node; remove "
+                "one of them",
+                name, surface.name));
+      const bool is_stiffness =
+          map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
+      if (is_stiffness && surface.solver.combine == Combine::Union)
+        findings_.add_problem(
+            scene_.origin.last_line_of(surface.name, {"combine", channel}),
+            fmt::format("{}: a map of b, c or d needs rectangles, but {}.combine is \"union\"; "
+                        "\"box\" and \"islands\" have them",
+                        name, surface.name));
+    }
   }
 
   void check_driver(const Surface& surface) {

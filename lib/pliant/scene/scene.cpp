@@ -44,4 +44,28 @@ double frame_length(const Scene& scene, const Surface& surface, int frame) {
   return length >= least ? length : 0;
 }
 
+int first_solved_frame(const Scene& scene, const Surface& surface) {
+  const SolverSettings& solver = surface.solver;
+  return std::max(scene.start, solver.start_frame.value_or(scene.start)) - solver.preroll;
+}
+
+FrameSpan sampled_frames(const Scene& scene, const Surface& surface) {
+  FrameSpan frames{scene.start, scene.end};
+  if (!surface.enabled || surface.is_driven()) return frames;
+  const int first = first_solved_frame(scene, surface);
+  frames.first = std::min(frames.first, first);
+  const std::optional<int> loop = surface.solver.loop;
+  if (loop && first <= scene.end) frames.last = std::max(frames.last, first + *loop - 1);
+  return frames;
+}
+
+FrameSpan sampled_frames(const Scene& scene) {
+  FrameSpan all{scene.start, scene.end};
+  for (const Surface& surface : scene.surfaces) {
+    const FrameSpan frames = sampled_frames(scene, surface);
+    all = {std::min(all.first, frames.first), std::max(all.last, frames.last)};
+  }
+  return all;
+}
+
 }  // namespace pliant

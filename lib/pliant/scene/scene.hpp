@@ -34,6 +34,13 @@ struct MeshFile {
   std::string root = {};
 };
 
+/// An animation of a surface's rest shape, in a file: .pc2, .mdd or .npy.
+struct CacheFile {
+  std::string path = {};             ///< as passed to open; empty: the shape stays as it is
+  std::optional<double> first = {};  ///< the frame of its first sample; none: that of a .pc2
+                                     ///< itself, else the scene's start
+};
+
 /// The source of a surface's rest shape; a `Mesh` is made by a program.
 using SurfaceShape = std::variant<GridSheet, MeshFile, Mesh, NurbsNet>;
 
@@ -47,12 +54,33 @@ struct TransformChannels {
 
 /// The coefficients of the plate equation. SPEC 2; thesis 5.2.1.2.
 struct MaterialChannels {
-  Channel<1> density = 1;    ///< rho >= 0
-  Channel<1> damping = 1;    ///< eta >= 0
+  Channel<1> density = 1;  ///< rho >= 0
+  Channel<1> damping = 1;  ///< eta >= 0
+  /// zeta >= 0, of the slowest vibration of each region; eta follows from it. Absent: `damping`
+  /// gives eta. Both together are an error.
+  std::optional<Channel<1>> damping_ratio = {};
   Channel<1> b = 1;          ///< along u, > 0
   Channel<1> c = 2;          ///< mixed, > -2 sqrt(b d)
   Channel<1> d = 1;          ///< along v, > 0
   Channel<1> poisson = 0.3;  ///< nu: acts if a border is free, then > -1 and < 1
+};
+
+/// The channels of the material that a map may change.
+enum class MapChannel { Density, Damping, B, C, D };
+
+/// How a channel of the material differs over a surface: at each node its value is multiplied by
+/// low + (high - low) m. m is that of a picture at the node's (u,v), from black 0 to white 1; of a
+/// .npy with a number for each node of a grid; of an attribute of the mesh's vertices; or given by
+/// a program. Exactly one of `file`, `attribute` and `values` is not empty.
+struct MaterialMap {
+  MapChannel channel = MapChannel::Density;
+  std::string file = {};       ///< as passed to open: .png or .npy
+  std::string attribute = {};  ///< a property of a .ply's vertices, `_NAME` of a glTF, or one of
+                               ///< `Mesh::attributes`
+  double low = 0;              ///< the factor where m is 0 [1]
+  double high = 1;             ///< the factor where m is 1 [1]
+  /// m at each node of a sheet or of a net (row by row), or at each vertex of a mesh.
+  std::vector<double> values = {};
 };
 
 /// A boundary tangent: one number for all of x, y, z, 0 by default, or three numbers. [length/uv]
@@ -71,12 +99,15 @@ struct SolverSettings {
   Channel<1> dt = 0.01;                 ///< [s], > 0
   Channel<1> time_scale = 1;            ///< the body's seconds in one of the scene, 0 to 1000
   std::optional<int> start_frame = {};  ///< absent: the scene's start
+  int preroll = 0;                      ///< frames solved ahead of the start, 0 to 10^5
+  std::optional<int> loop = {};         ///< frames of a cycle, 1 to 10^5; absent: none
   Integrator integrator = Integrator::BackwardEuler;
   Stepping stepping = Stepping::Exact;
   Reference reference = Reference::Rest;
   std::optional<Measure> measure = {};  ///< absent: current on a grid, rest on a surface
   /// All only with Reference::Rest, Combine::Box and Release::Freeze.
   SolvedRegion region = SolvedRegion::Forces;
+  Edges edges = {};  ///< of a grid; others than clamped only with SolvedRegion::All
   Combine combine = Combine::Box;
   Release release = Release::Freeze;  ///< Recover only with tangents of 0
 };
@@ -91,12 +122,15 @@ struct Surface {
   SurfaceShape shape = {};                      ///< by default a `GridSheet`
   MeshReading reading = {};                     ///< of a shape that is a mesh
   std::optional<Subdivision> subdivision = {};  ///< of a shape that is a mesh: it is a cage
+  CacheFile cache = {};                         ///< of a sheet, or of a shape that is a mesh
   TransformChannels transform = {};
   MaterialChannels material = {};
+  std::vector<MaterialMap> maps = {};  ///< at most one of each channel
   TangentChannels tangents = {};
   SolverSettings solver = {};
 
   bool is_driven() const { return !driven_by.empty(); }
+  bool is_animated() const { return !cache.path.empty(); }  ///< its shape at rest moves
 };
 
 /// The thesis's force: a sphere that pushes along one direction.
@@ -233,6 +267,23 @@ struct Scene;
 /// The length of a frame in a surface's own time [s]. 0: it is halted. So it is if a frame would be
 /// shorter than 10^-30 s, in which nothing moves.
 double frame_length(const Scene& scene, const Surface& surface, int frame);
+
+/// The first frame at which an enabled surface is solved: its start, or `preroll` frames ahead of
+/// it. Up to there it is at rest.
+int first_solved_frame(const Scene& scene, const Surface& surface);
+
+/// First and last of some frames.
+struct FrameSpan {
+  int first = 0;
+  int last = 0;
+};
+
+/// The frames at which the channels of a surface are sampled: those of the scene, and those ahead
+/// of it or after it in which it is solved.
+FrameSpan sampled_frames(const Scene& scene, const Surface& surface);
+
+/// The same of all surfaces together.
+FrameSpan sampled_frames(const Scene& scene);
 
 /// A complete scene: values only, made by `load_scene` or in code.
 struct Scene {

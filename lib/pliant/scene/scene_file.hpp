@@ -12,11 +12,12 @@
 
 namespace pliant::xml {
 
-/// A mesh file that a surface names.
+/// A mesh file or a cache that a surface names.
 struct NamedMesh {
   std::string surface;  ///< empty: its name could not be read
   std::filesystem::path path;
   int line = 0;
+  std::string attribute;  ///< that names it
 };
 
 /// A scene file while it is read: its location, and the findings so far.

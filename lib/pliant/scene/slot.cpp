@@ -44,6 +44,7 @@ struct TypeName {
   std::string_view operator()(const PositionChannel*) const { return "vector"; }
   std::string_view operator()(const TangentChannel*) const { return "number or vector"; }
   std::string_view operator()(const Switch*) const { return "boolean"; }
+  std::string_view operator()(const Edges*) const { return "one or four words"; }
   template <class T>
   std::string_view operator()(const std::optional<T>*) const {
     return (*this)(static_cast<const T*>(nullptr));
@@ -63,6 +64,7 @@ struct RangeText {
     return fmt::format("0 to {}", std::numeric_limits<std::uint64_t>::max());
   }
   std::string operator()(const Choice&) const { return listed(attribute.words); }
+  std::string operator()(const Edges*) const { return listed(attribute.words); }
   std::string operator()(const std::string*) const {
     return attribute.syntax == Syntax::Name ? "unique" : "";
   }
@@ -110,6 +112,12 @@ struct ValueText {
     if (place->channel().is_animated()) return "";
     return place->at(0) ? "true" : "false";
   }
+  std::string operator()(const Edges* place) const {
+    const auto& [u0, u1, v0, v1] = *place;
+    const auto word = [this](Edge edge) { return attribute.words[static_cast<std::size_t>(edge)]; };
+    if (u0 == u1 && u1 == v0 && v0 == v1) return std::string(word(u0));
+    return fmt::format("{} {} {} {}", word(u0), word(u1), word(v0), word(v1));
+  }
   template <int D>
   std::string operator()(const Channel<D>* place) const {
     return place->is_animated() ? std::string() : to_text(place->at(0));
@@ -135,7 +143,7 @@ struct ReadValue {
   Reading<void> operator()(std::monostate) const {
     if (attribute.syntax == Syntax::Version) return read_version();
     if (attribute.words.empty()) return {};
-    const Reading<int> chosen = read_word();
+    const Reading<int> chosen = read_word(trimmed(text));
     return chosen ? Reading<void>() : complaint(chosen.error());
   }
   Reading<void> operator()(double* place) const {
@@ -170,7 +178,7 @@ struct ReadValue {
     return {};
   }
   Reading<void> operator()(const Choice& choice) const {
-    const Reading<int> chosen = read_word();
+    const Reading<int> chosen = read_word(trimmed(text));
     if (!chosen) return complaint(chosen.error());
     choice.set(choice.place, *chosen);
     return {};
@@ -218,6 +226,20 @@ struct ReadValue {
     if (count != 1 && count != 3) return complaint("one or three numbers are required");
     return count == 1 ? read_numbers<1>(*place) : read_numbers<3>(*place);
   }
+  /// One word for all edges, or four.
+  Reading<void> operator()(Edges* place) const {
+    const std::vector<std::string_view> words = words_of(text);
+    if (words.size() != 1 && words.size() != 4) return complaint("one or four words are required");
+    Edges edges;
+    Edge* const all[] = {&edges.u0, &edges.u1, &edges.v0, &edges.v1};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Reading<int> chosen = read_word(words[words.size() == 1 ? 0 : k]);
+      if (!chosen) return complaint(chosen.error());
+      *all[k] = static_cast<Edge>(*chosen);
+    }
+    *place = edges;
+    return {};
+  }
   Reading<void> operator()(Switch* place) const {
     bool value = false;
     if (Reading<void> read = (*this)(&value); !read) return read;
@@ -241,9 +263,8 @@ struct ReadValue {
     return {};
   }
 
-  Reading<int> read_word() const {
+  Reading<int> read_word(std::string_view chosen) const {
     const auto words = attribute.words;
-    const std::string_view chosen = trimmed(text);
     if (const auto found = std::find(words.begin(), words.end(), chosen); found != words.end())
       return static_cast<int>(found - words.begin());
     const auto later = attribute.later;
@@ -279,6 +300,7 @@ struct ReadValue {
 
 bool is_channel(const Place& place) {
   return std::holds_alternative<Channel<1>*>(place) || std::holds_alternative<Channel<3>*>(place) ||
+         std::holds_alternative<std::optional<Channel<1>>*>(place) ||
          std::holds_alternative<std::optional<Channel<3>>*>(place) ||
          std::holds_alternative<PositionChannel*>(place) ||
          std::holds_alternative<TangentChannel*>(place) || std::holds_alternative<Switch*>(place);
@@ -325,15 +347,23 @@ std::string not_supported(std::string_view instead) {
                      instead);
 }
 
-Table table_of(MeshFile& mesh, MeshReading& reading) {
+Table table_of(GridSheet& sheet, CacheFile& cache) {
   SlotMaker maker;
-  describe(maker, mesh);
-  describe(maker, reading);
+  describe(maker, sheet);
+  describe(maker, cache);
   return maker.take();
 }
 
-Table table_of(MeshFile& mesh, MeshReading& reading, Subdivision& subdivision) {
-  Table table = table_of(mesh, reading);
+Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache) {
+  SlotMaker maker;
+  describe(maker, mesh);
+  describe(maker, reading);
+  describe(maker, cache);
+  return maker.take();
+}
+
+Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache, Subdivision& subdivision) {
+  Table table = table_of(mesh, reading, cache);
   for (Slot& slot : table_of<Subdivision>(subdivision)) table.push_back(std::move(slot));
   return table;
 }

@@ -28,8 +28,8 @@ using Place =
     std::variant<std::monostate, double*, std::optional<double>*, int*, std::optional<int>*,
                  std::uint64_t*, std::optional<std::uint64_t>*, bool*, Choice, std::string*,
                  std::vector<std::string>*, Value<3>*, std::optional<Value<3>>*,
-                 std::optional<Value<2>>*, Channel<1>*, Channel<3>*, std::optional<Channel<3>>*,
-                 PositionChannel*, TangentChannel*, Switch*>;
+                 std::optional<Value<2>>*, Channel<1>*, Channel<3>*, std::optional<Channel<1>>*,
+                 std::optional<Channel<3>>*, PositionChannel*, TangentChannel*, Switch*, Edges*>;
 
 /// The place of an enumeration or boolean with words.
 template <class T>
@@ -126,11 +126,14 @@ Table table_of(T& thing) {
   return maker.take();
 }
 
-/// The slots of a mesh file: its own, then those of how it is read.
-Table table_of(MeshFile& mesh, MeshReading& reading);
+/// The slots of a sheet: its own, then those of its cache.
+Table table_of(GridSheet& sheet, CacheFile& cache);
+
+/// The slots of a mesh file: its own, those of how it is read, then those of its cache.
+Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache);
 
 /// The slots of a cage: those of a mesh file, then those of its subdivision.
-Table table_of(MeshFile& mesh, MeshReading& reading, Subdivision& subdivision);
+Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache, Subdivision& subdivision);
 
 /// The slots of a net, and its closed directions.
 Table table_of(NurbsNet& net);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,7 +33,11 @@ class SurfaceReader {
   void read_grid(const tinyxml2::XMLElement& element);
   void read_mesh(const tinyxml2::XMLElement& element, bool is_cage);
   void read_net(const tinyxml2::XMLElement& element);
+  void note_cache(const Table& table, CacheFile& cache);
   void read_part(const tinyxml2::XMLElement& element, Part& part);
+  void read_material(const tinyxml2::XMLElement& element);
+  void read_map(const tinyxml2::XMLElement& element);
+  bool takes_part(const tinyxml2::XMLElement& element, Part& part);
   void read_own_animate(const tinyxml2::XMLElement& element);
   bool takes_shape(const tinyxml2::XMLElement& element);
   void refuse_parts_of_driven();
@@ -58,7 +63,7 @@ Surface SurfaceReader::read() {
       {"nurbs", [&](const Element& child) { read_net(child); }},
       {"subdivision", [&](const Element& child) { read_mesh(child, true); }},
       {"transform", [&](const Element& child) { read_part(child, transform_); }},
-      {"material", [&](const Element& child) { read_part(child, material_); }},
+      {"material", [&](const Element& child) { read_material(child); }},
       {"tangents", [&](const Element& child) { read_part(child, tangents_); }},
       {"solver", [&](const Element& child) { read_part(child, solver_); }},
       {"animate", [&](const Element& child) { read_own_animate(child); }},
@@ -100,11 +105,14 @@ bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
 void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   const bool is_first = takes_shape(element);
   GridSheet grid;
-  Table table = table_of(grid);
+  CacheFile cache;
+  Table table = table_of(grid, cache);
   read_attributes(element, table, file_.findings);
+  note_cache(table, cache);
   read_children(element, {}, file_.findings);
   if (!is_first) return;
   surface_.shape = grid;
+  surface_.cache = cache;
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
@@ -113,18 +121,31 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage)
   MeshFile mesh;
   mesh.root = file_.root;
   MeshReading reading;
+  CacheFile cache;
   Subdivision subdivision;
-  Table table = is_cage ? table_of(mesh, reading, subdivision) : table_of(mesh, reading);
+  Table table =
+      is_cage ? table_of(mesh, reading, cache, subdivision) : table_of(mesh, reading, cache);
   read_attributes(element, table, file_.findings);
+  note_cache(table, cache);
   if (!mesh.path.empty()) mesh.path = (file_.folder / mesh.path).string();
   read_children(element, {}, file_.findings);
   if (const Slot* path = find(table, "file"); path->line != 0 && path->is_sound)
-    file_.meshes.push_back({surface_.name, mesh.path, path->line});
+    file_.meshes.push_back({surface_.name, mesh.path, path->line, "file"});
   if (!is_first) return;
   surface_.shape = mesh;
   surface_.reading = reading;
+  surface_.cache = cache;
   if (is_cage) surface_.subdivision = subdivision;
   if (!surface_.name.empty()) record(surface_.name, table, file_);
+}
+
+/// Finds a cache's file from the scene's folder.
+void SurfaceReader::note_cache(const Table& table, CacheFile& cache) {
+  if (!cache.path.empty()) cache.path = (file_.folder / cache.path).string();
+  for (const Slot& slot : table) {
+    if (slot.attribute.name == "cache" && slot.line != 0 && slot.is_sound)
+      file_.meshes.push_back({surface_.name, cache.path, slot.line, "cache"});
+  }
 }
 
 void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
@@ -141,13 +162,57 @@ void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
   reader.record_content();
 }
 
-void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
-  if (part.line != 0)
-    return file_.findings.add_problem(
-        element.GetLineNum(), fmt::format("{} has a second {}; the first is at line {}", title(),
-                                          tag(element), part.line));
+/// Whether this is the first such part of the surface; reads its attributes then.
+bool SurfaceReader::takes_part(const tinyxml2::XMLElement& element, Part& part) {
+  if (part.line != 0) {
+    file_.findings.add_problem(element.GetLineNum(),
+                               fmt::format("{} has a second {}; the first is at line {}", title(),
+                                           tag(element), part.line));
+    return false;
+  }
   part.line = element.GetLineNum();
   read_attributes(element, part.table, file_.findings);
+  return true;
+}
+
+void SurfaceReader::read_material(const tinyxml2::XMLElement& element) {
+  if (!takes_part(element, material_)) return;
+  const Child children[] = {
+      {"animate",
+       [&](const tinyxml2::XMLElement& child) {
+         read_animate(child, material_.table, surface_.name, file_.findings);
+       }},
+      {"map", [&](const tinyxml2::XMLElement& child) { read_map(child); }},
+  };
+  read_children(element, children, file_.findings);
+}
+
+void SurfaceReader::read_map(const tinyxml2::XMLElement& element) {
+  MaterialMap map;
+  Table table = table_of(map);
+  read_attributes(element, table, file_.findings);
+  read_children(element, {}, file_.findings);
+  for (const Slot& slot : table) {
+    if (!slot.is_sound) return;
+  }
+  const std::string name = name_of(map.channel);
+  const auto first = std::ranges::find(surface_.maps, map.channel, &MaterialMap::channel);
+  if (first != surface_.maps.end())
+    return file_.findings.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} has a second map of {}; a channel has one", title(),
+                    map_channel_words[static_cast<std::size_t>(map.channel)]));
+  if (!map.file.empty()) {
+    map.file = (file_.folder / map.file).string();
+    file_.meshes.push_back({surface_.name, map.file, find(table, "file")->line, name});
+  }
+  surface_.maps.push_back(map);
+  if (!surface_.name.empty())
+    record_element(element, fmt::format("{}.{}", surface_.name, name), table, file_);
+}
+
+void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
+  if (!takes_part(element, part)) return;
   const Child children[] = {{"animate", [&](const tinyxml2::XMLElement& child) {
                                read_animate(child, part.table, surface_.name, file_.findings);
                              }}};

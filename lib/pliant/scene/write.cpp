@@ -42,6 +42,8 @@ class SceneWriter {
  private:
   void write(const Surface& surface);
   void write_shape(const Surface& surface);
+  void write_material(const Surface& surface);
+  std::string from_folder(const std::string& path) const;
   void write(const NurbsNet& net);
   void write(const Force& force);
   void write(const Group& group, const std::vector<const Force*>& forces);
@@ -54,7 +56,8 @@ class SceneWriter {
   void write_channel(const Attribute& attribute, const Channel<1>& channel);
   void write_channel(const Attribute& attribute, const Channel<3>& channel);
   void write_channel(const Attribute& attribute, const Switch& channel);
-  void write_channel(const Attribute& attribute, const std::optional<Channel<3>>& channel);
+  template <int D>
+  void write_channel(const Attribute& attribute, const std::optional<Channel<D>>& channel);
   void write_channel(const Attribute& attribute, const TangentChannel& tangent);
   void write_channel(const Attribute& attribute, const PositionChannel& position);
   template <class Other>
@@ -183,8 +186,9 @@ void SceneWriter::write_channel(const Attribute& attribute, const Switch& channe
     write_curve("animate", attribute.name, channel.channel().curve(), ValueKind::Boolean);
 }
 
+template <int D>
 void SceneWriter::write_channel(const Attribute& attribute,
-                                const std::optional<Channel<3>>& channel) {
+                                const std::optional<Channel<D>>& channel) {
   if (channel) write_channel(attribute, *channel);
 }
 
@@ -209,7 +213,12 @@ void SceneWriter::write_part(const Part& part) {
   const Table defaults = table_of(standard);
   const bool is_default = std::equal(table.begin(), table.end(), defaults.begin(),
                                      [](const Slot& a, const Slot& b) { return a.text == b.text; });
-  if (is_default) return;
+  // One that is animated has no text, as one that is absent.
+  bool is_animated = false;
+  for_each_channel(part, [&](const std::string&, const Attribute&, const auto& channel) {
+    is_animated = is_animated || channel.is_animated();
+  });
+  if (is_default && !is_animated) return;
   element(Description<Part>::element, [&] {
     write_attributes(table, defaults);
     write_channels(part);
@@ -217,10 +226,13 @@ void SceneWriter::write_part(const Part& part) {
 }
 
 void SceneWriter::write_shape(const Surface& surface) {
+  CacheFile cache = surface.cache;
+  CacheFile no_cache;
+  if (!cache.path.empty()) cache.path = from_folder(cache.path);
   if (auto sheet = std::get_if<GridSheet>(&surface.shape)) {
     GridSheet own = *sheet;
     GridSheet standard;
-    element("grid", [&] { write_attributes(table_of(own), table_of(standard)); });
+    element("grid", [&] { write_attributes(table_of(own, cache), table_of(standard, no_cache)); });
   } else if (auto net = std::get_if<NurbsNet>(&surface.shape)) {
     write(*net);
   } else if (auto mesh = std::get_if<MeshFile>(&surface.shape)) {
@@ -228,21 +240,43 @@ void SceneWriter::write_shape(const Surface& surface) {
     MeshReading reading = surface.reading;
     MeshFile standard;
     MeshReading standard_reading;
-    if (!folder_.empty())
-      own.path = std::filesystem::path(own.path).lexically_proximate(folder_).string();
+    own.path = from_folder(own.path);
     if (!surface.subdivision) {
       element("mesh", [&] {
-        write_attributes(table_of(own, reading), table_of(standard, standard_reading));
+        write_attributes(table_of(own, reading, cache),
+                         table_of(standard, standard_reading, no_cache));
       });
       return;
     }
     Subdivision subdivision = *surface.subdivision;
     Subdivision standard_subdivision;
     element("subdivision", [&] {
-      write_attributes(table_of(own, reading, subdivision),
-                       table_of(standard, standard_reading, standard_subdivision));
+      write_attributes(table_of(own, reading, cache, subdivision),
+                       table_of(standard, standard_reading, no_cache, standard_subdivision));
     });
   }
+}
+
+// A file's path as the scene names it.
+std::string SceneWriter::from_folder(const std::string& path) const {
+  if (folder_.empty()) return path;
+  return std::filesystem::path(path).lexically_proximate(folder_).string();
+}
+
+void SceneWriter::write_material(const Surface& surface) {
+  if (surface.maps.empty()) return write_part(surface.material);
+  MaterialChannels own = surface.material;
+  MaterialChannels standard;
+  element(Description<MaterialChannels>::element, [&] {
+    write_attributes(table_of(own), table_of(standard));
+    write_channels(own);
+    for (MaterialMap map : surface.maps) {
+      MaterialMap no_map;
+      if (!map.file.empty()) map.file = from_folder(map.file);
+      element(Description<MaterialMap>::element,
+              [&] { write_attributes(table_of(map), table_of(no_map)); });
+    }
+  });
 }
 
 void SceneWriter::write(const NurbsNet& net) {
@@ -289,7 +323,7 @@ void SceneWriter::write(const Surface& surface) {
     write_shape(surface);
     write_part(surface.transform);
     if (surface.is_driven()) return;
-    write_part(surface.material);
+    write_material(surface);
     write_part(surface.tangents);
     write_part(surface.solver);
   });
@@ -357,6 +391,15 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
           "surface \"{}\" has a mesh made by a program, which a scene file cannot "
           "contain; write it to a mesh file",
           surface.name);
+  for (const Surface& surface : scene.surfaces) {
+    for (const MaterialMap& map : surface.maps) {
+      if (!map.values.empty())
+        return fmt::format(
+            "{}.{} has values of a program, which a scene file cannot contain; write them to a "
+            "file",
+            surface.name, name_of(map.channel));
+    }
+  }
   for (const Force& force : scene.forces) {
     if (std::holds_alternative<CustomForce>(force.kind))
       return fmt::format("force \"{}\" is custom, which a scene file cannot contain", force.name);

@@ -8,6 +8,7 @@
 
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/mesh/binding.hpp"
+#include "pliant/sampling/material_maps.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 
@@ -58,18 +59,20 @@ std::ptrdiff_t solved_count(const Scene& scene) {
 
 }  // namespace
 
-Bodies::Bodies(const Scene& scene, const SceneSampling& sampling, const SimulationOptions& options)
+Bodies::Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOptions& options)
     : scene_(scene),
       sampling_(sampling),
       memory_(options.max_memory),
       threads_(options.threads),
       solver_(options.solver),
+      exact_parts_(options.exact_parts),
       // Several surfaces are solved in parallel; a single one uses all threads.
       context_{.memory = &memory_,
                .threads = solved_count(scene) == 1 ? &threads_ : nullptr,
                .most_lanes = options.most_lanes,
                .should_stop = options.should_stop},
-      profiles_(options.profile ? scene.surfaces.size() : 0) {}
+      profiles_(options.profile ? scene.surfaces.size() : 0),
+      round_done_(options.round_done) {}
 
 Result<void> check_to_simulate(const Scene& scene) {
   std::vector<Error> errors = check_scene(scene);
@@ -88,14 +91,24 @@ tl::unexpected<Error> interrupted_at_start() {
 
 Result<void> Bodies::make_all() {
   std::vector<Error> errors = check_channels(scene_, {}, context_.should_stop);
+  const bool are_sound = errors.empty();
   std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
     if (context_.is_stopped()) return interrupted_at_start();
     auto made = make_rest_shape(surface, scene_.origin, context_);
-    if (made)
-      shapes.push_back(*std::move(made));
-    else
+    if (!made) {
       errors.push_back(std::move(made.error()));
+      continue;
+    }
+    if (surface.is_animated()) {
+      if (auto moves = animate(*made, surface, scene_, context_); !moves)
+        errors.push_back(moves.error());
+    }
+    if (are_sound) {
+      for (Error& error : pliant::check_maps(scene_, surface, made->shape))
+        errors.push_back(std::move(error));
+    }
+    shapes.push_back(*std::move(made));
   }
   if (context_.is_stopped()) return interrupted_at_start();
   if (errors.empty()) {
@@ -105,6 +118,7 @@ Result<void> Bodies::make_all() {
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
   for (std::size_t k = 0; k < shapes.size(); ++k) add(scene_.surfaces[k], std::move(shapes[k]));
   steps_.resize(bodies_.size());
+  cycles_.resize(bodies_.size());
   return {};
 }
 
@@ -127,10 +141,21 @@ Result<void> Bodies::bind_driven(std::span<ReservedShape> made) const {
 void Bodies::add(const Surface& surface, ReservedShape made) {
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
-  const BodySettings settings = body_settings(surface, made.shape.grid.has_value());
+  BodySettings settings = body_settings(surface, made.shape.grid.has_value());
+  settings.exact_parts = exact_parts_;
+  sampling_.animate(bodies_.size(), made.shape.animation);
   bodies_.push_back(make_body(made.shape, settings, solver_, std::move(context)));
   rest_shapes_.push_back(std::move(made.shape));
   shares_.push_back(std::move(made.memory));
+}
+
+std::vector<Error> Bodies::check_maps(int frame) const {
+  std::vector<Error> errors;
+  for (std::size_t k = 0; k < rest_shapes_.size(); ++k) {
+    for (Error& error : check_maps_at(scene_, scene_.surfaces[k], rest_shapes_[k], frame))
+      errors.push_back(std::move(error));
+  }
+  return errors;
 }
 
 // In parallel, unless the threads work on the parts of a single body.
@@ -144,8 +169,7 @@ void Bodies::step(int frame, KeptStates* kept, const std::function<bool()>& give
   const auto step_one = [&](std::size_t k) { step(k, frame, kept); };
   for_each_body(std::ref(step_one));
   const auto lacks_memory = [](const Step& step) {
-    return step.is_solved_now && !step.outcome &&
-           step.outcome.error().code == ErrorCode::OutOfMemory;
+    return !step.outcome && step.outcome.error().code == ErrorCode::OutOfMemory;
   };
   if (std::any_of(steps_.begin(), steps_.end(), lacks_memory) && give_way && give_way()) {
     for_each_body([&](std::size_t k) {
@@ -159,12 +183,28 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   const Surface& surface = scene_.surfaces[index];
   step.is_solved_now = is_solved_at(scene_, surface, frame);
   step.is_read = false;
-  if (!step.is_solved_now) return;
+  step.is_again = begins_cycle(scene_, surface, frame + 1);
+  step.frame = solved_frame(scene_, surface, frame);
+  step.outcome = {};
   Body& body = *bodies_[index];
-  {
+  if (step.is_solved_now) {
     const StageTimer timer(profile_of(index), Stage::Sampling);
     step.inputs = sample_inputs(scene_, sampling_, index, frame, std::move(step.inputs));
   }
+  if (step.is_again) {
+    // The last solve of a cycle leads to its beginning, but for the gap: it is only told of.
+    if (step.is_solved_now) {
+      const auto plan = body.look(step.inputs.body);
+      if (!plan) {
+        step.outcome = fail(plan.error());
+        return;
+      }
+      step.facts = facts_of(step.inputs.body, *plan, surface.solver.combine, std::move(step.facts));
+    }
+    step.outcome = begin_cycle(index, kept);
+    return;
+  }
+  if (!step.is_solved_now) return;
   if (kept) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
     if (context_.is_stopped()) {
@@ -189,14 +229,15 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   }
 }
 
-Result<void> Bodies::outcome(std::size_t index, int frame) const {
+Result<void> Bodies::outcome(std::size_t index) const {
   const Step& step = steps_[index];
-  if (!step.is_solved_now) return {};
   const Surface& surface = scene_.surfaces[index];
-  if (std::string fault = step.inputs.faults->first(); !fault.empty()) {
-    return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, frame));
+  const bool has_faults = step.is_solved_now && !step.is_again;
+  if (std::string fault = has_faults ? step.inputs.faults->first() : std::string();
+      !fault.empty()) {
+    return fail(located({ErrorCode::NotFinite, std::move(fault)}, surface, step.frame));
   }
-  if (!step.outcome) return fail(located(step.outcome.error(), surface, frame));
+  if (!step.outcome) return fail(located(step.outcome.error(), surface, step.frame));
   return {};
 }
 
@@ -212,34 +253,75 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
 
 Result<void> Bodies::show(std::size_t index, int frame, SurfaceFrame& shown) const {
   const RestShape& shape = rest_shapes_[index];
+  const Surface& surface = scene_.surfaces[index];
   const Field& nodes = bodies_[index]->state().positions;
-  const Transform transform = sample_transform(scene_.surfaces[index].transform, frame);
+  const Transform transform = sample_transform(surface.transform, frame);
   Field positions = std::move(shown.object_positions_);
-  positions = shape.binding ? driven_positions(index, frame, transform, std::move(positions))
-                            : shape.to_vertices(nodes, std::move(positions));
+  Field rest = std::move(shown.object_rest_);
+  if (shape.binding || shape.animation) {
+    auto placed = shape.binding ? driven_positions(index, frame, transform, std::move(positions))
+                                : place_vertices(index, frame, nodes, std::move(positions));
+    if (!placed) return fail(located(placed.error(), surface, frame));
+    positions = *std::move(placed);
+  } else {
+    positions = shape.to_vertices(nodes, std::move(positions));
+  }
+  if (shape.animation) {
+    auto at_rest = place_vertices(index, frame, bodies_[index]->rest(), std::move(rest));
+    if (!at_rest) return fail(located(at_rest.error(), surface, frame));
+    rest = *std::move(at_rest);
+  } else {
+    rest.resize(0, 3);
+  }
   // A vertex moves as its node, if it has one.
-  const bool has_nodes = !shape.binding && !shape.weights;
-  const Extent extent = has_nodes ? extent_of(transform, nodes, shape.rest)
-                                  : extent_of(transform, positions, shape.mesh.positions);
+  const bool has_nodes = !shape.binding && !shape.weights && !shape.animation;
+  const Extent extent =
+      has_nodes ? extent_of(transform, nodes, shape.rest)
+                : extent_of(transform, positions, shape.animation ? rest : shape.mesh.positions);
   if (!extent.is_finite) {
-    return fail(located({ErrorCode::NotFinite, "a position in world space is not finite"},
-                        scene_.surfaces[index], frame));
+    return fail(
+        located({ErrorCode::NotFinite, "a position in world space is not finite"}, surface, frame));
   }
   shown.name_ = shape.name;
   shown.transform_ = transform;
   shown.peak_displacement_ = extent.peak_displacement;
   shown.object_positions_ = std::move(positions);
+  shown.object_rest_ = std::move(rest);
   return {};
 }
 
+// The vertices of an animated shape at a frame, displaced as their nodes (#nodes x 3).
+Result<Field> Bodies::place_vertices(std::size_t index, int frame, const Field& displacement,
+                                     Field reuse) const {
+  const RestShape& shape = rest_shapes_[index];
+  if (shape.weights) {
+    const auto nodes = shape.animation->nodes_at(frame);
+    if (!nodes) return fail(nodes.error());
+    return shape.to_vertices(**nodes + displacement, std::move(reuse));
+  }
+  const auto vertices = shape.animation->vertices_at(frame);
+  if (!vertices) return fail(vertices.error());
+  reuse = **vertices;
+  for (std::size_t vertex = 0; vertex < shape.vertex_nodes.size(); ++vertex) {
+    const int node = shape.vertex_nodes[vertex];
+    if (node >= 0) reuse.row(static_cast<Eigen::Index>(vertex)) += displacement.row(node);
+  }
+  return reuse;
+}
+
 // The vertices of a driven surface: its driver's displacement, through the linear parts of both
-// transforms.
-Field Bodies::driven_positions(std::size_t index, int frame, const Transform& transform,
-                               Field reuse) const {
+// transforms. That of an animated driver is from its shape at the scene's start.
+Result<Field> Bodies::driven_positions(std::size_t index, int frame, const Transform& transform,
+                                       Field reuse) const {
   if (!scene_.surfaces[index].enabled) return rest_shapes_[index].mesh.positions;
   const std::size_t driver = drivers_[index];
   const Body& body = *bodies_[driver];
-  const Field moved = body.state().positions - body.rest();
+  Field moved = body.state().positions - body.rest();
+  if (const auto& animation = rest_shapes_[driver].animation) {
+    const auto now = animation->nodes_at(frame), at_start = animation->nodes_at(scene_.start);
+    if (!now || !at_start) return fail(now ? at_start.error() : now.error());
+    moved += **now - **at_start;
+  }
   Field positions = rest_shapes_[index].binding->displacements(moved, std::move(reuse));
   const Transform from = sample_transform(scene_.surfaces[driver].transform, frame);
   const Matrix3d linear = inverse_linear(transform) * from.linear;
@@ -258,6 +340,7 @@ Result<FrameReport> Bodies::report(int frame, ReportDetail detail) {
       return;
     }
     surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame), detail);
+    if (surfaces[k]) surfaces[k]->frame = solved_frame(scene_, scene_.surfaces[k], frame);
   });
   FrameReport report{frame, {}};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {

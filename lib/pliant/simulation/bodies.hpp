@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "pliant/body/body.hpp"
@@ -31,13 +33,15 @@ class Bodies {
   struct Step {
     bool is_solved_now = false;  ///< false: the surface is disabled, or starts later
     bool is_read = false;        ///< read from the store, not solved
+    bool is_again = false;       ///< a cycle begins, once more or for the first time: not solved
+    int frame = 0;               ///< whose inputs it uses
     SurfaceInputs inputs;
     Result<void> outcome;
     StepFacts facts;
   };
 
-  /// Requires: scene and sampling outlive it.
-  Bodies(const Scene& scene, const SceneSampling& sampling, const SimulationOptions& options);
+  /// Requires: scene and sampling outlive it. `make_all` gives sampling the animated shapes.
+  Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOptions& options);
 
   /// Checks every channel at every frame of the scene, reads the meshes and makes a body of each.
   /// Errors: those of all channels and meshes; Interrupted.
@@ -48,11 +52,14 @@ class Bodies {
   /// may release some and return true; then the surfaces that lacked it try again.
   void step(int frame, KeptStates* kept, const std::function<bool()>& give_way);
 
+  /// Checks the maps of materials at a frame. Errors: those of `check_maps_at`.
+  std::vector<Error> check_maps(int frame) const;
+
   /// The last step of a surface.
   const Step& last_step(std::size_t surface) const { return steps_[surface]; }
 
-  /// The error of its last step, at `frame`, with the surface's name and line.
-  Result<void> outcome(std::size_t surface, int frame) const;
+  /// The error of its last step, with the surface's name and line, and the frame.
+  Result<void> outcome(std::size_t surface) const;
 
   /// The surfaces as shown at a frame. Errors: NotFinite.
   Result<Frame> output(int frame, Frame reuse);
@@ -81,13 +88,17 @@ class Bodies {
   std::size_t index_of_driver(const Surface& surface) const;
   Result<void> bind_driven(std::span<ReservedShape> made) const;
   Result<void> show(std::size_t index, int frame, SurfaceFrame& shown) const;
-  Field driven_positions(std::size_t index, int frame, const Transform& transform,
-                         Field reuse) const;
+  Result<Field> driven_positions(std::size_t index, int frame, const Transform& transform,
+                                 Field reuse) const;
+  Result<Field> place_vertices(std::size_t index, int frame, const Field& displacement,
+                               Field reuse) const;
   void step(std::size_t index, int frame, KeptStates* kept);
+  Result<void> begin_cycle(std::size_t index, KeptStates* kept);
+  Result<BodyState> find_cycle(std::size_t index);
   Error located(Error error, const Surface& surface, int frame) const;
 
   const Scene& scene_;
-  const SceneSampling& sampling_;
+  SceneSampling& sampling_;
   MemoryBudget memory_;
   ThreadPool threads_;
   std::vector<MemoryShare> shares_;  // one a surface, as the following
@@ -95,9 +106,12 @@ class Bodies {
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::size_t> drivers_;  // the index of the surface that drives each, or its own
   std::vector<Step> steps_;
+  std::vector<std::optional<BodyState>> cycles_;  // the states at their beginnings, once known
   SolverChoice solver_;
+  int exact_parts_;
   RunContext context_;             // of the bodies, each with a profile of its own
   std::vector<Profile> profiles_;  // one a surface; empty: no profiling
+  std::function<void(std::string_view, int, double)> round_done_;
 };
 
 }  // namespace pliant

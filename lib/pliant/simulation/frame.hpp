@@ -26,6 +26,10 @@ class SurfaceFrame {
   /// #vertices x 3 in the order of the mesh, object space [length].
   const Field& object_positions() const { return object_positions_; }
 
+  /// The vertices at rest at this frame, likewise, of a shape that is animated; of others it is
+  /// empty, as they have their mesh.
+  const Field& object_rest() const { return object_rest_; }
+
   const Transform& transform() const { return transform_; }  ///< object to world, at this frame
 
   /// The largest distance of a vertex from its rest position, in world space. [length]
@@ -36,6 +40,7 @@ class SurfaceFrame {
 
   std::string name_;
   Field object_positions_;
+  Field object_rest_;
   Transform transform_;
   double peak_displacement_ = 0;
 };

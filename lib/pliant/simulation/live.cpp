@@ -120,8 +120,8 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
   return inputs;
 }
 
-// The keys of a channel that was first as authored and was then set: its values at all frames up to
-// then, the one before the start too, since inertia reads it.
+// The keys of a channel that was first as authored and was then set: its values at all frames from
+// the run's first one on, the one before it too, since inertia reads it.
 template <int D>
 std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
                                   std::span<const Held> held) {
@@ -154,6 +154,7 @@ class LiveSimulation::Run {
         sampling_(scene_),
         bodies_(scene_, sampling_, options.simulation),
         inputs_(inputs_that_can_be_set(scene_)),
+        first_(first_frame_of_run(scene_)),
         frame_(scene_.start) {
     for (std::size_t k = 0; k < inputs_.size(); ++k) places_.emplace(inputs_[k].path, k);
     const auto is_own = [](const Force& force) {
@@ -163,7 +164,7 @@ class LiveSimulation::Run {
                         std::any_of(scene_.forces.begin(), scene_.forces.end(), is_own);
   }
 
-  Result<void> make_bodies() { return bodies_.make_all(); }
+  Result<void> make_bodies();
   int frame() const { return frame_; }
   const Scene& scene() const { return scene_; }
   const Bodies& bodies() const { return bodies_; }
@@ -181,7 +182,7 @@ class LiveSimulation::Run {
   template <int D>
   void hold(const Input& input, Channel<D>& channel, const Value<D>& value);
   Result<void> check();
-  Result<void> step();
+  Result<void> step(int frame);
 
   bool records_;    // before the scenes, which are made by it
   Scene scene_;     // with the present values
@@ -190,11 +191,21 @@ class LiveSimulation::Run {
   Bodies bodies_;
   std::vector<Input> inputs_;
   std::map<std::string_view, std::size_t> places_;  // in `inputs_`, by path
+  int first_;                                       // the frame at which all surfaces are at rest
   int frame_;
   bool is_checked_ = false;        // the present values, at this frame
   bool may_step_in_part_ = false;  // whether a step that fails may have moved a body
   std::vector<BodyState> before_;  // the states before such a step; reused
 };
+
+// Plays the preroll too.
+Result<void> LiveSimulation::Run::make_bodies() {
+  if (auto made = bodies_.make_all(); !made) return made;
+  for (int frame = first_; frame < scene_.start; ++frame) {
+    if (auto stepped = step(frame); !stepped) return stepped;
+  }
+  return {};
+}
 
 tl::unexpected<Error> LiveSimulation::Run::no_channel(std::string_view channel) const {
   std::vector<std::string_view> paths;
@@ -227,6 +238,9 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
     return refuse("must be 0 or 1");
   }
   if (const auto rule = rule_of_keys(input)) return refuse(*rule);
+  // Ahead of the start its time was summed from the value there.
+  if (input.noise && frame_ == scene_.start && first_ < frame_)
+    return refuse("a rate cannot be set at the first frame, since the preroll began with it");
   apply(input, value);
   input.changes = false;
   is_checked_ = false;
@@ -290,6 +304,7 @@ Result<void> LiveSimulation::Run::check() {
   if (is_checked_) return {};
   std::vector<Error> errors = check_channels_at(scene_, frame_);
   if (errors.empty()) errors = check_channels_at(scene_, frame_ + 1, is_of_transform);
+  if (errors.empty()) errors = bodies_.check_maps(frame_);
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
   is_checked_ = true;
   return {};
@@ -317,7 +332,7 @@ Result<void> LiveSimulation::Run::advance() {
   };
   Result<void> stepped;
   try {
-    stepped = step();
+    stepped = step(frame_);
   } catch (...) {  // from a custom force
     take_back();
     throw;
@@ -332,10 +347,10 @@ Result<void> LiveSimulation::Run::advance() {
   return {};
 }
 
-Result<void> LiveSimulation::Run::step() {
-  bodies_.step(frame_, nullptr, {});
+Result<void> LiveSimulation::Run::step(int frame) {
+  bodies_.step(frame, nullptr, {});
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (auto done = bodies_.outcome(k, frame_); !done) return done;
+    if (auto done = bodies_.outcome(k); !done) return done;
   }
   return {};
 }
@@ -351,7 +366,7 @@ Result<Scene> LiveSimulation::Run::performance() const {
     const std::vector<Held>& held = inputs_[k].held;
     if (held.empty()) continue;
     const auto replace = [&]<int D>(const Channel<D>& of, auto& channel) {
-      auto curve = performed<D>(of, scene.start, held);
+      auto curve = performed<D>(of, first_, held);
       if (!curve) return false;
       channel = *std::move(curve);
       return true;
@@ -376,6 +391,15 @@ Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& opti
   const SimulationOptions& run_options = options.simulation;
   PLIANT_EXPECTS(run_options.threads >= 1 && is_available(run_options.solver));
   if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
+  for (const Surface& surface : scene.surfaces) {
+    if (!surface.solver.loop) continue;
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
+                    "is not known before",
+                    surface.name, *surface.solver.loop),
+        scene.origin.file, scene.origin.line_of(surface.name, "loop"));
+  }
   if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
   auto run = std::make_unique<Run>(std::move(scene), options);
   if (auto made = run->make_bodies(); !made) return fail(made.error());

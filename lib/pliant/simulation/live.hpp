@@ -29,8 +29,9 @@ struct LiveOptions {
 /// it. May be used by one thread at a time.
 class LiveSimulation {
  public:
-  /// The scene at its first frame, at rest. Errors: as `Simulation::make`; InvalidInput for the
-  /// rate of a noise beyond 1e150.
+  /// The scene at its first frame, at rest or after the preroll, which it plays. Errors: as
+  /// `Simulation::make`, and of the preroll as `Simulation::at`; InvalidInput for a surface with a
+  /// loop, which a live run cannot know, and for the rate of a noise beyond 1e150.
   static Result<LiveSimulation> make(Scene scene, const LiveOptions& options = {});
 
   LiveSimulation(LiveSimulation&&) noexcept;
@@ -43,7 +44,8 @@ class LiveSimulation {
   /// Sets a channel by its path, as in `channels_of`: `poke.magnitude`, `poke.center`. `value` has
   /// as many numbers as the channel; of a switch, 0 is off and 1 is on. It replaces the channel's
   /// curve, if it has one. Errors, with nothing changed: InvalidInput for an unknown channel, with
-  /// the nearest name, another count of numbers, and a number that is out of range or beyond 1e150.
+  /// the nearest name, another count of numbers, and a number that is out of range or beyond 1e150;
+  /// after a preroll, the rate of a noise at the first frame.
   Result<void> set(std::string_view channel, std::span<const double> value);
   Result<void> set(std::string_view channel, double value);
   Result<void> set(std::string_view channel, const Value<3>& value);

@@ -14,9 +14,10 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
     : scene_(std::move(scene)),
       sampling_(scene_),
       bodies_(scene_, sampling_, options),
-      frame_(scene_.start),
-      furthest_frame_(scene_.start),
-      cache_(scene_.start, options.checkpoint_bytes, &bodies_.memory()),
+      first_(first_frame_of_run(scene_)),
+      frame_(first_),
+      furthest_frame_(first_),
+      cache_(first_, options.checkpoint_bytes, &bodies_.memory()),
       kept_(scene_, sampling_, options.store) {}
 
 Result<void> Simulation::Player::make_bodies() {
@@ -42,10 +43,10 @@ Result<void> Simulation::Player::reach(int frame) {
   try {
     reached = go_to(frame);
   } catch (...) {
-    rewind(scene_.start);
+    rewind(first_);
     throw;
   }
-  if (!reached) rewind(scene_.start);
+  if (!reached) rewind(first_);
   return reached;
 }
 
@@ -105,14 +106,15 @@ Result<void> Simulation::Player::step() {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
     const bool is_early = frame_ < first_solved_frame(scene_, surface);
-    if (surface.enabled && !surface.is_driven() && is_early)
+    if (surface.enabled && !surface.is_driven() && is_early && frame_ >= scene_.start)
       warnings_.expect(Warning::Kind::NeverStarts, surface.name, {}, frame_);
     if (!is_early) warnings_.happened(Warning::Kind::NeverStarts, surface.name, {});
     const Bodies::Step& step = bodies_.last_step(k);
+    if (auto done = bodies_.outcome(k); !done) return done;
+    is_read = is_read || step.is_read;
     if (!step.is_solved_now) continue;
-    if (auto done = bodies_.outcome(k, frame_); !done) return done;
     add_facts(warnings_, surface.name, frame_, step.inputs, step.facts);
-    (step.is_read ? is_read : is_solved) = true;
+    is_solved = is_solved || (!step.is_read && !step.is_again);
   }
   frame_counts_.solved += is_solved ? 1 : 0;
   frame_counts_.read += is_read && !is_solved ? 1 : 0;
@@ -127,7 +129,7 @@ void Simulation::Player::rewind(int frame) {
   } else {
     bodies_.reset();
   }
-  frame_ = kept.value_or(scene_.start);
+  frame_ = kept.value_or(first_);
 }
 
 // Advances to the latest frame up to `frame` for which the store has all states, if it is later
@@ -147,8 +149,8 @@ void Simulation::Player::read_latest(int frame) {
 std::vector<Warning> Simulation::Player::warnings() const {
   const auto& ranges = passed_.ranges();
   const bool is_complete =
-      scene_.start == scene_.end || (ranges.size() == 1 && ranges.front().first == scene_.start &&
-                                     ranges.front().second == scene_.end - 1);
+      first_ == scene_.end || (ranges.size() == 1 && ranges.front().first == first_ &&
+                               ranges.front().second == scene_.end - 1);
   std::vector<Warning> warnings = warnings_about(bodies_.rest_shapes());
   for (Warning& warning : warnings_.warnings(scene_, is_complete)) {
     warnings.push_back(std::move(warning));

@@ -48,6 +48,7 @@ class Simulation::Player {
   Scene scene_;
   SceneSampling sampling_;
   Bodies bodies_;
+  int first_;           // the frame at which all surfaces are at rest
   int frame_;           // the frame of the bodies' state
   int furthest_frame_;  // computed so far
   FrameCache cache_;

@@ -6,12 +6,35 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/sampling/animated_shape.hpp"
+#include "pliant/sampling/material_maps.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/simulation/bodies.hpp"
 #include "pliant/simulation/player.hpp"
 
 namespace pliant {
+namespace {
+
+// A cache and maps are checked against the shape, which is made for that.
+Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene, bool checks_maps,
+                                 const RunContext& context) {
+  if (!surface.is_animated() && surface.maps.empty())
+    return check_rest_shape(surface, scene.origin, context);
+  auto made = make_rest_shape(surface, scene.origin, context);
+  if (!made) return fail(made.error());
+  if (surface.is_animated()) {
+    if (auto moves = animate(*made, surface, scene, context); !moves) return fail(moves.error());
+  }
+  if (checks_maps) {
+    std::vector<Error> errors = check_maps(scene, surface, made->shape);
+    if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
+  }
+  return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
+}
+
+}  // namespace
+
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
   PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
   if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
@@ -26,13 +49,14 @@ Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
 
   errors = check_channels(scene, {}, options.should_stop);
+  const bool are_sound = errors.empty();
   MemoryBudget memory(options.max_memory);
   const RunContext context{.memory = &memory, .should_stop = options.should_stop};
   std::vector<CheckedShape> shapes;  // of all surfaces together
   std::vector<SceneNote> notes;
   for (const Surface& surface : scene.surfaces) {
     if (context.is_stopped()) return interrupted_at_start();
-    auto checked = check_rest_shape(surface, scene.origin, context);
+    auto checked = check_shape(surface, scene, are_sound, context);
     if (!checked) {
       errors.push_back(std::move(checked.error()));
       continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -43,6 +44,10 @@ struct SimulationOptions {
   /// The solver. Requires: available in this build.
   SolverChoice solver = SolverChoice::Auto;
 
+  /// The parts of each step that `Integrator::Exact` chooses: more, to see the error that it
+  /// leaves. >= 1
+  int exact_parts = 1;
+
   /// Whether times are measured for `Simulation::profile`.
   bool profile = false;
 
@@ -53,6 +58,11 @@ struct SimulationOptions {
   /// Called before every surface is read, while assimp reads one, and before every time step, from
   /// any of the threads. If it returns true, `make` and `at` fail with Interrupted.
   StopRequest should_stop = {};
+
+  /// Called after each round in which the cycle of a surface with a loop is looked for, from any of
+  /// the threads: with its name, the number of the round, and the gap as a share of the largest
+  /// displacement.
+  std::function<void(std::string_view surface, int round, double gap)> round_done = {};
 
   /// Stores states beyond this simulation, so that another simulation, of the same or an edited
   /// scene, need not solve unchanged frames again. Outlives the simulation; null: states are not
@@ -69,9 +79,10 @@ struct FrameCounts {
 /// All bodies of a scene over its frames. Thesis 5.3; SPEC 6.
 ///
 /// The output of a frame is the mesh before that frame's solve: at the start frame it is the rest
-/// mesh, and the first motion shows one frame later. Frames are computed in order from the scene's
-/// first one, whatever the order of the calls, so their bits do not depend on that order. Different
-/// simulations may be used in different threads; a single one is not thread-safe.
+/// mesh, unless there is a preroll, and the first motion shows one frame later. Frames are computed
+/// in order from the first one, whatever the order of the calls, so their bits do not depend on
+/// that order. Different simulations may be used in different threads; a single one is not
+/// thread-safe.
 class Simulation {
  public:
   /// Reads the meshes, finds the grids and checks every channel at every frame of the range.

@@ -12,22 +12,39 @@ namespace {
 
 constexpr std::string_view checkpoint_magic = "pliant checkpoint 1\n";
 
-bool has_marks(const Body& body) { return !body.state().unsettled.empty(); }
-
 }  // namespace
+
+// Appends the key after the step at a frame.
+void KeptStates::append_to(KeyChain& chain, std::size_t surface, int frame) const {
+  if (!is_solved_at(scene_, scene_.surfaces[surface], frame)) return chain.append(nullptr, frame);
+  const SurfaceInputs inputs = sample_inputs(scene_, sampling_, surface, frame);
+  chain.append(&inputs, frame);
+}
 
 const std::optional<Hash>& KeptStates::key(std::size_t surface, int frame) {
   KeyChain& chain = keys_[surface];
-  while (chain.length() <= frame - scene_.start) {
-    const int last = scene_.start + chain.length() - 1;
-    if (!is_solved_at(scene_, scene_.surfaces[surface], last)) {
-      chain.append(nullptr, last);
-      continue;
-    }
-    const SurfaceInputs inputs = sample_inputs(scene_, sampling_, surface, last);
-    chain.append(&inputs, last);
+  const Surface& of = scene_.surfaces[surface];
+  const int start = first_solved_frame(scene_, of);
+  if (frame >= start && begins_cycle(scene_, of, start)) {
+    return key_in_cycle(surface, solved_frame(scene_, of, frame) - start);
   }
-  return chain.at(frame - scene_.start);
+  while (chain.length() <= frame - first_) append_to(chain, surface, first_ + chain.length() - 1);
+  return chain.at(frame - first_);
+}
+
+// `frame`: counted from the beginning of the first cycle, and less than its length.
+const std::optional<Hash>& KeptStates::key_in_cycle(std::size_t surface, int frame) {
+  const Surface& of = scene_.surfaces[surface];
+  const int start = first_solved_frame(scene_, of), length = of.solver.loop.value();
+  std::optional<KeyChain>& cycle = cycles_[surface];
+  if (!cycle) {
+    // The state at the beginning depends on what a round does.
+    KeyChain round(keys_[surface].rest());
+    while (round.length() <= length) append_to(round, surface, start + round.length() - 1);
+    cycle.emplace(cycle_key(round.at(length), 1 / scene_.fps));
+  }
+  while (cycle->length() <= frame) append_to(*cycle, surface, start + cycle->length() - 1);
+  return cycle->at(frame);
 }
 
 Hash KeptStates::sealing_key(std::size_t surface, int frame) {
@@ -38,10 +55,11 @@ Hash KeptStates::sealing_key(std::size_t surface, int frame) {
 std::optional<StoredState> KeptStates::read(std::size_t surface, int frame,
                                             const SurfaceInputs& inputs, const Body& body) {
   KeyChain& keys = keys_[surface];
-  if (keys.length() == frame + 1 - scene_.start) keys.append(&inputs, frame);
+  const bool has_loop = scene_.surfaces[surface].solver.loop.has_value();
+  if (!has_loop && keys.length() == frame + 1 - first_) keys.append(&inputs, frame);
   const std::optional<Hash>& after = key(surface, frame + 1);
   if (!after) return {};
-  auto stored = read_stored(*store_, *after, body.rest(), has_marks(body));
+  auto stored = read_stored(*store_, *after, body.rest(), parts_of(body.state()));
   if (stored && stored->facts.forces.size() != inputs.body.forces.size()) return {};
   return stored;
 }
@@ -49,6 +67,19 @@ std::optional<StoredState> KeptStates::read(std::size_t surface, int frame,
 void KeptStates::write(std::size_t surface, int frame, const Body& body, const StepFacts& facts) {
   const std::optional<Hash>& after = key(surface, frame + 1);
   if (after) store_->write(*after, to_bytes(*after, body.state(), facts, body.rest()));
+}
+
+std::optional<BodyState> KeptStates::cycle(std::size_t surface, const Body& body) {
+  const std::optional<Hash>& key = key_in_cycle(surface, 0);
+  if (!store_ || !key) return {};
+  auto stored = read_stored(*store_, *key, body.rest(), parts_of(body.state()));
+  if (!stored) return {};
+  return std::move(stored->state);
+}
+
+void KeptStates::write_cycle(std::size_t surface, const Body& body) {
+  const std::optional<Hash>& key = key_in_cycle(surface, 0);
+  if (store_ && key) store_->write(*key, to_bytes(*key, body.state(), {}, body.rest()));
 }
 
 std::optional<FrameStates> KeptStates::states_at(int frame,
@@ -63,7 +94,8 @@ std::optional<FrameStates> KeptStates::states_at(int frame,
       found.states.push_back(bodies[k]->rest_state());
       continue;
     }
-    auto stored = read_stored(*store_, *key(k, frame), bodies[k]->rest(), has_marks(*bodies[k]));
+    auto stored =
+        read_stored(*store_, *key(k, frame), bodies[k]->rest(), parts_of(bodies[k]->state()));
     if (!stored) return {};
     found.states.push_back(std::move(stored->state));
   }
@@ -107,7 +139,7 @@ Result<FrameStates> KeptStates::read_checkpoint(std::string_view bytes,
     const std::string_view state = reader.take(reader.number());
     if (!reader.is_sound()) return refuse("it is damaged");
     const Hash of_scene = sealing_key(k, found.frame);
-    auto stored = from_bytes(state, of_scene, bodies[k]->rest(), has_marks(*bodies[k]));
+    auto stored = from_bytes(state, of_scene, bodies[k]->rest(), parts_of(bodies[k]->state()));
     if (!stored) {
       return refuse(fmt::format(
           "surface \"{}\", its channels or forces before frame {}, or the engine is not the same",

@@ -30,10 +30,13 @@ class KeptStates {
  public:
   /// Requires: scene and sampling outlive it. `store` null: there are checkpoints only.
   KeptStates(const Scene& scene, const SceneSampling& sampling, StateStore* store)
-      : scene_(scene), sampling_(sampling), store_(store) {}
+      : scene_(scene), first_(first_frame_of_run(scene)), sampling_(sampling), store_(store) {}
 
   /// Adds the next surface, by the key of its body at rest.
-  void add(const Hash& rest_key) { keys_.emplace_back(rest_key); }
+  void add(const Hash& rest_key) {
+    keys_.emplace_back(rest_key);
+    cycles_.emplace_back();
+  }
 
   bool has_store() const { return store_ != nullptr; }
 
@@ -44,6 +47,10 @@ class KeptStates {
 
   /// Writes the result of the same step, which the body is in after it.
   void write(std::size_t surface, int frame, const Body& body, const StepFacts& facts);
+
+  /// The state at the beginning of a surface's cycle, if the store has it; and to write it.
+  std::optional<BodyState> cycle(std::size_t surface, const Body& body);
+  void write_cycle(std::size_t surface, const Body& body);
 
   /// The states of all surfaces at a frame; null if the store lacks any of them.
   std::optional<FrameStates> states_at(int frame, std::span<const std::unique_ptr<Body>> bodies);
@@ -58,12 +65,16 @@ class KeptStates {
 
  private:
   const std::optional<Hash>& key(std::size_t surface, int frame);
+  const std::optional<Hash>& key_in_cycle(std::size_t surface, int frame);
+  void append_to(KeyChain& chain, std::size_t surface, int frame) const;
   Hash sealing_key(std::size_t surface, int frame);
 
   const Scene& scene_;
+  int first_;  // the run's first frame, where all surfaces are at rest
   const SceneSampling& sampling_;
   StateStore* store_;
-  std::vector<KeyChain> keys_;  // one a surface
+  std::vector<KeyChain> keys_;                   // one a surface
+  std::vector<std::optional<KeyChain>> cycles_;  // those with a loop, from its beginning on
 };
 
 }  // namespace pliant

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/plate/plate_problem.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/states/engine.hpp"
@@ -44,6 +45,10 @@ class HashedValues {
   }
   void add(const Matrix3d& matrix) {
     for (int row = 0; row < 3; ++row) add(Vector3d(matrix.row(row)));
+  }
+  void add(const std::shared_ptr<const Field>& field) {
+    add(int{field != nullptr});
+    if (field) add(hash_of(*field));
   }
   template <std::size_t D>
   void add(const std::array<double, D>& numbers) {
@@ -87,10 +92,18 @@ class HashedValues {
     add_bytes(surface.triangles);
     add(surface.unit);
   }
+  void add(const NodeFactors& factors) {
+    const auto& [density, damping, b, c, d, yield, hardening] = factors;
+    for (const auto* of_nodes : {&density, &damping, &b, &c, &d, &yield, &hardening})
+      add_bytes(*of_nodes);
+  }
   void add(const BodySettings& settings) {
-    const auto& [integrator, stepping, reference, measure, region, combine, release, border] =
-        settings;
-    add_all(integrator, stepping, reference, measure, region, combine, release, border);
+    const auto& [integrator, stepping, reference, measure, region, combine, release, border, edges,
+                 is_animated, exact_parts] = settings;
+    add_all(integrator, stepping, reference, measure, region, combine, release, border,
+            int{is_animated});
+    const auto& [u0, u1, v0, v1] = edges;
+    add_all(u0, u1, v0, v1, exact_parts);
   }
 
   void add(const Interpolation& interpolation) {
@@ -135,9 +148,10 @@ class HashedValues {
     if (falloff_curve) add(falloff_curve->keys());
   }
   void add(const BodyInputs& inputs) {
-    const auto& [transform, stiffness, dynamics, tangents, poisson, frame_length, dt, forces,
-                 selectors] = inputs;
-    add_all(transform, stiffness, dynamics, tangents, poisson, frame_length, dt, forces, selectors);
+    const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, frame_length, dt,
+                 forces, shape, selectors] = inputs;
+    add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, frame_length, dt,
+            forces, shape, selectors);
   }
 
   Hash hash() const { return hash_of(std::string_view(bytes_)); }
@@ -165,6 +179,8 @@ Hash rest_key(const RestShape& shape, const BodySettings& settings, SolverChoice
   if (shape.grid) values.add(*shape.grid);
   values.add(hash_of(shape.rest));
   if (shape.surface) values.add(*shape.surface);
+  values.add(int{shape.factors != nullptr});
+  if (shape.factors) values.add(*shape.factors);
   values.add(settings);
   values.add(solver);
   // The available solvers decide which sparse solver a choice means.
@@ -190,6 +206,15 @@ std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, in
     values.add(key);
     values.add(frame);
   }
+  return values.hash();
+}
+
+std::optional<Hash> cycle_key(const std::optional<Hash>& round, double frame_time) {
+  if (!round) return {};
+  HashedValues values;
+  values.add(*round);
+  values.add(std::string_view("cycle"));
+  values.add(frame_time);
   return values.hash();
 }
 

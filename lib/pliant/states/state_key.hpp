@@ -27,19 +27,25 @@ Hash unnamed_key(const Hash& rest);
 /// Null if a custom force without a key acts: the results of its functions are unknown.
 std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, int frame);
 
+/// The key of the state at the beginning of a cycle: `round` is the key of the state after one
+/// round from rest, null if that is unknown; `frame_time` that of the scene [s].
+std::optional<Hash> cycle_key(const std::optional<Hash>& round, double frame_time);
+
 /// The keys of one surface's states, from the first frame on. States with the same key are
 /// bit-identical. A key depends only on the values sampled until its frame: not on how the scene
 /// expresses them, nor on later values.
 class KeyChain {
  public:
-  explicit KeyChain(const Hash& rest) : keys_{rest} {}
+  explicit KeyChain(const std::optional<Hash>& first) : keys_{first} {}
 
   /// Number of frames whose keys are known.
   int length() const { return static_cast<int>(keys_.size()); }
 
-  /// Frames are counted from 0, where the surface is at rest. Requires: `frame` < length().
+  /// Frames are counted from 0, where the surface is at rest, or a cycle begins. Requires: `frame`
+  /// < length().
   const std::optional<Hash>& at(int frame) const { return keys_[static_cast<std::size_t>(frame)]; }
 
+  /// Requires: the first key is known.
   const Hash& rest() const { return *keys_.front(); }
 
   /// Appends a frame, after a step at scene frame `frame`; null: nothing acted, so the state did

@@ -1,7 +1,9 @@
 #include "pliant/states/stored_state.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -83,6 +85,47 @@ ForceFacts facts_of(unsigned bits) {
   return {bit(5), bit(7), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
 }
 
+using Numbers = std::array<double, 12>;
+
+Numbers numbers_of(const EdgeTangents& tangents) {
+  Numbers numbers;
+  int place = 0;
+  for (const Vector3d& side : {tangents.su0, tangents.su1, tangents.sv0, tangents.sv1}) {
+    for (int k = 0; k < 3; ++k) numbers[place++] = side[k];
+  }
+  return numbers;
+}
+
+EdgeTangents tangents_of(const Numbers& numbers) {
+  const auto side = [&](int k) { return Vector3d(&numbers[3 * static_cast<std::size_t>(k)]); };
+  return {side(0), side(1), side(2), side(3)};
+}
+
+std::vector<Run> unknown_runs(const LastPush& push) {
+  std::vector<Run> runs;
+  for (std::size_t node = 0; node < push.unknowns.size(); ++node) {
+    if (!push.unknowns[node]) continue;
+    if (!runs.empty() && runs.back().first + runs.back().count == node) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({node, 1});
+    }
+  }
+  return runs;
+}
+
+// Of the loads: x, y and z that are not 0 at all nodes.
+Columns pushed_columns(const Field& loads) {
+  Columns columns = 0;
+  for (int component = 0; component < 3; ++component) {
+    const auto of_component = loads.col(component);
+    const bool is_zero = std::all_of(of_component.begin(), of_component.end(),
+                                     [](double number) { return is_same(number, 0); });
+    if (!is_zero) columns |= Columns{1} << component;
+  }
+  return columns;
+}
+
 // Reads runs. Null if they are not within the nodes or not ascending.
 std::optional<std::vector<Run>> read_runs(ByteReader& reader, std::uint64_t node_count) {
   const std::uint64_t count = reader.number();
@@ -96,6 +139,14 @@ std::optional<std::vector<Run>> read_runs(ByteReader& reader, std::uint64_t node
     next = run.first + run.count;
   }
   return runs;
+}
+
+void append_runs(std::string& bytes, const std::vector<Run>& runs) {
+  append(bytes, std::uint64_t{runs.size()});
+  for (const Run& run : runs) {
+    append(bytes, run.first);
+    append(bytes, run.count);
+  }
 }
 
 void append_rows(std::string& bytes, const Field& field, const std::vector<Run>& runs,
@@ -117,11 +168,40 @@ void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, C
   }
 }
 
-constexpr std::size_t bytes_of_node = 6 * sizeof(double) + 1;
+void append_push(std::string& bytes, const LastPush& push) {
+  const std::vector<Run> runs = unknown_runs(push);
+  const Columns columns = pushed_columns(push.loads);
+  const Numbers numbers = numbers_of(push.tangents);
+  append(bytes, numbers.data(), sizeof(numbers));
+  append_runs(bytes, runs);
+  append(bytes, columns);
+  append_rows(bytes, push.loads, runs, columns);
+}
+
+// False if the bytes are not those of `append_push`.
+bool take_push(ByteReader& reader, std::uint64_t node_count, LastPush& push) {
+  Numbers numbers{};
+  reader.take(numbers.data(), sizeof(numbers));
+  push.tangents = tangents_of(numbers);
+  const auto runs = read_runs(reader, node_count);
+  if (!runs) return false;
+  push.loads = Field::Zero(static_cast<Eigen::Index>(node_count), 3);
+  push.unknowns.assign(static_cast<std::size_t>(node_count), 0);
+  for (const Run& run : *runs) {
+    std::fill_n(push.unknowns.begin() + static_cast<std::ptrdiff_t>(run.first), run.count,
+                std::uint8_t{1});
+  }
+  take_rows(reader, push.loads, *runs, reader.number());
+  return push.loads.allFinite() &&
+         std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+constexpr std::size_t bytes_of_node = 9 * sizeof(double) + 1;
 
 // The most bytes of a state besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
-  return magic.size() + 2 * sizeof(Hash) + 6 * sizeof(std::uint64_t) + force_count;
+  return magic.size() + 2 * sizeof(Hash) + 8 * sizeof(std::uint64_t) + sizeof(Numbers) +
+         force_count;
 }
 
 // An upper bound for the bytes of a state: in the worst case every other node is away from rest, or
@@ -129,10 +209,18 @@ std::size_t most_head(std::size_t force_count) {
 std::size_t most_bytes(Eigen::Index node_count) {
   constexpr std::size_t forces = 1'000'000;  // more than any scene has
   const auto nodes = static_cast<std::size_t>(node_count);
-  return most_head(forces) + (nodes + 1) / 2 * sizeof(Run) + nodes * bytes_of_node;
+  return most_head(forces) + (nodes + 1) / 2 * 2 * sizeof(Run) + nodes * bytes_of_node;
+}
+
+std::uint64_t number_of(StateParts parts) {
+  return (parts.has_marks ? 1u : 0u) | (parts.has_push ? 2u : 0u);
 }
 
 }  // namespace
+
+StateParts parts_of(const BodyState& state) {
+  return {!state.unsettled.empty(), !state.last.unknowns.empty()};
+}
 
 std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
                      const Field& rest) {
@@ -146,36 +234,34 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   bytes += magic;
   append(bytes, key);
   append(bytes, static_cast<std::uint64_t>(rest.rows()));
-  append(bytes, std::uint64_t{state.unsettled.empty() ? 0u : 1u});
+  const StateParts parts = parts_of(state);
+  append(bytes, number_of(parts));
   append(bytes, std::uint64_t{(facts.is_solved ? 1u : 0u) | (facts.is_surface ? 2u : 0u) |
                               (facts.has_loose_piece ? 4u : 0u)});
   append(bytes, std::uint64_t{facts.forces.size()});
   for (const ForceFacts& of_force : facts.forces) {
     bytes += static_cast<char>(bits_of(of_force));
   }
-  append(bytes, std::uint64_t{runs.size()});
-  for (const Run& run : runs) {
-    append(bytes, run.first);
-    append(bytes, run.count);
-  }
+  append_runs(bytes, runs);
   append(bytes, columns);
   append_rows(bytes, state.positions, runs, columns);
   append_rows(bytes, state.velocities, runs, columns >> 3);
   if (!state.unsettled.empty()) {
     for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
   }
+  if (parts.has_push) append_push(bytes, state.last);
   append_seal(bytes);
   return bytes;
 }
 
 std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
-                                      bool has_marks) {
+                                      StateParts parts) {
   const auto held = unsealed(bytes, magic);
   if (!held) return {};
   ByteReader reader(*held);
   if (reader.hash() != key) return {};
   const auto node_count = static_cast<std::uint64_t>(rest.rows());
-  if (reader.number() != node_count || reader.number() != (has_marks ? 1u : 0u)) return {};
+  if (reader.number() != node_count || reader.number() != number_of(parts)) return {};
   StoredState stored;
   const std::uint64_t flags = reader.number();
   stored.facts.is_solved = (flags & 1) != 0;
@@ -196,20 +282,21 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   const Columns columns = reader.number();
   take_rows(reader, state.positions, *runs, columns);
   take_rows(reader, state.velocities, *runs, columns >> 3);
-  if (has_marks) {
+  if (parts.has_marks) {
     state.unsettled.assign(static_cast<std::size_t>(node_count), 0);
     for (const Run& run : *runs) reader.take(state.unsettled.data() + run.first, run.count);
   }
+  if (parts.has_push && !take_push(reader, node_count, state.last)) return {};
   if (!reader.is_sound() || reader.left() != 0) return {};
   if (!state.positions.allFinite() || !state.velocities.allFinite()) return {};
   return stored;
 }
 
 std::optional<StoredState> read_stored(StateStore& store, const Hash& key, const Field& rest,
-                                       bool has_marks) {
+                                       StateParts parts) {
   const auto bytes = store.read(key, most_bytes(rest.rows()));
   if (!bytes) return {};
-  auto stored = from_bytes(*bytes, key, rest, has_marks);
+  auto stored = from_bytes(*bytes, key, rest, parts);
   if (!stored) store.discard(key);
   return stored;
 }

@@ -20,17 +20,27 @@ struct StoredState {
   StepFacts facts = {};
 };
 
+/// The parts of a state that not every body has.
+struct StateParts {
+  bool has_marks = false;  ///< `unsettled`
+  bool has_push = false;   ///< `last`
+
+  friend bool operator==(const StateParts&, const StateParts&) = default;
+};
+
+StateParts parts_of(const BodyState& state);
+
 /// Sealed bytes. Nodes at rest without velocity need no bytes. `rest` is #nodes x 3.
 std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
                      const Field& rest);
 
 /// The arguments of `to_bytes`, bit-identical; null if a byte has changed, or if the bytes are of
-/// another key or another kind of body. `has_marks`: whether states of the body have `unsettled`.
+/// another key or another kind of body. `parts`: those of the body's states.
 std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
-                                      bool has_marks);
+                                      StateParts parts);
 
 /// The state under a key of a store, as `from_bytes`; damaged bytes are discarded from the store.
 std::optional<StoredState> read_stored(StateStore& store, const Hash& key, const Field& rest,
-                                       bool has_marks);
+                                       StateParts parts);
 
 }  // namespace pliant

@@ -244,6 +244,23 @@ TEST_CASE("a ring loaded evenly bends as a strip between its two rims", "[plate]
   }
 }
 
+TEST_CASE("the slowest vibration of a torus is no rigid motion", "[plate][periodic]") {
+  for (const Grid& grid : {Grid{9, 14, 0.1, 0.2, true, true}, Grid{20, 4, 1, 1, true, true},
+                           Grid{3, 3, 1e3, 2e3, true, true}}) {
+    const Stiffness stiffness{2, 1, 0.5};
+    const auto solver = make_plate_solver();
+    const double lambda = smallest_eigenvalue(*solver, {grid, stiffness, 0}).value();
+    // Waves along one direction only, of (2 - 2 cos)^2/h^4.
+    const auto slowest = [](int count, double h, double factor) {
+      const double sine = std::sin(std::numbers::pi / count);
+      return factor * std::pow(4 * sine * sine / (h * h), 2);
+    };
+    const double expected = std::min(slowest(grid.columns, grid.hu, stiffness.b),
+                                     slowest(grid.rows, grid.hv, stiffness.d));
+    CHECK_THAT(lambda, WithinRel(expected, 1e-9));
+  }
+}
+
 TEST_CASE("the slowest vibration of a ring is that of its strip", "[plate][periodic]") {
   // Free of differences along u: a clamped beam, λ = d β⁴ with cos β cosh β = 1.
   const int rows = 65;

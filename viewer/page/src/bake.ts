@@ -21,7 +21,15 @@ export interface Marks {
   forces: { force: number; box?: Box; lines?: LinesPlace; push?: Vector }[];
 }
 
-interface SurfaceHead {
+/** Displacements from the mesh at rest, packed. */
+interface MotionHead {
+  step: number;
+  predictors: ArrayPlace;
+  lowBytes: ArrayPlace;
+  highBytes: ArrayPlace;
+}
+
+interface SurfaceHead extends MotionHead {
   name: string;
   enabled: boolean;
   vertices: number;
@@ -34,7 +42,6 @@ interface SurfaceHead {
   peakSpeed: number;
   low: Vector;
   high: Vector;
-  step: number;
   error: number;
   transforms: Track<number[]>;
   rest: ArrayPlace;
@@ -42,9 +49,8 @@ interface SurfaceHead {
   nodes: ArrayPlace;
   triangles: ArrayPlace;
   edges: ArrayPlace;
-  predictors: ArrayPlace;
-  lowBytes: ArrayPlace;
-  highBytes: ArrayPlace;
+  /** Of the shape at rest, if it is animated. */
+  restMotion?: MotionHead;
   marks: Marks[];
   lines?: { counts: ArrayPlace; sources: ArrayPlace; shares: ArrayPlace; segments: ArrayPlace };
 }
@@ -124,6 +130,23 @@ export function vectorBetween(track: Track<Vector>, index: number, share: number
   return [0, 1, 2].map((k) => here[k] + share * (next[k] - here[k])) as Vector;
 }
 
+/** Whole steps of all frames, each `count` numbers. */
+interface Motion {
+  step: number;
+  count: number;
+  steps: Int16Array;
+}
+
+function displace({ step, count, steps: all }: Motion, index: number, share: number, out: Float32Array): void {
+  const frames = all.length / count;
+  const here = index * count;
+  const next = Math.min(index + 1, frames - 1) * count;
+  for (let k = 0; k < count; ++k) {
+    const steps = all[here + k];
+    out[k] = step * (share === 0 ? steps : steps + share * (all[next + k] - steps));
+  }
+}
+
 /** One surface over all frames. Object space, relative to `origin`. */
 export class BakedSurface {
   readonly rest: Float32Array;
@@ -135,7 +158,8 @@ export class BakedSurface {
   /** The first vertex of each node; -1: none. */
   readonly nodeVertices: Int32Array;
   private readonly lines: { starts: Uint32Array; sources: Int32Array; shares: Float32Array; segments: Uint32Array };
-  private readonly steps: Int16Array;
+  private readonly motion: Motion;
+  private readonly restMotion?: Motion;
 
   constructor(
     readonly head: SurfaceHead,
@@ -156,7 +180,13 @@ export class BakedSurface {
       if (this.nodes[vertex] >= 0) this.nodeVertices[this.nodes[vertex]] = vertex;
     }
     const order = vertexOrder(this.nodes, this.nodeVertices.length);
-    this.steps = unfolded(bytes(head.predictors), bytes(head.lowBytes), bytes(head.highBytes), order);
+    const motion = ({ step, predictors, lowBytes, highBytes }: MotionHead) => ({
+      step,
+      count: this.rest.length,
+      steps: unfolded(bytes(predictors), bytes(lowBytes), bytes(highBytes), order),
+    });
+    this.motion = motion(head);
+    if (head.restMotion) this.restMotion = motion(head.restMotion);
     const none = { begin: 0, count: 0 };
     const { counts, sources, shares, segments } = head.lines ?? { counts: none, sources: none, shares: none, segments: none };
     const starts = new Uint32Array(counts.count + 1);
@@ -176,17 +206,15 @@ export class BakedSurface {
     };
   }
 
-  /** Displacements from rest at frame `index` plus `share` of the way to the next. */
+  /** Displacements from `rest` at frame `index` plus `share` of the way to the next. */
   displacementsAt(index: number, share: number, out: Float32Array): void {
-    const count = this.rest.length;
-    const frames = this.steps.length / count;
-    const { step } = this.head;
-    const here = index * count;
-    const next = Math.min(index + 1, frames - 1) * count;
-    for (let k = 0; k < count; ++k) {
-      const steps = this.steps[here + k];
-      out[k] = step * (share === 0 ? steps : steps + share * (this.steps[next + k] - steps));
-    }
+    displace(this.motion, index, share, out);
+  }
+
+  /** Those of the shape at rest: 0 unless it is animated. */
+  restDisplacementsAt(index: number, share: number, out: Float32Array): void {
+    if (this.restMotion) displace(this.restMotion, index, share, out);
+    else out.fill(0);
   }
 
   marksAt(frame: number): Marks | undefined {

@@ -58,6 +58,7 @@ export class SurfaceView {
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
+  private readonly restOffsets: Float32Array;
   private readonly edgeCounts: Uint8Array;
   private readonly size: number;
   private plain = new THREE.Color();
@@ -70,6 +71,7 @@ export class SurfaceView {
     const count = surface.rest.length;
     this.offsets = new Float32Array(count);
     this.offsetsBefore = new Float32Array(count);
+    this.restOffsets = new Float32Array(count);
     this.displacement = new Float32Array(count / 3);
     this.speed = new Float32Array(count / 3);
     this.edgeCounts = new Uint8Array(count / 3);
@@ -200,16 +202,18 @@ export class SurfaceView {
     const isFirst = index === 0 && share === 0;
     const before = share > 0 ? index : Math.max(index - 1, 0);
     this.surface.displacementsAt(before, 0, this.offsetsBefore);
+    this.surface.restDisplacementsAt(index, share, this.restOffsets);
     const last = placement(this.surface, before, 0).elements;
     const time = (share > 0 ? share : 1) / this.fps;
     const { rest } = this.surface;
     for (let k = 0; k < rest.length; k += 3) {
       const [dx, dy, dz] = [this.offsets[k], this.offsets[k + 1], this.offsets[k + 2]];
       const [bx, by, bz] = [this.offsetsBefore[k], this.offsetsBefore[k + 1], this.offsetsBefore[k + 2]];
+      const [rx, ry, rz] = [this.restOffsets[k], this.restOffsets[k + 1], this.restOffsets[k + 2]];
       let moved = 0, gone = 0;
       for (let row = 0; row < 3; ++row) {
         const offset = m[row] * dx + m[row + 4] * dy + m[row + 8] * dz;
-        moved += offset * offset;
+        moved += (offset - (m[row] * rx + m[row + 4] * ry + m[row + 8] * rz)) ** 2;
         const place = offset + m[row] * rest[k] + m[row + 4] * rest[k + 1] + m[row + 8] * rest[k + 2] + m[row + 12];
         const was = last[row] * (rest[k] + bx) + last[row + 4] * (rest[k + 1] + by) + last[row + 8] * (rest[k + 2] + bz) + last[row + 12];
         gone += (place - was) ** 2;

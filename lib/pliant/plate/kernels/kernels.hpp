@@ -121,6 +121,66 @@ struct ReflectedStep {
   double dt = 0;  ///< that is solved
 };
 
+struct ComplexNumber {
+  double re = 0;
+  double im = 0;
+};
+
+/// What a `ParityView` has of D, for D + z with one complex z.
+struct ShiftView {
+  const double* re = nullptr;  ///< rows x pitch: 1/(D + z)
+  const double* im = nullptr;
+  const double* row_pivot_re = nullptr;
+  const double* row_pivot_im = nullptr;
+  const double* inverse_re = nullptr;  ///< columns x inverse_pitch: of C
+  const double* inverse_im = nullptr;
+};
+struct ShiftTables {
+  double* re = nullptr;
+  double* im = nullptr;
+  double* row_pivot_re = nullptr;
+  double* row_pivot_im = nullptr;
+  double* inverse_re = nullptr;
+  double* inverse_im = nullptr;
+};
+
+/// Shifts of an exact step, each with a conjugate.
+constexpr int shift_count = 4;
+
+/// The right-hand side of one shift is the lack + growth f' + v v with these factors; the real
+/// parts of its solution times the others are its part of the step of w, the next v and the doubt.
+struct ShiftFactors {
+  ComplexNumber growth, v;
+  ComplexNumber next_w, next_v, doubt;
+};
+struct ExactFactors {
+  ShiftFactors of[shift_count];
+};
+
+/// The lack of force, (K w - f - time f') scale. In the padding it is no number of the plate.
+struct LackView {
+  const double* diagonal = nullptr;  ///< rows x pitch: D
+  double beta = 0, delta = 0;        ///< of the sums over columns and rows
+  double time = 0;
+  double scale = 0;
+  double* lack = nullptr;
+};
+
+/// One component in one pair of parities, scaled as in `ComponentView`.
+struct ExactView {
+  const double* load = nullptr;  ///< rows x pitch: f at the start of the interval, then f'
+  const double* growth = nullptr;
+  const double* lack = nullptr;
+  const double* w = nullptr;
+  const double* v = nullptr;
+  double* next_w = nullptr;
+  double* next_v = nullptr;
+  double* doubt = nullptr;        ///< null: not wanted
+  double* row_sums = nullptr;     ///< workspace: rows x shifts x 2
+  double* column_sums = nullptr;  ///< shifts x 2 x columns; 0 before and after
+  double* edge = nullptr;         ///< shifts x 4 x columns
+};
+
 /// Neighbouring columns of a factor L that have the same rows below them.
 struct Supernode {
   int first = 0, columns = 0;
@@ -182,6 +242,18 @@ struct PlateKernels {
   /// the first column whose pivot is not positive, or -1.
   int (*invert_edge)(const ParityView& parity, double beta, double delta, double* row_pivot,
                      double* inverse, double* panels);
+
+  /// The tables of D + shift; D (rows x pitch) is 1e300 in the padding. Returns the first column
+  /// without a pivot, or -1.
+  int (*prepare_shift)(const ParityView& parity, const double* diagonal, ComplexNumber shift,
+                       double beta, double delta, const ShiftTables& to);
+  /// The lack of one component, for a step.
+  void (*find_lack)(const ParityView& parity, const LackView& lack, const ExactView& view);
+  /// An exact step of one component, from w and v to the next.
+  void (*exact_step)(const ParityView& parity, const ShiftView* shifts, const ExactFactors& factors,
+                     const ExactView& view);
+  /// The sum of the squares over the nodes of a field given by its coefficients, but for a factor.
+  double (*exact_size)(const ParityView& parity, const double* numbers);
 
   /// Solves with a factor for three right-hand sides. `x`: #rows x `row_numbers`, the
   /// right-hand sides and zeros, then the solutions.

@@ -6,5 +6,6 @@
 #include "pliant/plate/kernels/sine_transform_lanes.hpp"
 #include "pliant/plate/kernels/spectral_fields_lanes.hpp"
 #include "pliant/plate/kernels/spectral_steps_lanes.hpp"
+#include "pliant/plate/kernels/step_exactly_lanes.hpp"
 #include "pliant/plate/kernels/supernode_lanes.hpp"
 #include "pliant/plate/kernels/table_lanes.hpp"

@@ -6,10 +6,9 @@ namespace pliant {
 #define PLIANT_JOIN(a, b) PLIANT_JOIN_(a, b)
 
 const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {
-    PLIANT_KERNELS_NAME, lanes,           sine_transform,
-    in_across,           in_along,        out_along,
-    out_across,          start,           step,
-    last_step,           reflected_start, reflected_step,
-    last_reflected_step, invert_edge,     solve_supernodes};
+    PLIANT_KERNELS_NAME, lanes,       sine_transform, in_across, in_along,        out_along,
+    out_across,          start,       step,           last_step, reflected_start, reflected_step,
+    last_reflected_step, invert_edge, prepare_shift,  find_lack, exact_step,      exact_size,
+    solve_supernodes};
 
 }  // namespace pliant

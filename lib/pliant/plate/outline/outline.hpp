@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pliant/core/edges.hpp"
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 
@@ -19,7 +20,8 @@ using InteriorMask = std::vector<std::uint8_t>;
 /// SPEC 5; docs/model.md, eq. (12) to (14).
 ///
 /// A grid that is closed along u (v) makes its outline periodic: node (i,j) is counted round, and
-/// there is no rim at those ends. docs/model.md, eq. (49).
+/// there is no rim at those ends. docs/model.md, eq. (49). Neither is there at a free edge, whose
+/// nodes are interior, but for those that are on another edge too.
 ///
 /// Everything that depends on the shape asks the outline: which nodes are unknowns, and which are
 /// next to the rim.
@@ -39,12 +41,18 @@ class Outline {
   /// explicit, since most plates are rectangles.
   Outline(const Grid& grid);  // NOLINT
 
+  /// The same, with other edges. Along closed directions they do not matter.
+  Outline(const Grid& grid, const Edges& edges);
+
   /// Any other outline; an empty mask is the one above again. Requires: interior nodes have all
   /// eight neighbours in the grid. If two nodes that are two steps apart along u or v are interior,
   /// so is the one between them, as for every outline that follows cells.
   Outline(const Grid& grid, InteriorMask mask);
 
   const Grid& grid() const { return grid_; }
+  const Edges& edges() const { return edges_; }
+
+  /// Whether it is a rectangle with a rim all around.
   bool is_rectangle() const { return is_rectangle_; }
   bool is_periodic() const { return !grid_.is_open(); }
   const InteriorMask& mask() const { return mask_; }  ///< empty for a rectangle or a ring
@@ -55,18 +63,17 @@ class Outline {
 
   /// Whether node (i,j) is interior. Requires: it is a node of the grid, counted round.
   bool holds(int i, int j) const {
-    if (is_rectangle_) return i > 0 && i < grid_.columns - 1 && j > 0 && j < grid_.rows - 1;
     if (is_periodic()) return holds_round(i, j);
+    if (mask_.empty()) return inner_.contains(i, j);
     return mask_[static_cast<std::size_t>(grid_.node(i, j))] != 0;
   }
 
   /// Calls f(run) for all runs, row by row.
   template <class F>
   void for_each_run(const F& f) const {
-    const int rim_u = grid_.is_closed_u ? 0 : 1, rim_v = grid_.is_closed_v ? 0 : 1;
-    for (int j = rim_v; j < grid_.rows - rim_v; ++j) {
+    for (int j = inner_.j0; j <= inner_.j1; ++j) {
       if (mask_.empty()) {
-        if (grid_.columns >= 3) f(Run{j, rim_u, grid_.columns - 1 - rim_u});
+        if (!inner_.is_empty()) f(Run{j, inner_.i0, inner_.i1});
         continue;
       }
       const auto row = mask_.begin() + grid_.node(0, j), end = row + grid_.columns;
@@ -102,6 +109,8 @@ class Outline {
   bool holds_round(int i, int j) const;
 
   Grid grid_;
+  Edges edges_;
+  Box inner_;          // the interior nodes, or those of the mask and maybe others
   InteriorMask mask_;  // empty: all but the outermost nodes
   int unknowns_ = 0;
   bool is_rectangle_ = true;
@@ -145,6 +154,9 @@ void with_steps(const Outline& outline, const F& f) {
     f([&](int, int) { return OpenSteps{grid.columns}; });
   }
 }
+
+/// The number of each interior node among the unknowns, -1 for the others (#nodes).
+std::vector<int> numbers_of_unknowns(const Outline& outline);
 
 /// Whether two outlines differ in their spacings at most, so that their matrices have one pattern.
 bool have_same_nodes(const Outline& a, const Outline& b);

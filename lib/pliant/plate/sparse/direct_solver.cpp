@@ -1,7 +1,12 @@
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/exact/sparse_motion.hpp"
+#include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
 #include "pliant/plate/sparse/operator.hpp"
@@ -13,7 +18,7 @@ namespace {
 class DirectSolver final : public PlateSolver {
  public:
   DirectSolver(SolverChoice choice, const RunContext& context)
-      : PlateSolver(context), matrix_(choice, context) {}
+      : PlateSolver(context), matrix_(choice, context), motion_(context) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     if (factored_ == system) return {};
@@ -39,9 +44,37 @@ class DirectSolver final : public PlateSolver {
     return solution;
   }
 
-  SolverCounts counts() const override { return matrix_.counts(); }
+  Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
+                             PlateState state) override {
+    if (!steps.are_exact()) return PlateSolver::advance(problem, steps, std::move(state));
+    PLIANT_EXPECTS(is_on_nodes(problem, state));
+    const Outline& outline = problem.outline;
+    StageTimer set_up(context().profile, Stage::SetUp);
+    const auto unknowns = static_cast<std::size_t>(unknown_count(outline));
+    auto prepared = motion_.prepare({assemble_upper({outline, problem.stiffness, 0}),
+                                     std::vector<double>(unknowns, problem.dynamics.density),
+                                     std::vector<double>(unknowns, problem.dynamics.damping)});
+    if (!prepared) return fail(prepared.error());
+    set_up.stop();
+    const StageTimer solve(context().profile, Stage::Solve);
+    const auto force = [&](Field load, const EdgeTangents& tangents) {
+      subtract_rim(outline, problem.stiffness, tangents, state.displacement, load);
+      return interior_of(outline, load);
+    };
+    Field w = interior_of(outline, state.displacement), v = interior_of(outline, state.velocity);
+    auto moved = motion_.advance(
+        steps,
+        {force(problem.first_load, problem.first_tangents), force(problem.load, problem.tangents)},
+        w, v);
+    if (!moved) return fail(moved.error());
+    state.displacement = with_interior(outline, std::move(state.displacement), w);
+    state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), v);
+    return state;
+  }
 
-  std::size_t memory() const override { return matrix_.memory(); }
+  SolverCounts counts() const override { return matrix_.counts() + motion_.counts(); }
+
+  std::size_t memory() const override { return matrix_.memory() + motion_.memory(); }
 
  private:
   // Iterative refinement. A factorisation leaves a relative error of up to condition x eps, and
@@ -56,6 +89,7 @@ class DirectSolver final : public PlateSolver {
   FactoredMatrix matrix_;
   std::optional<PlateSystem> factored_;  // the system of `matrix_`; nullopt after a failure
   int refinement_passes_ = 0;            // needed for `factored_`
+  SparseMotion motion_;
 };
 
 }  // namespace

@@ -1,65 +1,24 @@
 #include "pliant/plate/sparse/operator.hpp"
 
 #include <algorithm>
-#include <array>
 #include <numbers>
 #include <vector>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/plate/sparse/upper_column.hpp"
 #include "pliant/plate/stencil.hpp"
 
 namespace pliant {
-namespace {
-
-// The entries of a column of the upper triangle, by ascending row. In a narrow ring several
-// neighbours of a node are the same node; their weights add up.
-class UpperColumn {
- public:
-  void add(int row, double weight) {
-    int place = count_;
-    while (place > 0 && entries_[place - 1].row >= row) --place;
-    if (place < count_ && entries_[place].row == row) {
-      entries_[place].weight += weight;
-      return;
-    }
-    std::copy_backward(entries_.begin() + place, entries_.begin() + count_,
-                       entries_.begin() + count_ + 1);
-    entries_[place] = {row, weight};
-    ++count_;
-  }
-
-  void insert_into(SparseMatrix& matrix, int column) const {
-    matrix.startVec(column);
-    for (int k = 0; k < count_; ++k)
-      matrix.insertBack(entries_[k].row, column) = entries_[k].weight;
-  }
-
- private:
-  struct Entry {
-    int row;
-    double weight;
-  };
-
-  std::array<Entry, 13> entries_;
-  int count_ = 0;
-};
-
-}  // namespace
-
 SparseMatrix assemble_upper(const PlateSystem& system) {
   const Outline& outline = system.outline;
   const Grid& grid = outline.grid();
   PLIANT_EXPECTS(grid.columns >= 3 && grid.rows >= 3);
   const StencilWeights weights(grid, system.stiffness, system.shift);
 
-  // The number of each interior node among the unknowns, -1 for the others.
-  std::vector<int> numbers(static_cast<std::size_t>(grid.node_count()), -1);
-  int next = 0;
-  outline.for_each_run([&](const Outline::Run& run) {
-    for (int i = run.i0; i <= run.i1; ++i) numbers[grid.node(i, run.j)] = next++;
-  });
-  SparseMatrix matrix(next, next);
-  matrix.reserve(Eigen::Index{7} * next);
+  const std::vector<int> numbers = numbers_of_unknowns(outline);
+  const int size = outline.unknown_count();
+  SparseMatrix matrix(size, size);
+  matrix.reserve(Eigen::Index{7} * size);
   with_steps(outline, [&](const auto& steps_at) {
     outline.for_each_run([&](const Outline::Run& run) {
       for (int i = run.i0; i <= run.i1; ++i) {

@@ -193,8 +193,14 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   const Stencil<double> stencil(grid, system.stiffness);
   const double edge_u = 4 * stencil.b;
   const double edge_v = 4 * stencil.d;
+  // Edges that are pinned do not couple the modes.
+  const Edges& edges = system.outline.edges();
+  PLIANT_EXPECTS(edges.u0 == edges.u1 && edges.v0 == edges.v1);
+  const bool is_pinned_u = edges.u0 == Edge::Pinned, is_pinned_v = edges.v0 == Edge::Pinned;
+  const bool is_pinned_along = is_along_u_ ? is_pinned_u : is_pinned_v;
+  const bool is_pinned_across = is_along_u_ ? is_pinned_v : is_pinned_u;
   const double beta = is_along_u_ ? edge_u : edge_v;
-  const double delta = is_along_u_ ? edge_v : edge_u;
+  const double delta = is_pinned_across ? 0 : is_along_u_ ? edge_v : edge_u;
   int failed[4];
   for_each(4, [&](std::size_t k) {
     Parity& parity = parities_[k];
@@ -206,6 +212,9 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
     }
     failed[k] = kernels_.invert_edge(view_of(static_cast<int>(k)), beta, delta, parity.row_pivot,
                                      parity.inverse, parity.panels);
+    if (is_pinned_along) {
+      std::fill_n(parity.inverse, long{parity.columns} * parity.inverse_pitch, 0.0);
+    }
   });
   for (const int pivot : failed) {
     if (pivot >= 0) return fail(not_positive_definite(unknown_count(system.outline), pivot));
@@ -404,7 +413,8 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
 }
 
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
-                            const NodesView& displacement, const NodesView& velocity) {
+                            const NodesView& displacement, const NodesView& velocity,
+                            const std::function<bool()>& watch) {
   PLIANT_EXPECTS(prepared_.has_value());
   const auto view = [](const NodesView& nodes) {
     return ConstNodesView{nodes.first, nodes.row_stride, nodes.component_stride};
@@ -423,12 +433,14 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
       is_reflected ? StepFactors{2 * (shift + keep), 2 * keep} : StepFactors{shift + keep, keep};
   std::atomic<bool> is_stopped = false;
   const Parts parts = moving_parts();
-  for_each(parts.count, [&](std::size_t task) {
+  const auto run = [&](std::size_t task, int first, int last) {
     const auto [k, index] = parts.part[task];
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, index);
-    (is_reflected ? kernels_.reflected_start : kernels_.start)(parity, component, shift, inertia);
-    for (int step = 1; step <= steps.count; ++step) {
+    if (first == 1) {
+      (is_reflected ? kernels_.reflected_start : kernels_.start)(parity, component, shift, inertia);
+    }
+    for (int step = first; step <= last; ++step) {
       if (is_stopped) return;
       // The parts ask in turn, so that the stop request is called once per step.
       const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
@@ -444,10 +456,16 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
         kernels_.last_step(parity, component, 1 / dt);
       }
     }
-  });
-  if (is_stopped) return false;
-  counts_.solves += steps.count;
-  from_sines(&Parity::displacement, displacement);
+  };
+  // All steps at once, unless somebody looks at each.
+  const int together = watch ? 1 : steps.count;
+  for (int first = 1; first <= steps.count; first += together) {
+    for_each(parts.count, [&](std::size_t task) { run(task, first, first + together - 1); });
+    if (is_stopped) return false;
+    counts_.solves += together;
+    from_sines(&Parity::displacement, displacement);
+    if (watch && !watch()) return true;
+  }
   from_sines(&Parity::pending, velocity);
   return true;
 }

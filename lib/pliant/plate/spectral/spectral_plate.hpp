@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct ConstNodesView {
 };
 
 /// A clamped plate in sine space, where its operator is a diagonal and four small dense matrices.
+/// Opposite edges may be pinned instead; with all four pinned it is the diagonal alone.
 /// Stores the tables and the factors for one system and the state of three components. Solves in
 /// O(nodes log side), steps in O(nodes). docs/model.md, "In sine space". Internal to plate.
 class SpectralPlate {
@@ -45,14 +47,19 @@ class SpectralPlate {
 
   /// Steps on the interior nodes with the prepared shift; the load excludes the rim's part.
   /// Requires: prepared; shift and inertia are those of steps.solved_length(). Returns false if the
-  /// context's stop request returns true; displacement and velocity are then unchanged.
+  /// context's stop request returns true; displacement and velocity are then unchanged. `watch` is
+  /// called after each step, once the displacement was written; false: no step follows, and the
+  /// velocity is not written. Empty: nobody watches.
   bool advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
-               const NodesView& displacement, const NodesView& velocity);
+               const NodesView& displacement, const NodesView& velocity,
+               const std::function<bool()>& watch = {});
 
   const SolverCounts& counts() const { return counts_; }
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
+  friend class SpectralMotion;
+
   // Storage of one pair of parities. Rows are the modes along, columns those across.
   struct Parity {
     int rows = 0;
@@ -66,7 +73,8 @@ class SpectralPlate {
     double* load[3] = {};
     double* displacement[3] = {};
     double* pending[3] = {};
-    double* sums[3] = {};  // of rows, of columns, and the edge
+    double* growth[3] = {};  // of the load, in exact steps; not the plate's
+    double* sums[3] = {};    // of rows, of columns, and the edge
   };
 
   // The modes of one direction.

@@ -32,7 +32,7 @@ ReducedUnknowns::ReducedUnknowns(const TriangleCells& cells, int mass_count)
 
 template <class Real>
 void CellBlock<Real>::compute(const TriangleCells& cells, int block, const ReducedUnknowns& reduced,
-                              const Bending& bending) {
+                              const Bending& bending, const CellFactors* factors) {
   const int first = cells.block_starts[block], last = cells.block_starts[block + 1];
   unknowns_.clear();
   for (int k = first; k < last; ++k) {
@@ -50,8 +50,9 @@ void CellBlock<Real>::compute(const TriangleCells& cells, int block, const Reduc
   for (int k = first; k < last; ++k) {
     const MorleyCell cell(cells.cells[k].shape);
     const std::array<Curvature, 6> by_value = cell.by_value();
+    const Bending own = bending_at(bending, factors, k);
     std::array<Curvature, 6> moment_by_value;
-    for (int n = 0; n < 6; ++n) moment_by_value[n] = moments(bending, by_value[n]);
+    for (int n = 0; n < 6; ++n) moment_by_value[n] = moments(own, by_value[n]);
     used.clear();
     for_each_unknown(cells, cells.cells[k], [&](const CellUnknown& unknown) {
       const auto place = std::find(unknowns_.begin(), unknowns_.end(), unknown.index);

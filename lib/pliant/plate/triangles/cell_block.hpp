@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "pliant/core/triangle_cells.hpp"
+#include "pliant/plate/triangles/cell_factors.hpp"
 #include "pliant/plate/triangles/morley_cell.hpp"
 
 namespace pliant {
@@ -24,8 +25,9 @@ template <class Real>
 class CellBlock {
  public:
   /// Computes the block's matrix, and eliminates. A pivot of 0 makes numbers that are not finite.
+  /// `factors` null: the material is even.
   void compute(const TriangleCells& cells, int block, const ReducedUnknowns& reduced,
-               const Bending& bending);
+               const Bending& bending, const CellFactors* factors = nullptr);
 
   int size() const { return static_cast<int>(unknowns_.size()); }
   int inner_count() const { return inner_count_; }

@@ -8,12 +8,10 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/step_loop.hpp"
 
 namespace pliant {
 namespace {
-
-// The largest error of a solution, as a part of its peak.
-constexpr double largest_error = 1e-10;
 
 double dot(const Curvature& a, const Curvature& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -22,21 +20,38 @@ double dot(const Curvature& a, const Curvature& b) {
 }  // namespace
 
 TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
-                             const RunContext& context)
+                             const RunContext& context, std::shared_ptr<const CellFactors> factors)
     : cells_(std::move(cells)),
       masses_(std::move(masses)),
+      factors_(std::move(factors)),
       context_(context),
       reduced_(cells_, static_cast<int>(masses_.size())),
-      matrix_(choice, context),
-      precise_share_(context.memory) {
+      factor_(*this, choice, context),
+      precise_share_(context.memory),
+      motion_(context) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
-  matrix_.use_supernodes(kernels_of_width(context.most_lanes));
+}
+
+Eigen::VectorXd TrianglePlate::weighted_masses() const {
+  Eigen::VectorXd weighted(static_cast<Eigen::Index>(masses_.size()));
+  for (Eigen::Index k = 0; k < weighted.size(); ++k) {
+    const int point = static_cast<int>(k);
+    weighted[k] = factors_ ? masses_[k] * factor_at(factors_->density, point) : masses_[k];
+  }
+  return weighted;
+}
+
+template <class Real>
+Real TrianglePlate::shift_at(int point, double shift, double drag) const {
+  if (!factors_) return Real{shift} * masses_[point];
+  return Real{masses_[point]} * (Real{shift - drag} * factor_at(factors_->density, point) +
+                                 Real{drag} * factor_at(factors_->damping, point));
 }
 
 // Contributions are gathered by rows, in the order of the blocks, and those of one entry are added
 // in that order.
 template <class Real>
-TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shift,
+TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shift, double drag,
                                               Half half) const {
   struct Entry {
     int row, column;
@@ -45,7 +60,7 @@ TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shi
   std::vector<Entry> entries;
   CellBlock<Real> block;
   for (int k = 0; k < cells_.block_count(); ++k) {
-    block.compute(cells_, k, reduced_, bending);
+    block.compute(cells_, k, reduced_, bending, factors_.get());
     for (int a = block.inner_count(); a < block.size(); ++a) {
       for (int b = a; b < block.size(); ++b) {
         const auto [low, high] =
@@ -79,16 +94,16 @@ TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shi
         sum += entries[*place].value;
       const bool has_mass = row == column && row < static_cast<int>(masses_.size());
       rows.columns.push_back(column);
-      rows.values.push_back(has_mass ? sum + Real{shift} * masses_[row] : sum);
+      rows.values.push_back(has_mass ? sum + shift_at<Real>(row, shift, drag) : sum);
     }
     rows.starts.push_back(rows.columns.size());
   }
   return rows;
 }
 
-SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift) const {
+SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift, double drag) const {
   // The rows of the lower half are the columns of the upper one.
-  const Rows<double> columns = rows<double>(bending, shift, Half::Lower);
+  const Rows<double> columns = rows<double>(bending, shift, drag, Half::Lower);
   SparseMatrix matrix(reduced_.count, reduced_.count);
   matrix.reserve(static_cast<Eigen::Index>(columns.values.size()));
   for (int column = 0; column < reduced_.count; ++column) {
@@ -121,7 +136,7 @@ Field TrianglePlate::reduced(const Field& forces) const {
   std::vector<double> own;
   for (const int k : reduced_.blocks) {
     if (!presses_on_inner(k)) continue;
-    block.compute(cells_, k, reduced_, bending_);
+    block.compute(cells_, k, reduced_, bending_, factors_.get());
     for (int component = 0; component < 3; ++component) {
       own.assign(static_cast<std::size_t>(block.size()), 0);
       for (int n = 0; n < block.inner_count(); ++n) own[n] = forces(block.unknown(n), component);
@@ -134,30 +149,34 @@ Field TrianglePlate::reduced(const Field& forces) const {
   return result;
 }
 
-Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
-  if (is_factored_ && bending_ == bending && shift_ == shift) return {};
+Result<void> TrianglePlate::prepare(const Bending& bending, double shift, double drag) {
+  if (is_factored_ && bending_ == bending && shift_ == shift && drag_ == drag) return {};
   const bool has_same_pattern = is_factored_;
   is_factored_ = false;
   bending_ = bending;
   shift_ = shift;
-  SparseMatrix upper;
-  auto factored = matrix_.factor(reduced_.count, has_same_pattern,
-                                 [&] { return upper = matrix(bending_, shift_); });
-  if (!factored) return factored;
-  if (auto measured = measure_error(upper); !measured) return measured;
+  drag_ = drag;
+  // Errors are measured under an even pressure.
+  const Eigen::Map<const Eigen::VectorXd> masses(masses_.data(),
+                                                 static_cast<Eigen::Index>(masses_.size()));
+  if (auto factored = factor_.factor(reduced_.count, has_same_pattern, masses); !factored)
+    return factored;
   is_factored_ = true;
   return {};
 }
 
 // The forces on the unknowns by what is held: -K times the displacements and slopes that are given.
-Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& displacement) const {
+Field TrianglePlate::held_forces(const Bending& even, const Slopes& given_slopes,
+                                 const Field& displacement) const {
   Field forces = Field::Zero(cells_.unknown_count(), 3);
-  for (const TriangleCell& each : cells_.cells) {
+  for (int number = 0; number < static_cast<int>(cells_.cells.size()); ++number) {
+    const TriangleCell& each = cells_.cells[number];
     bool is_held = false;
     for (int k = 0; k < 3; ++k) {
       is_held = is_held || each.points[k] >= cells_.free_points || each.slopes[k].count == 0;
     }
     if (!is_held) continue;
+    const Bending bending = bending_at(even, factors_.get(), number);
     const MorleyCell cell(each.shape);
     const std::array<Curvature, 6> by_value = cell.by_value();
     for (int component = 0; component < 3; ++component) {
@@ -166,13 +185,13 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
         for (int k = 0; k < 3; ++k) h[k] += amount * by_value[value][k];
       };
       std::array<double, 4> slopes;
-      for (int k = 0; k < 4; ++k) slopes[k] = problem.slopes[k][component];
+      for (int k = 0; k < 4; ++k) slopes[k] = given_slopes[k][component];
       for (int k = 0; k < 3; ++k) {
         if (each.points[k] >= cells_.free_points) add(k, displacement(each.points[k], component));
         if (each.slopes[k].count == 0) add(3 + k, cell.given_slope(k, slopes));
       }
       if (h == Curvature{0, 0, 0}) continue;
-      const Curvature moment = moments(problem.bending, h);
+      const Curvature moment = moments(bending, h);
       for_each_unknown(cells_, each, [&](const CellUnknown& unknown) {
         forces(unknown.index, component) -=
             cell.area * unknown.sign * dot(by_value[unknown.value], moment);
@@ -182,92 +201,41 @@ Field TrianglePlate::held_forces(const TriangleProblem& problem, const Field& di
   return forces;
 }
 
-Field TrianglePlate::residual(const Field& solution, const Field& right_hand_sides) const {
-  const double* const x = solution.col(0).data();
-  const double* const y = solution.col(1).data();
-  const double* const z = solution.col(2).data();
-  Field result(right_hand_sides.rows(), 3);
+Field TrianglePlate::residual(const Field& x, const Field& f) const {
+  const double* const of_x = x.col(0).data();
+  const double* const of_y = x.col(1).data();
+  const double* const of_z = x.col(2).data();
+  Field result(f.rows(), 3);
   for (Eigen::Index row = 0; row < result.rows(); ++row) {
-    Extended of_x = right_hand_sides(row, 0);
-    Extended of_y = right_hand_sides(row, 1);
-    Extended of_z = right_hand_sides(row, 2);
+    Extended left_x = f(row, 0);
+    Extended left_y = f(row, 1);
+    Extended left_z = f(row, 2);
     for (std::size_t k = precise_.starts[row]; k < precise_.starts[row + 1]; ++k) {
       const Extended entry = precise_.values[k];
       const int column = precise_.columns[k];
-      of_x -= entry * x[column];
-      of_y -= entry * y[column];
-      of_z -= entry * z[column];
+      left_x -= entry * of_x[column];
+      left_y -= entry * of_y[column];
+      left_z -= entry * of_z[column];
     }
-    result(row, 0) = static_cast<double>(of_x);
-    result(row, 1) = static_cast<double>(of_y);
-    result(row, 2) = static_cast<double>(of_z);
+    result(row, 0) = static_cast<double>(left_x);
+    result(row, 1) = static_cast<double>(left_y);
+    result(row, 2) = static_cast<double>(left_z);
   }
   return result;
 }
 
-// Of the points that have a mass.
-double TrianglePlate::peak(const Field& solution) const {
-  return solution.topRows(static_cast<Eigen::Index>(masses_.size())).cwiseAbs().maxCoeff();
-}
-
-void TrianglePlate::drop_precise() {
-  precise_ = {};
-  static_cast<void>(precise_share_.try_resize(0));  // to give back never fails
-}
-
-// Finds the error of a solution, by one that presses evenly on the plate: if it is too large, all
-// are corrected.
-Result<void> TrianglePlate::measure_error(const SparseMatrix& upper) {
-  solve_error_ = 0;
-  drop_precise();
-  const auto points = static_cast<Eigen::Index>(masses_.size());
-  Field pressure = Field::Zero(reduced_.count, 3);
-  pressure.col(0).head(points) = Eigen::Map<const Eigen::VectorXd>(masses_.data(), points);
-  auto solution = matrix_.solve(pressure);
-  if (!solution) return fail(solution.error());
-  // The residual in plain double has an error of the size of the residual itself: it is a quick
-  // measure for the error, right to a small factor.
-  Field rough = Field::Zero(reduced_.count, 3);
-  rough.col(0) = pressure.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
-  const auto first = matrix_.solve(rough);
-  if (!first) return fail(first.error());
-  if (peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+Result<void> TrianglePlate::open(std::size_t entries) {
   // Both halves of the matrix, and twice as much while they are gathered.
-  const std::size_t bytes =
-      static_cast<std::size_t>(upper.nonZeros()) * 6 * (sizeof(Extended) + 2 * sizeof(int));
+  const std::size_t bytes = entries * 6 * (sizeof(Extended) + 2 * sizeof(int));
   if (!precise_share_.try_resize(bytes))
     return fail(factor_too_large(reduced_.count, precise_share_.complaint(bytes)));
-  precise_ = rows<Extended>(bending_, shift_, Half::Both);
-  const auto correction = matrix_.solve(residual(*solution, pressure));
-  if (!correction) return fail(correction.error());
-  solve_error_ = peak(*correction) / peak(*solution);
-  if (solve_error_ > largest_error) return {};
-  solve_error_ = 0;
-  drop_precise();
+  precise_ = rows<Extended>(bending_, shift_, drag_, Half::Both);
   return {};
 }
 
-// Corrects a guess until what a solve leaves is small. A good guess, such as the way on from the
-// steps before, needs one solve, and without one a solution is the first guess.
-Result<Field> TrianglePlate::solve_refined(const Field& right_hand_sides,
-                                           std::optional<Field> guess) {
-  constexpr int most_passes = 10;
-  matrix_.count_solve();
-  if (!refines()) return matrix_.solve(right_hand_sides);
-  Result<Field> solution =
-      guess ? Result<Field>(*std::move(guess)) : matrix_.solve(right_hand_sides);
-  double before = std::numeric_limits<double>::infinity();
-  for (int pass = 0; solution && pass < most_passes; ++pass) {
-    auto correction = matrix_.solve(residual(*solution, right_hand_sides));
-    if (!correction) return correction;
-    *solution += *correction;
-    const double change = peak(*correction);
-    // The corrections become as small as rounding lets them.
-    if (!(solve_error_ * change > largest_error * peak(*solution)) || !(change < 0.5 * before))
-      break;
-    before = change;
-  }
-  return solution;
+void TrianglePlate::close() {
+  precise_ = {};
+  static_cast<void>(precise_share_.try_resize(0));  // to give back never fails
 }
 
 Result<Field> TrianglePlate::solve(const Field& forces) {
@@ -275,7 +243,7 @@ Result<Field> TrianglePlate::solve(const Field& forces) {
   PLIANT_EXPECTS(is_factored_ && forces.rows() == points);
   Field right_hand_sides = Field::Zero(reduced_.count, 3);
   right_hand_sides.topRows(points) = forces;
-  auto solution = solve_refined(right_hand_sides, {});
+  auto solution = factor_.solve(right_hand_sides);
   if (!solution) return solution;
   return Field(solution->topRows(points));
 }
@@ -285,45 +253,74 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(state.displacement.rows() == cells_.point_count &&
                  state.velocity.rows() == points && problem.load.rows() == points);
+  if (steps.are_exact()) return advance_exactly(problem, steps, std::move(state));
   const double dt = steps.solved_length();
   const double inertia = problem.dynamics.inertia(dt);
   const double shift = problem.dynamics.shift(dt);
+  const double drag = factors_ ? problem.dynamics.damping / dt : 0;
   StageTimer set_up(context_.profile, Stage::SetUp);
-  if (auto ready = prepare(problem.bending, shift); !ready) return fail(ready.error());
+  if (auto ready = prepare(problem.bending, shift, drag); !ready) return fail(ready.error());
   set_up.stop();
   const StageTimer solving(context_.profile, Stage::Solve);
 
-  Field known = reduced(held_forces(problem, state.displacement));
+  Field known = reduced(held_forces(problem.bending, problem.slopes, state.displacement));
   known.topRows(points) += problem.load;
   const Eigen::Map<const Eigen::VectorXd> masses(masses_.data(), points);
-  Field w = state.displacement.topRows(points);
-  Field v = std::move(state.velocity);
+  Motion motion{state.displacement.topRows(points), std::move(state.velocity)};
   Field right_hand_sides = known;
-  // The solutions of the last two steps, if they are refined.
-  std::optional<Field> last, before;
-  for (int step = 0; step < steps.count; ++step) {
-    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-    for (int k = 0; k < 3; ++k) {
+  Eigen::VectorXd shifts, inertias;  // of the points, if they differ by more than their masses
+  if (factors_) {
+    inertias = inertia * weighted_masses();
+    shifts.resize(points);
+    for (Eigen::Index k = 0; k < points; ++k)
+      shifts[k] = shift_at<double>(static_cast<int>(k), shift, drag);
+  }
+  const auto solve = [&](const Field& w, const Field& v) {
+    for (int k = 0; factors_ && k < 3; ++k) {
+      right_hand_sides.col(k).head(points) = known.col(k).head(points) +
+                                             shifts.cwiseProduct(w.col(k)) +
+                                             inertias.cwiseProduct(v.col(k));
+    }
+    for (int k = 0; !factors_ && k < 3; ++k) {
       right_hand_sides.col(k).head(points) =
           known.col(k).head(points) + masses.cwiseProduct(shift * w.col(k) + inertia * v.col(k));
     }
-    auto next = solve_refined(right_hand_sides, before ? Field(2 * *last - *before) : last);
-    if (!next) return fail(next.error());
-    if (refines()) {
-      before = std::move(last);
-      last = *next;
-    }
-    const auto moved = next->topRows(points);
-    if (steps.are_reflected()) {
-      v = 2 * (moved - w) / dt - v;
-      w = 2 * moved - w;
-    } else {
-      v = (moved - w) / dt;
-      w = moved;
-    }
+    return factor_.solve_next(right_hand_sides);
+  };
+  factor_.begin_steps();
+  if (auto done = run_steps(context_, steps, motion, solve); !done) return fail(done.error());
+  state.displacement.topRows(points) = motion.displacement;
+  state.velocity = std::move(motion.velocity);
+  return state;
+}
+
+Result<TriangleState> TrianglePlate::advance_exactly(const TriangleProblem& problem,
+                                                     const TimeSteps& steps, TriangleState state) {
+  const auto points = static_cast<Eigen::Index>(masses_.size());
+  StageTimer set_up(context_.profile, Stage::SetUp);
+  // What is reduced depends on it.
+  if (!(bending_ == problem.bending)) is_factored_ = false;
+  bending_ = problem.bending;
+  std::vector<double> inertia = masses_, drag = masses_;
+  for (int k = 0; k < static_cast<int>(masses_.size()); ++k) {
+    inertia[k] *= problem.dynamics.density * (factors_ ? factor_at(factors_->density, k) : 1);
+    drag[k] *= problem.dynamics.damping * (factors_ ? factor_at(factors_->damping, k) : 1);
   }
+  auto ready = motion_.prepare({matrix(bending_, 0), std::move(inertia), std::move(drag)});
+  if (!ready) return fail(ready.error());
+  set_up.stop();
+  const StageTimer solving(context_.profile, Stage::Solve);
+  const auto force = [&](const Slopes& slopes, const Field& load) {
+    Field sum = reduced(held_forces(bending_, slopes, state.displacement));
+    sum.topRows(points) += load;
+    return sum;
+  };
+  Field w = state.displacement.topRows(points);
+  auto moved = motion_.advance(
+      steps, {force(problem.first_slopes, problem.first_load), force(problem.slopes, problem.load)},
+      w, state.velocity);
+  if (!moved) return fail(moved.error());
   state.displacement.topRows(points) = w;
-  state.velocity = std::move(v);
   return state;
 }
 

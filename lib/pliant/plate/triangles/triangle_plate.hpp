@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -10,8 +10,9 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/core/triangle_cells.hpp"
+#include "pliant/plate/exact/sparse_motion.hpp"
 #include "pliant/plate/plate.hpp"
-#include "pliant/plate/sparse/factored_matrix.hpp"
+#include "pliant/plate/sparse/refined_factor.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/plate/triangles/cell_block.hpp"
 
@@ -24,6 +25,11 @@ struct TriangleProblem {
   std::array<Vector3d, 4> slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
                                     Vector3d::Zero()};  ///< along -u, +u, -v, +v [1]
   Field load;  ///< #masses x 3: integrated over the plate [length b length^2/uv^4]
+
+  /// What load and slopes change from, evenly over the interval; only for `Integrator::Exact`.
+  Field first_load = {};
+  std::array<Vector3d, 4> first_slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
+                                          Vector3d::Zero()};
 };
 
 /// Displacement of all points, and velocity of those with a mass.
@@ -35,38 +41,48 @@ struct TriangleState {
 /// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
 /// cells' bending energy and M has the masses of the first points on its diagonal. Slopes, and
 /// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
-class TrianglePlate {
+class TrianglePlate : private PreciseMatrix {
  public:
-  /// Requires: the first #masses points are free. `choice` is Cholmod or Eigen.
+  /// Requires: the first #masses points are free. `choice` is Cholmod or Eigen. `factors` null: the
+  /// material is even.
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
-                const RunContext& context);
+                const RunContext& context, std::shared_ptr<const CellFactors> factors = {});
 
-  /// Prepares to solve K + shift M. Reuse: does nothing if both are those of the last call. Errors:
+  /// Prepares to solve K + shift M; `drag` is the part of the shift that a map of damping changes,
+  /// that of density the rest. Reuse: does nothing if all are those of the last call. Errors:
   /// SolverFailed if the matrix is not positive definite; OutOfMemory.
-  Result<void> prepare(const Bending& bending, double shift);
+  Result<void> prepare(const Bending& bending, double shift, double drag = 0);
 
   /// Solves for forces on the points with a mass (#masses x 3) on a plate whose held points and
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
   Result<Field> solve(const Field& forces);
 
-  /// Advances as `advance_in_steps`. What is held keeps its displacement.
+  /// Advances as `advance_in_steps`, or exactly. What is held keeps its displacement.
   /// Errors: those of `prepare`; Interrupted.
   Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                                 TriangleState state);
 
   /// The upper triangle of K + shift M that is factored: without unknowns that belong to one block
   /// of cells.
-  SparseMatrix matrix(const Bending& bending, double shift) const;
+  SparseMatrix matrix(const Bending& bending, double shift, double drag = 0) const;
 
   const TriangleCells& cells() const { return cells_; }
   const std::vector<double>& masses() const { return masses_; }
+  const CellFactors* factors() const { return factors_.get(); }
+
+  /// The masses times the factors of density. (#masses)
+  Eigen::VectorXd weighted_masses() const;
+
   const RunContext& context() const { return context_; }
-  SolverCounts counts() const { return matrix_.counts(); }
-  std::size_t memory() const { return matrix_.memory(); }
+  SolverCounts counts() const { return factor_.counts() + motion_.counts(); }
+  std::size_t memory() const { return factor_.memory() + motion_.memory(); }
 
  private:
   Field reduced(const Field& forces) const;
-  Field held_forces(const TriangleProblem& problem, const Field& displacement) const;
+  using Slopes = std::array<Vector3d, 4>;
+  Field held_forces(const Bending& bending, const Slopes& slopes, const Field& displacement) const;
+  Result<TriangleState> advance_exactly(const TriangleProblem& problem, const TimeSteps& steps,
+                                        TriangleState state);
   using Extended = long double;
   enum class Half { Lower, Both };
 
@@ -79,26 +95,30 @@ class TrianglePlate {
   };
 
   template <class Real>
-  Rows<Real> rows(const Bending& bending, double shift, Half half) const;
-  Field residual(const Field& solution, const Field& right_hand_sides) const;
-  double peak(const Field& solution) const;
-  void drop_precise();
-  bool refines() const { return solve_error_ > 0; }
-  Result<Field> solve_refined(const Field& right_hand_sides, std::optional<Field> guess);
-  Result<void> measure_error(const SparseMatrix& upper);
+  Rows<Real> rows(const Bending& bending, double shift, double drag, Half half) const;
+
+  // What the shift adds to the matrix at a point with a mass.
+  template <class Real>
+  Real shift_at(int point, double shift, double drag) const;
+
+  SparseMatrix upper() const override { return matrix(bending_, shift_, drag_); }
+  Result<void> open(std::size_t entries) override;
+  Field residual(const Field& x, const Field& f) const override;
+  void close() override;
 
   TriangleCells cells_;
   std::vector<double> masses_;
+  std::shared_ptr<const CellFactors> factors_;
   RunContext context_;
   ReducedUnknowns reduced_;  // those of the matrix
-  FactoredMatrix matrix_;
+  RefinedFactor factor_;
   bool is_factored_ = false;
   Bending bending_;  // of the factored matrix
-  double shift_ = 0;
+  double shift_ = 0, drag_ = 0;
 
-  double solve_error_ = 0;  // of a solution, as a part of its peak; 0: small enough
   Rows<Extended> precise_;  // the factored matrix, if solutions are refined
   MemoryShare precise_share_;
+  SparseMotion motion_;
 };
 
 }  // namespace pliant

@@ -103,6 +103,7 @@ class Cutting {
     std::array<double, 3> phi = {};
     std::array<Place, 3> places = {};
     std::array<int, 3> lines = {};  // of the sides
+    int number = 0;                 // of the surface
   };
 
   struct Corner {
@@ -118,6 +119,7 @@ class Cutting {
     const int centre = -1 - static_cast<int>(k);
     const int ways = static_cast<int>(edges_.size()) + level_set_.corner_starts[k];
     Triangle triangle;
+    triangle.number = surface_.triangle_starts[level_set_.faces[k]] + n;
     if (size == 3) {
       triangle.ends = {corners[0], corners[1], corners[2]};
       triangle.lines = {line_of(edges[0]), line_of(edges[1]), line_of(edges[2])};
@@ -134,7 +136,8 @@ class Cutting {
     if (std::none_of(phi.begin(), phi.end(), is_positive)) return false;
     const auto negatives = std::count_if(phi.begin(), phi.end(), is_negative);
     if (negatives == 0) {
-      add_cell({corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)}, triangle.lines);
+      add_cell(triangle, {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)},
+               triangle.lines);
     } else if (negatives == 1) {
       cut_off_one(triangle, static_cast<int>(std::find_if(phi.begin(), phi.end(), is_negative) -
                                              phi.begin()));
@@ -151,9 +154,9 @@ class Cutting {
     const Corner at_a = corner(triangle, a), at_b = corner(triangle, b);
     const int ab = triangle.lines[a], from_b = triangle.lines[b], to_a = triangle.lines[outer];
     if (triangle.phi[b] == 0) {
-      add_cell({at_a, at_b, rim(triangle, a, outer)}, {ab, no_line, to_a});
+      add_cell(triangle, {at_a, at_b, rim(triangle, a, outer)}, {ab, no_line, to_a});
     } else if (triangle.phi[a] == 0) {
-      add_cell({at_a, at_b, rim(triangle, b, outer)}, {ab, from_b, no_line});
+      add_cell(triangle, {at_a, at_b, rim(triangle, b, outer)}, {ab, from_b, no_line});
     } else {
       const Corner from = rim(triangle, b, outer), to = rim(triangle, a, outer);
       Place mean;
@@ -166,26 +169,29 @@ class Cutting {
       const Corner middle{static_cast<int>(points.size()) - 1, mean};
       const int to_b = inner_lines_, to_from = to_b + 1, to_to = to_b + 2, to_the_a = to_b + 3;
       inner_lines_ += 4;
-      add_cell({at_a, at_b, middle}, {ab, to_b, to_the_a});
-      add_cell({at_b, from, middle}, {from_b, to_from, to_b});
-      add_cell({from, to, middle}, {no_line, to_to, to_from});
-      add_cell({to, at_a, middle}, {to_a, to_the_a, to_to});
+      add_cell(triangle, {at_a, at_b, middle}, {ab, to_b, to_the_a});
+      add_cell(triangle, {at_b, from, middle}, {from_b, to_from, to_b});
+      add_cell(triangle, {from, to, middle}, {no_line, to_to, to_from});
+      add_cell(triangle, {to, at_a, middle}, {to_a, to_the_a, to_to});
     }
   }
 
   // Only `inner` lies inside, and the others outside.
   void keep_one(const Triangle& triangle, int inner) {
     const int next = (inner + 1) % 3, last = (inner + 2) % 3;
-    add_cell({corner(triangle, inner), rim(triangle, inner, next), rim(triangle, inner, last)},
+    add_cell(triangle,
+             {corner(triangle, inner), rim(triangle, inner, next), rim(triangle, inner, last)},
              {triangle.lines[inner], no_line, triangle.lines[last]});
   }
 
-  void add_cell(const std::array<Corner, 3>& corners, const std::array<int, 3>& lines) {
+  void add_cell(const Triangle& triangle, const std::array<Corner, 3>& corners,
+                const std::array<int, 3>& lines) {
     const int cell = static_cast<int>(cells.size());
     const auto& [a, b, c] = corners;
     cells.push_back({.points = {a.point, b.point, c.point},
                      .shape = {{b.place[0] - a.place[0], b.place[1] - a.place[1]},
-                               {c.place[0] - a.place[0], c.place[1] - a.place[1]}}});
+                               {c.place[0] - a.place[0], c.place[1] - a.place[1]}},
+                     .triangle = triangle.number});
     for (int side = 0; side < 3; ++side) {
       if (lines[side] != no_line) joints.push_back({lines[side], cell, side});
     }

@@ -51,7 +51,7 @@ bool SurfaceLoads::compute(const SampledForce& force) {
     for (int n = 0; n < piece.free_nodes; ++n) {
       if (areas[n] == 0) continue;
       const int node = level_set_.nodes[piece.points[n]];
-      loads_[k].row(n) = (areas[n] * force_at(force, measured_.at(node))).transpose();
+      loads_[k].row(n) = (areas[n] * measured_.load_on(node, force)).transpose();
       is_any = is_any || !loads_[k].row(n).isZero(0);
     }
   }

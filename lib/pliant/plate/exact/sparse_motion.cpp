@@ -1,0 +1,259 @@
+#include "pliant/plate/exact/sparse_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/solver_errors.hpp"
+
+namespace pliant {
+namespace {
+
+// Those of the first step, which tries, and of the one that is accepted.
+constexpr std::size_t most_kept = 2;
+
+template <class Number>
+bool are_same(const Number* a, const Number* b, Eigen::Index count) {
+  return std::equal(a, a + count, b);
+}
+
+bool have_same_pattern(const SparseMatrix& a, const SparseMatrix& b) {
+  return a.cols() == b.cols() && a.nonZeros() == b.nonZeros() &&
+         are_same(a.outerIndexPtr(), b.outerIndexPtr(), a.cols() + 1) &&
+         are_same(a.innerIndexPtr(), b.innerIndexPtr(), a.nonZeros());
+}
+
+bool are_same(const MovingMatrix& a, const MovingMatrix& b) {
+  return a.inertia == b.inertia && a.drag == b.drag &&
+         have_same_pattern(a.stiffness, b.stiffness) &&
+         are_same(a.stiffness.valuePtr(), b.stiffness.valuePtr(), a.stiffness.nonZeros());
+}
+
+}  // namespace
+
+template <class Work>
+void SparseMotion::for_each_pole(const Work& work) {
+  // A small matrix is not worth a thread.
+  if (context_.threads && pattern_.size() > 2000) {
+    context_.threads->for_each(pole_count, work);
+  } else {
+    for (std::size_t pole = 0; pole < pole_count; ++pole) work(pole);
+  }
+}
+
+Result<void> SparseMotion::prepare(MovingMatrix matrix) try {
+  PLIANT_EXPECTS(matrix.inertia.size() == matrix.drag.size());
+  if (matrix_ && are_same(*matrix_, matrix)) return {};
+  const bool keeps_pattern = matrix_ && have_same_pattern(matrix_->stiffness, matrix.stiffness);
+  matrix_.reset();
+  factors_.clear();
+  holding_.reset();
+  if (!keeps_pattern) {
+    // The order copies the pattern; its entries are counted before they are stored.
+    const std::size_t bytes = 250 * static_cast<std::size_t>(matrix.stiffness.cols());
+    if (!memory_.try_resize(bytes)) {
+      return fail(factor_too_large(matrix.stiffness.cols(), memory_.complaint(bytes)));
+    }
+    pattern_ = FactorPattern(matrix.stiffness);
+    const std::size_t stored = bytes + pattern_.memory();
+    if (!memory_.try_resize(stored)) {
+      return fail(factor_too_large(matrix.stiffness.cols(), memory_.complaint(stored)));
+    }
+    pattern_.store_entries();
+    ++counts_.analyses;
+  }
+  matrix_ = std::move(matrix);
+  return {};
+} catch (const std::bad_alloc&) {
+  return fail(no_memory_for_factor(matrix.stiffness.cols()));
+}
+
+Result<SparseMotion::Factors*> SparseMotion::factors_for(double length) {
+  const auto found = std::find_if(factors_.begin(), factors_.end(),
+                                  [&](const Factors& one) { return one.length == length; });
+  if (found != factors_.end()) {
+    factors_.splice(factors_.begin(), factors_, found);
+    return &factors_.front();
+  }
+  while (factors_.size() >= most_kept) factors_.pop_back();
+  const int size = pattern_.size();
+  const std::size_t bytes =
+      pattern_.memory() + static_cast<std::size_t>(size) * 600 +
+      (pole_count * (factors_.size() + 1) + 1) * ComplexFactor::memory(pattern_) +
+      pole_count * (static_cast<std::size_t>(size) * ComplexFactor::row_numbers * sizeof(double));
+  if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
+  Factors factors{.length = length, .of_pole = {}};
+  std::array<Result<void>, pole_count> done;
+  const SubStep step{length};
+  for_each_pole([&](std::size_t pole) {
+    const Complex rate = step.rate(static_cast<int>(pole));
+    std::vector<Complex> shifts(matrix_->inertia.size());
+    for (std::size_t k = 0; k < shifts.size(); ++k) {
+      shifts[k] = (rate * matrix_->inertia[k] + Complex{matrix_->drag[k], 0}) * rate;
+    }
+    done[pole] =
+        factors.of_pole[pole].factorize(pattern_, matrix_->stiffness, shifts, context_.should_stop);
+  });
+  for (const Result<void>& one : done) {
+    if (!one) return fail(one.error());
+  }
+  counts_.factorizations += 2 * pole_count;
+  factors_.push_front(std::move(factors));
+  return &factors_.front();
+}
+
+// The unknowns without a mass at the start of an interval: in equilibrium with the others, which a
+// large diagonal holds.
+Result<void> SparseMotion::find_massless(const Field& force, Field& w) {
+  const int size = pattern_.size();
+  const auto masses = static_cast<int>(matrix_->inertia.size());
+  if (masses == size) return {};
+  const Eigen::VectorXd diagonal = matrix_->stiffness.diagonal();
+  const double hold = 1e20 * diagonal.cwiseAbs().maxCoeff();
+  if (!holding_) {
+    const std::size_t bytes = memory_.bytes() + ComplexFactor::memory(pattern_);
+    if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
+    const std::vector<Complex> shifts(matrix_->inertia.size(), Complex{hold, 0});
+    holding_.emplace();
+    auto done = holding_->factorize(pattern_, matrix_->stiffness, shifts, context_.should_stop);
+    if (!done) {
+      holding_.reset();
+      return done;
+    }
+    counts_.factorizations += 2;
+  }
+  std::vector<double>& x = solutions_[0];
+  x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
+  for (int place = 0; place < size; ++place) {
+    const int row = ComplexFactor::row_of(pattern_, place);
+    for (int c = 0; c < 3; ++c) {
+      x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c] =
+          row < masses ? hold * w(row, c) : force(row, c);
+    }
+  }
+  holding_->solve(pattern_, x.data());
+  for (int place = 0; place < size; ++place) {
+    const int row = ComplexFactor::row_of(pattern_, place);
+    if (row < masses) continue;
+    for (int c = 0; c < 3; ++c)
+      w(row, c) = x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c];
+  }
+  counts_.solves += 2;
+  return {};
+}
+
+// K w.
+Field SparseMotion::product(const Field& w) const {
+  const SparseMatrix& upper = matrix_->stiffness;
+  Field result = Field::Zero(w.rows(), 3);
+  for (int component = 0; component < 3; ++component) {
+    const double* const x = w.col(component).data();
+    double* const y = result.col(component).data();
+    for (int column = 0; column < upper.cols(); ++column) {
+      double sum = 0;
+      for (int k = upper.outerIndexPtr()[column]; k < upper.outerIndexPtr()[column + 1]; ++k) {
+        const int row = upper.innerIndexPtr()[k];
+        const double value = upper.valuePtr()[k];
+        sum += value * x[row];
+        if (row != column) y[row] += value * x[column];
+      }
+      y[column] += sum;
+    }
+  }
+  return result;
+}
+
+// Leaves x of each pole in `solutions_`. `lack` is K w - f, `growth` f', per second.
+Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, const Field& lack,
+                                 const Field& growth, const Field& v) {
+  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  const int size = pattern_.size();
+  const auto masses = static_cast<int>(matrix_->inertia.size());
+  for_each_pole([&](std::size_t pole) {
+    constexpr int half = ComplexFactor::row_numbers / 2;
+    const int number = static_cast<int>(pole);
+    const Complex of_growth = step.of_growth(number), of_v = step.rate(number) * step.of_lack();
+    std::vector<double>& x = solutions_[pole];
+    x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
+    for (int place = 0; place < size; ++place) {
+      const int row = ComplexFactor::row_of(pattern_, place);
+      double* const to = x.data() + long{place} * ComplexFactor::row_numbers;
+      for (int c = 0; c < 3; ++c) {
+        Complex side = of_growth * growth(row, c) + Complex{step.of_lack() * lack(row, c), 0};
+        if (row < masses) side = side - of_v * (matrix_->inertia[row] * v(row, c));
+        to[c] = side.re;
+        to[half + c] = side.im;
+      }
+    }
+    factors.of_pole[pole].solve(pattern_, x.data());
+  });
+  counts_.solves += 2 * pole_count;
+  return {};
+}
+
+Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& forces, Field& moving,
+                                   Field& v) try {
+  PLIANT_EXPECTS(matrix_.has_value());
+  const int size = pattern_.size();
+  const auto masses = static_cast<Eigen::Index>(matrix_->inertia.size());
+  PLIANT_EXPECTS(moving.rows() == masses && v.rows() == masses && forces.first.rows() == size &&
+                 forces.last.rows() == size);
+  const Field growth = (forces.last - forces.first) / steps.length;
+  const bool swings = std::any_of(matrix_->inertia.begin(), matrix_->inertia.end(),
+                                  [](double inertia) { return inertia > 0; });
+  Field w = Field::Zero(size, 3);
+  w.topRows(masses) = moving;
+  if (auto found = find_massless(forces.first, w); !found) return found;
+  StepChoice choice(steps);
+  Field next_w(size, 3), next_v(masses, 3);
+  for (int number = 0; number < choice.count(); ++number) {
+    const SubStep step{choice.length()};
+    const auto factors = factors_for(step.length);
+    if (!factors) return fail(factors.error());
+    const Field lack = product(w) - (forces.first + growth * (number * step.length));
+    if (auto solved = solve(**factors, step, lack, growth, v); !solved) return solved;
+    double doubt = 0, before = 0, after = 0, speed = 0, old_speed = 0;
+    for (int place = 0; place < size; ++place) {
+      const int row = ComplexFactor::row_of(pattern_, place);
+      for (int c = 0; c < 3; ++c) {
+        double moved = 0, velocity = 0, uncertain = 0;
+        for (int pole = 0; pole < pole_count; ++pole) {
+          constexpr int half = ComplexFactor::row_numbers / 2;
+          const double* const at =
+              solutions_[pole].data() + long{place} * ComplexFactor::row_numbers + c;
+          const Complex x{at[0], at[half]};
+          moved += (step.to_w(pole) * x).re;
+          velocity += (step.to_v(pole) * x).re;
+          uncertain += (step.to_doubt(pole) * x).re;
+        }
+        next_w(row, c) = w(row, c) + moved;
+        if (row >= masses) continue;
+        next_v(row, c) = velocity;
+        doubt += uncertain * uncertain;
+        before += w(row, c) * w(row, c);
+        after += next_w(row, c) * next_w(row, c);
+        speed += velocity * velocity;
+        old_speed += v(row, c) * v(row, c);
+      }
+    }
+    if (number == 0) {
+      const double carried = swings ? std::sqrt(std::max(speed, old_speed)) : 0;
+      const double scale = std::max(std::sqrt(std::max(before, after)), carried * steps.length / 2);
+      if (!choice.accepts(std::sqrt(doubt), scale)) {
+        number = -1;
+        continue;
+      }
+    }
+    w.swap(next_w);
+    v.swap(next_v);
+  }
+  moving = w.topRows(masses);
+  return {};
+} catch (const std::bad_alloc&) {
+  return fail(no_memory_for_factor(pattern_.size()));
+}
+
+}  // namespace pliant

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <list>
+#include <optional>
+#include <vector>
+
+#include "pliant/core/field.hpp"
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/run_context.hpp"
+#include "pliant/plate/exact/complex_factor.hpp"
+#include "pliant/plate/exact/substeps.hpp"
+#include "pliant/plate/solver_choice.hpp"
+#include "pliant/plate/time_steps.hpp"
+
+namespace pliant {
+
+/// M (rho w'' + eta w') + K w = f with sparse K and diagonal M; not all unknowns need a mass.
+struct MovingMatrix {
+  SparseMatrix stiffness;       ///< the upper triangle of K, by columns; positive semidefinite
+  std::vector<double> inertia;  ///< M rho of the first unknowns; the others have no mass
+  std::vector<double> drag;     ///< M eta of the same ones; not both are 0
+};
+
+/// Forces on the unknowns (#unknowns x 3) at both ends of an interval; linear in between.
+struct ForceChange {
+  Field first, last;
+};
+
+/// Solves the equation of a `MovingMatrix` over an interval, to 1e-6 of its motion in each of 250
+/// intervals, in steps of `SubStep`. Internal to plate.
+class SparseMotion {
+ public:
+  explicit SparseMotion(const RunContext& context) : context_(context), memory_(context.memory) {}
+
+  /// Prepares for a matrix. Reuse: keeps factors if it equals the last one, else the order if its
+  /// pattern does; this never changes a bit. Errors: OutOfMemory.
+  Result<void> prepare(MovingMatrix matrix);
+
+  /// Advances w and v of the unknowns with a mass (#masses x 3) by `steps`, which are exact.
+  /// Requires: `prepare` succeeded last. Errors: SolverFailed; OutOfMemory; Interrupted.
+  Result<void> advance(const TimeSteps& steps, const ForceChange& forces, Field& w, Field& v);
+
+  SolverCounts counts() const { return counts_; }  ///< a complex solve counts as two
+  std::size_t memory() const { return memory_.bytes(); }
+
+ private:
+  // The factors for steps of one length.
+  struct Factors {
+    double length = 0;
+    std::array<ComplexFactor, pole_count> of_pole;
+  };
+  // Workspace of one pole: its solution in the order of the factor.
+  using Solutions = std::array<std::vector<double>, pole_count>;
+
+  Result<Factors*> factors_for(double length);
+  Result<void> find_massless(const Field& force, Field& w);
+  Field product(const Field& w) const;
+  Result<void> solve(const Factors& factors, const SubStep& step, const Field& lack,
+                     const Field& growth, const Field& v);
+  template <class Work>
+  void for_each_pole(const Work& work);
+
+  RunContext context_;
+  MemoryShare memory_;
+  std::optional<MovingMatrix> matrix_;
+  FactorPattern pattern_;
+  std::list<Factors> factors_;            // the last used first
+  std::optional<ComplexFactor> holding_;  // finds unknowns without a mass
+  Solutions solutions_;
+  SolverCounts counts_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,83 @@
+#include "pliant/plate/sparse/refined_factor.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+// The largest error of a solution, as a part of its peak.
+constexpr double largest_error = 1e-10;
+
+}  // namespace
+
+RefinedFactor::RefinedFactor(PreciseMatrix& matrix, SolverChoice choice, const RunContext& context)
+    : matrix_(matrix), factor_(choice, context) {
+  factor_.use_supernodes(kernels_of_width(context.most_lanes));
+}
+
+Result<void> RefinedFactor::factor(long size, bool has_same_pattern,
+                                   const Eigen::VectorXd& pressure) {
+  SparseMatrix upper;
+  auto factored = factor_.factor(size, has_same_pattern, [&] { return upper = matrix_.upper(); });
+  if (!factored) return factored;
+  return measure(upper, pressure);
+}
+
+// Finds the error of a solution: if it is too large, all are corrected.
+Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure) {
+  error_ = 0;
+  matrix_.close();
+  rows_ = pressure.size();
+  Field forces = Field::Zero(upper.rows(), 3);
+  forces.col(0).head(rows_) = pressure;
+  auto solution = factor_.solve(forces);
+  if (!solution) return fail(solution.error());
+  // The residual in plain double has an error of the size of the residual itself: it is a quick
+  // measure for the error, right to a small factor.
+  Field rough = Field::Zero(upper.rows(), 3);
+  rough.col(0) = forces.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
+  const auto first = factor_.solve(rough);
+  if (!first) return fail(first.error());
+  if (peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+  if (auto opened = matrix_.open(static_cast<std::size_t>(upper.nonZeros())); !opened)
+    return opened;
+  const auto correction = factor_.solve(matrix_.residual(*solution, forces));
+  if (!correction) return fail(correction.error());
+  error_ = peak(*correction) / peak(*solution);
+  if (error_ > largest_error) return {};
+  error_ = 0;
+  matrix_.close();
+  return {};
+}
+
+// Corrects a guess until what a solve leaves is small; without a guess a solution is the first one.
+Result<Field> RefinedFactor::solve(const Field& right_hand_sides, std::optional<Field> guess) {
+  constexpr int most_passes = 10;
+  factor_.count_solve();
+  if (!refines()) return factor_.solve(right_hand_sides);
+  Result<Field> solution =
+      guess ? Result<Field>(*std::move(guess)) : factor_.solve(right_hand_sides);
+  double before = std::numeric_limits<double>::infinity();
+  for (int pass = 0; solution && pass < most_passes; ++pass) {
+    auto correction = factor_.solve(matrix_.residual(*solution, right_hand_sides));
+    if (!correction) return correction;
+    *solution += *correction;
+    const double change = peak(*correction);
+    // The corrections become as small as rounding lets them.
+    if (!(error_ * change > largest_error * peak(*solution)) || !(change < 0.5 * before)) break;
+    before = change;
+  }
+  return solution;
+}
+
+Result<Field> RefinedFactor::solve_next(const Field& right_hand_sides) {
+  auto next = solve(right_hand_sides, before_ ? Field(2 * *last_ - *before_) : last_);
+  if (next && refines()) {
+    before_ = std::move(last_);
+    last_ = *next;
+  }
+  return next;
+}
+
+}  // namespace pliant

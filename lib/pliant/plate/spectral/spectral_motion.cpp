@@ -1,0 +1,280 @@
+#include "pliant/plate/spectral/spectral_motion.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/stencil.hpp"
+
+namespace pliant {
+namespace {
+
+// Those of the first step, which tries, and of the one that is accepted.
+constexpr std::size_t most_tables = 2;
+
+ComplexNumber number_of(Complex a) { return {a.re, a.im}; }
+
+}  // namespace
+
+// Lays out the workspace; with a null block it only counts.
+std::size_t SpectralMotion::carve(double* block) {
+  std::size_t used = 0;
+  const auto take = [&](long count) {
+    double* const place = block ? block + used : nullptr;
+    used += (static_cast<std::size_t>(count) + 7) / 8 * 8;
+    return place;
+  };
+  for (int k = 0; k < 4; ++k) {
+    SpectralPlate::Parity& parity = plate_.parities_[k];
+    const long size = long{parity.rows} * parity.pitch;
+    diagonal_[k] = take(size);
+    for (int component = 0; component < 3; ++component) {
+      PartWork& work = work_[k][component];
+      ExactView& view = work.view;
+      parity.growth[component] = take(size);
+      view.load = parity.load[component];
+      view.growth = parity.growth[component];
+      work.w[0] = parity.displacement[component];
+      work.v[0] = parity.pending[component];
+      work.w[1] = take(size);
+      work.v[1] = take(size);
+      work.doubt = take(size);
+      work.lack = take(size);
+      view.row_sums = take(2L * shift_count * parity.rows);
+      view.column_sums = take(2L * shift_count * parity.columns);
+      view.edge = take(4L * shift_count * parity.columns);
+    }
+  }
+  return used;
+}
+
+Result<void> SpectralMotion::reserve(std::size_t tables) {
+  const std::size_t bytes = (numbers_.count() + tables * table_size_) * sizeof(double);
+  if (memory_.try_resize(bytes)) return {};
+  return fail(no_memory_to_solve(unknown_count(system_->outline.grid()), memory_.complaint(bytes)));
+}
+
+Result<void> SpectralMotion::take(const PlateSystem& system) {
+  const Grid& grid = system.outline.grid();
+  const bool is_laid_out = plate_.columns_ == grid.columns && plate_.rows_ == grid.rows;
+  if (is_laid_out && system_ == system) return {};
+  system_.reset();
+  tables_.clear();
+  if (auto laid_out = plate_.lay_out(grid.columns, grid.rows); !laid_out) return laid_out;
+  const std::size_t count = carve(nullptr);
+  if (count != numbers_.count()) numbers_ = NumberBlock();
+  const std::size_t bytes = count * sizeof(double);
+  if (!memory_.try_resize(bytes)) {
+    return fail(no_memory_to_solve(unknown_count(grid), memory_.complaint(bytes)));
+  }
+  if (count != numbers_.count()) numbers_ = NumberBlock(count);
+  std::fill_n(numbers_.begin(), count, 0.0);
+  carve(numbers_.begin());
+
+  plate_.prepared_.reset();
+  const Stencil<double> stencil(grid, system.stiffness);
+  const double edge_u = 4 * stencil.b, edge_v = 4 * stencil.d;
+  beta_ = plate_.is_along_u_ ? edge_u : edge_v;
+  delta_ = plate_.is_along_u_ ? edge_v : edge_u;
+  for (int k = 0; k < 4; ++k) {
+    const SpectralPlate::Parity& parity = plate_.parities_[k];
+    if (parity.rows == 0 || parity.columns == 0) continue;
+    if (!plate_.fill_diagonal(system, k))
+      return fail(not_positive_definite(unknown_count(grid), 0));
+    const long size = long{parity.rows} * parity.pitch;
+    for (long n = 0; n < size; ++n) {
+      const double reciprocal = parity.reciprocal[n];  // 0 in the padding
+      diagonal_[k][n] = reciprocal > 0 ? 1 / reciprocal : 1e300;
+    }
+  }
+  system_ = system;
+  return {};
+}
+
+Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
+  const auto found = std::find_if(tables_.begin(), tables_.end(),
+                                  [&](const Tables& one) { return one.length == length; });
+  if (found != tables_.end()) {
+    tables_.splice(tables_.begin(), tables_, found);
+    return &tables_.front();
+  }
+  while (tables_.size() >= most_tables) tables_.pop_back();
+  Tables tables;
+  tables.length = length;
+  const auto carve_tables = [&](double* block) {
+    std::size_t used = 0;
+    const auto take = [&](long count) {
+      double* const place = block ? block + used : nullptr;
+      used += (static_cast<std::size_t>(count) + 7) / 8 * 8;
+      return place;
+    };
+    for (int k = 0; k < 4; ++k) {
+      const SpectralPlate::Parity& parity = plate_.parities_[k];
+      const long size = long{parity.rows} * parity.pitch;
+      const long inverse = long{parity.columns} * parity.inverse_pitch;
+      for (ShiftTables& of_pole : tables.of[k]) {
+        of_pole = {take(size),        take(size),    take(parity.rows),
+                   take(parity.rows), take(inverse), take(inverse)};
+      }
+    }
+    return used;
+  };
+  table_size_ = carve_tables(nullptr);
+  if (auto reserved = reserve(tables_.size() + 1); !reserved) return fail(reserved.error());
+  tables.numbers = NumberBlock(table_size_);
+  carve_tables(tables.numbers.begin());
+
+  const SubStep step{length};
+  int failed[4 * pole_count];
+  plate_.for_each(4 * pole_count, [&](std::size_t task) {
+    const auto k = static_cast<int>(task / pole_count), pole = static_cast<int>(task % pole_count);
+    const SpectralPlate::Parity& parity = plate_.parities_[k];
+    failed[task] = -1;
+    if (parity.rows == 0 || parity.columns == 0) return;
+    const Complex rate = step.rate(pole);
+    const Complex shift = (rate * dynamics_.density + Complex{dynamics_.damping, 0}) * rate;
+    failed[task] = plate_.kernels_.prepare_shift(plate_.view_of(k), diagonal_[k], number_of(shift),
+                                                 beta_, delta_, tables.of[k][pole]);
+  });
+  for (const int pivot : failed) {
+    if (pivot >= 0) {
+      return fail(not_positive_definite(unknown_count(system_->outline.grid()), pivot));
+    }
+  }
+  counts_.factorizations += 2 * pole_count;
+  tables_.push_front(std::move(tables));
+  return &tables_.front();
+}
+
+// From w[0] and v[0] to w[1] and v[1].
+void SpectralMotion::step(std::size_t part, int number, const SubStep& step, const Tables& tables,
+                          bool has_doubt) {
+  const auto [k, component] = parts_.part[part];
+  PartWork& work = work_[k][component];
+  ExactView& view = work.view;
+  view.w = work.w[0];
+  view.v = work.v[0];
+  view.next_w = work.w[1];
+  view.next_v = work.v[1];
+  view.doubt = has_doubt ? work.doubt : nullptr;
+  const ParityView parity = plate_.view_of(k);
+  view.lack = work.lack;
+  plate_.kernels_.find_lack(parity,
+                            {.diagonal = diagonal_[k],
+                             .beta = beta_,
+                             .delta = delta_,
+                             .time = number * step.length,
+                             .scale = step.of_lack(),
+                             .lack = work.lack},
+                            view);
+  static_assert(shift_count == pole_count);
+  ShiftView shifts[shift_count];
+  ExactFactors factors;
+  for (int pole = 0; pole < pole_count; ++pole) {
+    const ShiftTables& of = tables.of[k][pole];
+    shifts[pole] = {of.re, of.im, of.row_pivot_re, of.row_pivot_im, of.inverse_re, of.inverse_im};
+    factors.of[pole] = {.growth = number_of(step.of_growth(pole)),
+                        .v = number_of(step.rate(pole) * (-dynamics_.density * step.of_lack())),
+                        .next_w = number_of(step.to_w(pole)),
+                        .next_v = number_of(step.to_v(pole)),
+                        .doubt = number_of(step.to_doubt(pole))};
+  }
+  plate_.kernels_.exact_step(parity, shifts, factors, view);
+}
+
+Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& dynamics,
+                                     const TimeSteps& steps, const ConstNodesView& first_load,
+                                     const ConstNodesView& last_load, const NodesView& displacement,
+                                     const NodesView& velocity) {
+  if (dynamics.density != dynamics_.density || dynamics.damping != dynamics_.damping) {
+    tables_.clear();
+  }
+  dynamics_ = dynamics;
+  if (auto taken = take(system); !taken) return taken;
+  const auto view = [](const NodesView& nodes) {
+    return ConstNodesView{nodes.first, nodes.row_stride, nodes.component_stride};
+  };
+  plate_.find_still(last_load, view(displacement), view(velocity));
+  for (int component = 0; component < 3; ++component) {
+    plate_.is_still_[component] =
+        plate_.is_still_[component] && plate_.is_zero(first_load, component);
+  }
+  plate_.to_sines(first_load, &SpectralPlate::Parity::load);
+  plate_.to_sines(last_load, &SpectralPlate::Parity::growth);
+  plate_.to_sines(view(displacement), &SpectralPlate::Parity::displacement);
+  plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
+  carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
+  parts_ = plate_.moving_parts();
+  if (parts_.count == 0) return {};
+  plate_.for_each(parts_.count, [&](std::size_t part) {
+    const auto [k, component] = parts_.part[part];
+    const SpectralPlate::Parity& parity = plate_.parities_[k];
+    const long size = long{parity.rows} * parity.pitch;
+    double* const growth = parity.growth[component];
+    const double* const load = parity.load[component];
+    for (long n = 0; n < size; ++n) growth[n] = (growth[n] - load[n]) / steps.length;
+  });
+
+  StepChoice choice(steps);
+  bool is_accepted = false;
+  while (!is_accepted) {
+    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    const SubStep first{choice.length()};
+    const auto tables = tables_for(first.length);
+    if (!tables) return fail(tables.error());
+    plate_.for_each(parts_.count, [&](std::size_t part) {
+      step(part, 0, first, **tables, true);
+      const auto [k, component] = parts_.part[part];
+      PartWork& work = work_[k][component];
+      const double* const measured[] = {work.doubt, work.w[0], work.w[1], work.v[0], work.v[1]};
+      for (int n = 0; n < 5; ++n) {
+        work.sizes[n] = plate_.kernels_.exact_size(plate_.view_of(k), measured[n]);
+      }
+    });
+    counts_.solves += 2 * pole_count;
+    double sizes[5] = {};
+    for (std::size_t part = 0; part < parts_.count; ++part) {
+      const auto [k, component] = parts_.part[part];
+      for (int n = 0; n < 5; ++n) sizes[n] += work_[k][component].sizes[n];
+    }
+    const double speed = dynamics.density > 0 ? std::sqrt(std::max(sizes[3], sizes[4])) : 0;
+    const double scale =
+        std::max(std::sqrt(std::max(sizes[1], sizes[2])), speed * steps.length / 2);
+    is_accepted = choice.accepts(std::sqrt(sizes[0]), scale);
+  }
+  const SubStep length{choice.length()};
+  const auto tables = tables_for(length.length);
+  if (!tables) return fail(tables.error());
+  std::atomic<bool> is_stopped = false;
+  plate_.for_each(parts_.count, [&](std::size_t part) {
+    const auto [k, component] = parts_.part[part];
+    PartWork& work = work_[k][component];
+    for (int number = 1; number <= choice.count(); ++number) {
+      std::swap(work.w[0], work.w[1]);
+      std::swap(work.v[0], work.v[1]);
+      if (number == choice.count()) break;
+      if (is_stopped) return;
+      const bool asks = static_cast<std::size_t>(number) % parts_.count == part;
+      if (asks && context_.is_stopped()) {
+        is_stopped = true;
+        return;
+      }
+      step(part, number, length, **tables, false);
+    }
+    const SpectralPlate::Parity& parity = plate_.parities_[k];
+    const long size = long{parity.rows} * parity.pitch;
+    if (work.w[0] != parity.displacement[component]) {
+      std::copy_n(work.w[0], size, parity.displacement[component]);
+      std::copy_n(work.v[0], size, parity.pending[component]);
+    }
+  });
+  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+  counts_.solves += 2L * pole_count * (choice.count() - 1);
+  plate_.from_sines(&SpectralPlate::Parity::displacement, displacement);
+  plate_.from_sines(&SpectralPlate::Parity::pending, velocity);
+  return {};
+}
+
+}  // namespace pliant

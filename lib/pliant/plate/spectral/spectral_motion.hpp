@@ -1,0 +1,68 @@
+#pragma once
+
+#include <list>
+#include <optional>
+#include <vector>
+
+#include "pliant/plate/exact/substeps.hpp"
+#include "pliant/plate/spectral/spectral_plate.hpp"
+
+namespace pliant {
+
+/// Exact steps of a clamped plate in sine space: those of `SparseMotion`, with D + z in place of D.
+/// Internal to plate.
+class SpectralMotion {
+ public:
+  /// Works in the layout of `plate`, and leaves it unprepared.
+  SpectralMotion(SpectralPlate& plate, const RunContext& context)
+      : plate_(plate), context_(context), memory_(context.memory) {}
+
+  /// Advances as `SpectralPlate::advance`, from the first load to the last. Reuse never changes a
+  /// bit. Errors: SolverFailed; OutOfMemory; Interrupted, with displacement and velocity unchanged.
+  Result<void> advance(const PlateSystem& system, const Dynamics& dynamics, const TimeSteps& steps,
+                       const ConstNodesView& first_load, const ConstNodesView& last_load,
+                       const NodesView& displacement, const NodesView& velocity);
+
+  SolverCounts counts() const { return counts_; }  ///< a complex solve counts as two
+  std::size_t memory() const { return memory_.bytes(); }
+
+ private:
+  // For steps of one length.
+  struct Tables {
+    double length = 0;
+    NumberBlock numbers;
+    ShiftTables of[4][pole_count];  // by parity
+  };
+  // One component in one pair of parities.
+  struct PartWork {
+    ExactView view;
+    double* w[2] = {};  // now and next, in turn
+    double* v[2] = {};
+    double* doubt = nullptr;
+    double* lack = nullptr;
+    double sizes[5] = {};  // of the doubt, w, next w, v, next v
+  };
+
+  Result<void> take(const PlateSystem& system);
+  Result<Tables*> tables_for(double length);
+  std::size_t carve(double* block);
+  void step(std::size_t part, int number, const SubStep& step, const Tables& tables,
+            bool has_doubt);
+  Result<void> reserve(std::size_t tables);
+
+  SpectralPlate& plate_;
+  RunContext context_;
+  MemoryShare memory_;
+  SolverCounts counts_;
+  std::optional<PlateSystem> system_;
+  Dynamics dynamics_;
+  NumberBlock numbers_;
+  double* diagonal_[4] = {};  // D, by parity
+  double beta_ = 0, delta_ = 0;
+  std::size_t table_size_ = 0;  // numbers
+  PartWork work_[4][3];
+  SpectralPlate::Parts parts_;
+  std::list<Tables> tables_;  // the last used first
+};
+
+}  // namespace pliant
