@@ -42,14 +42,6 @@ TEST_CASE("a word that the format does not know is told with the nearest and all
 TEST_CASE("what a later version brings is not taken for a misspelling", "[scene][element]") {
   const std::string later = "is not supported by this version of pliant";
   std::vector<BadScene> scenes;
-  for (const std::string name : {"yield", "hardening"}) {
-    scenes.push_back(
-        {surface_with("<material " + name + "=\"1\"/>"), 3, {"\"" + name + "\"", later}});
-    scenes.push_back({surface_with("<material><animate attribute=\"" + name +
-                                   "\"><key frame=\"1\" value=\"1\"/></animate></material>"),
-                      3,
-                      {name, later}});
-  }
   for (const std::string given : {"uv=\"virtual\"", "resolution=\"9\""})
     scenes.push_back(
         {scene_with("<surface name=\"s\"><mesh file=\"/etc/passwd\" " + given + "/></surface>"),

@@ -93,7 +93,7 @@ TEST_CASE("every problem of a map is told with its line", "[scene][maps]") {
       {R"(<map file="a.png"/>)", "a.xml:5: error: <map> needs the attribute \"channel\""},
       {R"(<map channel="e" file="a.png"/>)", "a.xml:5: error: <map> channel=\"e\": unknown word"},
       {R"(<map channel="yield" file="a.png"/>)",
-       "a.xml:5: error: <map> channel=\"yield\": is not supported by this version"},
+       "a.xml:5: error: s.map.yield: nothing yields: s.yield is not given"},
       {R"(<map channel="b"/>)", "a.xml:5: error: s.map.b: a map needs a file or an attribute"},
       {R"(<map channel="b" file="a.png" attribute="x"/>)",
        "a.xml:5: error: s.map.b: a map has a file or an attribute, but this one has both"},

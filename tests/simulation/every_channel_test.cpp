@@ -42,10 +42,12 @@ std::vector<Case> cases() {
 /// A scene in which the element has this attribute and these children.
 std::string scene_around(const std::string& element, const std::string& attribute,
                          const std::string& children) {
+  const bool is_hardening = (attribute + children).find("hardening") != std::string::npos;
+  const std::string needs = is_hardening ? " yield=\"1\"" : "";
   const auto tag = [&](const std::string& own) {
     const bool is_it = element == own;
     return fmt::format("<{0}{1}{2}>{3}</{0}>", own, own == "path" ? " attribute=\"center\"" : "",
-                       is_it ? attribute : "",
+                       is_it ? attribute + needs : "",
                        (own == "path" ? "<waypoint at=\"0 0 0\"/><waypoint at=\"1 0 0\"/>"
                                         "<waypoint at=\"1 2 0\"/>"
                                       : "") +

@@ -11,7 +11,7 @@ using namespace pliant;
 namespace {
 
 const Hash key{1, 2};
-const StateParts everything{true, true};
+const StateParts everything{true, true, 11};
 
 // A state with some nodes away from rest, some only in their position, velocity or mark.
 StoredState some_state(const Field& rest, StateParts parts, double share, unsigned seed) {
@@ -25,6 +25,10 @@ StoredState some_state(const Field& rest, StateParts parts, double share, unsign
     push.loads = Field::Zero(rest.rows(), 3);
     push.unknowns.assign(static_cast<std::size_t>(rest.rows()), 0);
     push.tangents.sv0 = {0.5, -0.0, number(random)};
+  }
+  stored.state.plastic.setZero(parts.plastic_places, 9);
+  for (Eigen::Index place = 0; place < parts.plastic_places; ++place) {
+    if (with_chance(share)) stored.state.plastic(place, place % 7) = number(random);
   }
   for (Eigen::Index node = 0; node < rest.rows(); ++node) {
     const bool is_away = with_chance(share);
@@ -57,7 +61,7 @@ std::string bytes_of(const StoredState& stored, const Field& rest) {
 }  // namespace
 
 TEST_CASE("a state comes back from its bytes", "[states][stored]") {
-  const StateParts parts{GENERATE(false, true), GENERATE(false, true)};
+  const StateParts parts{GENERATE(false, true), GENERATE(false, true), GENERATE(0, 37, 80)};
   const double share = GENERATE(0.0, 0.1, 0.5, 1.0);
   const Field rest = some_rest(37);
   const StoredState stored = some_state(rest, parts, share, 3);
@@ -68,8 +72,10 @@ TEST_CASE("a state comes back from its bytes", "[states][stored]") {
   CHECK(back->facts == stored.facts);
   CHECK(bytes_of(*back, rest) == bytes);
   CHECK_FALSE(from_bytes(bytes, {1, 3}, rest, parts));
-  CHECK_FALSE(from_bytes(bytes, key, rest, {!parts.has_marks, parts.has_push}));
-  CHECK_FALSE(from_bytes(bytes, key, rest, {parts.has_marks, !parts.has_push}));
+  const auto [marks, push, places] = parts;
+  CHECK_FALSE(from_bytes(bytes, key, rest, {!marks, push, places}));
+  CHECK_FALSE(from_bytes(bytes, key, rest, {marks, !push, places}));
+  CHECK_FALSE(from_bytes(bytes, key, rest, {marks, push, places > 0 ? 0 : 37}));
   CHECK_FALSE(from_bytes(bytes, key, some_rest(36), parts));
   if (share == 0)
     CHECK(bytes.size() < (parts.has_push ? 256 : 128));  // nodes at rest need no bytes

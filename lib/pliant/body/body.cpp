@@ -59,8 +59,12 @@ TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
   return steps;
 }
 
-Body::Body(Field rest, const BodySettings& settings, std::shared_ptr<const NodeFactors> factors)
-    : rest_(std::move(rest)), settings_(settings), factors_(std::move(factors)) {
+Body::Body(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
+           std::shared_ptr<const NodeFactors> factors)
+    : rest_(std::move(rest)),
+      plastic_places_(plastic_places),
+      settings_(settings),
+      factors_(std::move(factors)) {
   if (settings_.is_animated) rest_.setZero();
   state_ = rest_state();
 }
@@ -76,6 +80,7 @@ BodyState Body::rest_state() const {
   BodyState state{rest_, Field::Zero(rest_.rows(), 3)};
   if (recovers()) state.unsettled.assign(static_cast<std::size_t>(rest_.rows()), 0);
   if (remembers_push()) state.last = nothing_pushed();
+  if (settings_.yields) state.plastic.setZero(plastic_places_, 9);
   return state;
 }
 
@@ -108,6 +113,7 @@ void Body::restore(BodyState state) {
   PLIANT_EXPECTS(state.unsettled.size() == state_.unsettled.size());
   PLIANT_EXPECTS(state.last.unknowns.size() == state_.last.unknowns.size());
   PLIANT_EXPECTS(state.last.loads.rows() == state_.last.loads.rows());
+  PLIANT_EXPECTS(state.plastic.rows() == state_.plastic.rows());
   state_ = std::move(state);
 }
 

@@ -24,11 +24,12 @@ struct BodyInputs {
   Dynamics dynamics;    ///< density, damping >= 0; see `damping_ratio`
   /// >= 0, of the slowest vibration of each region: its damping follows; null: it is `dynamics`'
   std::optional<double> damping_ratio = {};
-  EdgeTangents tangents;             ///< object space
-  double poisson = 0.3;              ///< acts with a free border or edge, and maps of b, c, d [1]
-  double frame_length = 0;           ///< [s], > 0
-  double dt = 0;                     ///< [s], accepted by `check_time_step`
-  std::vector<SampledForce> forces;  ///< the enabled ones that target the body, world space
+  EdgeTangents tangents;  ///< object space
+  double poisson = 0.3;   ///< acts with a free border or edge, maps of b, c, d, and a law [1]
+  std::optional<PlasticLaw> law = {};  ///< of a body that yields, and of no other
+  double frame_length = 0;             ///< [s], > 0
+  double dt = 0;                       ///< [s], accepted by `check_time_step`
+  std::vector<SampledForce> forces;    ///< the enabled ones that target the body, world space
 
   /// The rest shape at the frame if it is animated (#nodes x 3, object space); null otherwise.
   std::shared_ptr<const Field> shape = {};
@@ -99,7 +100,9 @@ class Body {
   void restore(BodyState state);
 
  protected:
-  Body(Field rest, const BodySettings& settings, std::shared_ptr<const NodeFactors> factors);
+  /// `plastic_places`: the nodes or triangles that have plastic curvatures if the body yields.
+  Body(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
+       std::shared_ptr<const NodeFactors> factors);
 
   /// The nodes' factors of density; null: 1.
   const std::vector<double>* densities() const { return factors_ ? &factors_->density : nullptr; }
@@ -109,9 +112,11 @@ class Body {
     return acting_dynamics(dynamics, factors_.get()).shift(dt) > 0;
   }
 
-  /// Whether the inputs have a rest shape if and only if it is animated.
+  /// Whether the inputs have a rest shape if and only if it is animated, and a law if and only if
+  /// it yields.
   bool fits(const BodyInputs& inputs) const {
-    return settings_.is_animated == (inputs.shape != nullptr);
+    return settings_.is_animated == (inputs.shape != nullptr) &&
+           settings_.yields == inputs.law.has_value();
   }
 
   /// The nodes at rest at the frame.
@@ -136,6 +141,7 @@ class Body {
   bool waits_for_forces() const { return !recovers() && settings_.region == SolvedRegion::Forces; }
 
   Field rest_;
+  Eigen::Index plastic_places_;
   BodySettings settings_;
   std::shared_ptr<const NodeFactors> factors_;
   BodyState state_;

@@ -1,6 +1,7 @@
 #include "pliant/body/field_rows.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "pliant/region/closed_boxes.hpp"
 
@@ -12,9 +13,9 @@ using ConstRowView = Eigen::Map<const Eigen::ArrayXd>;
 
 // Calls f(component, node, row, count) for the contiguous stretches of the nodes `within` a box:
 // `node` is the first row in a field on all nodes, `row` that in a field on the box.
-template <class F>
+template <int components = 3, class F>
 void for_rows(const Grid& grid, const Box& box, const Box& within, const F& f) {
-  for (int component = 0; component < 3; ++component) {
+  for (int component = 0; component < components; ++component) {
     for (int j = within.j0; j <= within.j1; ++j) {
       const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns() + (within.i0 - box.i0);
       for_each_stretch(grid, within.i0, within.i1, j, [&](int node, int offset, int count) {
@@ -43,15 +44,33 @@ double unsoundness(const RowView& numbers) {
   return (numbers - numbers).sum();  // NOLINT(misc-redundant-expression): 0 only if finite
 }
 
+template <class Rows>
+Rows any_rows_of(const Grid& grid, const Box& box, const Rows& nodes, Rows reuse) {
+  constexpr int components = Rows::ColsAtCompileTime;
+  reuse.resize(Eigen::Index{box.columns()} * box.rows(), components);
+  for_rows<components>(
+      grid, box, box, [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
+        reuse.col(component).segment(row, count) = nodes.col(component).segment(node, count);
+      });
+  return reuse;
+}
+
 }  // namespace
 
 Field rows_of(const Grid& grid, const Box& box, const Field& nodes, Field reuse) {
-  reuse.resize(Eigen::Index{box.columns()} * box.rows(), 3);
-  for_rows(grid, box, box,
-           [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
-             reuse.col(component).segment(row, count) = nodes.col(component).segment(node, count);
-           });
-  return reuse;
+  return any_rows_of(grid, box, nodes, std::move(reuse));
+}
+
+PlasticField rows_of(const Grid& grid, const Box& box, const PlasticField& nodes,
+                     PlasticField reuse) {
+  return any_rows_of(grid, box, nodes, std::move(reuse));
+}
+
+void put_rows(const Grid& grid, const Box& box, const PlasticField& rows, PlasticField& nodes) {
+  for_rows<9>(grid, box, box,
+              [&](int component, Eigen::Index node, Eigen::Index row, Eigen::Index count) {
+                nodes.col(component).segment(node, count) = rows.col(component).segment(row, count);
+              });
 }
 
 Field difference_of(const Grid& grid, const Box& box, const Field& a, const Field& b, Field reuse) {

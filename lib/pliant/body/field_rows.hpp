@@ -2,6 +2,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
+#include "pliant/plate/plate.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace pliant {
@@ -11,6 +12,11 @@ namespace pliant {
 
 /// The rows of a box, from a field on all nodes (#box nodes x 3), in the memory of `reuse`.
 Field rows_of(const Grid& grid, const Box& box, const Field& nodes, Field reuse);
+PlasticField rows_of(const Grid& grid, const Box& box, const PlasticField& nodes,
+                     PlasticField reuse);
+
+/// Writes the rows of a box into a field on all nodes.
+void put_rows(const Grid& grid, const Box& box, const PlasticField& rows, PlasticField& nodes);
 
 /// The same for the difference a - b.
 Field difference_of(const Grid& grid, const Box& box, const Field& a, const Field& b, Field reuse);

@@ -98,13 +98,13 @@ std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& pat
 }
 
 double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactors* factors) {
-  const bool acts = patch.edges.have_free() || (factors && factors->have_stiffness());
+  const bool acts = patch.edges.have_free() || (factors && factors->have_stiffness()) || inputs.law;
   return acts ? inputs.poisson : 0;
 }
 
 GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
                    RunContext context, std::shared_ptr<const NodeFactors> factors)
-    : Body(std::move(rest), settings, std::move(factors)),
+    : Body(std::move(rest), grid.node_count(), settings, std::move(factors)),
       grid_(grid),
       profile_(context.profile),
       solvers_(solver, std::move(context)) {
@@ -286,6 +286,7 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
       fit_factors(patch, one);
       problem.dynamics = *dynamics;
       problem.tangents = tangents_of(grid_, patch, region, inputs.tangents);
+      problem.law = inputs.law;
       {
         const StageTimer timer(profile_, Stage::Load);
         problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, plan.selection, k,
@@ -303,6 +304,8 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
                            ? difference_of(grid_, box, positions, rest_, std::move(displacement))
                            : rows_of(grid_, box, positions, std::move(displacement));
         one.plate.velocity = rows_of(grid_, box, state_.velocities, std::move(one.plate.velocity));
+        if (settings_.yields)
+          one.plate.plastic = rows_of(grid_, box, state_.plastic, std::move(one.plate.plastic));
       }
       PlateSolver& solver = solvers_.solver_of(problem.outline);
       auto next = solver.advance(problem, plan.steps, std::move(one.plate));
@@ -361,6 +364,14 @@ Result<void> GridBody::take() {
                       work_.next_positions, work_.next_velocities)) {
       return fail(ErrorCode::NotFinite, "the state stopped being finite");
     }
+  }
+  if (settings_.yields) {
+    work_.next_plastic = state_.plastic;
+    for (const PatchSolve& one : work_.solves)
+      put_rows(grid_, one.patch->box, one.plate.plastic, work_.next_plastic);
+    if (!work_.next_plastic.allFinite())
+      return fail(ErrorCode::NotFinite, "the state stopped being finite");
+    state_.plastic.swap(work_.next_plastic);
   }
   if (recovers()) mark_unsettled();
   state_.positions.swap(work_.next_positions);

@@ -44,7 +44,8 @@ struct BodySettings {
   Border border = Border::Clamped;  ///< of a surface of triangles
   Edges edges = {};                 ///< of a grid that is solved as a whole
   bool is_animated = false;         ///< its rest shape moves: its state holds displacements from it
-  int exact_parts = 1;              ///< of each step that `Integrator::Exact` chooses, >= 1
+  bool yields = false;  ///< it has plastic curvatures, with Reference::Rest, not exactly
+  int exact_parts = 1;  ///< of each step that `Integrator::Exact` chooses, >= 1
 };
 
 }  // namespace pliant

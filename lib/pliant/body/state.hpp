@@ -29,6 +29,10 @@ struct BodyState {
 
   LastPush last = {};  ///< with `Integrator::Exact`; otherwise empty
 
+  /// Of a body that yields: a row for each node of a grid, for each triangle of a surface [1].
+  /// Those that no solve holds rest as they are. Otherwise empty.
+  PlasticField plastic = {};
+
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };
 

@@ -30,7 +30,8 @@ struct BodyWorkspace {
   std::vector<PatchSolve> solves;  ///< one for each patch and solver, in the order of the regions
   Field next_positions;            ///< the next state, until it is complete
   Field next_velocities;
-  LastPush next_push;  ///< only if the body remembers it
+  LastPush next_push;         ///< only if the body remembers it
+  PlasticField next_plastic;  ///< only if it yields
 };
 
 }  // namespace pliant

@@ -29,8 +29,12 @@ std::optional<std::uint64_t> to_bits(std::string_view digits) {
 
 Hash hash_of(std::string_view bytes) { return hash_of(bytes.data(), bytes.size()); }
 
+Hash hash_of(std::span<const double> numbers) {
+  return hash_of(numbers.data(), numbers.size_bytes());
+}
+
 Hash hash_of(const Field& field) {
-  return hash_of(field.data(), static_cast<std::size_t>(field.size()) * sizeof(double));
+  return hash_of(std::span(field.data(), static_cast<std::size_t>(field.size())));
 }
 
 std::string to_text(const Hash& hash) { return fmt::format("{:016x}{:016x}", hash.high, hash.low); }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,10 @@ struct Hash {
 
 Hash hash_of(std::string_view bytes);
 
-/// Hash of the numbers as little-endian doubles: x of all rows, then y, then z. So -0 and 0 differ.
+/// Hash of the numbers as little-endian doubles. So -0 and 0 differ.
+Hash hash_of(std::span<const double> numbers);
+
+/// The same: x of all rows, then y, then z.
 Hash hash_of(const Field& field);
 
 /// 32 hexadecimal digits in lower case, as `xxhsum -H128` prints them.

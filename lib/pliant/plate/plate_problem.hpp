@@ -20,6 +20,9 @@ struct NodeFactors {
 
   bool have_stiffness() const { return !b.empty() || !c.empty() || !d.empty(); }
 
+  /// Whether an elastic plate has some of them.
+  bool are_elastic() const { return have_stiffness() || !density.empty() || !damping.empty(); }
+
   friend bool operator==(const NodeFactors&, const NodeFactors&) = default;
 };
 
@@ -44,7 +47,9 @@ struct PlateSystem {
   double drag = 0;  ///< eta/dt, the part of `shift` that a map of damping changes [1/uv^4]
 
   /// Whether the edges, as far as they are no others, and the material are those of (1).
-  bool is_even() const { return !factors && !outline.edges().have_free(); }
+  bool is_even() const {
+    return !(factors && factors->are_elastic()) && !outline.edges().have_free();
+  }
 
   friend bool operator==(const PlateSystem& one, const PlateSystem& other);
 };
@@ -70,7 +75,7 @@ struct PlateProblem {
   Field first_load = {};
   EdgeTangents first_tangents = {};
 
-  bool is_even() const { return !factors && !outline.edges().have_free(); }
+  bool is_even() const { return system(1).is_even(); }
 
   /// The system of steps of `dt`. [s]
   PlateSystem system(double dt) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -10,8 +11,8 @@ namespace {
 
 // The input of the solve at a frame, as in docs/replay.md: a line `region solved i0 i1 j0 j1` for
 // each part of each region, or a hash of what is cut out of triangles; then, for a body that
-// recovers, a byte for each node; then, for one that remembers what pushed, a byte for each node,
-// and hashes of loads and tangents.
+// recovers, a byte for each node; then, for one that yields, a hash of its plastic curvatures;
+// then, for one that remembers what pushed, a byte for each node, and hashes of loads and tangents.
 std::string region_text(const SurfaceReport& report, const BodyState& state) {
   std::string text;
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -22,6 +23,9 @@ std::string region_text(const SurfaceReport& report, const BodyState& state) {
   }
   if (report.cut) text += fmt::format("{}\n", to_text(*report.cut));
   text.append(state.unsettled.begin(), state.unsettled.end());
+  if (const auto count = static_cast<std::size_t>(state.plastic.size()); count > 0) {
+    text += fmt::format("{}\n", to_text(hash_of(std::span(state.plastic.data(), count))));
+  }
   const auto& [loads, unknowns, tangents] = state.last;
   if (unknowns.empty()) return text;
   text.append(unknowns.begin(), unknowns.end());

@@ -24,7 +24,7 @@ struct MapPlace {
 // The factors of all channels at a place.
 struct PlaceFactors {
   MapPlace place;
-  double density = 1, damping = 1, b = 1, c = 1, d = 1;
+  double density = 1, damping = 1, b = 1, c = 1, d = 1, yield = 1, hardening = 1;
 };
 
 // Finds the places that decide: those with the least and the largest factor of each channel, and of
@@ -39,15 +39,26 @@ class DecidingPlaces {
                factor_at(factors.damping, node),
                factor_at(factors.b, node),
                factor_at(factors.c, node),
-               factor_at(factors.d, node)});
+               factor_at(factors.d, node),
+               factor_at(factors.yield, node),
+               factor_at(factors.hardening, node)});
     }
-    if (!shape.surface || !factors.have_stiffness()) return;
+    if (!shape.surface) return;
     const TriangleSurface& surface = *shape.surface;
     const std::vector<double> b = means_on_triangles(surface, factors.b);
     const std::vector<double> c = means_on_triangles(surface, factors.c);
     const std::vector<double> d = means_on_triangles(surface, factors.d);
+    const std::vector<double> yield = means_on_triangles(surface, factors.yield);
+    const std::vector<double> hardening = means_on_triangles(surface, factors.hardening);
     for (int k = 0; k < static_cast<int>(surface.triangles.size()); ++k)
-      look_at({{true, k}, 1, 1, factor_at(b, k), factor_at(c, k), factor_at(d, k)});
+      look_at({{true, k},
+               1,
+               1,
+               factor_at(b, k),
+               factor_at(c, k),
+               factor_at(d, k),
+               factor_at(yield, k),
+               factor_at(hardening, k)});
   }
 
   // Each by the number that it has the least or the largest of.
@@ -68,9 +79,9 @@ class DecidingPlaces {
   };
 
   void look_at(const PlaceFactors& at) {
-    const double numbers[] = {at.density, at.damping,
-                              at.b,       at.c,
-                              at.d,       at.b > 0 && at.d > 0 ? at.c / std::sqrt(at.b * at.d) : 1};
+    const double ratio = at.b > 0 && at.d > 0 ? at.c / std::sqrt(at.b * at.d) : 1;
+    const double numbers[] = {at.density, at.damping, at.b,         at.c,
+                              at.d,       at.yield,   at.hardening, ratio};
     for (std::size_t k = 0; k < std::size(numbers); ++k) {
       Extreme& extreme = extremes_[k];
       if (numbers[k] < extreme.low) extreme.low = numbers[k], extreme.least = at;
@@ -78,7 +89,7 @@ class DecidingPlaces {
     }
   }
 
-  std::array<Extreme, 6> extremes_;
+  std::array<Extreme, 8> extremes_;
 };
 
 class MapChecker {
@@ -87,9 +98,10 @@ class MapChecker {
       : scene_(scene), surface_(surface), shape_(shape), places_(DecidingPlaces(shape).all()) {}
 
   std::vector<Error> check(int first, int last) {
-    const auto& [density, damping, damping_ratio, b, c, d, poisson] = surface_.material;
-    bool is_animated = false;
-    for (const Channel<1>* channel : {&density, &damping, &b, &c, &d, &poisson})
+    const auto& [density, damping, damping_ratio, b, c, d, yield, hardening, poisson] =
+        surface_.material;
+    bool is_animated = yield && yield->is_animated();
+    for (const Channel<1>* channel : {&density, &damping, &b, &c, &d, &hardening, &poisson})
       is_animated = is_animated || channel->is_animated();
     is_animated_ = is_animated;
     for (int frame = first; frame <= (is_animated ? last : first); ++frame) check_frame(frame);
@@ -102,6 +114,9 @@ class MapChecker {
     const double density = material.density.at(frame)[0], damping = material.damping.at(frame)[0];
     const double b = material.b.at(frame)[0], c = material.c.at(frame)[0];
     const double d = material.d.at(frame)[0], poisson = material.poisson.at(frame)[0];
+    const auto [rho, eta] =
+        acting_dynamics({density, material.damping_ratio ? density : damping}, &*shape_.factors);
+    const bool is_static = rho == 0 && eta == 0;
     for (const PlaceFactors& at : places_) {
       check_range(MapChannel::Density, frame, at, density * at.density, false);
       check_range(MapChannel::Damping, frame, at, damping * at.damping, false);
@@ -109,6 +124,10 @@ class MapChecker {
                             check_range(MapChannel::D, frame, at, d * at.d, true);
       if (is_sound && shape_.factors->have_stiffness())
         check_coupling(frame, at, {b * at.b, c * at.c, d * at.d}, poisson);
+      if (!material.yield) continue;
+      check_range(MapChannel::Yield, frame, at, material.yield->at(frame)[0] * at.yield, true);
+      check_range(MapChannel::Hardening, frame, at, material.hardening.at(frame)[0] * at.hardening,
+                  is_static);
     }
     check_integrator(frame, density);
   }

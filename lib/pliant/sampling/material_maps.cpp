@@ -189,8 +189,12 @@ std::vector<double>& factors_of_channel(NodeFactors& factors, MapChannel channel
       return factors.b;
     case MapChannel::C:
       return factors.c;
-    default:
+    case MapChannel::D:
       return factors.d;
+    case MapChannel::Yield:
+      return factors.yield;
+    default:
+      return factors.hardening;
   }
 }
 
@@ -200,8 +204,8 @@ std::vector<MapSummary> map_summaries_of(const RestShape& shape) {
   std::vector<MapSummary> summaries;
   if (!shape.factors) return summaries;
   NodeFactors factors = *shape.factors;
-  for (const MapChannel channel :
-       {MapChannel::Density, MapChannel::Damping, MapChannel::B, MapChannel::C, MapChannel::D}) {
+  for (std::size_t k = 0; k < std::size(map_channel_words); ++k) {
+    const auto channel = static_cast<MapChannel>(k);
     const std::vector<double>& at_nodes = factors_of_channel(factors, channel);
     if (at_nodes.empty()) continue;
     const auto [least, most] = std::ranges::minmax(at_nodes);

@@ -252,7 +252,8 @@ BodySettings body_settings(const Surface& surface, bool is_grid) {
           .release = solver.release,
           .border = surface.reading.border.value_or(Border::Clamped),
           .edges = solver.edges,
-          .is_animated = surface.is_animated()};
+          .is_animated = surface.is_animated(),
+          .yields = surface.material.yield.has_value()};
 }
 
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
@@ -269,6 +270,9 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
           .tangents = {sample_tangent(tangents.su0, frame), sample_tangent(tangents.su1, frame),
                        sample_tangent(tangents.sv0, frame), sample_tangent(tangents.sv1, frame)},
           .poisson = material.poisson.at(frame)[0],
+          .law = material.yield ? std::optional(PlasticLaw{material.yield->at(frame)[0],
+                                                           material.hardening.at(frame)[0]})
+                                : std::nullopt,
           .frame_length = frame_length(scene, surface, frame),
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {},

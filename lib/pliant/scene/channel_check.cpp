@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -70,8 +71,9 @@ class ChannelChecker {
     check_channels(surface, surface.material);
     const bool has_stiffness = kept_.contains("b") && kept_.contains("d");
     if (has_stiffness && check_ellipticity(surface) && kept_.contains("poisson")) {
-      check_free_border(surface);
+      check_poisson(surface);
     }
+    if (kept_.contains("hardening")) check_hardening(surface);
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
     if (kept_.contains("dt") && kept_.contains("timeScale")) check_steps(surface);
@@ -165,7 +167,7 @@ class ChannelChecker {
   // Whether it holds.
   bool check_ellipticity(const Surface& surface) {
     if (!is_checked(surface.name, "c")) return false;
-    const auto& [density, damping, damping_ratio, b, c, d, poisson] = surface.material;
+    const auto& [b, c, d] = std::tie(surface.material.b, surface.material.c, surface.material.d);
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
     const int last = is_animated ? last_ : first_;
     for (int frame = first_; frame <= last; ++frame) {
@@ -182,11 +184,16 @@ class ChannelChecker {
     return true;
   }
 
-  // Requires: the stiffness is elliptic.
-  void check_free_border(const Surface& surface) {
+  // Where it acts. Requires: the stiffness is elliptic.
+  void check_poisson(const Surface& surface) {
     const bool has_free_edge = surface.solver.edges.have_free();
-    if (surface.reading.border != Border::Free && !has_free_edge) return;
-    const auto& [density, damping, damping_ratio, b, c, d, poisson] = surface.material;
+    const bool has_free_border = surface.reading.border == Border::Free;
+    const auto& [b, c, d] = std::tie(surface.material.b, surface.material.c, surface.material.d);
+    const auto& [yield, poisson] = std::tie(surface.material.yield, surface.material.poisson);
+    if (!has_free_edge && !has_free_border && !yield) return;
+    const char* const where = has_free_edge     ? "a free edge"
+                              : has_free_border ? "a free border"
+                                                : "yield";
     const bool is_animated =
         b.is_animated() || c.is_animated() || d.is_animated() || poisson.is_animated();
     const int last = is_animated ? last_ : first_;
@@ -197,11 +204,31 @@ class ChannelChecker {
       const double least_c = -ratio * stiffness.least_c();
       if (std::abs(ratio) < 1 && stiffness.c > least_c) continue;
       return add_error(surface.name, "poisson", is_animated, frame,
-                       fmt::format("is {}, but with a free {} it must be between -1 and 1, and "
-                                   "c = {} must be greater than 2 poisson sqrt(b d) = {}; a "
-                                   "smaller poisson helps",
-                                   ratio, has_free_edge ? "edge" : "border", stiffness.c, least_c),
+                       fmt::format("is {}, but with {} it must be between -1 and 1, and c = {} "
+                                   "must be greater than 2 poisson sqrt(b d) = {}; a smaller "
+                                   "poisson helps",
+                                   ratio, where, stiffness.c, least_c),
                        scene_.origin.last_line_of(surface.name, {"poisson", "b", "c", "d"}));
+    }
+  }
+
+  // What is static and yields has one shape only if it hardens.
+  void check_hardening(const Surface& surface) {
+    const MaterialChannels& material = surface.material;
+    if (!material.yield) return;
+    const auto& [density, hardening] = std::tie(material.density, material.hardening);
+    const Channel<1>& damping = material.damping_ratio ? density : material.damping;
+    const bool is_animated =
+        density.is_animated() || damping.is_animated() || hardening.is_animated();
+    const int last = is_animated ? last_ : first_;
+    for (int frame = first_; frame <= last; ++frame) {
+      const bool is_static = density.at(frame)[0] == 0 && damping.at(frame)[0] == 0;
+      if (!is_static || hardening.at(frame)[0] > 0) continue;
+      return add_error(
+          surface.name, "hardening", is_animated, frame,
+          "is 0, but must be greater than 0 where density and damping are 0: nothing "
+          "else says how far a static surface yields",
+          scene_.origin.last_line_of(surface.name, {"density", "damping", "hardening"}));
     }
   }
 

@@ -131,8 +131,8 @@ inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"}
 
 inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark", "exact"};
 inline constexpr std::string_view region_words[] = {"forces", "all"};
-inline constexpr std::string_view map_channel_words[] = {"density", "damping", "b", "c", "d"};
-inline constexpr std::string_view later_map_channel_words[] = {"yield", "hardening"};
+inline constexpr std::string_view map_channel_words[] = {"density", "damping", "b",        "c",
+                                                         "d",       "yield",   "hardening"};
 
 inline constexpr Range frame_range{.least = -largest_frame, .most = largest_frame};
 
@@ -424,13 +424,24 @@ struct Description<MaterialChannels> {
                   .range = not_negative,
                   .absent = "damping counts"},
         of.damping_ratio...);
-    row(Attribute{.name = "yield", .need = Need::Later});
-    row(Attribute{.name = "hardening", .need = Need::Later});
+    row(Attribute{.name = "yield",
+                  .meaning = "Y: the stress from which on the surface bends for good, see below",
+                  .unit = "length/uv²",
+                  .range = positive,
+                  .absent = "none: it is elastic"},
+        of.yield...);
+    row(Attribute{.name = "hardening",
+                  .meaning =
+                      "H: how much harder it is to bend further what was bent for good; only "
+                      "with `yield`",
+                  .unit = "1",
+                  .range = not_negative},
+        of.hardening...);
     row(Attribute{.name = "poisson",
                   .meaning =
                       "ν: how much bending along one direction bends the other; acts with "
-                      "a free border or edge, or a map of b, c or d, and must be between −1 and 1 "
-                      "there",
+                      "a free border or edge, a map of b, c or d, or `yield`, and must be between "
+                      "−1 and 1 there",
                   .unit = "1"},
         of.poisson...);
   }
@@ -448,7 +459,6 @@ struct Description<MaterialMap> {
     row(Attribute{.name = "channel",
                   .meaning = "the channel of the material that it multiplies; one map a channel",
                   .words = map_channel_words,
-                  .later = later_map_channel_words,
                   .need = Need::Required},
         of.channel...);
     row(Attribute{.name = "file",

@@ -113,6 +113,7 @@ class WholeChecker {
     check_cache(surface);
     check_time(surface);
     check_damping(surface);
+    check_yield(surface);
     check_maps(surface);
     if (const auto* const net = std::get_if<NurbsNet>(&surface.shape)) check(surface, *net);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
@@ -221,6 +222,28 @@ class WholeChecker {
                     surface.name));
   }
 
+  void check_yield(const Surface& surface) {
+    if (!surface.material.yield) return;
+    const SolverSettings& solver = surface.solver;
+    const auto refuse = [&](const char* attribute, std::string_view given,
+                            std::string_view reason) {
+      findings_.add_problem(scene_.origin.last_line_of(surface.name, {"yield", attribute}),
+                            fmt::format("{0}.yield: {0}.{1} is \"{2}\", but {3}", surface.name,
+                                        attribute, given, reason));
+    };
+    if (solver.integrator == Integrator::Exact)
+      refuse("integrator", "exact", "only an elastic surface has a solution in closed form");
+    if (solver.reference == Reference::None)
+      refuse("reference", "none", "a surface yields by how far it is bent from its rest shape");
+    if (solver.combine == Combine::Union)
+      refuse("combine", "union", "a plate that yields needs rectangles: \"box\" or \"islands\"");
+    if (solver.release == Release::Recover)
+      refuse("release", "recover", "what has yielded does not go back to rest");
+    if (solver.loop)
+      refuse("loop", fmt::format("{}", *solver.loop),
+             "what yields in a round does not come back to where it began");
+  }
+
   void check_maps(const Surface& surface) {
     for (auto map = surface.maps.begin(); map != surface.maps.end(); ++map) {
       const std::string channel = name_of(map->channel);
@@ -253,8 +276,12 @@ class WholeChecker {
                 "{0}: {1}.dampingRatio gives the damping by the density of each node; remove "
                 "one of them",
                 name, surface.name));
+      const bool is_plastic =
+          map->channel == MapChannel::Yield || map->channel == MapChannel::Hardening;
+      if (is_plastic && !surface.material.yield && is_sound(surface.name, "yield"))
+        refuse("", fmt::format("nothing yields: {}.yield is not given", surface.name));
       const bool is_stiffness =
-          map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
+          !is_plastic && map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
       if (is_stiffness && surface.solver.combine == Combine::Union)
         findings_.add_problem(
             scene_.origin.last_line_of(surface.name, {"combine", channel}),

@@ -59,14 +59,18 @@ struct MaterialChannels {
   /// zeta >= 0, of the slowest vibration of each region; eta follows from it. Absent: `damping`
   /// gives eta. Both together are an error.
   std::optional<Channel<1>> damping_ratio = {};
-  Channel<1> b = 1;          ///< along u, > 0
-  Channel<1> c = 2;          ///< mixed, > -2 sqrt(b d)
-  Channel<1> d = 1;          ///< along v, > 0
-  Channel<1> poisson = 0.3;  ///< nu: acts if a border is free, then > -1 and < 1
+  Channel<1> b = 1;  ///< along u, > 0
+  Channel<1> c = 2;  ///< mixed, > -2 sqrt(b d)
+  Channel<1> d = 1;  ///< along v, > 0
+  /// Y > 0: where it bends for good. Absent: it is elastic. docs/model.md, "Plasticity".
+  std::optional<Channel<1>> yield = {};
+  Channel<1> hardening = 0.1;  ///< H >= 0, of a plate that yields
+  /// nu: acts with a free border or edge, a map of b, c or d, or `yield`; then > -1 and < 1
+  Channel<1> poisson = 0.3;
 };
 
 /// The channels of the material that a map may change.
-enum class MapChannel { Density, Damping, B, C, D };
+enum class MapChannel { Density, Damping, B, C, D, Yield, Hardening };
 
 /// How a channel of the material differs over a surface: at each node its value is multiplied by
 /// low + (high - low) m. m is that of a picture at the node's (u,v), from black 0 to white 1; of a

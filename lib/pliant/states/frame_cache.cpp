@@ -13,7 +13,7 @@ std::size_t bytes_of(const FrameCache::States& states) {
   std::size_t bytes = 0;
   for (const BodyState& state : states) {
     const auto doubles = static_cast<std::size_t>(state.positions.size() + state.velocities.size() +
-                                                  state.last.loads.size());
+                                                  state.last.loads.size() + state.plastic.size());
     bytes += doubles * sizeof(double) + state.unsettled.size() + state.last.unknowns.size();
   }
   return bytes;

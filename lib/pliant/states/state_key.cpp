@@ -97,11 +97,15 @@ class HashedValues {
     for (const auto* of_nodes : {&density, &damping, &b, &c, &d, &yield, &hardening})
       add_bytes(*of_nodes);
   }
+  void add(const PlasticLaw& law) {
+    const auto& [yield, hardening] = law;
+    add_all(yield, hardening);
+  }
   void add(const BodySettings& settings) {
     const auto& [integrator, stepping, reference, measure, region, combine, release, border, edges,
-                 is_animated, exact_parts] = settings;
+                 is_animated, yields, exact_parts] = settings;
     add_all(integrator, stepping, reference, measure, region, combine, release, border,
-            int{is_animated});
+            int{is_animated}, int{yields});
     const auto& [u0, u1, v0, v1] = edges;
     add_all(u0, u1, v0, v1, exact_parts);
   }
@@ -148,9 +152,9 @@ class HashedValues {
     if (falloff_curve) add(falloff_curve->keys());
   }
   void add(const BodyInputs& inputs) {
-    const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, frame_length, dt,
-                 forces, shape, selectors] = inputs;
-    add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, frame_length, dt,
+    const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, law,
+                 frame_length, dt, forces, shape, selectors] = inputs;
+    add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, frame_length, dt,
             forces, shape, selectors);
   }
 

@@ -55,11 +55,13 @@ Columns columns_away_from_rest(const BodyState& state, const Field& rest) {
   return columns;
 }
 
-std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) {
+// The runs of rows that `is_in`.
+template <class IsIn>
+std::vector<Run> runs_of(Eigen::Index rows, const IsIn& is_in) {
   std::vector<Run> runs;
-  for (Eigen::Index node = 0; node < rest.rows(); ++node) {
-    if (is_at_rest(state, rest, node)) continue;
-    const auto place = static_cast<std::uint64_t>(node);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    if (!is_in(row)) continue;
+    const auto place = static_cast<std::uint64_t>(row);
     if (!runs.empty() && runs.back().first + runs.back().count == place) {
       ++runs.back().count;
     } else {
@@ -67,6 +69,10 @@ std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) 
     }
   }
   return runs;
+}
+
+std::vector<Run> runs_away_from_rest(const BodyState& state, const Field& rest) {
+  return runs_of(rest.rows(), [&](Eigen::Index node) { return !is_at_rest(state, rest, node); });
 }
 
 unsigned char bits_of(const ForceFacts& facts) {
@@ -102,23 +108,17 @@ EdgeTangents tangents_of(const Numbers& numbers) {
 }
 
 std::vector<Run> unknown_runs(const LastPush& push) {
-  std::vector<Run> runs;
-  for (std::size_t node = 0; node < push.unknowns.size(); ++node) {
-    if (!push.unknowns[node]) continue;
-    if (!runs.empty() && runs.back().first + runs.back().count == node) {
-      ++runs.back().count;
-    } else {
-      runs.push_back({node, 1});
-    }
-  }
-  return runs;
+  return runs_of(static_cast<Eigen::Index>(push.unknowns.size()), [&](Eigen::Index node) {
+    return push.unknowns[static_cast<std::size_t>(node)] != 0;
+  });
 }
 
-// Of the loads: x, y and z that are not 0 at all nodes.
-Columns pushed_columns(const Field& loads) {
+// Those that are not 0 in all rows.
+template <class Rows>
+Columns columns_away_from_0(const Rows& rows) {
   Columns columns = 0;
-  for (int component = 0; component < 3; ++component) {
-    const auto of_component = loads.col(component);
+  for (int component = 0; component < Rows::ColsAtCompileTime; ++component) {
+    const auto of_component = rows.col(component);
     const bool is_zero = std::all_of(of_component.begin(), of_component.end(),
                                      [](double number) { return is_same(number, 0); });
     if (!is_zero) columns |= Columns{1} << component;
@@ -149,9 +149,10 @@ void append_runs(std::string& bytes, const std::vector<Run>& runs) {
   }
 }
 
-void append_rows(std::string& bytes, const Field& field, const std::vector<Run>& runs,
+template <class Rows>
+void append_rows(std::string& bytes, const Rows& field, const std::vector<Run>& runs,
                  Columns columns) {
-  for (int component = 0; component < 3; ++component) {
+  for (int component = 0; component < Rows::ColsAtCompileTime; ++component) {
     if (!holds(columns, component)) continue;
     for (const Run& run : runs) {
       append(bytes, field.col(component).data() + run.first, run.count * sizeof(double));
@@ -159,8 +160,9 @@ void append_rows(std::string& bytes, const Field& field, const std::vector<Run>&
   }
 }
 
-void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, Columns columns) {
-  for (int component = 0; component < 3; ++component) {
+template <class Rows>
+void take_rows(ByteReader& reader, Rows& field, const std::vector<Run>& runs, Columns columns) {
+  for (int component = 0; component < Rows::ColsAtCompileTime; ++component) {
     if (!holds(columns, component)) continue;
     for (const Run& run : runs) {
       reader.take(field.col(component).data() + run.first, run.count * sizeof(double));
@@ -170,7 +172,7 @@ void take_rows(ByteReader& reader, Field& field, const std::vector<Run>& runs, C
 
 void append_push(std::string& bytes, const LastPush& push) {
   const std::vector<Run> runs = unknown_runs(push);
-  const Columns columns = pushed_columns(push.loads);
+  const Columns columns = columns_away_from_0(push.loads);
   const Numbers numbers = numbers_of(push.tangents);
   append(bytes, numbers.data(), sizeof(numbers));
   append_runs(bytes, runs);
@@ -196,30 +198,53 @@ bool take_push(ByteReader& reader, std::uint64_t node_count, LastPush& push) {
          std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
+void append_plastic(std::string& bytes, const PlasticField& plastic) {
+  const std::vector<Run> runs = runs_of(plastic.rows(), [&](Eigen::Index row) {
+    const auto numbers = plastic.row(row);
+    return !std::all_of(numbers.begin(), numbers.end(), [](double x) { return is_same(x, 0); });
+  });
+  const Columns columns = columns_away_from_0(plastic);
+  append_runs(bytes, runs);
+  append(bytes, columns);
+  append_rows(bytes, plastic, runs, columns);
+}
+
+// False if the bytes are not those of `append_plastic`.
+bool take_plastic(ByteReader& reader, Eigen::Index rows, PlasticField& plastic) {
+  const auto runs = read_runs(reader, static_cast<std::uint64_t>(rows));
+  if (!runs) return false;
+  plastic.setZero(rows, 9);
+  take_rows(reader, plastic, *runs, reader.number());
+  return plastic.allFinite();
+}
+
 constexpr std::size_t bytes_of_node = 9 * sizeof(double) + 1;
 
 // The most bytes of a state besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
-  return magic.size() + 2 * sizeof(Hash) + 8 * sizeof(std::uint64_t) + sizeof(Numbers) +
+  return magic.size() + 2 * sizeof(Hash) + 10 * sizeof(std::uint64_t) + sizeof(Numbers) +
          force_count;
 }
 
 // An upper bound for the bytes of a state: in the worst case every other node is away from rest, or
 // all are.
-std::size_t most_bytes(Eigen::Index node_count) {
+std::size_t most_bytes(Eigen::Index node_count, Eigen::Index plastic_count) {
   constexpr std::size_t forces = 1'000'000;  // more than any scene has
   const auto nodes = static_cast<std::size_t>(node_count);
-  return most_head(forces) + (nodes + 1) / 2 * 2 * sizeof(Run) + nodes * bytes_of_node;
+  const auto places = static_cast<std::size_t>(plastic_count);
+  return most_head(forces) + (nodes + 1) / 2 * 2 * sizeof(Run) + nodes * bytes_of_node +
+         (places + 1) / 2 * sizeof(Run) + places * 9 * sizeof(double);
 }
 
 std::uint64_t number_of(StateParts parts) {
-  return (parts.has_marks ? 1u : 0u) | (parts.has_push ? 2u : 0u);
+  return (parts.has_marks ? 1u : 0u) | (parts.has_push ? 2u : 0u) |
+         (parts.plastic_places > 0 ? 4u : 0u);
 }
 
 }  // namespace
 
 StateParts parts_of(const BodyState& state) {
-  return {!state.unsettled.empty(), !state.last.unknowns.empty()};
+  return {!state.unsettled.empty(), !state.last.unknowns.empty(), state.plastic.rows()};
 }
 
 std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& facts,
@@ -250,6 +275,7 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
     for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
   }
   if (parts.has_push) append_push(bytes, state.last);
+  if (parts.plastic_places > 0) append_plastic(bytes, state.plastic);
   append_seal(bytes);
   return bytes;
 }
@@ -287,6 +313,8 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
     for (const Run& run : *runs) reader.take(state.unsettled.data() + run.first, run.count);
   }
   if (parts.has_push && !take_push(reader, node_count, state.last)) return {};
+  if (parts.plastic_places > 0 && !take_plastic(reader, parts.plastic_places, state.plastic))
+    return {};
   if (!reader.is_sound() || reader.left() != 0) return {};
   if (!state.positions.allFinite() || !state.velocities.allFinite()) return {};
   return stored;
@@ -294,7 +322,7 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
 
 std::optional<StoredState> read_stored(StateStore& store, const Hash& key, const Field& rest,
                                        StateParts parts) {
-  const auto bytes = store.read(key, most_bytes(rest.rows()));
+  const auto bytes = store.read(key, most_bytes(rest.rows(), parts.plastic_places));
   if (!bytes) return {};
   auto stored = from_bytes(*bytes, key, rest, parts);
   if (!stored) store.discard(key);

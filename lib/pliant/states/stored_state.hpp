@@ -22,8 +22,9 @@ struct StoredState {
 
 /// The parts of a state that not every body has.
 struct StateParts {
-  bool has_marks = false;  ///< `unsettled`
-  bool has_push = false;   ///< `last`
+  bool has_marks = false;           ///< `unsettled`
+  bool has_push = false;            ///< `last`
+  Eigen::Index plastic_places = 0;  ///< rows of `plastic`
 
   friend bool operator==(const StateParts&, const StateParts&) = default;
 };
