@@ -47,6 +47,15 @@ BAD_SCENES = {
         "</material>", 3, "sheet.damping at frame 10 is -"),
     "a damping and its ratio": (GRID, GRID + '<material damping="1" dampingRatio="0.1"/>', 3,
                                 "sheet.damping and sheet.dampingRatio are both given"),
+    "a yield with exact steps": (
+        GRID, GRID + '<material yield="1"/><solver integrator="exact"/>', 3,
+        'sheet.yield: sheet.integrator is "exact"'),
+    "a yield that falls to 0": (
+        GRID, GRID + "<material>" + animated("yield", (1, 1), (9, -1)) + "</material>", 3,
+        "sheet.yield at frame 5 is 0, but must be greater than 0"),
+    "no hardening where nothing else resists": (
+        GRID, GRID + '<material yield="1" density="0" damping="0" hardening="0"/>', 3,
+        "sheet.hardening is 0, but must be greater than 0 where density and damping are 0"),
     "a ratio below 0 at a frame": (
         GRID, GRID + "<material>" + animated("dampingRatio", (1, 1), (9, -1)) + "</material>", 3,
         "sheet.dampingRatio at frame 6 is -"),

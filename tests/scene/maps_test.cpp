@@ -84,6 +84,23 @@ TEST_CASE("a material with nothing but a map is written", "[scene][maps]") {
   CHECK_THAT(none.error().message, Contains("s.map.density has values of a program"));
 }
 
+TEST_CASE("a map of what does not yield is told", "[scene][maps]") {
+  const auto notes = [](const std::string& map) {
+    const std::string text =
+        "<scene start=\"1\" end=\"2\"><surface name=\"s\"><mesh file=\"a.ply\"/>"
+        "\n<material" +
+        map + "</material></surface></scene>";
+    return parse_scene(text, "a.xml", "").value().notes;
+  };
+  const std::string map = "<map channel=\"hardening\" attribute=\"soft\"/>";
+  CHECK(notes(" yield=\"3\">" + map).empty());
+  const auto told = notes(">" + map);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].line == 2);
+  CHECK_THAT(told[0].message,
+             Contains("s.map.hardening: the map has no effect: s.yield is not given"));
+}
+
 TEST_CASE("every problem of a map is told with its line", "[scene][maps]") {
   struct Bad {
     std::string map;
@@ -92,8 +109,6 @@ TEST_CASE("every problem of a map is told with its line", "[scene][maps]") {
   const std::vector<Bad> all = {
       {R"(<map file="a.png"/>)", "a.xml:5: error: <map> needs the attribute \"channel\""},
       {R"(<map channel="e" file="a.png"/>)", "a.xml:5: error: <map> channel=\"e\": unknown word"},
-      {R"(<map channel="yield" file="a.png"/>)",
-       "a.xml:5: error: s.map.yield: nothing yields: s.yield is not given"},
       {R"(<map channel="b"/>)", "a.xml:5: error: s.map.b: a map needs a file or an attribute"},
       {R"(<map channel="b" file="a.png" attribute="x"/>)",
        "a.xml:5: error: s.map.b: a map has a file or an attribute, but this one has both"},

@@ -279,7 +279,10 @@ class WholeChecker {
       const bool is_plastic =
           map->channel == MapChannel::Yield || map->channel == MapChannel::Hardening;
       if (is_plastic && !surface.material.yield && is_sound(surface.name, "yield"))
-        refuse("", fmt::format("nothing yields: {}.yield is not given", surface.name));
+        findings_.add_note(scene_.origin.line_of(name, ""),
+                           fmt::format("{}: the map has no effect: {}.yield is not given, so that "
+                                       "nothing yields",
+                                       name, surface.name));
       const bool is_stiffness =
           !is_plastic && map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
       if (is_stiffness && surface.solver.combine == Combine::Union)
