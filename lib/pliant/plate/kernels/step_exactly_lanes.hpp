@@ -32,52 +32,76 @@ PLIANT_INLINE ComplexNumber inverse_of(ComplexNumber a) {
   return {a.re / square, -a.im / square};
 }
 
-// The right-hand side of a shift at eight nodes.
+// Rows at a time: what is the same for all of them is read once, and their sums hide each other's
+// latency.
+constexpr int exact_rows = lanes == 8 ? 2 : 1;
+
+// The right-hand side of a shift at eight nodes. Without growth it is a few operations less, with
+// the same bits.
 struct Sources {
   Eight lack, growth, v;
 };
+template <bool grows>
 PLIANT_INLINE Sources sources_at(const ExactView& view, long at) {
+  if constexpr (!grows) return {load8(view.lack + at), {}, load8(view.v + at)};
   return {load8(view.lack + at), load8(view.growth + at), load8(view.v + at)};
 }
+template <bool grows>
 PLIANT_INLINE Pairs side_of(const Sources& from, const ShiftFactors& factors) {
+  if constexpr (!grows) return {from.lack + from.v * factors.v.re, from.v * factors.v.im};
   return {(from.lack + from.growth * factors.growth.re) + from.v * factors.v.re,
           from.growth * factors.growth.im + from.v * factors.v.im};
 }
 
-// The right-hand sides of a row times 1/D, their sums, and what remains for the columns.
-PLIANT_INLINE void begin_row(const ParityView& parity, const ShiftView* shifts,
-                             const ExactFactors& factors, const ExactView& view, int k) {
+// The right-hand sides of rows times 1/D, their sums, and what remains for the columns.
+template <int Rows, bool grows>
+PLIANT_INLINE void begin_rows(const ParityView& parity, const ShiftView* shifts,
+                              const ExactFactors& factors, const ExactView& view, int k) {
   const int n = parity.columns;
   const long begin = static_cast<long>(k) * parity.pitch;
-  Pairs sums[shift_count] = {};
-  for (int l = 0; l < n; l += 8) {
-    const Sources from = sources_at(view, begin + l);
-    const Eight weight = load8(parity.column_weight + l);
+  Pairs taken[Rows][shift_count];
+  for (int r = 0; r < Rows; ++r) {
+    const long row_begin = begin + static_cast<long>(r) * parity.pitch;
+    Pairs sums[shift_count] = {};
+    for (int l = 0; l < n; l += 8) {
+      const Sources from = sources_at<grows>(view, row_begin + l);
+      const Eight weight = load8(parity.column_weight + l);
+#pragma GCC unroll 4
+      for (int p = 0; p < shift_count; ++p) {
+        const Pairs reciprocal =
+            load_pairs(shifts[p].re + row_begin + l, shifts[p].im + row_begin + l);
+        sums[p] = sums[p] + side_of<grows>(from, factors.of[p]) * reciprocal * weight;
+      }
+    }
 #pragma GCC unroll 4
     for (int p = 0; p < shift_count; ++p) {
-      const Pairs reciprocal = load_pairs(shifts[p].re + begin + l, shifts[p].im + begin + l);
-      sums[p] = sums[p] + side_of(from, factors.of[p]) * reciprocal * weight;
+      const ComplexNumber sum = sum_of(sums[p]);
+      double* const row = view.row_sums + (static_cast<long>(k + r) * shift_count + p) * 2;
+      row[0] = sum.re;
+      row[1] = sum.im;
+      taken[r][p] = all_pairs(
+          sum * ComplexNumber{shifts[p].row_pivot_re[k + r], shifts[p].row_pivot_im[k + r]});
     }
   }
-  Pairs taken[shift_count];
-#pragma GCC unroll 4
-  for (int p = 0; p < shift_count; ++p) {
-    const ComplexNumber sum = sum_of(sums[p]);
-    double* const row = view.row_sums + (static_cast<long>(k) * shift_count + p) * 2;
-    row[0] = sum.re;
-    row[1] = sum.im;
-    taken[p] = all_pairs(sum * ComplexNumber{shifts[p].row_pivot_re[k], shifts[p].row_pivot_im[k]});
-  }
-  const double row_weight = parity.row_weight[k];
   for (int l = 0; l < n; l += 8) {
-    const Sources from = sources_at(view, begin + l);
+    Sources from[Rows];
+#pragma GCC unroll 4
+    for (int r = 0; r < Rows; ++r) {
+      from[r] = sources_at<grows>(view, begin + static_cast<long>(r) * parity.pitch + l);
+    }
 #pragma GCC unroll 4
     for (int p = 0; p < shift_count; ++p) {
-      const Pairs reciprocal = load_pairs(shifts[p].re + begin + l, shifts[p].im + begin + l);
-      const Pairs rest = (side_of(from, factors.of[p]) - taken[p]) * reciprocal;
       double* const column = view.column_sums + 2L * p * n + l;
-      store8(column, load8(column) + rest.re * row_weight);
-      store8(column + n, load8(column + n) + rest.im * row_weight);
+      Pairs sum = load_pairs(column, column + n);
+#pragma GCC unroll 4
+      for (int r = 0; r < Rows; ++r) {
+        const long at = begin + static_cast<long>(r) * parity.pitch + l;
+        const Pairs reciprocal = load_pairs(shifts[p].re + at, shifts[p].im + at);
+        const Pairs rest = (side_of<grows>(from[r], factors.of[p]) - taken[r][p]) * reciprocal;
+        sum = sum + rest * all8(parity.row_weight[k + r]);
+      }
+      store8(column, sum.re);
+      store8(column + n, sum.im);
     }
   }
 }
@@ -123,43 +147,64 @@ PLIANT_INLINE void solve_complex_edge(const ParityView& parity, const ShiftView&
 }
 
 // Upsilon, then the solutions, of which the next w and v are sums, and the doubt.
-template <bool has_doubt>
-PLIANT_INLINE void end_row(const ParityView& parity, const ShiftView* shifts,
-                           const ExactFactors& factors, const ExactView& view, int k) {
+template <int Rows, bool grows, bool has_doubt>
+PLIANT_INLINE void end_rows(const ParityView& parity, const ShiftView* shifts,
+                            const ExactFactors& factors, const ExactView& view, int k) {
   const int n = parity.columns;
   const long begin = static_cast<long>(k) * parity.pitch;
-  Pairs sums[shift_count] = {};
+  Pairs sums[Rows][shift_count] = {};
   for (int l = 0; l < n; l += 8) {
 #pragma GCC unroll 4
     for (int p = 0; p < shift_count; ++p) {
       const double* const edge = view.edge + 4L * p * n + l;
-      sums[p] = sums[p] + load_pairs(edge + 2L * n, edge + 3L * n) *
-                              load_pairs(shifts[p].re + begin + l, shifts[p].im + begin + l);
+      const Pairs scaled = load_pairs(edge + 2L * n, edge + 3L * n);
+#pragma GCC unroll 4
+      for (int r = 0; r < Rows; ++r) {
+        const long at = begin + static_cast<long>(r) * parity.pitch + l;
+        sums[r][p] = sums[r][p] + scaled * load_pairs(shifts[p].re + at, shifts[p].im + at);
+      }
     }
   }
-  Pairs upsilon[shift_count];
+  Pairs upsilon[Rows][shift_count];
+  for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-  for (int p = 0; p < shift_count; ++p) {
-    const double* const row = view.row_sums + (static_cast<long>(k) * shift_count + p) * 2;
-    const ComplexNumber pivot = {shifts[p].row_pivot_re[k], shifts[p].row_pivot_im[k]};
-    upsilon[p] = all_pairs((ComplexNumber{row[0], row[1]} - sum_of(sums[p])) * pivot);
+    for (int p = 0; p < shift_count; ++p) {
+      const double* const row = view.row_sums + (static_cast<long>(k + r) * shift_count + p) * 2;
+      const ComplexNumber pivot = {shifts[p].row_pivot_re[k + r], shifts[p].row_pivot_im[k + r]};
+      upsilon[r][p] = all_pairs((ComplexNumber{row[0], row[1]} - sum_of(sums[r][p])) * pivot);
+    }
   }
   for (int l = 0; l < n; l += 8) {
-    const Sources from = sources_at(view, begin + l);
-    Eight w = load8(view.w + begin + l), v = {}, doubt = {};
+    Sources from[Rows];
+    Eight w[Rows], v[Rows] = {}, doubt[Rows] = {};
+#pragma GCC unroll 4
+    for (int r = 0; r < Rows; ++r) {
+      const long at = begin + static_cast<long>(r) * parity.pitch + l;
+      from[r] = sources_at<grows>(view, at);
+      w[r] = load8(view.w + at);
+    }
 #pragma GCC unroll 4
     for (int p = 0; p < shift_count; ++p) {
       const ShiftFactors& own = factors.of[p];
       const double* const edge = view.edge + 4L * p * n + l;
-      const Pairs reciprocal = load_pairs(shifts[p].re + begin + l, shifts[p].im + begin + l);
-      const Pairs x = (side_of(from, own) - (load_pairs(edge, edge + n) + upsilon[p])) * reciprocal;
-      w = w + (x.re * own.next_w.re - x.im * own.next_w.im);
-      v = v + (x.re * own.next_v.re - x.im * own.next_v.im);
-      if constexpr (has_doubt) doubt = doubt + (x.re * own.doubt.re - x.im * own.doubt.im);
+      const Pairs of_edge = load_pairs(edge, edge + n);
+#pragma GCC unroll 4
+      for (int r = 0; r < Rows; ++r) {
+        const long at = begin + static_cast<long>(r) * parity.pitch + l;
+        const Pairs reciprocal = load_pairs(shifts[p].re + at, shifts[p].im + at);
+        const Pairs x = (side_of<grows>(from[r], own) - (of_edge + upsilon[r][p])) * reciprocal;
+        w[r] = w[r] + (x.re * own.next_w.re - x.im * own.next_w.im);
+        v[r] = v[r] + (x.re * own.next_v.re - x.im * own.next_v.im);
+        if constexpr (has_doubt) doubt[r] = doubt[r] + (x.re * own.doubt.re - x.im * own.doubt.im);
+      }
     }
-    store8(view.next_w + begin + l, w);
-    store8(view.next_v + begin + l, v);
-    if constexpr (has_doubt) store8(view.doubt + begin + l, doubt);
+#pragma GCC unroll 4
+    for (int r = 0; r < Rows; ++r) {
+      const long at = begin + static_cast<long>(r) * parity.pitch + l;
+      store8(view.next_w + at, w[r]);
+      store8(view.next_v + at, v[r]);
+      if constexpr (has_doubt) store8(view.doubt + at, doubt[r]);
+    }
   }
 }
 
@@ -184,23 +229,37 @@ void find_lack(const ParityView& parity, const LackView& lack, const ExactView& 
       const Eight diagonal = load8(lack.diagonal + begin + l);
       const Eight held =
           load8(view.w + begin + l) * diagonal + (load8(view.edge + l) * lack.beta + of_row);
-      const Eight force = load8(view.load + begin + l) + load8(view.growth + begin + l) * lack.time;
+      Eight force = load8(view.load + begin + l);
+      if (view.growth) force = force + load8(view.growth + begin + l) * lack.time;
       store8(lack.lack + begin + l, (held - force) * lack.scale);
     }
   }
 }
 
-void exact_step(const ParityView& parity, const ShiftView* shifts, const ExactFactors& factors,
-                const ExactView& view) {
-  for (int k = 0; k < parity.rows; ++k) begin_row(parity, shifts, factors, view, k);
+template <bool grows, bool has_doubt>
+PLIANT_INLINE void take_exact_step(const ParityView& parity, const ShiftView* shifts,
+                                   const ExactFactors& factors, const ExactView& view) {
+  int k = 0;
+  for (; k + exact_rows <= parity.rows; k += exact_rows)
+    begin_rows<exact_rows, grows>(parity, shifts, factors, view, k);
+  for (; k < parity.rows; ++k) begin_rows<1, grows>(parity, shifts, factors, view, k);
   for (int p = 0; p < shift_count; ++p) {
     solve_complex_edge(parity, shifts[p], view.column_sums + 2L * p * parity.columns,
                        view.edge + 4L * p * parity.columns);
   }
-  if (view.doubt) {
-    for (int k = 0; k < parity.rows; ++k) end_row<true>(parity, shifts, factors, view, k);
+  for (k = 0; k + exact_rows <= parity.rows; k += exact_rows)
+    end_rows<exact_rows, grows, has_doubt>(parity, shifts, factors, view, k);
+  for (; k < parity.rows; ++k) end_rows<1, grows, has_doubt>(parity, shifts, factors, view, k);
+}
+
+void exact_step(const ParityView& parity, const ShiftView* shifts, const ExactFactors& factors,
+                const ExactView& view) {
+  if (view.growth) {
+    (view.doubt ? take_exact_step<true, true> : take_exact_step<true, false>)(parity, shifts,
+                                                                              factors, view);
   } else {
-    for (int k = 0; k < parity.rows; ++k) end_row<false>(parity, shifts, factors, view, k);
+    (view.doubt ? take_exact_step<false, true> : take_exact_step<false, false>)(parity, shifts,
+                                                                                factors, view);
   }
 }
 

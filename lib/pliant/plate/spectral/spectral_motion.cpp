@@ -202,7 +202,8 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
         plate_.is_still_[component] && plate_.is_zero(first_load, component);
   }
   plate_.to_sines(first_load, &SpectralPlate::Parity::load);
-  plate_.to_sines(last_load, &SpectralPlate::Parity::growth);
+  const bool grows = !plate_.are_equal(first_load, last_load);
+  if (grows) plate_.to_sines(last_load, &SpectralPlate::Parity::growth);
   plate_.to_sines(view(displacement), &SpectralPlate::Parity::displacement);
   plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
   carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
@@ -214,7 +215,8 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     const long size = long{parity.rows} * parity.pitch;
     double* const growth = parity.growth[component];
     const double* const load = parity.load[component];
-    for (long n = 0; n < size; ++n) growth[n] = (growth[n] - load[n]) / steps.length;
+    work_[k][component].view.growth = grows ? growth : nullptr;
+    for (long n = 0; grows && n < size; ++n) growth[n] = (growth[n] - load[n]) / steps.length;
   });
 
   StepChoice choice(steps);

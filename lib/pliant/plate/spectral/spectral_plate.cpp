@@ -353,6 +353,20 @@ bool SpectralPlate::is_zero(const ConstNodesView& field, int component) const {
   return true;
 }
 
+// At what moves.
+bool SpectralPlate::are_equal(const ConstNodesView& one, const ConstNodesView& other) const {
+  const auto row = [](const ConstNodesView& field, int component, int j) {
+    return field.first + component * field.component_stride + j * field.row_stride;
+  };
+  for (int component = 0; component < 3; ++component) {
+    for (int j = 0; !is_still_[component] && j < rows_ - 2; ++j) {
+      const double* const of_one = row(one, component, j);
+      if (!std::equal(of_one, of_one + columns_ - 2, row(other, component, j))) return false;
+    }
+  }
+  return true;
+}
+
 void SpectralPlate::clear(const NodesView& field, int component) const {
   for (int j = 0; j < rows_ - 2; ++j) {
     std::fill_n(field.first + component * field.component_stride + j * field.row_stride,

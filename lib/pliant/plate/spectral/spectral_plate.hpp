@@ -109,6 +109,7 @@ class SpectralPlate {
   void find_still(const ConstNodesView& load, const ConstNodesView& displacement,
                   const ConstNodesView& velocity);
   bool is_zero(const ConstNodesView& field, int component) const;
+  bool are_equal(const ConstNodesView& one, const ConstNodesView& other) const;
   void clear(const NodesView& field, int component) const;
   Parts moving_parts() const;
   std::size_t chunk_count() const;
