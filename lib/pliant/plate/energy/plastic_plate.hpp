@@ -1,10 +1,11 @@
 #pragma once
 
-#include <array>
+#include <memory>
 #include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/plate/energy/plate_energy.hpp"
+#include "pliant/plate/energy/return_mapping.hpp"
 
 namespace pliant {
 
@@ -31,8 +32,6 @@ class PlasticPlate {
   void add_slope(const Field& way, Field& forces) const;
 
  private:
-  using Curvature = std::array<double, 9>;
-
   // A node with its neighbours, counted round, and the weights of its curvatures.
   struct Stencil {
     int node;
@@ -43,18 +42,16 @@ class PlasticPlate {
     double area;
   };
 
-  // A node that flows: dk_p = whole dk + along xi (xi . C dk).
   struct Flowing {
     int i, j;
-    double whole, along;
-    Curvature xi;
+    Flow flow;
   };
 
   Stencil stencil(int i, int j) const;
-  Curvature curvature(const Stencil& at, const Field& w) const;
-  void add_forces(const Stencil& at, const Curvature& plastic, Field& forces) const;
-  Curvature stress(int i, int j, const Field& w, const PlasticField& from) const;
-  double product(int node, const Curvature& a, const Curvature& b) const;
+  PlaceCurvatures curvatures(const Stencil& at, const Field& w) const;
+  void add_forces(const Stencil& at, const PlaceCurvatures& plastic, Field& forces) const;
+  PlaceCurvatures stress(int i, int j, const Field& w, const PlasticField& from) const;
+  double squared_norm(int node, const PlaceCurvatures& xi) const;
   PlasticLaw law(int node) const;
 
   Grid grid_;
