@@ -12,7 +12,8 @@ namespace pliant {
 /// is 1 everywhere. docs/model.md, "Maps".
 struct CellFactors {
   std::vector<double> density, damping;  ///< #masses
-  std::vector<double> b, c, d;           ///< #cells
+  std::vector<double> b, c, d;           ///< #cells; equal for those of one triangle
+  std::vector<double> yield, hardening;  ///< of `TrianglePlate::triangles`
 
   /// The form of a cell for that of the whole plate.
   Bending of_cell(const Bending& bending, int cell) const {
