@@ -32,10 +32,13 @@ Surface panel(double density = 0.02) {
 Surface shell() {
   Surface surface = panel();
   surface.shape = square(10, 5, 0.3);
+  surface.solver.measure = {};
   return surface;
 }
 
-Scene struck(Surface surface, double magnitude = 3000) {
+// Each is bent by about as much.
+Scene struck(Surface surface) {
+  const double magnitude = std::holds_alternative<Mesh>(surface.shape) ? 500 : 3000;
   Force hammer = poke("hammer", {0.4, 0, -0.3}, magnitude);
   hammer.magnitude = curve({{1, 0}, {4, magnitude}, {7, 0}});
   hammer.deformation_radius = 5.5;
@@ -64,14 +67,14 @@ TEST_CASE("a body that yields nowhere has the elastic bits", "[simulation][plast
   const Scene elastic = struck(surface);
   const auto expected = baked(elastic, "s");
   CHECK(peak(expected) > 0.05);
-  CHECK(baked(yielding(elastic, 1e9), "s") == expected);
+  CHECK((baked(yielding(elastic, 1e9), "s") == expected));
   Scene mapped = yielding(elastic, 1e9);
   const bool is_sheet = std::holds_alternative<GridSheet>(surface.shape);
   const std::size_t count =
       is_sheet ? 15 * 15 : static_cast<std::size_t>(std::get<Mesh>(surface.shape).vertex_count());
   mapped.surfaces[0].maps = {
       {.channel = MapChannel::Yield, .low = 1, .high = 2, .values = std::vector(count, 0.5)}};
-  CHECK(baked(mapped, "s") == expected);
+  CHECK((baked(mapped, "s") == expected));
 }
 
 TEST_CASE("a dent stays, and less of it the higher the yield", "[simulation][plastic]") {
@@ -79,12 +82,12 @@ TEST_CASE("a dent stays, and less of it the higher the yield", "[simulation][pla
   const Scene elastic = struck(surface);
   const auto ringing = baked(elastic, "s");
   const double peak_height = peak(ringing);
-  CHECK(height(ringing.back()) < 1e-2 * peak_height);
+  CHECK(height(ringing.back()) < 1e-4 * peak_height);
   double last = std::numeric_limits<double>::infinity();
   for (const double yield : {1.0, 1.3, 1.6}) {
     CAPTURE(yield);
     const auto dented = baked(yielding(elastic, yield * soft), "s");
-    CHECK(height(dented.back()) > 0.02 * peak_height);
+    CHECK(height(dented.back()) > 2e-3 * peak_height);
     CHECK(height(dented.back()) < last);
     last = height(dented.back());
     // It has come to rest in its new shape.

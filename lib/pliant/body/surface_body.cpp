@@ -94,6 +94,16 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   own.b = at_cells(factors->b);
   own.c = at_cells(factors->c);
   own.d = at_cells(factors->d);
+  const auto at_triangles = [&](const std::vector<double>& at_nodes) {
+    std::vector<double> at;
+    const std::vector<double> means = means_on_triangles(surface, at_nodes);
+    if (means.empty()) return at;
+    for (const int triangle : triangles_of(piece.cells))
+      at.push_back(means[static_cast<std::size_t>(triangle)]);
+    return at;
+  };
+  own.yield = at_triangles(factors->yield);
+  own.hardening = at_triangles(factors->hardening);
   return std::make_shared<const CellFactors>(std::move(own));
 }
 
@@ -308,6 +318,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
                       ", which is static: give it a density or a damping");
     }
     one.problem.dynamics = *dynamics;
+    one.problem.law = inputs.law;
     one.problem.slopes = slopes_of(inputs.tangents);
     one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
     if (remembers_push()) {
@@ -315,6 +326,12 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
       one.problem.first_slopes = slopes_of(first_tangents(inputs.tangents));
     }
     one.state = state_of(piece);
+    if (settings_.yields) {
+      const std::vector<int>& triangles = one.plate->triangles();
+      one.state.plastic.resize(static_cast<Eigen::Index>(triangles.size()), 9);
+      for (std::size_t n = 0; n < triangles.size(); ++n)
+        one.state.plastic.row(static_cast<Eigen::Index>(n)) = state_.plastic.row(triangles[n]);
+    }
     auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
     if (!next) {
       Error error = next.error();
@@ -381,11 +398,14 @@ TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
 // Makes the solution the state, all of it or nothing.
 Result<void> SurfaceBody::take() {
   const std::vector<int>& nodes = plan_.surface->level_set.nodes;
+  next_plastic_ = state_.plastic;
   std::size_t place = 0;
   for (const SurfacePiece& piece : plan_.surface->pieces) {
     if (!piece.moves()) continue;
     const PieceSolve& one = solves_[place++];
     const TriangleState& state = one.state;
+    for (Eigen::Index n = 0; n < state.plastic.rows(); ++n)
+      next_plastic_.row(one.plate->triangles()[static_cast<std::size_t>(n)]) = state.plastic.row(n);
     for (int k = 0; k < piece.free_nodes; ++k) {
       const int node = nodes[piece.points[k]];
       next_positions_.row(node) = rest_.row(node) + state.displacement.row(k);
@@ -398,9 +418,12 @@ Result<void> SurfaceBody::take() {
       next_push_.unknowns[static_cast<std::size_t>(node)] = 1;
     }
   }
+  if (!next_plastic_.allFinite())
+    return fail(ErrorCode::NotFinite, "the state stopped being finite");
   if (recovers()) mark_unsettled();
   state_.positions.swap(next_positions_);
   state_.velocities.swap(next_velocities_);
+  state_.plastic.swap(next_plastic_);
   if (remembers_push()) std::swap(state_.last, next_push_);
   return {};
 }

@@ -83,7 +83,8 @@ class SurfaceBody final : public Body {
   std::vector<PieceSolve> solves_;  // of the pieces that move, in their order
   SolverCounts past_counts_;        // of the plates that are gone
   Field next_positions_, next_velocities_;
-  LastPush next_push_;  // only if the body remembers it
+  LastPush next_push_;         // only if the body remembers it
+  PlasticField next_plastic_;  // only if it yields
 };
 
 }  // namespace pliant

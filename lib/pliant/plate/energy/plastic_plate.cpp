@@ -1,7 +1,5 @@
 #include "pliant/plate/energy/plastic_plate.hpp"
 
-#include <cmath>
-
 #include "pliant/core/expects.hpp"
 
 namespace pliant {
@@ -55,8 +53,8 @@ PlasticPlate::Stencil PlasticPlate::stencil(int i, int j) const {
   return at;
 }
 
-PlasticPlate::Curvature PlasticPlate::curvature(const Stencil& at, const Field& w) const {
-  Curvature result;
+PlaceCurvatures PlasticPlate::curvatures(const Stencil& at, const Field& w) const {
+  PlaceCurvatures result;
   for (int k = 0; k < 3; ++k) {
     const double* const of = w.col(k).data();
     const double here = of[at.node];
@@ -68,13 +66,13 @@ PlasticPlate::Curvature PlasticPlate::curvature(const Stencil& at, const Field& 
   return result;
 }
 
-void PlasticPlate::add_forces(const Stencil& at, const Curvature& plastic, Field& forces) const {
-  const Moduli<double>& moduli = moduli_[static_cast<std::size_t>(at.node)];
+void PlasticPlate::add_forces(const Stencil& at, const PlaceCurvatures& plastic,
+                              Field& forces) const {
+  const PlaceCurvatures moments = moments_of(moduli_[static_cast<std::size_t>(at.node)], plastic);
   for (int k = 0; k < 3; ++k) {
     double* const to = forces.col(k).data();
-    const double of_u = at.area * (moduli.uu * plastic[k] + moduli.coupling * plastic[3 + k]);
-    const double of_v = at.area * (moduli.coupling * plastic[k] + moduli.vv * plastic[3 + k]);
-    const double twist = at.area * moduli.uv * plastic[6 + k] * at.twist;
+    const double of_u = at.area * moments[k], of_v = at.area * moments[3 + k];
+    const double twist = at.area * at.twist * moments[6 + k];
     to[at.left] += at.u.before * of_u;
     to[at.right] += at.u.after * of_u;
     to[at.below] += at.v.before * of_v;
@@ -88,10 +86,9 @@ void PlasticPlate::add_forces(const Stencil& at, const Curvature& plastic, Field
 }
 
 // xi = k - (1 + H) k_p.
-PlasticPlate::Curvature PlasticPlate::stress(int i, int j, const Field& w,
-                                             const PlasticField& from) const {
+PlaceCurvatures PlasticPlate::stress(int i, int j, const Field& w, const PlasticField& from) const {
   const Stencil at = stencil(i, j);
-  Curvature result = curvature(at, w);
+  PlaceCurvatures result = curvatures(at, w);
   if (at.u.slope != 0 || at.v.slope != 0) {
     const Vector3d of_u = at.u.slope * (i == 0 ? tangents_.su0 : tangents_.su1);
     const Vector3d of_v = at.v.slope * (j == 0 ? tangents_.sv0 : tangents_.sv1);
@@ -105,25 +102,16 @@ PlasticPlate::Curvature PlasticPlate::stress(int i, int j, const Field& w,
   return result;
 }
 
-// a . C b.
-double PlasticPlate::product(int node, const Curvature& a, const Curvature& b) const {
-  const Moduli<double>& moduli = moduli_[static_cast<std::size_t>(node)];
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    sum += a[k] * (moduli.uu * b[k] + moduli.coupling * b[3 + k]) +
-           a[3 + k] * (moduli.coupling * b[k] + moduli.vv * b[3 + k]) +
-           moduli.uv * a[6 + k] * b[6 + k];
-  }
-  return sum;
+double PlasticPlate::squared_norm(int node, const PlaceCurvatures& xi) const {
+  return product_of(moduli_[static_cast<std::size_t>(node)], xi, xi);
 }
 
 bool PlasticPlate::yields(const Field& w, const PlasticField& from) const {
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       const int node = grid_.node(i, j);
-      const Curvature xi = stress(i, j, w, from);
       const double yield = law(node).yield;
-      if (product(node, xi, xi) > yield * yield) return true;
+      if (squared_norm(node, stress(i, j, w, from)) > yield * yield) return true;
     }
   }
   return false;
@@ -135,18 +123,15 @@ bool PlasticPlate::flow(const Field& w, const PlasticField& from, PlasticField& 
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       const int node = grid_.node(i, j);
-      Curvature xi = stress(i, j, w, from);
-      const double squared = product(node, xi, xi);
-      const auto [yield, hardening] = law(node);
-      if (!(squared > yield * yield)) continue;
+      PlaceCurvatures xi = stress(i, j, w, from);
+      const double squared = squared_norm(node, xi);
+      const PlasticLaw own = law(node);
+      if (!(squared > own.yield * own.yield)) continue;
       // Curvatures that are eliminated do not flow.
       if (along_u_[static_cast<std::size_t>(i)].is_eliminated) xi[0] = xi[1] = xi[2] = 0;
       if (along_v_[static_cast<std::size_t>(j)].is_eliminated) xi[3] = xi[4] = xi[5] = 0;
-      const double q = std::sqrt(squared);
-      const double share = 1 / (1 + hardening);
-      const double whole = share * (1 - yield / q);
-      for (int k = 0; k < 9; ++k) to(node, k) += whole * xi[k];
-      flowing_.push_back({i, j, whole, share * yield / (q * squared), xi});
+      const Flow& flow = flowing_.emplace_back(Flowing{i, j, {own, xi, squared}}).flow;
+      for (int k = 0; k < 9; ++k) to(node, k) += flow.whole * xi[k];
     }
   }
   return !flowing_.empty();
@@ -156,7 +141,7 @@ void PlasticPlate::add_forces(const PlasticField& plastic, Field& forces) const 
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       const int node = grid_.node(i, j);
-      Curvature here;
+      PlaceCurvatures here;
       bool is_flat = true;
       for (int k = 0; k < 9; ++k) {
         here[k] = plastic(node, k);
@@ -170,10 +155,8 @@ void PlasticPlate::add_forces(const PlasticField& plastic, Field& forces) const 
 void PlasticPlate::add_slope(const Field& way, Field& forces) const {
   for (const Flowing& one : flowing_) {
     const Stencil at = stencil(one.i, one.j);
-    Curvature change = curvature(at, way);
-    const double along = one.along * product(at.node, one.xi, change);
-    for (int k = 0; k < 9; ++k) change[k] = one.whole * change[k] + along * one.xi[k];
-    add_forces(at, change, forces);
+    const Moduli<double>& moduli = moduli_[static_cast<std::size_t>(at.node)];
+    add_forces(at, one.flow.change(moduli, curvatures(at, way)), forces);
   }
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <array>
+#include <memory>
 #include <vector>
 
 #include "pliant/core/field.hpp"
 #include "pliant/plate/energy/plate_energy.hpp"
+#include "pliant/plate/energy/return_mapping.hpp"
 
 namespace pliant {
 
@@ -19,11 +20,11 @@ class PlasticPlate {
   /// (#nodes x 3, x 9).
   bool yields(const Field& w, const PlasticField& from) const;
 
-  /// The plastic curvatures that `w` makes of `from`: the return mapping, eq. (8h). Remembers the
+  /// The plastic curvatures that `w` makes of `from`: the return mapping, eq. (8j). Remembers the
   /// nodes that flow, for `add_slope`. Returns whether there are any.
   bool flow(const Field& w, const PlasticField& from, PlasticField& to);
 
-  /// Adds the forces of plastic curvatures to those on the nodes: sum of omega B^T C k, eq. (8i).
+  /// Adds the forces of plastic curvatures to those on the nodes: sum of omega B^T C k, eq. (8k).
   void add_forces(const PlasticField& plastic, Field& forces) const;
 
   /// Adds how these forces change with the displacement, in the direction `way` (#nodes x 3), at
@@ -31,8 +32,6 @@ class PlasticPlate {
   void add_slope(const Field& way, Field& forces) const;
 
  private:
-  using Curvature = std::array<double, 9>;
-
   // A node with its neighbours, counted round, and the weights of its curvatures.
   struct Stencil {
     int node;
@@ -43,18 +42,16 @@ class PlasticPlate {
     double area;
   };
 
-  // A node that flows: dk_p = whole dk + along xi (xi . C dk).
   struct Flowing {
     int i, j;
-    double whole, along;
-    Curvature xi;
+    Flow flow;
   };
 
   Stencil stencil(int i, int j) const;
-  Curvature curvature(const Stencil& at, const Field& w) const;
-  void add_forces(const Stencil& at, const Curvature& plastic, Field& forces) const;
-  Curvature stress(int i, int j, const Field& w, const PlasticField& from) const;
-  double product(int node, const Curvature& a, const Curvature& b) const;
+  PlaceCurvatures curvatures(const Stencil& at, const Field& w) const;
+  void add_forces(const Stencil& at, const PlaceCurvatures& plastic, Field& forces) const;
+  PlaceCurvatures stress(int i, int j, const Field& w, const PlasticField& from) const;
+  double squared_norm(int node, const PlaceCurvatures& xi) const;
   PlasticLaw law(int node) const;
 
   Grid grid_;

@@ -12,7 +12,13 @@ namespace pliant {
 /// is 1 everywhere. docs/model.md, "Maps".
 struct CellFactors {
   std::vector<double> density, damping;  ///< #masses
-  std::vector<double> b, c, d;           ///< #cells
+  std::vector<double> b, c, d;           ///< #cells; equal for those of one triangle
+  std::vector<double> yield, hardening;  ///< of `TrianglePlate::triangles`
+
+  /// Whether an elastic plate has some of them.
+  bool are_elastic() const {
+    return !density.empty() || !damping.empty() || !b.empty() || !c.empty() || !d.empty();
+  }
 
   /// The form of a cell for that of the whole plate.
   Bending of_cell(const Bending& bending, int cell) const {
@@ -27,7 +33,7 @@ struct CellFactors {
 
 /// The form of a cell; `factors` null: that of the whole plate.
 inline Bending bending_at(const Bending& bending, const CellFactors* factors, int cell) {
-  return factors ? factors->of_cell(bending, cell) : bending;
+  return factors && factors->are_elastic() ? factors->of_cell(bending, cell) : bending;
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/energy/plastic_steps.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/step_loop.hpp"
 
@@ -23,12 +24,15 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
                              const RunContext& context, std::shared_ptr<const CellFactors> factors)
     : cells_(std::move(cells)),
       masses_(std::move(masses)),
+      triangles_(triangles_of(cells_)),
       factors_(std::move(factors)),
+      elastic_(factors_ && factors_->are_elastic() ? factors_.get() : nullptr),
       context_(context),
       reduced_(cells_, static_cast<int>(masses_.size())),
       factor_(*this, choice, context),
       precise_share_(context.memory),
-      motion_(context) {
+      motion_(context),
+      plastic_share_(context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
 }
 
@@ -36,16 +40,16 @@ Eigen::VectorXd TrianglePlate::weighted_masses() const {
   Eigen::VectorXd weighted(static_cast<Eigen::Index>(masses_.size()));
   for (Eigen::Index k = 0; k < weighted.size(); ++k) {
     const int point = static_cast<int>(k);
-    weighted[k] = factors_ ? masses_[k] * factor_at(factors_->density, point) : masses_[k];
+    weighted[k] = elastic_ ? masses_[k] * factor_at(elastic_->density, point) : masses_[k];
   }
   return weighted;
 }
 
 template <class Real>
 Real TrianglePlate::shift_at(int point, double shift, double drag) const {
-  if (!factors_) return Real{shift} * masses_[point];
-  return Real{masses_[point]} * (Real{shift - drag} * factor_at(factors_->density, point) +
-                                 Real{drag} * factor_at(factors_->damping, point));
+  if (!elastic_) return Real{shift} * masses_[point];
+  return Real{masses_[point]} * (Real{shift - drag} * factor_at(elastic_->density, point) +
+                                 Real{drag} * factor_at(elastic_->damping, point));
 }
 
 // Contributions are gathered by rows, in the order of the blocks, and those of one entry are added
@@ -166,7 +170,7 @@ Result<void> TrianglePlate::prepare(const Bending& bending, double shift, double
 }
 
 // The forces on the unknowns by what is held: -K times the displacements and slopes that are given.
-Field TrianglePlate::held_forces(const Bending& even, const Slopes& given_slopes,
+Field TrianglePlate::held_forces(const Bending& even, const GivenSlopes& slopes,
                                  const Field& displacement) const {
   Field forces = Field::Zero(cells_.unknown_count(), 3);
   for (int number = 0; number < static_cast<int>(cells_.cells.size()); ++number) {
@@ -179,17 +183,9 @@ Field TrianglePlate::held_forces(const Bending& even, const Slopes& given_slopes
     const Bending bending = bending_at(even, factors_.get(), number);
     const MorleyCell cell(each.shape);
     const std::array<Curvature, 6> by_value = cell.by_value();
+    const PlaceCurvatures held = held_curvatures(cells_, each, cell, slopes, displacement);
     for (int component = 0; component < 3; ++component) {
-      Curvature h = {0, 0, 0};
-      const auto add = [&](int value, double amount) {
-        for (int k = 0; k < 3; ++k) h[k] += amount * by_value[value][k];
-      };
-      std::array<double, 4> slopes;
-      for (int k = 0; k < 4; ++k) slopes[k] = given_slopes[k][component];
-      for (int k = 0; k < 3; ++k) {
-        if (each.points[k] >= cells_.free_points) add(k, displacement(each.points[k], component));
-        if (each.slopes[k].count == 0) add(3 + k, cell.given_slope(k, slopes));
-      }
+      const Curvature h = {held[component], held[3 + component], held[6 + component]};
       if (h == Curvature{0, 0, 0}) continue;
       const Curvature moment = moments(bending, h);
       for_each_unknown(cells_, each, [&](const CellUnknown& unknown) {
@@ -248,6 +244,55 @@ Result<Field> TrianglePlate::solve(const Field& forces) {
   return Field(solution->topRows(points));
 }
 
+// The elastic steps of an interval, one after another.
+class TrianglePlate::ElasticSteps {
+ public:
+  // `known`: the forces on the unknowns of the matrix, the load among them.
+  ElasticSteps(TrianglePlate& plate, const Dynamics& dynamics, double dt, Field known)
+      : plate_(plate),
+        shift_(dynamics.shift(dt)),
+        inertia_(dynamics.inertia(dt)),
+        masses_(plate.masses_.data(), static_cast<Eigen::Index>(plate.masses_.size())),
+        known_(std::move(known)),
+        right_hand_sides_(known_) {
+    plate_.factor_.begin_steps();
+    if (!plate_.elastic_) return;
+    const double drag = dynamics.damping / dt;
+    inertias_ = inertia_ * plate_.weighted_masses();
+    shifts_.resize(masses_.size());
+    for (Eigen::Index k = 0; k < masses_.size(); ++k)
+      shifts_[k] = plate_.shift_at<double>(static_cast<int>(k), shift_, drag);
+  }
+
+  Result<Field> solve(const Field& w, const Field& v) {
+    const Eigen::Index points = masses_.size();
+    for (int k = 0; plate_.elastic_ && k < 3; ++k) {
+      right_hand_sides_.col(k).head(points) = known_.col(k).head(points) +
+                                              shifts_.cwiseProduct(w.col(k)) +
+                                              inertias_.cwiseProduct(v.col(k));
+    }
+    for (int k = 0; !plate_.elastic_ && k < 3; ++k) {
+      right_hand_sides_.col(k).head(points) =
+          known_.col(k).head(points) +
+          masses_.cwiseProduct(shift_ * w.col(k) + inertia_ * v.col(k));
+    }
+    return plate_.factor_.solve_next(right_hand_sides_);
+  }
+
+  // With `known` on all unknowns.
+  StepTerms terms(Field known) const {
+    if (plate_.elastic_) return {std::move(known), shifts_, inertias_};
+    return {std::move(known), shift_ * masses_, inertia_ * masses_};
+  }
+
+ private:
+  TrianglePlate& plate_;
+  double shift_, inertia_;
+  Eigen::Map<const Eigen::VectorXd> masses_;
+  Field known_, right_hand_sides_;
+  Eigen::VectorXd shifts_, inertias_;  // of the points, if they differ by more than their masses
+};
+
 Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, const TimeSteps& steps,
                                              TriangleState state) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
@@ -255,40 +300,117 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
                  state.velocity.rows() == points && problem.load.rows() == points);
   if (steps.are_exact()) return advance_exactly(problem, steps, std::move(state));
   const double dt = steps.solved_length();
-  const double inertia = problem.dynamics.inertia(dt);
-  const double shift = problem.dynamics.shift(dt);
-  const double drag = factors_ ? problem.dynamics.damping / dt : 0;
   StageTimer set_up(context_.profile, Stage::SetUp);
-  if (auto ready = prepare(problem.bending, shift, drag); !ready) return fail(ready.error());
+  const double drag = elastic_ ? problem.dynamics.damping / dt : 0;
+  if (auto ready = prepare(problem.bending, problem.dynamics.shift(dt), drag); !ready)
+    return fail(ready.error());
+  if (problem.law) {
+    if (auto ready = prepare_plasticity(); !ready) return fail(ready.error());
+  }
   set_up.stop();
   const StageTimer solving(context_.profile, Stage::Solve);
+  if (problem.law) return advance_plastic(problem, steps, std::move(state));
 
   Field known = reduced(held_forces(problem.bending, problem.slopes, state.displacement));
   known.topRows(points) += problem.load;
-  const Eigen::Map<const Eigen::VectorXd> masses(masses_.data(), points);
   Motion motion{state.displacement.topRows(points), std::move(state.velocity)};
-  Field right_hand_sides = known;
-  Eigen::VectorXd shifts, inertias;  // of the points, if they differ by more than their masses
-  if (factors_) {
-    inertias = inertia * weighted_masses();
-    shifts.resize(points);
-    for (Eigen::Index k = 0; k < points; ++k)
-      shifts[k] = shift_at<double>(static_cast<int>(k), shift, drag);
-  }
-  const auto solve = [&](const Field& w, const Field& v) {
-    for (int k = 0; factors_ && k < 3; ++k) {
-      right_hand_sides.col(k).head(points) = known.col(k).head(points) +
-                                             shifts.cwiseProduct(w.col(k)) +
-                                             inertias.cwiseProduct(v.col(k));
-    }
-    for (int k = 0; !factors_ && k < 3; ++k) {
-      right_hand_sides.col(k).head(points) =
-          known.col(k).head(points) + masses.cwiseProduct(shift * w.col(k) + inertia * v.col(k));
-    }
-    return factor_.solve_next(right_hand_sides);
-  };
-  factor_.begin_steps();
+  ElasticSteps elastic(*this, problem.dynamics, dt, std::move(known));
+  const auto solve = [&](const Field& w, const Field& v) { return elastic.solve(w, v); };
   if (auto done = run_steps(context_, steps, motion, solve); !done) return fail(done.error());
+  state.displacement.topRows(points) = motion.displacement;
+  state.velocity = std::move(motion.velocity);
+  return state;
+}
+
+Result<void> TrianglePlate::prepare_plasticity() {
+  if (plasticity_ && plasticity_->bending == bending_) return {};
+  plasticity_.reset();
+  plasticity_.emplace(Plasticity{bending_,
+                                 {cells_, reduced_, bending_, factors_.get()},
+                                 {cells_, triangles_, bending_, factors_.get()}});
+  const std::size_t bytes = plasticity_->inner.memory() + plasticity_->triangles.memory();
+  if (plastic_share_.try_resize(bytes)) return {};
+  plasticity_.reset();
+  return fail(no_memory_to_solve(cells_.unknown_count(), plastic_share_.complaint(bytes)));
+}
+
+// All unknowns, those within blocks too, on which plastic curvatures press.
+class TrianglePlate::FlowingTriangles final : public FlowingPlate {
+ public:
+  explicit FlowingTriangles(TrianglePlate& plate)
+      : plate_(plate),
+        triangles_(plate.plasticity_->triangles),
+        zero_(Field::Zero(plate.cells_.unknown_count(), 3)) {}
+
+  Result<Field> solve(const Field& forces) override {
+    Field eliminated = forces;
+    const InnerUnknowns& inner = plate_.plasticity_->inner;
+    const auto left = plate_.factor_.solve(inner.eliminate(eliminated));
+    if (!left) return left;
+    return inner.recovered(*left, eliminated);
+  }
+
+  bool flow(const Field& x, const PlasticField& from, PlasticField& to) override {
+    return triangles_.flow(x, from, to);
+  }
+
+  Field forces_of(const PlasticField& plastic) override {
+    Field forces = zero_;
+    triangles_.add_forces(plastic, forces);
+    return forces;
+  }
+
+  Field slope_of(const Field& way) override {
+    Field forces = zero_;
+    triangles_.add_slope(way, forces);
+    return forces;
+  }
+
+ private:
+  TrianglePlate& plate_;
+  PlasticTriangles& triangles_;
+  Field zero_;
+};
+
+// The steps are elastic until one yields.
+Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& problem,
+                                                     const TimeSteps& steps, TriangleState state) {
+  const auto points = static_cast<Eigen::Index>(masses_.size());
+  PLIANT_EXPECTS(state.plastic.rows() == static_cast<Eigen::Index>(triangles_.size()));
+  InnerUnknowns& inner = plasticity_->inner;
+  PlasticTriangles& triangles = plasticity_->triangles;
+  triangles.set_law(*problem.law, factors_.get());
+  triangles.hold(cells_, problem.slopes, state.displacement);
+  Field known = held_forces(problem.bending, problem.slopes, state.displacement);
+  Field forces = known;
+  if (!state.plastic.isZero(0)) triangles.add_forces(state.plastic, forces);
+  Field of_matrix = reduced(forces);
+  of_matrix.topRows(points) += problem.load;
+  known.topRows(points) += problem.load;
+  inner.eliminate(forces);
+
+  ElasticSteps elastic(*this, problem.dynamics, steps.solved_length(), std::move(of_matrix));
+  Motion motion{state.displacement.topRows(points), std::move(state.velocity)};
+  std::optional<Motion> before;  // the step that yields
+  int done = 0;
+  const auto solve = [&](const Field& w, const Field& v) {
+    auto next = elastic.solve(w, v);
+    if (next && triangles.yields(inner.recovered(*next, forces), state.plastic))
+      before = Motion{w, v};
+    return next;
+  };
+  const auto watch = [&](const Field&) {
+    done += before ? 0 : 1;
+    return !before;
+  };
+  if (auto ran = run_steps(context_, steps, motion, solve, watch); !ran) return fail(ran.error());
+  if (before) {
+    motion = *std::move(before);
+    FlowingTriangles flowing(*this);
+    auto ran = run_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
+                                 problem.law->hardening, steps, done, motion, state.plastic);
+    if (!ran) return fail(ran.error());
+  }
   state.displacement.topRows(points) = motion.displacement;
   state.velocity = std::move(motion.velocity);
   return state;
@@ -310,7 +432,7 @@ Result<TriangleState> TrianglePlate::advance_exactly(const TriangleProblem& prob
   if (!ready) return fail(ready.error());
   set_up.stop();
   const StageTimer solving(context_.profile, Stage::Solve);
-  const auto force = [&](const Slopes& slopes, const Field& load) {
+  const auto force = [&](const GivenSlopes& slopes, const Field& load) {
     Field sum = reduced(held_forces(bending_, slopes, state.displacement));
     sum.topRows(points) += load;
     return sum;

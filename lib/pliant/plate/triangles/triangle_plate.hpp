@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -15,6 +16,8 @@
 #include "pliant/plate/sparse/refined_factor.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/plate/triangles/cell_block.hpp"
+#include "pliant/plate/triangles/inner_unknowns.hpp"
+#include "pliant/plate/triangles/plastic_triangles.hpp"
 
 namespace pliant {
 
@@ -22,20 +25,24 @@ namespace pliant {
 struct TriangleProblem {
   Bending bending;
   Dynamics dynamics;
-  std::array<Vector3d, 4> slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
-                                    Vector3d::Zero()};  ///< along -u, +u, -v, +v [1]
+  GivenSlopes slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   Field load;  ///< #masses x 3: integrated over the plate [length b length^2/uv^4]
 
   /// What load and slopes change from, evenly over the interval; only for `Integrator::Exact`.
   Field first_load = {};
-  std::array<Vector3d, 4> first_slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
-                                          Vector3d::Zero()};
+  GivenSlopes first_slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
+                              Vector3d::Zero()};
+
+  /// Of a plate that yields; nullopt: it is elastic. The norm of (8h) has `bending` for its form,
+  /// so that `yield` has the unit that it has on a grid [length/uv^2].
+  std::optional<PlasticLaw> law = {};
 };
 
 /// Displacement of all points, and velocity of those with a mass.
 struct TriangleState {
-  Field displacement;  ///< #points x 3 [length]
-  Field velocity;      ///< #masses x 3 [length/s]
+  Field displacement;         ///< #points x 3 [length]
+  Field velocity;             ///< #masses x 3 [length/s]
+  PlasticField plastic = {};  ///< of a plate that yields: #triangles x 9, those of H [1/length]
 };
 
 /// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
@@ -57,8 +64,9 @@ class TrianglePlate : private PreciseMatrix {
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
   Result<Field> solve(const Field& forces);
 
-  /// Advances as `advance_in_steps`, or exactly. What is held keeps its displacement.
-  /// Errors: those of `prepare`; Interrupted.
+  /// Advances as `advance_in_steps`, or exactly; with a law as `advance_plastic`, which is not for
+  /// exact steps. What is held keeps its displacement. Errors: those of `prepare`; SolverFailed if
+  /// a step does not settle; Interrupted.
   Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                                 TriangleState state);
 
@@ -67,6 +75,11 @@ class TrianglePlate : private PreciseMatrix {
   SparseMatrix matrix(const Bending& bending, double shift, double drag = 0) const;
 
   const TriangleCells& cells() const { return cells_; }
+
+  /// The triangles of the surface that the plate has a part of, ascending: those of the rows of
+  /// `TriangleState::plastic`, and of the factors of yield and hardening.
+  const std::vector<int>& triangles() const { return triangles_; }
+
   const std::vector<double>& masses() const { return masses_; }
   const CellFactors* factors() const { return factors_.get(); }
 
@@ -75,12 +88,28 @@ class TrianglePlate : private PreciseMatrix {
 
   const RunContext& context() const { return context_; }
   SolverCounts counts() const { return factor_.counts() + motion_.counts(); }
-  std::size_t memory() const { return factor_.memory() + motion_.memory(); }
+  std::size_t memory() const {
+    return factor_.memory() + motion_.memory() + plastic_share_.bytes();
+  }
 
  private:
+  class FlowingTriangles;
+
+  // What a plate needs that yields, for one form of bending.
+  struct Plasticity {
+    Bending bending;
+    InnerUnknowns inner;
+    PlasticTriangles triangles;
+  };
+
+  class ElasticSteps;
+
   Field reduced(const Field& forces) const;
-  using Slopes = std::array<Vector3d, 4>;
-  Field held_forces(const Bending& bending, const Slopes& slopes, const Field& displacement) const;
+  Field held_forces(const Bending& bending, const GivenSlopes& slopes,
+                    const Field& displacement) const;
+  Result<void> prepare_plasticity();
+  Result<TriangleState> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
+                                        TriangleState state);
   Result<TriangleState> advance_exactly(const TriangleProblem& problem, const TimeSteps& steps,
                                         TriangleState state);
   using Extended = long double;
@@ -108,7 +137,9 @@ class TrianglePlate : private PreciseMatrix {
 
   TriangleCells cells_;
   std::vector<double> masses_;
+  std::vector<int> triangles_;
   std::shared_ptr<const CellFactors> factors_;
+  const CellFactors* elastic_;  // the same, if an elastic plate has some
   RunContext context_;
   ReducedUnknowns reduced_;  // those of the matrix
   RefinedFactor factor_;
@@ -119,6 +150,8 @@ class TrianglePlate : private PreciseMatrix {
   Rows<Extended> precise_;  // the factored matrix, if solutions are refined
   MemoryShare precise_share_;
   SparseMotion motion_;
+  std::optional<Plasticity> plasticity_;
+  MemoryShare plastic_share_;
 };
 
 }  // namespace pliant

@@ -1,0 +1,180 @@
+#include "pliant/plate/triangles/plastic_triangles.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pliant {
+
+std::vector<int> triangles_of(const TriangleCells& cells) {
+  std::vector<int> triangles;
+  triangles.reserve(cells.cells.size());
+  for (const TriangleCell& cell : cells.cells) triangles.push_back(cell.triangle);
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
+}
+
+PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& cell,
+                                const MorleyCell& shape, const GivenSlopes& slopes,
+                                const Field& displacement) {
+  const std::array<Curvature, 6> by_value = shape.by_value();
+  PlaceCurvatures h = {};
+  for (int component = 0; component < 3; ++component) {
+    const auto add = [&](int value, double amount) {
+      for (int n = 0; n < 3; ++n) h[3 * n + component] += amount * by_value[value][n];
+    };
+    std::array<double, 4> given;
+    for (int k = 0; k < 4; ++k) given[k] = slopes[k][component];
+    for (int k = 0; k < 3; ++k) {
+      if (cell.points[k] >= cells.free_points) add(k, displacement(cell.points[k], component));
+      if (cell.slopes[k].count == 0) add(3 + k, shape.given_slope(k, given));
+    }
+  }
+  return h;
+}
+
+PlasticTriangles::PlasticTriangles(const TriangleCells& cells, const std::vector<int>& triangles,
+                                   const Bending& bending, const CellFactors* factors)
+    : areas_(triangles.size(), 0.0), cell_starts_(triangles.size() + 1, 0) {
+  std::vector<int> place_of_cell;
+  place_of_cell.reserve(cells.cells.size());
+  for (const TriangleCell& cell : cells.cells) {
+    const auto at = std::lower_bound(triangles.begin(), triangles.end(), cell.triangle);
+    const int place = static_cast<int>(at - triangles.begin());
+    place_of_cell.push_back(place);
+    areas_[place] += MorleyCell(cell.shape).area;
+    ++cell_starts_[place + 1];
+  }
+  std::partial_sum(cell_starts_.begin(), cell_starts_.end(), cell_starts_.begin());
+  cells_.resize(cells.cells.size());
+  std::vector<int> next(cell_starts_.begin(), cell_starts_.end() - 1);
+  for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell)
+    cells_[next[place_of_cell[cell]]++] = cell;
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    for (int k = cell_starts_[triangle]; k < cell_starts_[triangle + 1]; ++k) {
+      const TriangleCell& cell = cells.cells[cells_[k]];
+      const MorleyCell shape(cell.shape);
+      const std::array<Curvature, 6> by_value = shape.by_value();
+      const double share = shape.area / areas_[triangle];
+      for_each_unknown(cells, cell, [&](const CellUnknown& unknown) {
+        const auto own = parts_.begin() + static_cast<std::ptrdiff_t>(part_starts_.back());
+        auto part = std::find_if(own, parts_.end(),
+                                 [&](const Part& other) { return other.unknown == unknown.index; });
+        if (part == parts_.end()) part = parts_.insert(part, {unknown.index, {0, 0, 0}});
+        for (int n = 0; n < 3; ++n)
+          part->by[n] += share * unknown.sign * by_value[unknown.value][n];
+      });
+    }
+    part_starts_.push_back(parts_.size());
+    // All cells of a triangle have its coefficients.
+    const Bending own = bending_at(bending, factors, cells_[cell_starts_[triangle]]);
+    moduli_.push_back({own.uu, own.coupling, own.vv, own.uv});
+  }
+}
+
+void PlasticTriangles::set_law(const PlasticLaw& law, const CellFactors* factors) {
+  laws_.assign(areas_.size(), law);
+  for (int k = 0; factors && k < count(); ++k) {
+    laws_[k].yield *= factor_at(factors->yield, k);
+    laws_[k].hardening *= factor_at(factors->hardening, k);
+  }
+}
+
+void PlasticTriangles::hold(const TriangleCells& cells, const GivenSlopes& slopes,
+                            const Field& displacement) {
+  held_.setZero(count(), 9);
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    for (int k = cell_starts_[triangle]; k < cell_starts_[triangle + 1]; ++k) {
+      const TriangleCell& cell = cells.cells[cells_[k]];
+      const MorleyCell shape(cell.shape);
+      const double share = shape.area / areas_[triangle];
+      const PlaceCurvatures h = held_curvatures(cells, cell, shape, slopes, displacement);
+      for (int n = 0; n < 9; ++n) held_(triangle, n) += share * h[n];
+    }
+  }
+}
+
+PlaceCurvatures PlasticTriangles::curvatures(int triangle, const Field& x) const {
+  PlaceCurvatures result = {};
+  for (std::size_t k = part_starts_[triangle]; k < part_starts_[triangle + 1]; ++k) {
+    const Part& part = parts_[k];
+    for (int component = 0; component < 3; ++component) {
+      const double value = x(part.unknown, component);
+      for (int n = 0; n < 3; ++n) result[3 * n + component] += part.by[n] * value;
+    }
+  }
+  return result;
+}
+
+// xi = k - (1 + H) k_p.
+PlaceCurvatures PlasticTriangles::stress(int triangle, const Field& x,
+                                         const PlasticField& from) const {
+  PlaceCurvatures result = curvatures(triangle, x);
+  const double share = 1 + laws_[triangle].hardening;
+  for (int k = 0; k < 9; ++k) {
+    result[k] += held_(triangle, k);
+    result[k] -= share * from(triangle, k);
+  }
+  return result;
+}
+
+bool PlasticTriangles::yields(const Field& x, const PlasticField& from) const {
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    const PlaceCurvatures xi = stress(triangle, x, from);
+    const double yield = laws_[triangle].yield;
+    if (product_of(moduli_[triangle], xi, xi) > yield * yield) return true;
+  }
+  return false;
+}
+
+bool PlasticTriangles::flow(const Field& x, const PlasticField& from, PlasticField& to) {
+  to = from;
+  flowing_.clear();
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    const PlaceCurvatures xi = stress(triangle, x, from);
+    const double squared = product_of(moduli_[triangle], xi, xi);
+    const PlasticLaw& law = laws_[triangle];
+    if (!(squared > law.yield * law.yield)) continue;
+    const Flow& flow = flowing_.emplace_back(Flowing{triangle, {law, xi, squared}}).flow;
+    for (int k = 0; k < 9; ++k) to(triangle, k) += flow.whole * xi[k];
+  }
+  return !flowing_.empty();
+}
+
+void PlasticTriangles::add_forces(int triangle, const PlaceCurvatures& plastic,
+                                  Field& forces) const {
+  const PlaceCurvatures moments = moments_of(moduli_[triangle], plastic);
+  for (std::size_t k = part_starts_[triangle]; k < part_starts_[triangle + 1]; ++k) {
+    const Part& part = parts_[k];
+    for (int component = 0; component < 3; ++component) {
+      double sum = 0;
+      for (int n = 0; n < 3; ++n) sum += part.by[n] * moments[3 * n + component];
+      forces(part.unknown, component) += areas_[triangle] * sum;
+    }
+  }
+}
+
+void PlasticTriangles::add_forces(const PlasticField& plastic, Field& forces) const {
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    if (plastic.row(triangle).isZero(0)) continue;
+    PlaceCurvatures own;
+    for (int k = 0; k < 9; ++k) own[k] = plastic(triangle, k);
+    add_forces(triangle, own, forces);
+  }
+}
+
+void PlasticTriangles::add_slope(const Field& way, Field& forces) const {
+  for (const Flowing& one : flowing_) {
+    const PlaceCurvatures change =
+        one.flow.change(moduli_[one.triangle], curvatures(one.triangle, way));
+    add_forces(one.triangle, change, forces);
+  }
+}
+
+std::size_t PlasticTriangles::memory() const {
+  return parts_.size() * sizeof(Part) + cells_.size() * sizeof(int) +
+         areas_.size() * (2 * sizeof(int) + sizeof(double) + sizeof(Moduli<double>) +
+                          sizeof(PlasticLaw) + sizeof(std::size_t) + 9 * sizeof(double));
+}
+
+}  // namespace pliant
