@@ -18,7 +18,7 @@ import zlib
 
 import numpy as np
 
-from engine import Transform
+from forces import Transform
 from random_mesh import Mesh, text_of
 from random_maps import grey_png
 from scene import Scene

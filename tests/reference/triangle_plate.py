@@ -1,0 +1,176 @@
+"""The plate on triangles (MESHES 4), with the slopes and the centres as unknowns, and its steps."""
+
+import math
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.csgraph
+import scipy.sparse.linalg
+
+from exact_motion import exact_motion
+from maps import check_material
+from stepping import damping_of, smallest_eigenvalue
+
+
+def given_slope(normal, tangents, unit):
+    x, y = normal
+    along_u = tangents["su1"] / unit[0] if x > 0 else -tangents["su0"] / unit[0]
+    along_v = tangents["sv1"] / unit[1] if y > 0 else -tangents["sv0"] / unit[1]
+    return np.broadcast_to(x * x * along_u + y * y * along_v, 3)
+
+
+def form_of(b, c, d, mesh, unit, material):
+    """The quadratic form of H in one triangle."""
+    if mesh.border == "free" or material["has map"]:
+        poisson = material["poisson"]
+    else:
+        poisson = min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
+    b, c, d = b * unit[0]**4, c * unit[0]**2 * unit[1]**2, d * unit[1]**4
+    both = poisson * math.sqrt(b * d)
+    return np.array([[b, both, 0], [both, d, 0], [0, 0, c - 2 * both]])
+
+
+def triangle_material(surface, frame):
+    """b, c and d of each triangle: the mean of its corners'; density and damping of each node."""
+    mesh, material = surface.grid, surface.material(frame)
+    for name in "bcd":
+        at_points = mesh.at_points(np.broadcast_to(material[name], len(mesh.rest)))
+        material[name] = np.array([at_points[list(corners)].mean() for corners in mesh.triangles])
+        if name not in surface.maps:
+            material[name][:] = surface.sample(name, frame)
+    material["poisson"] = surface.sample("poisson", frame)
+    material["has map"] = surface.has_stiffness_map
+    if surface.has_stiffness_map:
+        check_material(material["b"], material["c"], material["d"], material["poisson"])
+        nodes = surface.material(frame)
+        check_material(nodes["b"], nodes["c"], nodes["d"], material["poisson"])
+    return material
+
+
+class Plate:
+    """K and the right-hand side of what is held, for the region's unknowns.
+
+    The first unknowns are the region's `moving_nodes`, then centres, then slopes.
+    """
+
+    def __init__(self, region, w, material, tangents):
+        mesh, unit = region.mesh, region.mesh.unit
+        forms = [form_of(*stiffness, mesh, unit, material)
+                 for stiffness in zip(*(material[name] for name in "bcd"))]
+
+        others = [name for name in region.unknown_names if name not in set(region.moving_nodes)]
+        number = {name: k for k, name in enumerate(list(region.moving_nodes) + others)}
+        count = len(number)
+        slopes = {}  # (cell, edge) -> ([(unknown, sign)], given)
+        for key, places in region.cells_at.items():
+            if not region.moving_cells[places[0][0]]:
+                continue
+            on = region.edge_of.get(key)
+            total = 2 if on is None else mesh.triangles_at[on]
+            is_border = total == 1
+            is_given = len(places) != total or (is_border and mesh.border == "clamped")
+            if is_given:
+                for cell, k in places:
+                    slopes[cell, k] = [], given_slope(region.normals[cell, k], tangents, unit)
+                continue
+            if is_border:
+                slopes[places[0]] = [(count, 1.0)], np.zeros(3)
+                count += 1
+                continue
+            first = count
+            count += total - 1
+            for k, place in enumerate(places[:-1]):
+                slopes[place] = [(first + k, 1.0)], np.zeros(3)
+            slopes[places[-1]] = [(first + k, -1.0) for k in range(total - 1)], np.zeros(3)
+
+        rows, columns, values = [], [], []
+        right = np.zeros((count, 3))
+        for cell, names in enumerate(region.cells):
+            if not region.moving_cells[cell]:
+                continue
+            known = np.zeros((6, 3))
+            place = []  # (row of the cell's six, unknown, sign)
+            for k, name in enumerate(names):
+                if name in number:
+                    place.append((k, number[name], 1.0))
+                else:
+                    known[k] = region.held_displacement(name, w)
+                terms, known[3 + k] = slopes[cell, k]
+                place += [(3 + k, unknown, sign) for unknown, sign in terms]
+            strain = region.bending[cell]
+            form = forms[region.triangles[cell]]
+            matrix = region.areas[cell] * strain.T @ form @ strain
+            of_six, unknowns, signs = (np.array(column) for column in zip(*place))
+            np.add.at(right, unknowns, -signs[:, None] * (matrix @ known)[of_six])
+            rows.append(np.repeat(unknowns, len(place)))
+            columns.append(np.tile(unknowns, len(place)))
+            values.append((np.outer(signs, signs) * matrix[np.ix_(of_six, of_six)]).ravel())
+        triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+        self.stiffness = scipy.sparse.csc_matrix(triplets, shape=(count, count))
+        self.right = right
+
+    def dampings(self, masses, density, ratio):
+        """Of each node that moves, by the slowest vibration of its piece."""
+        nodes = int((masses > 0).sum())
+        damping = np.zeros(nodes)
+        count, piece_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
+        for piece in range(count):
+            own = np.nonzero(piece_of == piece)[0]
+            heavy, light = own[own < nodes], own[own >= nodes]
+            if density == 0 or not len(heavy):
+                continue
+            stiffness = self.stiffness[heavy][:, heavy].toarray()
+            if len(light):
+                across = self.stiffness[heavy][:, light].toarray()
+                stiffness -= across @ np.linalg.solve(self.stiffness[light][:, light].toarray(),
+                                                      across.T)
+            damping[heavy] = damping_of(ratio, density,
+                                        smallest_eigenvalue(stiffness, masses[heavy]))
+        return damping
+
+
+def advance(w, velocity, region, load, material, tangents, count, dt):
+    """`count` backward Euler steps of the nodes that move; returns w and velocity."""
+    plate = Plate(region, w, material, tangents)
+    nodes = region.moving_nodes
+    # Numbers, or a column of the nodes where there is a map.
+    density, damping = (value if np.ndim(value) == 0 else value[nodes][:, None]
+                        for value in (material["density"], material["damping"]))
+    masses = np.zeros(len(plate.right))
+    masses[:len(nodes)] = region.masses()
+    if material["dampingRatio"] is not None:
+        damping = plate.dampings(masses, density, material["dampingRatio"])[:, None]
+    inertia = np.broadcast_to(density / dt**2 + damping / dt, (len(nodes), 1))
+    shifts = np.zeros(len(masses))
+    shifts[:len(nodes)] = inertia[:, 0] * masses[:len(nodes)]
+    matrix = (plate.stiffness + scipy.sparse.diags(shifts)).tocsc()
+    factor = scipy.sparse.linalg.splu(matrix)
+    unknown, speed = w[nodes], velocity[nodes]
+    weight = masses[:len(nodes), None]
+    for _ in range(count):
+        right = plate.right.copy()
+        right[:len(nodes)] += load + weight * (
+            inertia * unknown + density / dt * speed)
+        solution = factor.solve(right)
+        solution += factor.solve(right - matrix @ solution)  # iterative refinement
+        solution = solution[:len(nodes)]
+        speed = (solution - unknown) / dt
+        unknown = solution
+    w, velocity = w.copy(), np.zeros_like(velocity)
+    w[nodes], velocity[nodes] = unknown, speed
+    return w, velocity
+
+
+def advance_exactly(w, velocity, region, loads, material, tangents, time):
+    """The exact solution; `loads` and `tangents` are those at both ends of the frame."""
+    nodes = region.moving_nodes
+    forces = []
+    for load, slopes in zip(loads, tangents):
+        plate = Plate(region, w, material, slopes)
+        force = plate.right.copy()
+        force[:len(nodes)] += load
+        forces.append(force)
+    w, velocity, start, speed = w.copy(), np.zeros_like(velocity), w[nodes], velocity[nodes]
+    w[nodes], velocity[nodes] = exact_motion(
+        plate.stiffness.tocsc(), region.masses(), material, forces, start, speed, time)
+    return w, velocity
