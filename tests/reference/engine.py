@@ -5,21 +5,19 @@ Nothing is shared with the library under test.
 
 import numpy as np
 
-from bending import Bending, advance_bending
-from exact_motion import exact_motion
 from forces import GroupSphere, Transform, distances, falloff, unit_forces
-from maps import check_material
+from maps import check_material, check_yield
+from region_motion import RegionMotion
 from regions import bounding_box, combined, common_box, do_meet, interior_of, islands_of
-from stencil import advance, advance_exactly, advance_union, union_operator
-from stepping import (check_coefficients, damping_of, find_cycle, smallest_eigenvalue,
-                      steps_of_frame, with_integrator)
+from stepping import check_coefficients, find_cycle, steps_of_frame
 
 # u0, u1, v0, v1.
 EDGE_LINES = np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1]
 
 
 class SurfaceRun:
-    """The state of one surface: the mesh, and the velocities of the last solve."""
+    """The state of one surface: the mesh, the velocities of the last solve and the curvatures that have
+    flowed."""
 
     def __init__(self, scene, surface, diagnostics, noise=None):
         self.scene, self.surface, self.noise = scene, surface, noise
@@ -45,6 +43,7 @@ class SurfaceRun:
         self.position = self.rest.copy()
         # Zero where the last solve did not reach: such nodes start from velocity 0 (SPEC 6).
         self.velocity = np.zeros_like(self.rest)
+        self.plastic = np.zeros(self.rest.shape[:2] + (3, 3))  # uu, vv, uv by x, y, z
         self.unsettled = np.zeros(self.rest.shape[:2], dtype=bool)
         self.forget_push()
 
@@ -119,34 +118,6 @@ class SurfaceRun:
                     interior[line] = False
         return interior
 
-    def advance_energy(self, frame):
-        """`advance` with the surface's edges."""
-        def advance_edges(w, velocity, load, hu, hv, material, tangents, count, dt):
-            bending = Bending(w.shape[:2], hu, hv, self.surface.edges, material["b"],
-                              material["c"], material["d"], self.surface.sample("poisson", frame),
-                              tangents)
-            return advance_bending(bending, w, velocity, load, material["density"],
-                                   material["damping"], count, dt)
-
-        return advance_edges
-
-    def advance_edges_exactly(self, frame, w, velocity, loads, material, tangents, time):
-        """The exact solution of the whole surface with its edges."""
-        forces = []
-        for load, slopes in zip(loads, tangents):
-            bending = Bending(w.shape[:2], self.surface.grid.hu, self.surface.grid.hv,
-                              self.surface.edges, material["b"], material["c"], material["d"],
-                              self.surface.sample("poisson", frame), slopes)
-            free, matrix = bending.is_free.ravel(), bending.matrix()
-            known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
-            forces.append(known[free] - matrix[free][:, ~free] @ w.reshape(-1, 3)[~free])
-        w, velocity, start, speed = (w.copy(), np.zeros_like(w), w.reshape(-1, 3)[free],
-                                     velocity.reshape(-1, 3)[free])
-        end, end_speed = exact_motion(matrix[free][:, free].tocsc(), bending.area.ravel()[free],
-                                      material, forces, start, speed, time)
-        w.reshape(-1, 3)[free], velocity.reshape(-1, 3)[free] = end, end_speed
-        return w, velocity
-
     def settle(self, regions):
         """Sets all nodes that are not interior to a region to rest."""
         moving = np.zeros(self.rest.shape[:2], dtype=bool)
@@ -186,20 +157,6 @@ class SurfaceRun:
             total[inside] += strength[..., None] * push
         return transform.vector_to_object(total)
 
-    def smallest_eigenvalue(self, region, interior, material, frame):
-        """Of the whole region."""
-        hu, hv = self.surface.grid.hu, self.surface.grid.hv
-        if self.surface.has_energy:
-            tangents = {name: np.zeros(3) for name in ("su0", "su1", "sv0", "sv1")}
-            bending = Bending(interior.shape, hu, hv, self.surface.edges, material["b"],
-                              material["c"], material["d"], self.surface.sample("poisson", frame),
-                              tangents)
-            free = bending.is_free.ravel()
-            return smallest_eigenvalue(bending.matrix()[free][:, free].toarray(),
-                                       bending.area.ravel()[free])
-        matrix, _, _ = union_operator(interior, hu, hv, material)
-        return smallest_eigenvalue(matrix.toarray(), np.ones(matrix.shape[0]))
-
     parts = ("position", "velocity", "unsettled", "last_load", "was_unknown", "last_tangents")
 
     def displacement(self, position):
@@ -225,12 +182,10 @@ class SurfaceRun:
         is_displacement = surface.choices["reference"] == "rest"
         origin = self.rest if is_displacement else np.zeros_like(self.rest)
         material = surface.material(frame)
-        if surface.channels["dampingRatio"]:
-            material["damping"] = 0.0
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
         length = surface.frame_length(frame, self.scene.fps)
         count, dt = steps_of_frame(length, surface.sample("dt", frame), surface.choices["stepping"])
-        integrator, density = surface.choices["integrator"], material["density"]
+        integrator = surface.choices["integrator"]
         before, velocities = self.position.copy(), np.zeros_like(self.rest)
         next_load, is_unknown = np.zeros_like(self.rest), np.zeros_like(self.was_unknown)
         first_tangents = self.last_tangents if self.was_unknown.any() else tangents
@@ -245,38 +200,17 @@ class SurfaceRun:
                 force for force in forces if own[force] is not None and do_meet(own[force], ends)]
             load = self.load(frame, points, acting, transform)
             start, speed = before - origin, self.velocity
-            if surface.channels["dampingRatio"] and density > 0:
-                material["damping"] = damping_of(
-                    surface.sample("dampingRatio", frame), density,
-                    self.smallest_eigenvalue(region, interior, material, frame))
+            motion = RegionMotion(surface, frame, region, interior, material, tangents)
+            self.diagnostics.unions += len(region) > 1
             next_load[interior] = load[interior]
             is_unknown |= interior
             if integrator == "exact":
                 first = np.where(self.was_unknown[..., None], self.last_load, load)
-                self.diagnostics.unions += len(region) > 1
-                both = (first, load), (first_tangents, tangents)
-                if surface.has_energy:
-                    w, velocity = self.advance_edges_exactly(frame, start, speed, both[0],
-                                                             material, both[1], length)
-                else:
-                    w, velocity = advance_exactly(
-                        start, speed, both[0], interior, ends, surface.grid.hu, surface.grid.hv,
-                        material, both[1], length)
-            elif len(region) == 1:
-                box = np.s_[ends[0]:ends[1] + 1, ends[2]:ends[3] + 1]
-                w, velocity = np.zeros_like(start), np.zeros_like(start)
-                has_energy = surface.has_energy
-                steps = self.advance_energy(frame) if has_energy else advance
-                in_box = {name: value[box] if name in surface.maps else value
-                          for name, value in material.items()}
-                w[box], velocity[box] = with_integrator(integrator, density, steps)(
-                    start[box], speed[box], load[box], surface.grid.hu, surface.grid.hv, in_box,
-                    tangents, count, dt)
+                w, velocity = motion.move_exactly(start, speed, (first, load),
+                                                  (first_tangents, tangents), length)
             else:
-                self.diagnostics.unions += 1
-                w, velocity = with_integrator(integrator, density, advance_union)(
-                    start, speed, load, interior, ends, surface.grid.hu, surface.grid.hv, material,
-                    tangents, count, dt)
+                w, velocity, self.plastic = motion.step(start, speed, self.plastic, load,
+                                                        integrator, count, dt)
             self.position[interior] = (origin + w)[interior]
             velocities[interior] = velocity[interior]
             if self.noise is not None:  # simulates another implementation's rounding
@@ -315,8 +249,10 @@ class SurfaceRun:
                                  for name in ("density", "damping", "b", "c", "d", "dt")))
             if self.surface.channels["dampingRatio"]:
                 assert self.surface.sample("dampingRatio", frame) >= 0
-            if self.surface.has_stiffness_map:
-                material = self.surface.material(frame)
+            material = self.surface.material(frame)
+            if self.surface.yields:
+                check_yield(material, self.surface.sample("timeScale", frame))
+            if self.surface.has_stiffness_map or self.surface.yields:
                 check_material(material["b"], material["c"], material["d"],
                                self.surface.sample("poisson", frame))
             length = self.surface.frame_length(frame, self.scene.fps)

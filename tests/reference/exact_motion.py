@@ -31,15 +31,50 @@ def pulses(decay, square, time):
     return even, np.where(root * time < 1e-9, fade * time, odd)
 
 
+def uneven_motion(stiffness, masses, damping, first, last, w, velocity, time):
+    """M (w'' + damping w') + K w = f with a damping for each row, by the exponential of the whole
+    system and its load, in modes."""
+    values, modes = scipy.linalg.eigh(stiffness, np.diag(masses))
+    count = len(masses)
+    omega = np.sqrt(np.maximum(values, 0))
+    omega[omega < 1e-5 * omega[-1]] = 0
+    scale = np.where(omega > 0, omega, 1 / time)  # makes the system nearly skew
+    forces = modes.T @ np.hstack([first, last - first])
+    size = np.abs(forces).max() * time + 1e-300
+    system = np.zeros((2 * count + 6, 2 * count + 6))
+    system[:count, count:2 * count] = np.diag(scale)
+    system[count:2 * count, :count] = -np.diag(omega**2 / scale)
+    system[count:2 * count, count:2 * count] = -modes.T @ ((damping * masses)[:, None] * modes)
+    system[count:2 * count, 2 * count:] = forces / size
+    system[2 * count + 3:, 2 * count:2 * count + 3] = np.eye(3) / time
+    start = np.concatenate([scale[:, None] * (modes.T @ (masses[:, None] * w)),
+                            modes.T @ (masses[:, None] * velocity), size * np.eye(3),
+                            np.zeros((3, 3))])
+    end = scipy.linalg.expm(system * time) @ start
+    return modes @ (end[:count] / scale[:, None]), modes @ end[count:2 * count]
+
+
 def exact_motion(stiffness, masses, material, forces, w, velocity, time):
     """Advances w and velocity (#masses x 3) of M (rho w'' + eta w') + K w = f by `time`; f goes
-    evenly from the first of `forces` (#rows x 3) to the second."""
-    density, damping = material["density"], material["damping"]
+    evenly from the first of `forces` (#rows x 3) to the second. Density and damping are numbers, or
+    those of each mass."""
     count = len(masses)
+    density, damping = (np.broadcast_to(material[name], count).astype(float)
+                        for name in ("density", "damping"))
     matrix, both = without_massless(stiffness, np.hstack(forces), count)
-    if density == damping == 0:
+    if not density.any() and not damping.any():
         end = np.linalg.solve(matrix, both[:, 3:])
         return end, (end - w) / time
+    if density.any():
+        assert (density > 0).all()
+        masses, damping, density = masses * density, damping / density, 1.0
+        if np.ptp(damping) > 1e-13 * damping.max():
+            return uneven_motion(matrix, masses, damping, both[:, :3], both[:, 3:], w, velocity,
+                                 time)
+        damping = damping[0]
+    else:
+        assert (damping > 0).all()
+        masses, density, damping = masses * damping, 0.0, 1.0
     values, modes = scipy.linalg.eigh(matrix, np.diag(masses))
     values = np.maximum(values, 0)[:, None]
     q, speed = (modes.T @ (masses[:, None] * x) for x in (w, velocity))

@@ -5,17 +5,26 @@ import math
 import numpy as np
 
 
-def smallest_eigenvalue(matrix, masses):
-    """Of K w = lambda M w, rigid motions left out; 0 if there are no others."""
+def slowest_vibration(matrix, masses):
+    """omega of K w = omega^2 M w, rigid motions left out; 0 if there are no others, or no mass. What
+    has no mass follows."""
+    heavy = masses > 0
+    if not heavy.all():
+        across = matrix[heavy][:, ~heavy]
+        matrix = matrix[heavy][:, heavy] - across @ np.linalg.solve(matrix[~heavy][:, ~heavy],
+                                                                     across.T)
+        masses = masses[heavy]
+    if not len(masses):
+        return 0.0
     root = np.sqrt(masses)
     values = np.linalg.eigvalsh(matrix / np.outer(root, root))
     values = values[values > 1e-11 * values[-1]]
-    return float(values[0]) if len(values) else 0.0
+    return math.sqrt(values[0]) if len(values) else 0.0
 
 
-def damping_of(ratio, density, eigenvalue):
+def damping_of(ratio, density, omega):
     """eta = 2 zeta omega rho (SPEC 9)."""
-    return 2 * ratio * math.sqrt(eigenvalue * density)
+    return 2 * ratio * omega * density
 
 
 def find_cycle(run, frames):
@@ -60,14 +69,14 @@ def steps_of_frame(frame_length, dt, stepping):
             return count, dt
 
 
-def with_integrator(integrator, density, advance):
-    """`advance`, which ends in (count, dt) and makes backward Euler steps, for an integrator: a
-    step of Newmark's is one of half its length, reflected."""
-    def reflected(w, velocity, *rest):
-        *rest, count, dt = rest
+def with_integrator(integrator, density, advance, parts=2):
+    """`advance`, which begins with the parts of a state, ends in (count, dt) and makes backward
+    Euler steps, for an integrator: a step of Newmark's is one of half its length, reflected."""
+    def reflected(*arguments):
+        state, (*rest, count, dt) = arguments[:parts], arguments[parts:]
         for _ in range(count):
-            half_w, half_velocity = advance(w, velocity, *rest, 1, dt / 2)
-            w, velocity = 2 * half_w - w, 2 * half_velocity - velocity
-        return w, velocity
+            half = advance(*state, *rest, 1, dt / 2)
+            state = tuple(2 * middle - before for middle, before in zip(half, state))
+        return state
 
     return reflected if integrator == "newmark" and np.any(density > 0) else advance

@@ -343,8 +343,8 @@ class Triangles(unittest.TestCase):
             # Area of the border's nodes is dropped.
             self.assertLess(load[:, 0].sum(), 1)
             even = {name: np.full(len(mesh.triangles), ISOTROPIC[name]) for name in "bcd"}
-            w, _ = triangle_plate.advance(
-                np.zeros_like(mesh.rest), np.zeros_like(mesh.rest), region, load,
+            w, _, _ = triangle_plate.advance(
+                np.zeros_like(mesh.rest), np.zeros_like(mesh.rest), None, region, load,
                 {**ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None},
                 FLAT, 1, 0.01)
             middle = nodes[nodes.index((count // 2) * (count + 2))]

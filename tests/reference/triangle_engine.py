@@ -12,7 +12,8 @@ from triangle_region import Region, snapped
 
 
 class TriangleRun:
-    """The state of one surface: displacements, and the velocities of the last solve."""
+    """The state of one surface: displacements, the velocities of the last solve and the curvatures
+    that have flowed."""
 
     def __init__(self, scene, surface, diagnostics, noise=None):
         self.scene, self.surface, self.diagnostics, self.noise = scene, surface, diagnostics, noise
@@ -24,6 +25,7 @@ class TriangleRun:
     def reset(self):
         self.w = np.zeros_like(self.mesh.rest)
         self.velocity = np.zeros_like(self.w)
+        self.plastic = np.zeros((len(self.mesh.triangles), 3, 3))  # uu, vv, uv by x, y, z
         self.unsettled = np.zeros(len(self.w), dtype=bool)
         self.last_load, self.last_tangents = np.zeros_like(self.w), {}
         self.was_unknown = np.zeros(len(self.w), dtype=bool)
@@ -130,9 +132,9 @@ class TriangleRun:
             w, velocity = advance_exactly(self.w, self.velocity, region, (first, load), material,
                                           (first_tangents, tangents), length)
         else:
-            w, velocity = with_integrator(
-                surface.choices["integrator"], material["density"], advance)(
-                self.w, self.velocity, region, load, material, tangents, count, dt)
+            w, velocity, self.plastic = with_integrator(
+                surface.choices["integrator"], material["density"], advance, 3)(
+                self.w, self.velocity, self.plastic, region, load, material, tangents, count, dt)
         self.last_load, self.was_unknown = np.zeros_like(self.w), np.zeros_like(self.was_unknown)
         self.last_load[nodes], self.was_unknown[nodes] = load, True
         self.last_tangents = tangents

@@ -8,8 +8,9 @@ import scipy.sparse.csgraph
 import scipy.sparse.linalg
 
 from exact_motion import exact_motion
-from maps import check_material
-from stepping import damping_of, smallest_eigenvalue
+from maps import check_material, check_yield
+from plasticity import Flow, plastic_step
+from stepping import damping_of, slowest_vibration
 
 
 def given_slope(normal, tangents, unit):
@@ -31,15 +32,18 @@ def form_of(b, c, d, mesh, unit, material):
 
 
 def triangle_material(surface, frame):
-    """b, c and d of each triangle: the mean of its corners'; density and damping of each node."""
+    """b, c, d, yield and hardening of each triangle: the mean of its corners'; density and damping of
+    each node."""
     mesh, material = surface.grid, surface.material(frame)
-    for name in "bcd":
+    for name in {"b", "c", "d", "yield", "hardening"} & set(material):
         at_points = mesh.at_points(np.broadcast_to(material[name], len(mesh.rest)))
         material[name] = np.array([at_points[list(corners)].mean() for corners in mesh.triangles])
         if name not in surface.maps:
             material[name][:] = surface.sample(name, frame)
     material["poisson"] = surface.sample("poisson", frame)
     material["has map"] = surface.has_stiffness_map
+    if surface.yields:
+        check_yield(surface.material(frame), surface.sample("timeScale", frame))
     if surface.has_stiffness_map:
         check_material(material["b"], material["c"], material["d"], material["poisson"])
         nodes = surface.material(frame)
@@ -55,8 +59,9 @@ class Plate:
 
     def __init__(self, region, w, material, tangents):
         mesh, unit = region.mesh, region.mesh.unit
-        forms = [form_of(*stiffness, mesh, unit, material)
-                 for stiffness in zip(*(material[name] for name in "bcd"))]
+        self.forms = [form_of(*stiffness, mesh, unit, material)
+                      for stiffness in zip(*(material[name] for name in "bcd"))]
+        self.strains = {}  # of cells that move: unknowns, 3 rows of their weights, what is known
 
         others = [name for name in region.unknown_names if name not in set(region.moving_nodes)]
         number = {name: k for k, name in enumerate(list(region.moving_nodes) + others)}
@@ -98,9 +103,10 @@ class Plate:
                 terms, known[3 + k] = slopes[cell, k]
                 place += [(3 + k, unknown, sign) for unknown, sign in terms]
             strain = region.bending[cell]
-            form = forms[region.triangles[cell]]
+            form = self.forms[region.triangles[cell]]
             matrix = region.areas[cell] * strain.T @ form @ strain
             of_six, unknowns, signs = (np.array(column) for column in zip(*place))
+            self.strains[cell] = unknowns, strain[:, of_six] * signs, strain @ known
             np.add.at(right, unknowns, -signs[:, None] * (matrix @ known)[of_six])
             rows.append(np.repeat(unknowns, len(place)))
             columns.append(np.tile(unknowns, len(place)))
@@ -110,55 +116,91 @@ class Plate:
         self.right = right
 
     def dampings(self, masses, density, ratio):
-        """Of each node that moves, by the slowest vibration of its piece."""
-        nodes = int((masses > 0).sum())
+        """Of each node that moves, by the slowest vibration of its piece; `masses` are areas."""
+        nodes = len(masses)
         damping = np.zeros(nodes)
+        density = np.broadcast_to(density, nodes)
+        weights = np.zeros(len(self.right))
+        weights[:nodes] = masses * density
         count, piece_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
         for piece in range(count):
             own = np.nonzero(piece_of == piece)[0]
-            heavy, light = own[own < nodes], own[own >= nodes]
-            if density == 0 or not len(heavy):
-                continue
-            stiffness = self.stiffness[heavy][:, heavy].toarray()
-            if len(light):
-                across = self.stiffness[heavy][:, light].toarray()
-                stiffness -= across @ np.linalg.solve(self.stiffness[light][:, light].toarray(),
-                                                      across.T)
-            damping[heavy] = damping_of(ratio, density,
-                                        smallest_eigenvalue(stiffness, masses[heavy]))
+            omega = slowest_vibration(self.stiffness[own][:, own].toarray(), weights[own])
+            own = own[own < nodes]
+            damping[own] = damping_of(ratio, density[own], omega)
         return damping
 
 
-def advance(w, velocity, region, load, material, tangents, count, dt):
-    """`count` backward Euler steps of the nodes that move; returns w and velocity."""
+def with_damping(plate, region, material):
+    """Density and damping: numbers, or those of the nodes that move where they differ."""
+    nodes, masses = region.moving_nodes, region.masses()
+    density, damping = (value if np.ndim(value) == 0 else value[nodes]
+                        for value in (material["density"], material["damping"]))
+    if material["dampingRatio"] is not None:
+        damping = plate.dampings(masses, density, material["dampingRatio"])
+    return np.broadcast_to(density, len(nodes)), np.broadcast_to(damping, len(nodes)), masses
+
+
+def advance(w, velocity, plastic, region, load, material, tangents, count, dt):
+    """`count` backward Euler steps of the nodes that move; returns w, velocity and the plastic
+    curvatures of all triangles."""
     plate = Plate(region, w, material, tangents)
     nodes = region.moving_nodes
-    # Numbers, or a column of the nodes where there is a map.
-    density, damping = (value if np.ndim(value) == 0 else value[nodes][:, None]
-                        for value in (material["density"], material["damping"]))
+    density, damping, areas = with_damping(plate, region, material)
     masses = np.zeros(len(plate.right))
-    masses[:len(nodes)] = region.masses()
-    if material["dampingRatio"] is not None:
-        damping = plate.dampings(masses, density, material["dampingRatio"])[:, None]
-    inertia = np.broadcast_to(density / dt**2 + damping / dt, (len(nodes), 1))
-    shifts = np.zeros(len(masses))
-    shifts[:len(nodes)] = inertia[:, 0] * masses[:len(nodes)]
-    matrix = (plate.stiffness + scipy.sparse.diags(shifts)).tocsc()
-    factor = scipy.sparse.linalg.splu(matrix)
-    unknown, speed = w[nodes], velocity[nodes]
-    weight = masses[:len(nodes), None]
-    for _ in range(count):
-        right = plate.right.copy()
-        right[:len(nodes)] += load + weight * (
-            inertia * unknown + density / dt * speed)
-        solution = factor.solve(right)
-        solution += factor.solve(right - matrix @ solution)  # iterative refinement
-        solution = solution[:len(nodes)]
-        speed = (solution - unknown) / dt
-        unknown = solution
-    w, velocity = w.copy(), np.zeros_like(velocity)
-    w[nodes], velocity[nodes] = unknown, speed
-    return w, velocity
+    masses[:len(nodes)] = areas
+    known = plate.right.copy()
+    known[:len(nodes)] += load
+    w, unknown, speed = w.copy(), np.zeros_like(known), np.zeros_like(known)
+    unknown[:len(nodes)], speed[:len(nodes)] = w[nodes], velocity[nodes]
+    whole = []  # density and damping of the unknowns
+    for value in (density, damping):
+        whole.append(masses.copy())
+        whole[-1][:len(nodes)] *= value
+    if "yield" in material:
+        flow, triangles = flow_of_triangles(plate, region, material)
+        plastic, flowing = plastic.copy(), plastic[triangles]
+        for _ in range(count):
+            unknown, speed, flowing = plastic_step(flow, plate.stiffness, known, *whole, unknown,
+                                                   speed, flowing, dt)
+        plastic[triangles] = flowing
+    else:
+        shift = whole[0] / dt**2 + whole[1] / dt
+        matrix = (plate.stiffness + scipy.sparse.diags(shift)).tocsc()
+        factor = scipy.sparse.linalg.splu(matrix)
+        for _ in range(count):
+            right = known + shift[:, None] * unknown + (whole[0] / dt)[:, None] * speed
+            solution = factor.solve(right)
+            solution += factor.solve(right - matrix @ solution)  # iterative refinement
+            speed = (solution - unknown) / dt
+            unknown = solution
+    velocity = np.zeros_like(velocity)
+    w[nodes], velocity[nodes] = unknown[:len(nodes)], speed[:len(nodes)]
+    return w, velocity, plastic
+
+
+def flow_of_triangles(plate, region, material):
+    """How the triangles that have cells which move flow, and their numbers (SPEC 9): their curvatures
+    are the mean over these cells."""
+    triangles = sorted({region.triangles[cell] for cell in plate.strains})
+    place = {t: k for k, t in enumerate(triangles)}
+    area = np.zeros(len(triangles))
+    for cell in plate.strains:
+        area[place[region.triangles[cell]]] += region.areas[cell]
+    rows = [scipy.sparse.lil_matrix((len(triangles), len(plate.right))) for _ in range(3)]
+    constants = np.zeros((len(triangles), 3, 3))
+    for cell, (unknowns, strain, constant) in plate.strains.items():
+        at = place[region.triangles[cell]]
+        share = region.areas[cell] / area[at]
+        constants[at] += share * constant
+        for a in range(3):
+            for unknown, value in zip(unknowns, strain[a]):
+                rows[a][at, unknown] += share * value
+    flow = Flow([matrix.tocsr() for matrix in rows], constants,
+                np.array([plate.forms[t] for t in triangles]), area,
+                np.ones((len(triangles), 3), dtype=bool), material["yield"][triangles],
+                material["hardening"][triangles])
+    return flow, triangles
 
 
 def advance_exactly(w, velocity, region, loads, material, tangents, time):
@@ -170,7 +212,9 @@ def advance_exactly(w, velocity, region, loads, material, tangents, time):
         force = plate.right.copy()
         force[:len(nodes)] += load
         forces.append(force)
+    density, damping, masses = with_damping(plate, region, material)
     w, velocity, start, speed = w.copy(), np.zeros_like(velocity), w[nodes], velocity[nodes]
     w[nodes], velocity[nodes] = exact_motion(
-        plate.stiffness.tocsc(), region.masses(), material, forces, start, speed, time)
+        plate.stiffness.tocsc(), masses, {"density": density, "damping": damping}, forces, start,
+        speed, time)
     return w, velocity
