@@ -13,9 +13,11 @@ import sys
 
 import numpy as np
 
-import random_scenes
+import scene_search
 from random_mesh import text_of
-from random_scenes import MIXED_SHARE, PEAK, Channel, SceneMaker, Writer
+from random_materials import MIXED_SHARE, PEAK
+from random_scenes import SceneMaker
+from scene_text import Channel, Writer
 from random_triangle_mesh import KINDS, UVS, RandomSurface
 
 ODDITIES = ((), ("seams", "order"), ("flat",), ("faces", "order"), ("weld",), ("turns",))
@@ -123,7 +125,7 @@ class TriangleSceneMaker(SceneMaker):
 
 
 def main():
-    random_scenes.main(TriangleSceneMaker, "triangles")
+    scene_search.main(TriangleSceneMaker, "triangles")
 
 
 if __name__ == "__main__":
