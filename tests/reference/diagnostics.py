@@ -57,6 +57,8 @@ class Diagnostics:
         self.settle_margin = math.inf  # smallest |motion - 1e-6 D| / (1e-6 D) of `recover`
         self.cut_margin = math.inf  # smallest distance of a cut of triangles from where it snaps
         self.recovering = 0  # nodes counted as selected, over all frames
+        self.stresses = {}  # the largest of each surface that may yield
+        self.flows = 0  # solves in which something flows
         self.unions = 0  # solves of regions that are not a box
 
     def note_distances(self, force, frame, points, is_untouched, radii):
@@ -79,6 +81,12 @@ class Diagnostics:
                 is_exact = is_untouched[i, j] and is_exact_distance(force, frame, points[i, j], 0.0)
                 if not (is_exact and delta[i, j] == 0):
                     self.direction_margin = min(self.direction_margin, delta[i, j])
+
+    def note_flow(self, surface, flows, has_flowed):
+        """`flows`: those of a solve."""
+        for flow in flows:
+            self.stresses[surface] = max(self.stresses.get(surface, 0.0), flow.largest)
+        self.flows += bool(has_flowed)
 
     def note_steps(self, frame_length, dt):
         ratio = frame_length / dt

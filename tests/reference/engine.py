@@ -209,8 +209,11 @@ class SurfaceRun:
                 w, velocity = motion.move_exactly(start, speed, (first, load),
                                                   (first_tangents, tangents), length)
             else:
-                w, velocity, self.plastic = motion.step(start, speed, self.plastic, load,
-                                                        integrator, count, dt)
+                w, velocity, plastic = motion.step(start, speed, self.plastic, load, integrator,
+                                                   count, dt)
+                self.diagnostics.note_flow(surface.name, motion.flows,
+                                           (plastic != self.plastic).any())
+                self.plastic = plastic
             self.position[interior] = (origin + w)[interior]
             velocities[interior] = velocity[interior]
             if self.noise is not None:  # simulates another implementation's rounding
@@ -275,6 +278,7 @@ class SurfaceRun:
                 position = self.rest if frame < first else states[(frame - first) % loop][0]
                 yield self.surface.grid.to_vertices(position), Transform(self.surface, frame)
             return
+        self.show(frames[0])
         for frame in frames:
             if frame <= self.surface.start_frame:
                 self.reset()

@@ -20,6 +20,7 @@ class Flow:
         self.yield_stress, self.hardening = (
             np.broadcast_to(x, area.shape) for x in (yield_stress, hardening))
         assert (self.yield_stress > 0).all() and (self.hardening >= 0).all()
+        self.largest = 0.0  # stress seen
 
     def curvatures(self, w):
         return np.stack([rows @ w for rows in self.rows], axis=1) + self.constants
@@ -35,6 +36,7 @@ class Flow:
     def flowed(self, w, before):
         """The plastic curvatures that w makes (return mapping)."""
         xi, q = self.stress(w, before)
+        self.largest = max(self.largest, float(q.max()))
         over = q > self.yield_stress
         share = np.zeros_like(q)
         share[over] = (1 - self.yield_stress[over] / q[over]) / (1 + self.hardening[over])
@@ -150,9 +152,10 @@ def advance_plastic(bending, flow, w, velocity, plastic, load, density, damping,
     velocity[~free] = 0
     known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
     known = known[free] - matrix[free][:, ~free] @ w[~free]
-    flow, inner = held(flow, free, w), matrix[free][:, free]
+    part, inner = held(flow, free, w), matrix[free][:, free]
     plastic = plastic.reshape(-1, 3, 3)
     for _ in range(count):
         w[free], velocity[free], plastic = plastic_step(
-            flow, inner, known, density, damping, w[free], velocity[free], plastic, dt)
+            part, inner, known, density, damping, w[free], velocity[free], plastic, dt)
+    flow.largest = max(flow.largest, part.largest)
     return w.reshape(*shape, 3), velocity.reshape(*shape, 3), plastic.reshape(form_of_plastic)

@@ -5,9 +5,9 @@ import os
 
 import numpy as np
 
-from random_channels import ChannelMaker
 from random_maps import grey_png
 from random_mesh import text_of
+from random_yield import YieldMaker
 from scene_text import Channel, Writer, write_element
 
 # Static peak of a clamped isotropic square plate of side L under the load q: 0.00126532 q L^4
@@ -17,7 +17,7 @@ MIXED_SHARE = 2.0 / 7.0
 FREQUENCY_SHARE = 35.985**2 * PEAK  # omega^2 rho, as a multiple of load/peak
 
 
-class MaterialMaker(ChannelMaker):
+class MaterialMaker(YieldMaker):
     """Draws what is inside a surface but for its shape."""
 
     has_edges = True  # of grids
@@ -59,14 +59,19 @@ class MaterialMaker(ChannelMaker):
         self.tags.update(f"edge {edge}" for edge in edges)
         return edges
 
-    def maps(self, solver, surface):
+    def maps(self, solver, surface, yields):
         """Lines of the maps of a surface: pictures, one for all of b, c and d, so that c keeps its
         ratio to sqrt(b d)."""
         rng = self.map_rng
-        if rng.random() < 0.6 or ("integrator", "exact") in solver:
+        if rng.random() < 0.6:
             return []
         groups = [("density",), ("damping",), ("b", "c", "d")]
         is_grid = hasattr(surface.grid, "columns")
+        # Exact motion with uneven damping takes the reference the cube of their number.
+        if ("integrator", "exact") in solver and surface.grid.rest.size > 3 * 160:
+            groups = groups[2:]
+        if yields:
+            groups = [("yield",), ("hardening",)] + groups
         if is_grid and ("combine", "union") in solver:
             groups.pop()
         lines = []
@@ -91,7 +96,18 @@ class MaterialMaker(ChannelMaker):
         """Material, tangents and solver of a surface; returns its lines and the load's scale."""
         rng, out = self.rng, Writer()
         channels, stiffness, length_u, length_v = self.stiffness_of(surface)
-        maps = self.maps(solver, surface)
+        kind = self.pick("both", "both", "both", "both", "static", "massless", "undamped")
+        has_cache = any("cache=" in line for line in lines)
+        if self.chance(0.06) and not has_cache and ("release", "recover") not in solver:
+            self.tags.add("loop")
+            solver.append(("loop", int(rng.integers(2, 9))))
+            kind = self.pick("both", "static", "massless")
+        elif self.chance(0.15):
+            self.tags.add("preroll")
+            solver.append(("preroll", int(rng.integers(1, 6))))
+        yields = self.yields(solver, surface, kind == "static")
+        maps = self.maps(solver, surface, yields)
+        channels += yields
         is_grid = hasattr(surface.grid, "columns")
         is_whole_grid = self.has_edges and ("region", "all") in solver
         if is_whole_grid:
@@ -99,22 +115,28 @@ class MaterialMaker(ChannelMaker):
             least = min(-0.9, bound - 0.03)
             channels.append(
                 self.channel("poisson", lambda: rng.uniform(least, min(0.9, bound)), 0.2))
-        elif any(f'channel="{name}"' in line for line in maps for name in "bcd") and (
+        elif (yields or any(f'channel="{name}"' in line for line in maps for name in "bcd")) and (
                 is_grid or surface.grid.border != "free"):
-            channels.append(Channel("poisson", text_of(min(0.3, self.least_ratio - 0.05))))
+            channels.append(Channel("poisson", text_of(min(rng.uniform(-0.3, 0.5),
+                                                           self.least_ratio - 0.05))))
         omega = 2 * math.pi * self.fps / rng.uniform(4, 40)
         density = FREQUENCY_SHARE * stiffness / omega**2
-        damping = 2 * rng.choice([0.02, 0.2, 1.0]) * omega * density
-        kind = self.pick("both", "both", "both", "both", "static", "massless", "undamped")
+        ratio = 1.0 if "loop" in dict(solver) else rng.choice([0.02, 0.2, 1.0])
+        damping = 2 * ratio * omega * density
         self.tags.add(f"material {kind}")
         if kind in ("static", "massless"):
             density = 0.0
         if kind in ("static", "undamped"):
             damping = 0.0
-        channels += [self.channel("density", lambda: density * rng.uniform(0.7, 1.4),
-                                  0.15 if density else 0),
-                     self.channel("damping", lambda: damping * rng.uniform(0.7, 1.4),
-                                  0.15 if damping else 0)]
+        channels.append(self.channel("density", lambda: density * rng.uniform(0.7, 1.4),
+                                     0.15 if density else 0))
+        if density and "loop" not in dict(solver) and self.chance(0.15):
+            self.tags.add("dampingRatio")
+            maps = [line for line in maps if 'channel="damping"' not in line]
+            channels.append(self.channel("dampingRatio", lambda: 10 ** rng.uniform(-1.7, 0), 0.25))
+        else:
+            channels.append(self.channel("damping", lambda: damping * rng.uniform(0.7, 1.4),
+                                         0.15 if damping else 0))
         write_element(out, 2, "material", [], channels, maps)
         edges = ["clamped"] * 4
         if is_whole_grid and self.chance(0.6):

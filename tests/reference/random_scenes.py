@@ -89,7 +89,7 @@ class SceneMaker(ForceMaker, MaterialMaker):
             self.tags.add("startFrame before" if frame < self.start else "startFrame after")
         for choice, values, probability in (
                 ("stepping", ("overshoot", "overshoot", "exact"), 0.4),
-                ("integrator", ("newmark", "exact"), 0.4),
+                ("integrator", ("newmark", "exact", "exact"), 0.6),
                 ("reference", ("none", "none", "rest"), 0.3),
                 ("measure", ("rest", "rest", "current"), 0.4), ("combine", ("box", "islands", "union"), 0.4),
                 ("release", ("freeze", "recover", "recover"), 0.2)):

@@ -21,6 +21,7 @@ class RegionMotion:
         self.box = np.s_[self.ends[0]:self.ends[1] + 1, self.ends[2]:self.ends[3] + 1]
         self.spacing = surface.grid.hu, surface.grid.hv
         self.material = dict(material)
+        self.flows = []  # of the steps
         if surface.channels["dampingRatio"]:
             self.material["damping"] = damping_of(
                 surface.sample("dampingRatio", frame), material["density"],
@@ -62,6 +63,7 @@ class RegionMotion:
             bending = self.bending(self.tangents)
             flow = flow_of_nodes(bending, self.in_box("yield"), self.in_box("hardening"))
             state.append(plastic[self.box])
+            self.flows.append(flow)
 
             def euler(w, velocity, plastic, *rest):
                 return advance_plastic(bending, flow, w, velocity, plastic, *rest)

@@ -8,6 +8,7 @@ import tempfile
 
 import numpy as np
 
+from random_yield import has_yields, with_yields
 from well_posed import trouble_of
 
 
@@ -21,10 +22,12 @@ def make_scene(kind, prefix, seed, index, folder, rejections):
         with tempfile.TemporaryDirectory() as scratch:
             maker = kind(rng, scratch, name)
             text_of_factor = maker.make()
-            factor = 1.0
+            factor, stresses = 1.0, {}  # stresses are those of the factor 1
+            is_elastic = has_yields(text_of_factor(factor))
             trial = os.path.join(scratch, name + ".xml")
-            for _ in range(5):
-                text = text_of_factor(factor)
+            for _ in range(7):
+                text = with_yields(text_of_factor(factor), {
+                    surface: factor * stress for surface, stress in stresses.items()})
                 with open(trial, "w", encoding="utf-8") as stream:
                     stream.write(text)
                 try:
@@ -33,7 +36,12 @@ def make_scene(kind, prefix, seed, index, folder, rejections):
                     trouble, peak = f"not legal ({str(error).split('=')[0]})", 0.0
                     break
                 if 0.03 <= peak <= 1.0 or peak == 0:
-                    break
+                    if not is_elastic:
+                        break
+                    is_elastic = False
+                    stresses = {surface: stress / factor
+                                for surface, stress in diagnostics.stresses.items() if stress}
+                    continue
                 factor *= 0.3 / peak
             if trouble is None and not 0.03 <= peak <= 1.0:
                 # A few scenes without motion are wanted: they must stay exactly at rest.
@@ -65,6 +73,8 @@ def note_run(tags, diagnostics):
     """Tags known only after a run."""
     if diagnostics.recovering:
         tags.add("ran: recovering nodes")
+    if diagnostics.flows:
+        tags.add("ran: flow")
     if diagnostics.unions:
         tags.add("ran: a union that is no box")
     if diagnostics.exact_ties:

@@ -34,7 +34,7 @@ def find_cycle(run, frames):
         return [getattr(run, part).copy() for part in run.parts]
 
     run.reset()
-    for _ in range(5000):
+    for _ in range(300):
         states = []
         for frame in frames:
             states.append(state())

@@ -132,9 +132,12 @@ class TriangleRun:
             w, velocity = advance_exactly(self.w, self.velocity, region, (first, load), material,
                                           (first_tangents, tangents), length)
         else:
-            w, velocity, self.plastic = with_integrator(
+            w, velocity, plastic = with_integrator(
                 surface.choices["integrator"], material["density"], advance, 3)(
                 self.w, self.velocity, self.plastic, region, load, material, tangents, count, dt)
+            self.diagnostics.note_flow(surface.name, material["flows"],
+                                       (plastic != self.plastic).any())
+            self.plastic = plastic
         self.last_load, self.was_unknown = np.zeros_like(self.w), np.zeros_like(self.was_unknown)
         self.last_load[nodes], self.was_unknown[nodes] = load, True
         self.last_tangents = tangents

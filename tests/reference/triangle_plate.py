@@ -42,6 +42,7 @@ def triangle_material(surface, frame):
             material[name][:] = surface.sample(name, frame)
     material["poisson"] = surface.sample("poisson", frame)
     material["has map"] = surface.has_stiffness_map
+    material["flows"] = []  # of the steps
     if surface.yields:
         check_yield(surface.material(frame), surface.sample("timeScale", frame))
     if surface.has_stiffness_map:
@@ -164,6 +165,7 @@ def advance(w, velocity, plastic, region, load, material, tangents, count, dt):
             unknown, speed, flowing = plastic_step(flow, plate.stiffness, known, *whole, unknown,
                                                    speed, flowing, dt)
         plastic[triangles] = flowing
+        material["flows"].append(flow)
     else:
         shift = whole[0] / dt**2 + whole[1] / dt
         matrix = (plate.stiffness + scipy.sparse.diags(shift)).tocsc()

@@ -79,7 +79,7 @@ class TriangleSceneMaker(SceneMaker):
             self.transform(out)
         solver = []
         for choice, values, probability in (
-                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark", "exact"), 0.4), ("measure", ("rest", "current"), 0.7),
+                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark", "exact", "exact"), 0.6), ("measure", ("rest", "current"), 0.7),
                 ("release", ("recover",), 0.35), ("combine", ("islands", "union"), 0.2)):
             if self.chance(probability):
                 value = self.pick(*values)
