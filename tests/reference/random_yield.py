@@ -34,11 +34,13 @@ def may_yield(solver):
 class YieldMaker(ChannelMaker):
     """Draws `yield` and `hardening`."""
 
+    yield_share = 0.3  # of the surfaces that may
+
     def yields(self, solver, surface, is_static):
         """Channels for a part of the surfaces that may yield; draws nothing from the scene's
         numbers for the others."""
         rng = np.random.default_rng(zlib.crc32(f"{self.name} {surface.name} yield".encode()))
-        if rng.random() > 0.3 or not may_yield(dict(solver)):
+        if rng.random() > self.yield_share or not may_yield(dict(solver)):
             return []
         self.tags.add("yield")
         share = 10 ** rng.uniform(-1.0, -0.1)

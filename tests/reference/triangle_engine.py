@@ -121,6 +121,8 @@ class TriangleRun:
             load[is_pushed] += (share[is_pushed] * strength)[:, None] * push
         load = transform.vector_to_object(load)
         material = triangle_material(surface, frame)
+        is_static = not np.any(material["density"]) and not np.any(material["damping"])
+        assert not (region.floats and is_static), "a static piece that nothing holds"
         ratio = surface.channels["dampingRatio"]
         material["dampingRatio"] = None if ratio is None else surface.sample("dampingRatio", frame)
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}

@@ -110,7 +110,10 @@ class Region:
         number = {name: k for k, name in enumerate(names)}
         piece_of = joined(len(names), ((number[cell[0]], number[name]) for cell in self.cells
                                        for name in cell[1:]))
-        held = {piece_of[number[name]] for name in names if self.may_float or self.is_held(name)}
+        held = {piece_of[number[name]] for name in names if self.is_held(name)}
+        self.floats = self.may_float and held != set(piece_of)
+        if self.may_float:
+            held = set(piece_of)
         self.moving_cells = np.array([piece_of[number[cell[0]]] in held for cell in self.cells],
                                      dtype=bool)
         self.unknown_names = [name for name in names
