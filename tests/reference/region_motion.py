@@ -47,9 +47,9 @@ class RegionMotion:
             bending = self.bending({name: np.zeros(3) for name in self.tangents})
             free = bending.is_free.ravel()
             masses = (bending.area * self.in_box("density")).ravel()[free]
-            return slowest_vibration(bending.matrix()[free][:, free].toarray(), masses)
+            return slowest_vibration(bending.matrix()[free][:, free], masses)
         matrix, _, _ = union_operator(self.interior, *self.spacing, self.material)
-        return slowest_vibration(matrix.toarray(), self.in_interior("density"))
+        return slowest_vibration(matrix, self.in_interior("density"))
 
     def step(self, w, velocity, plastic, load, integrator, count, dt):
         """Returns w, velocity and the plastic curvatures after `count` steps."""

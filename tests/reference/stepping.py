@@ -3,19 +3,21 @@
 import math
 
 import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
 
 
 def slowest_vibration(matrix, masses):
-    """omega of K w = omega^2 M w, rigid motions left out; 0 if there are no others, or no mass. What
+    """omega of K w = omega^2 M w, K sparse, rigid motions left out; 0 if there are no others, or no mass. What
     has no mass follows."""
     heavy = masses > 0
-    if not heavy.all():
-        across = matrix[heavy][:, ~heavy]
-        matrix = matrix[heavy][:, heavy] - across @ np.linalg.solve(matrix[~heavy][:, ~heavy],
-                                                                     across.T)
-        masses = masses[heavy]
-    if not len(masses):
+    if not heavy.any():
         return 0.0
+    matrix = scipy.sparse.csc_matrix(matrix)
+    across, light = matrix[heavy][:, ~heavy], matrix[~heavy][:, ~heavy]
+    matrix, masses = matrix[heavy][:, heavy].toarray(), masses[heavy]
+    if light.shape[0]:
+        matrix -= across @ scipy.sparse.linalg.splu(light).solve(across.T.toarray())
     root = np.sqrt(masses)
     values = np.linalg.eigvalsh(matrix / np.outer(root, root))
     values = values[values > 1e-11 * values[-1]]

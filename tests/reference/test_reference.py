@@ -343,10 +343,10 @@ class Triangles(unittest.TestCase):
             # Area of the border's nodes is dropped.
             self.assertLess(load[:, 0].sum(), 1)
             even = {name: np.full(len(mesh.triangles), ISOTROPIC[name]) for name in "bcd"}
-            w, _, _ = triangle_plate.advance(
-                np.zeros_like(mesh.rest), np.zeros_like(mesh.rest), None, region, load,
-                {**ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None},
-                FLAT, 1, 0.01)
+            nowhere = np.zeros_like(mesh.rest)
+            steps = triangle_plate.Steps(nowhere, region, load, {
+                **ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None}, FLAT)
+            w, _, _ = steps(nowhere, nowhere, None, 1, 0.01)
             middle = nodes[nodes.index((count // 2) * (count + 2))]
             near = mesh.rest[middle, [0, 2]] - 0.5
             self.assertLess(np.abs(near).max(), 0.25 / count)

@@ -7,7 +7,7 @@ import numpy as np
 
 from forces import GroupSphere, Transform, distances, falloff, unit_forces
 from stepping import check_coefficients, find_cycle, steps_of_frame, with_integrator
-from triangle_plate import advance, advance_exactly, triangle_material
+from triangle_plate import Steps, advance_exactly, triangle_material
 from triangle_region import Region, snapped
 
 
@@ -134,10 +134,11 @@ class TriangleRun:
             w, velocity = advance_exactly(self.w, self.velocity, region, (first, load), material,
                                           (first_tangents, tangents), length)
         else:
+            steps = Steps(self.w, region, load, material, tangents)
             w, velocity, plastic = with_integrator(
-                surface.choices["integrator"], material["density"], advance, 3)(
-                self.w, self.velocity, self.plastic, region, load, material, tangents, count, dt)
-            self.diagnostics.note_flow(surface.name, material["flows"],
+                surface.choices["integrator"], material["density"], steps, 3)(
+                self.w, self.velocity, self.plastic, count, dt)
+            self.diagnostics.note_flow(surface.name, [steps.flow] * surface.yields,
                                        (plastic != self.plastic).any())
             self.plastic = plastic
         self.last_load, self.was_unknown = np.zeros_like(self.w), np.zeros_like(self.was_unknown)

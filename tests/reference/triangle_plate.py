@@ -42,7 +42,6 @@ def triangle_material(surface, frame):
             material[name][:] = surface.sample(name, frame)
     material["poisson"] = surface.sample("poisson", frame)
     material["has map"] = surface.has_stiffness_map
-    material["flows"] = []  # of the steps
     if surface.yields:
         check_yield(surface.material(frame), surface.sample("timeScale", frame))
     if surface.has_stiffness_map:
@@ -126,7 +125,7 @@ class Plate:
         count, piece_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
         for piece in range(count):
             own = np.nonzero(piece_of == piece)[0]
-            omega = slowest_vibration(self.stiffness[own][:, own].toarray(), weights[own])
+            omega = slowest_vibration(self.stiffness[own][:, own].tocsc(), weights[own])
             own = own[own < nodes]
             damping[own] = damping_of(ratio, density[own], omega)
         return damping
@@ -142,43 +141,51 @@ def with_damping(plate, region, material):
     return np.broadcast_to(density, len(nodes)), np.broadcast_to(damping, len(nodes)), masses
 
 
-def advance(w, velocity, plastic, region, load, material, tangents, count, dt):
-    """`count` backward Euler steps of the nodes that move; returns w, velocity and the plastic
-    curvatures of all triangles."""
-    plate = Plate(region, w, material, tangents)
-    nodes = region.moving_nodes
-    density, damping, areas = with_damping(plate, region, material)
-    masses = np.zeros(len(plate.right))
-    masses[:len(nodes)] = areas
-    known = plate.right.copy()
-    known[:len(nodes)] += load
-    w, unknown, speed = w.copy(), np.zeros_like(known), np.zeros_like(known)
-    unknown[:len(nodes)], speed[:len(nodes)] = w[nodes], velocity[nodes]
-    whole = []  # density and damping of the unknowns
-    for value in (density, damping):
-        whole.append(masses.copy())
-        whole[-1][:len(nodes)] *= value
-    if "yield" in material:
-        flow, triangles = flow_of_triangles(plate, region, material)
-        plastic, flowing = plastic.copy(), plastic[triangles]
-        for _ in range(count):
-            unknown, speed, flowing = plastic_step(flow, plate.stiffness, known, *whole, unknown,
-                                                   speed, flowing, dt)
-        plastic[triangles] = flowing
-        material["flows"].append(flow)
-    else:
-        shift = whole[0] / dt**2 + whole[1] / dt
-        matrix = (plate.stiffness + scipy.sparse.diags(shift)).tocsc()
+class Steps:
+    """Backward Euler steps of the nodes that move, and of the plastic curvatures of all triangles;
+    w gives what is held."""
+
+    def __init__(self, w, region, load, material, tangents):
+        plate = Plate(region, w, material, tangents)
+        self.nodes, self.stiffness, self.known = region.moving_nodes, plate.stiffness, plate.right
+        self.known[:len(self.nodes)] += load
+        self.whole = []  # density and damping of the unknowns
+        *values, masses = with_damping(plate, region, material)
+        for value in values:
+            self.whole.append(np.zeros(len(self.known)))
+            self.whole[-1][:len(self.nodes)] = masses * value
+        self.flow = None
+        if "yield" in material:
+            self.flow, self.triangles = flow_of_triangles(plate, region, material)
+
+    def __call__(self, w, velocity, plastic, count, dt):
+        nodes = self.nodes
+        unknown, speed = np.zeros_like(self.known), np.zeros_like(self.known)
+        unknown[:len(nodes)], speed[:len(nodes)] = w[nodes], velocity[nodes]
+        if self.flow is None:
+            unknown, speed = self.elastic(unknown, speed, count, dt)
+        else:
+            plastic, flowing = plastic.copy(), plastic[self.triangles]
+            for _ in range(count):
+                unknown, speed, flowing = plastic_step(self.flow, self.stiffness, self.known,
+                                                       *self.whole, unknown, speed, flowing, dt)
+            plastic[self.triangles] = flowing
+        w, velocity = w.copy(), np.zeros_like(velocity)
+        w[nodes], velocity[nodes] = unknown[:len(nodes)], speed[:len(nodes)]
+        return w, velocity, plastic
+
+    def elastic(self, unknown, speed, count, dt):
+        density, damping = self.whole
+        shift = density / dt**2 + damping / dt
+        matrix = (self.stiffness + scipy.sparse.diags(shift)).tocsc()
         factor = scipy.sparse.linalg.splu(matrix)
         for _ in range(count):
-            right = known + shift[:, None] * unknown + (whole[0] / dt)[:, None] * speed
+            right = self.known + shift[:, None] * unknown + (density / dt)[:, None] * speed
             solution = factor.solve(right)
             solution += factor.solve(right - matrix @ solution)  # iterative refinement
             speed = (solution - unknown) / dt
             unknown = solution
-    velocity = np.zeros_like(velocity)
-    w[nodes], velocity[nodes] = unknown[:len(nodes)], speed[:len(nodes)]
-    return w, velocity, plastic
+        return unknown, speed
 
 
 def flow_of_triangles(plate, region, material):
@@ -189,16 +196,20 @@ def flow_of_triangles(plate, region, material):
     area = np.zeros(len(triangles))
     for cell in plate.strains:
         area[place[region.triangles[cell]]] += region.areas[cell]
-    rows = [scipy.sparse.lil_matrix((len(triangles), len(plate.right))) for _ in range(3)]
+    at, unknown, value = [], [], [[], [], []]
     constants = np.zeros((len(triangles), 3, 3))
     for cell, (unknowns, strain, constant) in plate.strains.items():
-        at = place[region.triangles[cell]]
-        share = region.areas[cell] / area[at]
-        constants[at] += share * constant
+        number = place[region.triangles[cell]]
+        share = region.areas[cell] / area[number]
+        constants[number] += share * constant
+        at.append(np.full(len(unknowns), number))
+        unknown.append(unknowns)
         for a in range(3):
-            for unknown, value in zip(unknowns, strain[a]):
-                rows[a][at, unknown] += share * value
-    flow = Flow([matrix.tocsr() for matrix in rows], constants,
+            value[a].append(share * strain[a])
+    at, unknown = np.concatenate(at), np.concatenate(unknown)
+    rows = [scipy.sparse.csr_matrix((np.concatenate(x), (at, unknown)),
+                                    shape=(len(triangles), len(plate.right))) for x in value]
+    flow = Flow(rows, constants,
                 np.array([plate.forms[t] for t in triangles]), area,
                 np.ones((len(triangles), 3), dtype=bool), material["yield"][triangles],
                 material["hardening"][triangles])
