@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from engine import Diagnostics, SurfaceRun, Transform
+from diagnostics import Diagnostics
+from engine import SurfaceRun
+from forces import Transform
 from triangle_engine import TriangleRun
 from triangle_mesh import TriangleMesh
 

@@ -5,7 +5,7 @@ import zlib
 
 import numpy as np
 
-CHANNELS = ("density", "damping", "b", "c", "d")
+CHANNELS = ("density", "damping", "b", "c", "d", "yield", "hardening")
 
 
 def read_png(path):
@@ -93,3 +93,10 @@ def read_maps(material, path_of, uvs):
 def check_material(b, c, d, poisson):
     assert (np.asarray(b) > 0).all() and (np.asarray(d) > 0).all()
     assert abs(poisson) < 1 and (c > 2 * poisson * np.sqrt(b * d)).all(), "poisson with maps"
+
+
+def check_yield(material, time_scale):
+    """Of numbers, or of nodes."""
+    assert (np.asarray(material["yield"]) > 0).all() and (np.asarray(material["hardening"]) >= 0).all()
+    is_static = not np.any(material["density"]) and not np.any(material["damping"])
+    assert not is_static or time_scale == 0 or np.all(material["hardening"]), "static, no hardening"

@@ -6,120 +6,156 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as linalg
 
 
-class Plasticity:
-    """The curvatures of a `Bending` at its nodes, as rows uu, vv, uv of each node, and how they
-    flow."""
+class Flow:
+    """How the curvatures uu, vv, uv flow at some points, such as nodes or triangles.
 
-    def __init__(self, bending, yield_stress, hardening):
-        self.bending = bending
-        m, n = bending.shape
-        around = [sparse.diags([0.5, 0.5], [0, -1], shape=(k, k - 1)).tolil() for k in (m, n)]
-        for mean in around:
-            mean[0, 0] = mean[-1, -1] = 1
-        mean = sparse.kron(around[0].tocsr(), around[1].tocsr())
-        self.rows = [bending.of_u, bending.of_v, (mean @ bending.of_cells).tocsr()]
-        self.constants = [bending.slope_u, bending.slope_v, np.zeros_like(bending.slope_u)]
-        size = m * n
-        uu, vv, uv = (x.ravel() for x in (bending.uu, bending.vv, bending.uv))
-        self.form = np.zeros((size, 3, 3))
-        self.form[:, 0, 0], self.form[:, 1, 1] = uu, vv
-        self.form[:, 0, 1] = self.form[:, 1, 0] = uv
-        self.form[:, 2, 2] = bending.tau.ravel()
-        self.area = bending.area.ravel()
-        self.flows = np.stack([uu > 0, vv > 0, np.ones(size, dtype=bool)], axis=1)
-        self.yield_stress = np.broadcast_to(yield_stress, bending.shape).ravel()
-        self.hardening = np.broadcast_to(hardening, bending.shape).ravel()
+    They are `rows[a] @ w + constants[:, a]` of the unknowns w (#unknowns x 3); `form` (#points x 3 x
+    3) is their quadratic form at each point, `area` its weight, `flows` (#points x 3) which of them
+    are there at all. Plastic curvatures are #points x 3 x (x, y, z).
+    """
+
+    def __init__(self, rows, constants, form, area, flows, yield_stress, hardening):
+        self.rows, self.constants, self.form, self.area, self.flows = (
+            rows, constants, form, area, flows)
+        self.yield_stress, self.hardening = (
+            np.broadcast_to(x, area.shape) for x in (yield_stress, hardening))
+        assert (self.yield_stress > 0).all() and (self.hardening >= 0).all()
+        self.largest = 0.0  # stress seen
 
     def curvatures(self, w):
-        """Nodes x 3 x (x, y, z)."""
-        return np.stack([rows @ w + constant
-                         for rows, constant in zip(self.rows, self.constants)], axis=1)
+        return np.stack([rows @ w for rows in self.rows], axis=1) + self.constants
+
+    def norm(self, curvatures):
+        return np.sqrt(np.einsum("nak,nab,nbk->n", curvatures, self.form, curvatures))
 
     def stress(self, w, before):
         xi = self.curvatures(w) - (1 + self.hardening)[:, None, None] * before
         xi[~self.flows] = 0
-        q = np.sqrt(np.einsum("nak,nab,nbk->n", xi, self.form, xi))
-        return xi, q
+        return xi, self.norm(xi)
 
     def flowed(self, w, before):
         """The plastic curvatures that w makes (return mapping)."""
         xi, q = self.stress(w, before)
+        self.largest = max(self.largest, float(q.max()))
         over = q > self.yield_stress
         share = np.zeros_like(q)
         share[over] = (1 - self.yield_stress[over] / q[over]) / (1 + self.hardening[over])
         return before + share[:, None, None] * xi
 
     def forces(self, plastic):
+        """What plastic curvatures add on the right, #unknowns x 3."""
         moments = self.area[:, None, None] * np.einsum("nab,nbk->nak", self.form, plastic)
         return sum(rows.T @ moments[:, a] for a, rows in enumerate(self.rows))
 
-    def tangent(self, w, before, free):
-        """What flows takes from the elastic matrix of (x, y, z) together."""
+    def tangent(self, w, before):
+        """What flowing takes from the elastic matrix of (x, y, z) together."""
         xi, q = self.stress(w, before)
-        size = len(q)
         over = np.nonzero(q > self.yield_stress)[0]
-        blocks = np.zeros((size, 9, 9))
-        for n in over:
-            share = 1 / (1 + self.hardening[n])
-            form = np.kron(np.eye(3), self.form[n])
-            x = xi[n].T.ravel()  # by component, then uu, vv, uv
-            y = self.yield_stress[n]
-            flow = share * ((1 - y / q[n]) * np.eye(9) + y / q[n]**3 * np.outer(x, form @ x))
-            keep = np.tile(self.flows[n], 3)
-            flow[~keep] = 0
-            blocks[n] = self.area[n] * form @ flow
-        b = sparse.vstack([rows[:, free] for rows in self.rows]).tocsr()
-        order = np.arange(3 * size).reshape(3, size).T.ravel()
-        b = b[order]  # node by node
-        b = sparse.block_diag([b] * 3).tocsr()
-        whole = sparse.lil_matrix((9 * size, 9 * size))
-        for n in over:
-            places = np.concatenate([k * 3 * size + 3 * n + np.arange(3) for k in range(3)])
-            whole[np.ix_(places, places)] = blocks[n]
-        return (b.T @ whole.tocsr() @ b).tocsc()
+        blocks = np.zeros((len(over), 9, 9))  # by component, then uu, vv, uv
+        for block, n in zip(blocks, over):
+            form, x, y = np.kron(np.eye(3), self.form[n]), xi[n].T.ravel(), self.yield_stress[n]
+            flow = (1 - y / q[n]) * np.eye(9) + y / q[n]**3 * np.outer(x, form @ x)
+            flow[~np.tile(self.flows[n], 3)] = 0
+            block[:] = self.area[n] / (1 + self.hardening[n]) * form @ flow
+        count = self.rows[0].shape[1]
+        at, unknown, value = [], [], []
+        for a, rows in enumerate(self.rows):
+            part = rows[over].tocoo()
+            for k in range(3):
+                at.append(9 * part.row + 3 * k + a)
+                unknown.append(count * k + part.col)
+                value.append(part.data)
+        strain = sparse.csr_matrix(
+            tuple([np.concatenate(value), tuple(map(np.concatenate, (at, unknown)))]),
+            shape=(9 * len(over), 3 * count))
+        middle = sparse.bsr_matrix((blocks, np.arange(len(over)), np.arange(len(over) + 1)),
+                                   shape=(9 * len(over),) * 2)
+        return (strain.T @ middle @ strain).tocsc()
+
+    def energy(self, w, plastic):
+        """What E_p has beyond E."""
+        elastic = self.curvatures(w)
+        parts = (self.norm(elastic - plastic)**2 - self.norm(elastic)**2 +
+                 self.hardening * self.norm(plastic)**2)
+        return float((self.area * parts).sum()) / 2
+
+    def dissipation(self, plastic, before):
+        return float((self.area * self.yield_stress * self.norm(plastic - before)).sum())
 
 
-def advance_plastic(bending, plasticity, w, velocity, plastic, load, density, damping, count, dt):
-    """`count` backward Euler steps of w and its velocity, M x N x 3, and of the plastic curvatures,
-    nodes x 3 x 3."""
-    shape = bending.shape
-    free = bending.is_free.ravel()
-    matrix = bending.matrix()
-    rho = (np.broadcast_to(density, shape) * bending.area).ravel()
-    eta = (np.broadcast_to(damping, shape) * bending.area).ravel()
-    shift = rho / dt**2 + eta / dt
-    elastic = (matrix + sparse.diags(shift)).tocsc()
-    w, v, plastic = w.reshape(-1, 3).copy(), velocity.reshape(-1, 3).copy(), plastic.copy()
-    v[~free] = 0
+def flow_of_nodes(bending, yield_stress, hardening):
+    """Of a `Bending`, on all its nodes."""
+    m, n = bending.shape
+    around = [sparse.diags([0.5, 0.5], [0, -1], shape=(k, k - 1)).tolil() for k in (m, n)]
+    for mean in around:
+        mean[0, 0] = mean[-1, -1] = 1
+    mean = sparse.kron(around[0].tocsr(), around[1].tocsr())
+    rows = [bending.of_u, bending.of_v, (mean @ bending.of_cells).tocsr()]
+    constants = np.stack([bending.slope_u, bending.slope_v, np.zeros_like(bending.slope_u)], axis=1)
+    uu, vv, uv = (x.ravel() for x in (bending.uu, bending.vv, bending.uv))
+    form = np.zeros((m * n, 3, 3))
+    form[:, 0, 0], form[:, 1, 1], form[:, 2, 2] = uu, vv, bending.tau.ravel()
+    form[:, 0, 1] = form[:, 1, 0] = uv
+    flows = np.stack([uu > 0, vv > 0, np.ones(m * n, dtype=bool)], axis=1)
+    yield_stress, hardening = (np.broadcast_to(x, (m, n)).ravel()
+                               for x in (yield_stress, hardening))
+    return Flow(rows, constants, form, bending.area.ravel(), flows, yield_stress, hardening)
+
+
+def held(flow, free, w):
+    """The flow as one of the unknowns that are free, the others held as they are in w."""
+    constants = flow.constants + np.stack([rows[:, ~free] @ w[~free] for rows in flow.rows], axis=1)
+    return Flow([rows[:, free] for rows in flow.rows], constants, flow.form, flow.area, flow.flows,
+                flow.yield_stress, flow.hardening)
+
+
+def plastic_step(flow, stiffness, known, density, damping, w, velocity, plastic, dt):
+    """One backward Euler step of the unknowns w and velocity (#unknowns x 3) and of the plastic
+    curvatures; density and damping are each unknown's whole."""
+    shift = density / dt**2 + damping / dt
+    assert shift.any() or (flow.hardening > 0).all(), "a static frame needs hardening"
+    elastic = (stiffness + sparse.diags(shift)).tocsc()
+    right = known + shift[:, None] * w + (density / dt)[:, None] * velocity
+    factor = linalg.splu(elastic)
+
+    def rest(x):
+        return right + flow.forces(flow.flowed(x, plastic)) - elastic @ x
+
+    x = factor.solve(right + flow.forces(plastic))
+    size = np.inf
+    for _ in range(200):
+        left = rest(x)
+        last, size = size, np.abs(factor.solve(left)).max()
+        scale = np.abs(x).max()
+        if not size > 1e-14 * scale or (size < 1e-11 * scale and size >= last):
+            break
+        tangent = (sparse.block_diag([elastic] * 3) - flow.tangent(x, plastic)).tocsc()
+        way = linalg.splu(tangent).solve(left.T.ravel()).reshape(3, -1).T
+        # The energy's slope along the way is monotone.
+        part, start = 1.0, float((left * way).sum())
+        while part > 1e-6 and float((rest(x + part * way) * way).sum()) < -0.5 * start:
+            part /= 2
+        x = x + part * way
+    else:
+        raise AssertionError("a plastic step does not converge")
+    return x, (x - w) / dt, flow.flowed(x, plastic)
+
+
+def advance_plastic(bending, flow, w, velocity, plastic, load, density, damping, count, dt):
+    """`count` backward Euler steps of w and its velocity, M x N x 3, and of the plastic curvatures of
+    all nodes, with any numbers of dimensions."""
+    shape, form_of_plastic = bending.shape, plastic.shape
+    free, matrix = bending.is_free.ravel(), bending.matrix()
+    density, damping = ((np.broadcast_to(x, shape) * bending.area).ravel()[free]
+                        for x in (density, damping))
+    w, velocity = w.reshape(-1, 3).copy(), velocity.reshape(-1, 3).copy()
+    velocity[~free] = 0
     known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
-    inner = elastic[free][:, free]
+    known = known[free] - matrix[free][:, ~free] @ w[~free]
+    part, inner = held(flow, free, w), matrix[free][:, free]
+    plastic = plastic.reshape(-1, 3, 3)
     for _ in range(count):
-        right = known + shift[:, None] * w + (rho / dt)[:, None] * v
-        x = w.copy()
-        factor = linalg.splu(inner)
-
-        def rest(x):
-            flowed = plasticity.flowed(x, plastic)
-            return (right + plasticity.forces(flowed) - elastic @ x)[free]
-
-        x[free] += factor.solve(rest(x))
-        size = np.inf
-        for _ in range(200):
-            left = rest(x)
-            change = factor.solve(left)
-            last, size = size, np.abs(change).max()
-            if not size > 1e-14 * np.abs(x).max() or (size < 1e-11 * np.abs(x).max() and size >= last):
-                break
-            tangent = (sparse.block_diag([inner] * 3) -
-                       plasticity.tangent(x, plastic, free)).tocsc()
-            way = np.zeros_like(x)
-            way[free] = linalg.splu(tangent).solve(left.T.ravel()).reshape(3, -1).T
-            # The energy's slope along the way is monotone.
-            part, start = 1.0, float((left * way[free]).sum())
-            while part > 1e-6 and float((rest(x + part * way) * way[free]).sum()) < -0.5 * start:
-                part /= 2
-            x += part * way
-        plastic = plasticity.flowed(x, plastic)
-        v = np.where(free[:, None], (x - w) / dt, 0)
-        w = x
-    return w.reshape(*shape, 3), v.reshape(*shape, 3), plastic
+        w[free], velocity[free], plastic = plastic_step(
+            part, inner, known, density, damping, w[free], velocity[free], plastic, dt)
+    flow.largest = max(flow.largest, part.largest)
+    return w.reshape(*shape, 3), velocity.reshape(*shape, 3), plastic.reshape(form_of_plastic)

@@ -12,7 +12,7 @@ import sys
 import numpy as np
 
 from bakes import bake
-from engine import Diagnostics
+from diagnostics import Diagnostics
 from scene import Scene
 
 

@@ -16,7 +16,7 @@ from triangle_mesh import TriangleMesh, read_obj_corners
 
 TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
 MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1, "poisson": 0.3,
-                     "dampingRatio": None}
+                     "dampingRatio": None, "yield": None, "hardening": 0.1}
 TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
 SOLVER_CHANNELS = {"dt": 0.01, "timeScale": 1}
 SOLVER_CHOICES = {
@@ -245,7 +245,8 @@ class Surface:
         self.edges = tuple(edges * 4 if len(edges) == 1 else edges)
         assert len(self.edges) == 4 and set(self.edges) <= {"clamped", "pinned", "free"}
         assert self.is_whole or set(self.edges) == {"clamped"}
-        self.has_energy = set(self.edges) != {"clamped"} or bool(self.maps)
+        self.yields = self.channels["yield"] is not None
+        self.has_energy = set(self.edges) != {"clamped"} or bool(self.maps) or self.yields
         # An earlier start acts as the scene's start.
         self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
         self.start_frame -= int(solver.get("preroll", 0))
@@ -253,6 +254,11 @@ class Surface:
         assert self.loop is None or "preroll" not in solver.keys()
         material = child_or_empty(element, "material")
         assert self.channels["dampingRatio"] is None or "damping" not in material.keys()
+        if self.yields:
+            assert self.choices["integrator"] != "exact" and self.choices["reference"] == "rest"
+            assert self.choices["combine"] != "union" and self.choices["release"] == "freeze"
+            assert self.loop is None
+        assert self.yields or not {"yield", "hardening"} & set(self.maps)
 
     def sample(self, name, frame):
         """A scalar channel at a frame."""
@@ -262,8 +268,8 @@ class Surface:
 
     def material(self, frame):
         """The material at a frame: numbers, and arrays of the nodes where there is a map."""
-        return {name: self.sample(name, frame) * self.maps.get(name, 1.0)
-                for name in ("density", "damping", "b", "c", "d")}
+        names = ["density", "damping", "b", "c", "d"] + ["yield", "hardening"] * self.yields
+        return {name: self.sample(name, frame) * self.maps.get(name, 1.0) for name in names}
 
     def frame_length(self, frame, fps):
         """Seconds of a frame in the surface's own time."""

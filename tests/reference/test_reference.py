@@ -15,13 +15,17 @@ import scipy.sparse.linalg
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-import engine  # noqa: E402
-import triangle_engine  # noqa: E402
+import forces  # noqa: E402
+import stencil  # noqa: E402
+import stepping  # noqa: E402
+import triangle_plate  # noqa: E402
+import triangle_region  # noqa: E402
 from bakes import bake  # noqa: E402
 from curves import Curve, Key, auto_weight, limit_lengths, time_is_monotone  # noqa: E402
+from diagnostics import Diagnostics  # noqa: E402
 from scene import Scene  # noqa: E402
-from triangle_engine import bending, hat_integrals, snapped  # noqa: E402
 from triangle_mesh import TriangleMesh  # noqa: E402
+from triangle_region import bending, hat_integrals, snapped  # noqa: E402
 from well_posed import trouble_of  # noqa: E402
 
 FLAT = {name: np.zeros(1) for name in ("su0", "su1", "sv0", "sv1")}
@@ -47,7 +51,7 @@ class Plate(unittest.TestCase):
     def centre_deflection(self, nodes):
         h = 1 / (nodes - 1)
         load = np.ones((nodes, nodes, 3))
-        w, _ = engine.advance(np.zeros_like(load), np.zeros_like(load), load, h, h, ISOTROPIC,
+        w, _ = stencil.advance(np.zeros_like(load), np.zeros_like(load), load, h, h, ISOTROPIC,
                               FLAT, 1, 0.01)
         return w[nodes // 2, nodes // 2, 1]
 
@@ -65,7 +69,7 @@ class Plate(unittest.TestCase):
     def test_first_frequency(self):
         frequencies = []
         for nodes in (17, 33):
-            operator = engine.assemble(nodes, nodes, 1 / (nodes - 1), 1 / (nodes - 1), 1, 2, 1)
+            operator = stencil.assemble(nodes, nodes, 1 / (nodes - 1), 1 / (nodes - 1), 1, 2, 1)
             smallest = scipy.sparse.linalg.eigsh(operator, 1, sigma=0, which="LM")[0][0]
             frequencies.append(math.sqrt(smallest))
         extrapolated = frequencies[1] + (frequencies[1] - frequencies[0]) / 3
@@ -74,7 +78,7 @@ class Plate(unittest.TestCase):
 
     def test_smallest_region(self):
         h, b, c, d = 0.25, 1.5, -0.5, 0.75
-        operator = engine.assemble(3, 3, h, h, b, c, d).toarray()
+        operator = stencil.assemble(3, 3, h, h, b, c, d).toarray()
         self.assertEqual(operator.shape, (1, 1))
         self.assertAlmostEqual(operator[0, 0] * h**4, 8 * b + 4 * c + 8 * d, places=12)
 
@@ -83,15 +87,15 @@ class Plate(unittest.TestCase):
         w = rng.standard_normal((6, 5, 3))
         tangents = {name: rng.standard_normal(3) for name in FLAT}
         arguments = 0.3, 0.2, 1.2, -0.7, 0.4
-        literal = engine.apply_operator(w, *arguments, tangents)
+        literal = stencil.apply_operator(w, *arguments, tangents)
         rim = w.copy()
         rim[1:-1, 1:-1] = 0
-        product = engine.assemble(6, 5, *arguments) @ w[1:-1, 1:-1].reshape(-1, 3)
-        sum_of_parts = product.reshape(4, 3, 3) + engine.apply_operator(rim, *arguments, tangents)
+        product = stencil.assemble(6, 5, *arguments) @ w[1:-1, 1:-1].reshape(-1, 3)
+        sum_of_parts = product.reshape(4, 3, 3) + stencil.apply_operator(rim, *arguments, tangents)
         np.testing.assert_allclose(sum_of_parts, literal, rtol=1e-10)
 
     def test_matrix_is_symmetric(self):
-        operator = engine.assemble(7, 6, 0.3, 0.2, 1.2, -0.7, 0.4)
+        operator = stencil.assemble(7, 6, 0.3, 0.2, 1.2, -0.7, 0.4)
         np.testing.assert_allclose((operator - operator.T).toarray(), 0, atol=1e-10)
 
     def test_stencil_is_exact_on_quartics(self):
@@ -99,7 +103,7 @@ class Plate(unittest.TestCase):
         # where those are constant along the edge; check an inner node, far from ghosts.
         u, v = np.meshgrid(np.arange(7) * 0.5, np.arange(7) * 0.25, indexing="ij")
         w = (u**4 / 24 + v**4 / 12 + u**2 * v**2 / 4)[..., None] * np.ones(3)
-        result = engine.apply_operator(w, 0.5, 0.25, 1.5, 0.5, 2.0, FLAT)
+        result = stencil.apply_operator(w, 0.5, 0.25, 1.5, 0.5, 2.0, FLAT)
         self.assertAlmostEqual(result[2, 2, 0], 1.5 + 2 * 2.0 + 0.5, places=9)
 
     def test_cubic_is_reproduced_by_its_rim_and_tangents(self):
@@ -112,7 +116,7 @@ class Plate(unittest.TestCase):
         tangents = {**FLAT, "su0": np.full(1, slope), "su1": np.full(1, slope)}
         start = exact.copy()
         start[1:-1, 1:-1] = 0
-        w, _ = engine.advance(start, np.zeros_like(start), np.zeros_like(start), h, 0.2,
+        w, _ = stencil.advance(start, np.zeros_like(start), np.zeros_like(start), h, 0.2,
                               ISOTROPIC, tangents, 1, 1.0)
         np.testing.assert_allclose(w, exact, atol=1e-12)
 
@@ -125,16 +129,16 @@ class Plate(unittest.TestCase):
         k, dt = 24 / 0.5**4, 0.125
         mass = 2.0 / dt**2 + 5.0 / dt
         expected = (7.0 + mass * 0.25 + 2.0 / dt * -3.0) / (mass + k)
-        w1, v1 = engine.advance(w, v, load, 0.5, 0.5, material, FLAT, 1, dt)
+        w1, v1 = stencil.advance(w, v, load, 0.5, 0.5, material, FLAT, 1, dt)
         np.testing.assert_allclose(w1[1, 1], expected, rtol=1e-14)
         np.testing.assert_allclose(v1[1, 1], (expected - 0.25) / dt, rtol=1e-13)
 
     def test_steps_of_frame(self):
-        self.assertEqual(engine.steps_of_frame(1 / 24, 0.01, "exact"), (5, 1 / 24 / 5))
-        self.assertEqual(engine.steps_of_frame(1 / 24, 0.01, "overshoot"), (5, 0.01))
-        self.assertEqual(engine.steps_of_frame(1 / 24, 1.0, "exact"), (1, 1 / 24))
-        self.assertEqual(engine.steps_of_frame(1 / 24, 1.0, "overshoot"), (1, 1.0))
-        self.assertEqual(engine.steps_of_frame(1 / 24, 1 / 240, "exact")[0], 10)
+        self.assertEqual(stepping.steps_of_frame(1 / 24, 0.01, "exact"), (5, 1 / 24 / 5))
+        self.assertEqual(stepping.steps_of_frame(1 / 24, 0.01, "overshoot"), (5, 0.01))
+        self.assertEqual(stepping.steps_of_frame(1 / 24, 1.0, "exact"), (1, 1 / 24))
+        self.assertEqual(stepping.steps_of_frame(1 / 24, 1.0, "overshoot"), (1, 1.0))
+        self.assertEqual(stepping.steps_of_frame(1 / 24, 1 / 240, "exact")[0], 10)
 
 
 SQUARE = """<scene version="1" start="1" end="3">
@@ -148,7 +152,7 @@ class Region(unittest.TestCase):
     """SPEC 5 and 6 on an integer lattice: node (i, j) stands at (i - 6, 0, j - 6)."""
 
     def bake(self, forces, surface=""):
-        diagnostics = engine.Diagnostics()
+        diagnostics = Diagnostics()
         scene = scene_from(SQUARE.format(forces=forces, surface=surface))
         return bake(scene, diagnostics)["sheet"], diagnostics
 
@@ -184,9 +188,9 @@ class Region(unittest.TestCase):
         self.assertEqual(np.count_nonzero((baked.world - baked.world_rest)[1]), 1)
 
     def test_rotation_orders(self):
-        turned = engine.rotation("xyz", (90, 0, 90)) @ np.array([0, 1, 0])
+        turned = forces.rotation("xyz", (90, 0, 90)) @ np.array([0, 1, 0])
         np.testing.assert_allclose(turned, [0, 0, 1], atol=1e-15)  # x first: y to z, z stays
-        turned = engine.rotation("zyx", (90, 0, 90)) @ np.array([0, 1, 0])
+        turned = forces.rotation("zyx", (90, 0, 90)) @ np.array([0, 1, 0])
         np.testing.assert_allclose(turned, [-1, 0, 0], atol=1e-15)  # z first: y to -x, -x stays
 
 
@@ -317,7 +321,7 @@ class Triangles(unittest.TestCase):
                               ((9, -0.9, 9), (9, 0, 9)), ((9, -1.1, 9), (9, -1.1, 9)),
                               ((0.1, -1, -0.005), (0, -1, 0))):
             np.testing.assert_array_equal(
-                snapped(mesh, np.array(phi, dtype=float), engine.Diagnostics()), expected)
+                snapped(mesh, np.array(phi, dtype=float), Diagnostics()), expected)
 
     def test_flat_triangles_get_an_area(self):
         mesh = TriangleMesh(np.array([(0.0, 0, 0), (0.4, 0, 0), (1, 0, 0), (0.5, 1, 0)]),
@@ -332,17 +336,17 @@ class Triangles(unittest.TestCase):
         for count in (8, 16):
             mesh = square_mesh(count, np.random.default_rng(4))
             self.assertAlmostEqual(mesh.unit[0], 1, places=12)
-            region = triangle_engine.Region(mesh, mesh.at_points(np.ones(len(mesh.rest))))
+            region = triangle_region.Region(mesh, mesh.at_points(np.ones(len(mesh.rest))))
             nodes = region.moving_nodes
             self.assertEqual(len(nodes), (count - 1)**2)
             load = region.masses()[:, None] * np.ones(3)
             # Area of the border's nodes is dropped.
             self.assertLess(load[:, 0].sum(), 1)
             even = {name: np.full(len(mesh.triangles), ISOTROPIC[name]) for name in "bcd"}
-            w, _ = triangle_engine.advance(
-                np.zeros_like(mesh.rest), np.zeros_like(mesh.rest), region, load,
-                {**ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None},
-                FLAT, 1, 0.01)
+            nowhere = np.zeros_like(mesh.rest)
+            steps = triangle_plate.Steps(nowhere, region, load, {
+                **ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None}, FLAT)
+            w, _, _ = steps(nowhere, nowhere, None, 1, 0.01)
             middle = nodes[nodes.index((count // 2) * (count + 2))]
             near = mesh.rest[middle, [0, 2]] - 0.5
             self.assertLess(np.abs(near).max(), 0.25 / count)

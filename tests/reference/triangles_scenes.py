@@ -13,9 +13,11 @@ import sys
 
 import numpy as np
 
-import random_scenes
+import scene_search
 from random_mesh import text_of
-from random_scenes import MIXED_SHARE, PEAK, Channel, SceneMaker, Writer
+from random_materials import MIXED_SHARE, PEAK
+from random_scenes import SceneMaker
+from scene_text import Channel, Writer
 from random_triangle_mesh import KINDS, UVS, RandomSurface
 
 ODDITIES = ((), ("seams", "order"), ("flat",), ("faces", "order"), ("weld",), ("turns",))
@@ -77,7 +79,7 @@ class TriangleSceneMaker(SceneMaker):
             self.transform(out)
         solver = []
         for choice, values, probability in (
-                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark", "exact"), 0.4), ("measure", ("rest", "current"), 0.7),
+                ("stepping", ("overshoot",), 0.2), ("integrator", ("newmark", "exact", "exact"), 0.6), ("measure", ("rest", "current"), 0.7),
                 ("release", ("recover",), 0.35), ("combine", ("islands", "union"), 0.2)):
             if self.chance(probability):
                 value = self.pick(*values)
@@ -123,7 +125,7 @@ class TriangleSceneMaker(SceneMaker):
 
 
 def main():
-    random_scenes.main(TriangleSceneMaker, "triangles")
+    scene_search.main(TriangleSceneMaker, "triangles")
 
 
 if __name__ == "__main__":

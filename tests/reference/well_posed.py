@@ -9,7 +9,7 @@ import numpy as np
 
 from bakes import bake
 from curves import Curve
-from engine import Diagnostics
+from diagnostics import Diagnostics
 from scene import Scene
 
 

@@ -1,0 +1,110 @@
+"""How one region of a grid moves over one frame, by the integrator that its surface asks for."""
+
+import numpy as np
+
+from bending import Bending, advance_bending
+from exact_motion import exact_motion
+from plasticity import advance_plastic, flow_of_nodes
+from regions import common_box
+from stencil import advance, advance_exactly, advance_union, union_operator
+from stepping import damping_of, slowest_vibration, with_integrator
+
+
+class RegionMotion:
+    """A region of the whole grid, whose arrays all are; `material` holds numbers, and arrays of the
+    nodes where there is a map."""
+
+    def __init__(self, surface, frame, region, interior, material, tangents):
+        self.surface, self.frame, self.interior, self.tangents = surface, frame, interior, tangents
+        self.ends = common_box(region)
+        self.is_box = len(region) == 1
+        self.box = np.s_[self.ends[0]:self.ends[1] + 1, self.ends[2]:self.ends[3] + 1]
+        self.spacing = surface.grid.hu, surface.grid.hv
+        self.material = dict(material)
+        self.flows = []  # of the steps
+        if surface.channels["dampingRatio"]:
+            self.material["damping"] = damping_of(
+                surface.sample("dampingRatio", frame), material["density"],
+                self.slowest_vibration())
+
+    def in_box(self, name):
+        value = self.material[name]
+        return value if np.ndim(value) == 0 else value[self.box]
+
+    def in_interior(self, name):
+        return np.broadcast_to(self.material[name], self.interior.shape)[self.interior]
+
+    def bending(self, tangents):
+        """The energy of a region that is a box."""
+        shape = self.interior[self.box].shape
+        return Bending(shape, *self.spacing, self.surface.edges,
+                       *(self.in_box(name) for name in ("b", "c", "d")),
+                       self.surface.sample("poisson", self.frame), tangents)
+
+    def slowest_vibration(self):
+        """Of the whole region."""
+        if self.is_box and self.surface.has_energy:
+            bending = self.bending({name: np.zeros(3) for name in self.tangents})
+            free = bending.is_free.ravel()
+            masses = (bending.area * self.in_box("density")).ravel()[free]
+            return slowest_vibration(bending.matrix()[free][:, free], masses)
+        matrix, _, _ = union_operator(self.interior, *self.spacing, self.material)
+        return slowest_vibration(matrix, self.in_interior("density"))
+
+    def step(self, w, velocity, plastic, load, integrator, count, dt):
+        """Returns w, velocity and the plastic curvatures after `count` steps."""
+        if not self.is_box:
+            steps = with_integrator(integrator, self.material["density"], advance_union)
+            w, velocity = steps(w, velocity, load, self.interior, self.ends, *self.spacing,
+                                self.material, self.tangents, count, dt)
+            return w, velocity, plastic
+        state, others = [w[self.box], velocity[self.box]], [load[self.box]]
+        if self.surface.yields:
+            bending = self.bending(self.tangents)
+            flow = flow_of_nodes(bending, self.in_box("yield"), self.in_box("hardening"))
+            state.append(plastic[self.box])
+            self.flows.append(flow)
+
+            def euler(w, velocity, plastic, *rest):
+                return advance_plastic(bending, flow, w, velocity, plastic, *rest)
+            others += [self.in_box("density"), self.in_box("damping")]
+        elif self.surface.has_energy:
+            bending = self.bending(self.tangents)
+
+            def euler(*rest):
+                return advance_bending(bending, *rest)
+            others += [self.in_box("density"), self.in_box("damping")]
+        else:
+            euler = advance
+            others += [*self.spacing, self.material, self.tangents]
+        after = with_integrator(integrator, self.material["density"], euler, len(state))(
+            *state, *others, count, dt)
+        results = [np.zeros_like(w), np.zeros_like(w), plastic.copy()]
+        for result, part in zip(results, after):
+            result[self.box] = part
+        return tuple(results)
+
+    def move_exactly(self, w, velocity, loads, tangents, time):
+        """The exact solution; `loads` and `tangents` are those at both ends of the frame."""
+        if not (self.is_box and self.surface.has_energy):
+            material = {name: self.in_interior(name) if np.ndim(value) else value
+                        for name, value in self.material.items()}
+            return advance_exactly(w, velocity, loads, self.interior, self.ends, *self.spacing,
+                                   material, tangents, time)
+        start, speed, forces = w[self.box].reshape(-1, 3), velocity[self.box].reshape(-1, 3), []
+        for load, slopes in zip(loads, tangents):
+            bending = self.bending(slopes)
+            free, matrix = bending.is_free.ravel(), bending.matrix()
+            known = (bending.area[..., None] * load[self.box]).reshape(-1, 3)
+            known += bending.slope_forces()
+            forces.append(known[free] - matrix[free][:, ~free] @ start[~free])
+        material = {name: np.broadcast_to(self.in_box(name), bending.shape).ravel()[free]
+                    for name in ("density", "damping")}
+        end, end_speed = start.copy(), np.zeros_like(start)
+        end[free], end_speed[free] = exact_motion(
+            matrix[free][:, free].tocsc(), bending.area.ravel()[free], material, forces,
+            start[free], speed[free], time)
+        w, velocity = w.copy(), np.zeros_like(velocity)
+        shape = bending.shape + (3,)
+        w[self.box], velocity[self.box] = end.reshape(shape), end_speed.reshape(shape)
+        return w, velocity
