@@ -98,7 +98,8 @@ class MaterialMaker(YieldMaker):
         channels, stiffness, length_u, length_v = self.stiffness_of(surface)
         kind = self.pick("both", "both", "both", "both", "static", "massless", "undamped")
         has_cache = any("cache=" in line for line in lines)
-        if self.chance(0.06) and not has_cache and ("release", "recover") not in solver:
+        if self.chance(0.06) and not has_cache and ("release", "recover") not in solver and (
+                "integrator", "exact") not in solver:
             self.tags.add("loop")
             solver.append(("loop", int(rng.integers(2, 9))))
             kind = self.pick("both", "static", "massless")
@@ -119,7 +120,8 @@ class MaterialMaker(YieldMaker):
                 is_grid or surface.grid.border != "free"):
             channels.append(Channel("poisson", text_of(min(rng.uniform(-0.3, 0.5),
                                                            self.least_ratio - 0.05))))
-        omega = 2 * math.pi * self.fps / rng.uniform(4, 40)
+        # A cycle closes after some frames only where motion fades soon.
+        omega = 2 * math.pi * self.fps / rng.uniform(4, 12 if "loop" in dict(solver) else 40)
         density = FREQUENCY_SHARE * stiffness / omega**2
         ratio = 1.0 if "loop" in dict(solver) else rng.choice([0.02, 0.2, 1.0])
         damping = 2 * ratio * omega * density

@@ -29,6 +29,9 @@ def damping_of(ratio, density, omega):
     return 2 * ratio * omega * density
 
 
+MOST_FRAMES = 2400  # to a cycle
+
+
 def find_cycle(run, frames):
     """The states of a run at these frames, which lead back to the first one: going round from rest.
     `run.parts` names what a state is made of."""
@@ -36,7 +39,7 @@ def find_cycle(run, frames):
         return [getattr(run, part).copy() for part in run.parts]
 
     run.reset()
-    for _ in range(300):
+    for _ in range(MOST_FRAMES // len(frames)):
         states = []
         for frame in frames:
             states.append(state())
