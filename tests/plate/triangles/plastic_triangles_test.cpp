@@ -399,6 +399,23 @@ TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]")
   }
 }
 
+TEST_CASE("what steps of triangles learn ends with their frame", "[plate][plastic][morley]") {
+  for (const Case& one : cases()) {
+    CAPTURE(one.name);
+    TriangleProblem problem = problem_of(one.piece, 0.1);
+    TrianglePlate plate = plate_of(one.piece);
+    TriangleState state = at_rest(one.piece.cells, problem.load.rows()), other = state;
+    for (int frame = 0; frame < 3; ++frame) {
+      state = *plate.advance(problem, {3, 0.01}, state);
+      other = *plate_of(one.piece).advance(problem, {3, 0.01}, other);
+      problem.load *= frame == 0 ? 1.2 : -0.5;
+    }
+    CHECK(largest(state.plastic) > 0.01);
+    CHECK(state.displacement == other.displacement);
+    CHECK(state.plastic == other.plastic);
+  }
+}
+
 TEST_CASE("triangles flow alike in all directions", "[plate][plastic][morley]") {
   const SurfacePiece piece = piece_of(square(7, 1, 0.3, true), 0.42, Border::Clamped);
   Matrix3d turn;

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
@@ -13,6 +14,21 @@ namespace {
 
 bool is_elastic(const PlasticField& plastic) { return plastic.isZero(0); }
 
+// The components that are not 0, and stay so.
+std::vector<int> components_at_work(const PlateProblem& problem, const PlateState& state) {
+  const EdgeTangents& t = problem.tangents;
+  std::vector<int> components;
+  for (int k = 0; k < 3; ++k) {
+    const bool is_still = problem.load.col(k).isZero(0) && state.displacement.col(k).isZero(0) &&
+                          state.velocity.col(k).isZero(0) && state.plastic.col(k).isZero(0) &&
+                          state.plastic.col(3 + k).isZero(0) &&
+                          state.plastic.col(6 + k).isZero(0) && t.su0[k] == 0 && t.su1[k] == 0 &&
+                          t.sv0[k] == 0 && t.sv1[k] == 0;
+    if (!is_still) components.push_back(k);
+  }
+  return components;
+}
+
 // The way of a plate from step to step, on all nodes.
 struct Progress {
   Field displacement, velocity;
@@ -22,7 +38,7 @@ struct Progress {
 // Goes on from step to step as long as none yields.
 class ElasticSteps {
  public:
-  ElasticSteps(PlasticPlate& plate, const TimeSteps& steps, const PlateState& from)
+  ElasticSteps(const PlasticPlate& plate, const TimeSteps& steps, const PlateState& from)
       : plate_(plate),
         steps_(steps),
         plastic_(from.plastic),
@@ -33,15 +49,21 @@ class ElasticSteps {
     const double dt = steps_.solved_length();
     Field& w = done_.displacement;
     Field& v = done_.velocity;
-    if (plate_.yields(steps_.are_reflected() ? Field((next + w) / 2) : next, plastic_)) {
+    if (steps_.are_reflected()) {
+      Field solved = w;
+      for (const int k : plate_.components()) solved.col(k) = (next.col(k) + w.col(k)) / 2;
+      if (plate_.yields(solved, plastic_)) return false;
+    } else if (plate_.yields(next, plastic_)) {
       return false;
     }
-    if (steps_.are_reflected()) {
-      v = (next - w) / dt - v;
-    } else {
-      v = (next - w) / dt;
+    for (const int k : plate_.components()) {
+      if (steps_.are_reflected()) {
+        v.col(k) = (next.col(k) - w.col(k)) / dt - v.col(k);
+      } else {
+        v.col(k) = (next.col(k) - w.col(k)) / dt;
+      }
+      w.col(k) = next.col(k);
     }
-    w = next;
     ++done_.steps;
     return true;
   }
@@ -49,7 +71,7 @@ class ElasticSteps {
   Progress& done() { return done_; }
 
  private:
-  PlasticPlate& plate_;
+  const PlasticPlate& plate_;
   const TimeSteps& steps_;
   const PlasticField& plastic_;
   Progress done_;
@@ -58,15 +80,15 @@ class ElasticSteps {
 // The interior nodes of a rectangle, round which all others are held.
 class FlowingGrid final : public FlowingPlate {
  public:
-  FlowingGrid(PlateSolver& solver, PlasticPlate& plate, const Outline& outline, const Field& held)
-      : solver_(solver), plate_(plate), outline_(outline), nodes_(held) {}
+  FlowingGrid(PlateSolver& solver, const PlasticPlate& plate, const Outline& outline,
+              const Field& held)
+      : solver_(solver),
+        plate_(plate),
+        outline_(outline),
+        numbers_(numbers_of_unknowns(outline)),
+        nodes_(held) {}
 
   Result<Field> solve(const Field& forces) override { return solver_.solve(forces); }
-
-  bool flow(const Field& x, const PlasticField& from, PlasticField& to) override {
-    nodes_ = with_interior(outline_, std::move(nodes_), x);
-    return plate_.flow(nodes_, from, to);
-  }
 
   Field forces_of(const PlasticField& plastic) override {
     Field forces = Field::Zero(plastic.rows(), 3);
@@ -74,16 +96,20 @@ class FlowingGrid final : public FlowingPlate {
     return interior_of(outline_, forces);
   }
 
-  Field slope_of(const Field& way) override {
-    Field forces = Field::Zero(nodes_.rows(), 3);
-    plate_.add_slope(with_interior(outline_, forces, way), forces);
-    return interior_of(outline_, forces);
+  std::vector<int> places_over(double part, const Field& x, const PlasticField& from) override {
+    nodes_ = with_interior(outline_, std::move(nodes_), x);
+    return plate_.nodes_over(part, nodes_, from);
+  }
+
+  PlaceRows rows_of(const std::vector<int>& places) override {
+    return plate_.rows_of(places, numbers_, nodes_);
   }
 
  private:
   PlateSolver& solver_;
-  PlasticPlate& plate_;
+  const PlasticPlate& plate_;
   const Outline& outline_;
+  std::vector<int> numbers_;
   Field nodes_;
 };
 
@@ -106,14 +132,47 @@ PlateProblem held(const PlateProblem& problem, const PlasticPlate& plate,
   return elastic;
 }
 
+// Steps that flow from `first` on. If that one does not, nothing happens, and none is done.
+Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const PlateProblem& problem,
+                     const TimeSteps& steps, int first, bool is_expected, PlateState& state) {
+  const double dt = steps.solved_length();
+  const Outline& outline = problem.outline;
+  StageTimer set_up(solver.context().profile, Stage::SetUp);
+  if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
+  StepTerms terms = solver.terms(problem, dt, state.displacement);
+  set_up.stop();
+  const StageTimer solving(solver.context().profile, Stage::Solve);
+  Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
+  PlasticField plastic = state.plastic;
+  FlowingGrid flowing(solver, plate, outline, state.displacement);
+  const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
+                                      problem.law->hardening, steps, motion, plastic);
+  if (is_expected) all->expect(motion.displacement + dt * motion.velocity, plastic);
+  const auto flowed = all->step(motion, plastic);
+  if (!flowed || (is_expected && !*flowed)) return flowed;
+  auto ran = run_plastic_steps(*all, steps.count - first - 1, motion, plastic);
+  if (!ran) return fail(ran.error());
+  state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
+  state.velocity = with_interior(outline, std::move(state.velocity), motion.velocity);
+  state.plastic = std::move(plastic);
+  return true;
+}
+
 }  // namespace
 
 Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& problem,
                                    const TimeSteps& steps, PlateState state) {
   PLIANT_EXPECTS(problem.law && state.plastic.rows() == problem.load.rows());
-  PlasticPlate plate(problem);
-  PlateProblem elastic = held(problem, plate, state.plastic);
   clear_rim(problem.outline, state.velocity);
+  const PlasticPlate plate(problem, components_at_work(problem, state));
+  // A plate that goes on as it moves and yields then is not tried elastically.
+  const Field next = state.displacement + steps.solved_length() * state.velocity;
+  if (plate.yields(next, state.plastic)) {
+    const auto flowed = flow_on(solver, plate, problem, steps, 0, true, state);
+    if (!flowed) return fail(flowed.error());
+    if (*flowed) return state;
+  }
+  PlateProblem elastic = held(problem, plate, state.plastic);
   ElasticSteps elastic_steps(plate, steps, state);
   bool yields = false;
   const std::function<bool(const Field&)> watch = [&](const Field& displacement) {
@@ -130,24 +189,8 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
   Progress& done = elastic_steps.done();
   state.displacement = std::move(done.displacement);
   state.velocity = std::move(done.velocity);
-  elastic.watch = nullptr;
-  // The forces of what has flowed are not in the load from here on.
-  const double dt = steps.solved_length();
-  StageTimer set_up(solver.context().profile, Stage::SetUp);
-  if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
-  const StepTerms terms = solver.terms(problem, dt, state.displacement);
-  set_up.stop();
-  const StageTimer solving(solver.context().profile, Stage::Solve);
-  const Outline& outline = problem.outline;
-  Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
-  FlowingGrid flowing(solver, plate, outline, state.displacement);
-  if (auto moved = run_plastic_steps(flowing, solver.context(), terms, problem.law->hardening,
-                                     steps, done.steps, motion, state.plastic);
-      !moved) {
-    return fail(moved.error());
-  }
-  state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
-  state.velocity = with_interior(outline, std::move(state.velocity), motion.velocity);
+  const auto flowed = flow_on(solver, plate, problem, steps, done.steps, false, state);
+  if (!flowed) return fail(flowed.error());
   return state;
 }
 

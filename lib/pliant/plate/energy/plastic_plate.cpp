@@ -1,21 +1,39 @@
 #include "pliant/plate/energy/plastic_plate.hpp"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "pliant/core/expects.hpp"
 
 namespace pliant {
 
-PlasticPlate::PlasticPlate(const PlateProblem& problem)
-    : grid_(problem.outline.grid()), factors_(problem.factors), tangents_(problem.tangents) {
+PlasticPlate::PlasticPlate(const PlateProblem& problem, std::vector<int> components)
+    : grid_(problem.outline.grid()),
+      factors_(problem.factors),
+      tangents_(problem.tangents),
+      components_(std::move(components)) {
   PLIANT_EXPECTS(problem.law.has_value());
   law_ = *problem.law;
   const PlateSystem system = problem.system(1);
   const PlateEnergy energy(system);
   for (int i = 0; i < grid_.columns; ++i) along_u_.push_back(energy.along_u<double>(i));
   for (int j = 0; j < grid_.rows; ++j) along_v_.push_back(energy.along_v<double>(j));
-  moduli_.reserve(static_cast<std::size_t>(grid_.node_count()));
-  for (int j = 0; j < grid_.rows; ++j) {
-    for (int i = 0; i < grid_.columns; ++i) moduli_.push_back(energy.moduli<double>(i, j));
+  if (factors_) {
+    for (int j = 0; j < grid_.rows; ++j) {
+      for (int i = 0; i < grid_.columns; ++i) forms_.push_back(energy.moduli<double>(i, j));
+    }
+  } else {
+    for (const int j : {0, 1, grid_.rows - 1}) {
+      for (const int i : {0, 1, grid_.columns - 1}) forms_.push_back(energy.moduli<double>(i, j));
+    }
   }
+}
+
+const Moduli<double>& PlasticPlate::form(int i, int j) const {
+  if (factors_) return forms_[static_cast<std::size_t>(grid_.node(i, j))];
+  const auto kind = [](int line, int count) { return line == 0 ? 0 : line < count - 1 ? 1 : 2; };
+  return forms_[static_cast<std::size_t>(3 * kind(j, grid_.rows) + kind(i, grid_.columns))];
 }
 
 PlasticLaw PlasticPlate::law(int node) const {
@@ -66,98 +84,182 @@ PlaceCurvatures PlasticPlate::curvatures(const Stencil& at, const Field& w) cons
   return result;
 }
 
-void PlasticPlate::add_forces(const Stencil& at, const PlaceCurvatures& plastic,
-                              Field& forces) const {
-  const PlaceCurvatures moments = moments_of(moduli_[static_cast<std::size_t>(at.node)], plastic);
+// What prescribed slopes add to the curvatures.
+PlaceCurvatures PlasticPlate::by_tangents(int i, int j) const {
+  const double of_u = along_u_[static_cast<std::size_t>(i)].slope;
+  const double of_v = along_v_[static_cast<std::size_t>(j)].slope;
+  PlaceCurvatures result = {};
   for (int k = 0; k < 3; ++k) {
-    double* const to = forces.col(k).data();
-    const double of_u = at.area * moments[k], of_v = at.area * moments[3 + k];
-    const double twist = at.area * at.twist * moments[6 + k];
-    to[at.left] += at.u.before * of_u;
-    to[at.right] += at.u.after * of_u;
-    to[at.below] += at.v.before * of_v;
-    to[at.above] += at.v.after * of_v;
-    to[at.node] += at.u.here * of_u + at.v.here * of_v;
-    to[at.corners[0]] += twist;
-    to[at.corners[1]] -= twist;
-    to[at.corners[2]] -= twist;
-    to[at.corners[3]] += twist;
+    if (of_u != 0) result[k] = of_u * (i == 0 ? tangents_.su0 : tangents_.su1)[k];
+    if (of_v != 0) result[3 + k] = of_v * (j == 0 ? tangents_.sv0 : tangents_.sv1)[k];
   }
+  return result;
 }
 
 // xi = k - (1 + H) k_p.
 PlaceCurvatures PlasticPlate::stress(int i, int j, const Field& w, const PlasticField& from) const {
-  const Stencil at = stencil(i, j);
-  PlaceCurvatures result = curvatures(at, w);
-  if (at.u.slope != 0 || at.v.slope != 0) {
-    const Vector3d of_u = at.u.slope * (i == 0 ? tangents_.su0 : tangents_.su1);
-    const Vector3d of_v = at.v.slope * (j == 0 ? tangents_.sv0 : tangents_.sv1);
-    for (int k = 0; k < 3; ++k) {
-      result[k] += of_u[k];
-      result[3 + k] += of_v[k];
-    }
-  }
-  const double share = 1 + law(at.node).hardening;
-  for (int k = 0; k < 9; ++k) result[k] -= share * from(at.node, k);
+  const int node = grid_.node(i, j);
+  PlaceCurvatures result = curvatures(stencil(i, j), w);
+  const PlaceCurvatures prescribed = by_tangents(i, j);
+  const double share = 1 + law(node).hardening;
+  for (int k = 0; k < 9; ++k) result[k] += prescribed[k] - share * from(node, k);
   return result;
 }
 
-double PlasticPlate::squared_norm(int node, const PlaceCurvatures& xi) const {
-  return product_of(moduli_[static_cast<std::size_t>(node)], xi, xi);
+double PlasticPlate::squared_stress(int i, int j, const Field& w, const PlasticField& from) const {
+  const PlaceCurvatures xi = stress(i, j, w, from);
+  return product_of(form(i, j), xi, xi);
+}
+
+// Those of a row. Its inner nodes have one stencil, and one form if the material is even.
+void PlasticPlate::find_squared_stress(int j, const Field& w, const PlasticField& from,
+                                       std::vector<double>& squared) const {
+  const int columns = grid_.columns;
+  std::fill(squared.begin(), squared.end(), 0.0);
+  if (factors_) {
+    for (int i = 0; i < columns; ++i) squared[i] = squared_stress(i, j, w, from);
+    return;
+  }
+  squared[0] = squared_stress(0, j, w, from);
+  squared[columns - 1] = squared_stress(columns - 1, j, w, from);
+  const Stencil at = stencil(1, j);
+  const Moduli<double> form = this->form(1, j);
+  const double share = 1 + law_.hardening;
+  const PlaceCurvatures prescribed = by_tangents(1, j);  // across the row
+  const long row = grid_.node(0, j), below = at.below - 1, above = at.above - 1;
+  double* const sums = squared.data();
+  for (const int k : components_) {
+    const double* const here = w.col(k).data() + row;
+    const double* const under = w.col(k).data() + below;
+    const double* const over = w.col(k).data() + above;
+    const double* const plastic_u = from.col(k).data() + row;
+    const double* const plastic_v = from.col(3 + k).data() + row;
+    const double* const plastic_uv = from.col(6 + k).data() + row;
+    const double slope = prescribed[3 + k];
+    for (int i = 1; i < columns - 1; ++i) {
+      const double of_u = at.u.before * here[i - 1] + at.u.here * here[i] +
+                          at.u.after * here[i + 1] - share * plastic_u[i];
+      const double of_v = at.v.before * under[i] + at.v.here * here[i] + at.v.after * over[i] +
+                          slope - share * plastic_v[i];
+      const double of_uv =
+          at.twist * ((over[i + 1] - over[i - 1]) - (under[i + 1] - under[i - 1])) -
+          share * plastic_uv[i];
+      sums[i] += form.uu * of_u * of_u + 2 * form.coupling * of_u * of_v + form.vv * of_v * of_v +
+                 form.uv * of_uv * of_uv;
+    }
+  }
+}
+
+// Calls f(node) for nodes over `part` of their yield stress, ascending, until it returns false.
+template <class F>
+void PlasticPlate::for_each_over(double part, const Field& w, const PlasticField& from,
+                                 const F& f) const {
+  std::vector<double> squared(static_cast<std::size_t>(grid_.columns));
+  const auto bound = [&](const PlasticLaw& law) { return part * law.yield * (part * law.yield); };
+  const double even = bound(law_);
+  for (int j = 0; j < grid_.rows; ++j) {
+    find_squared_stress(j, w, from, squared);
+    for (int i = 0; i < grid_.columns; ++i) {
+      const int node = grid_.node(i, j);
+      if (squared[i] > (factors_ ? bound(law(node)) : even) && !f(node)) return;
+    }
+  }
+}
+
+std::vector<int> PlasticPlate::nodes_over(double part, const Field& w,
+                                          const PlasticField& from) const {
+  std::vector<int> nodes;
+  for_each_over(part, w, from, [&](int node) {
+    nodes.push_back(node);
+    return true;
+  });
+  return nodes;
 }
 
 bool PlasticPlate::yields(const Field& w, const PlasticField& from) const {
-  for (int j = 0; j < grid_.rows; ++j) {
-    for (int i = 0; i < grid_.columns; ++i) {
-      const int node = grid_.node(i, j);
-      const double yield = law(node).yield;
-      if (squared_norm(node, stress(i, j, w, from)) > yield * yield) return true;
-    }
-  }
-  return false;
-}
-
-bool PlasticPlate::flow(const Field& w, const PlasticField& from, PlasticField& to) {
-  to = from;
-  flowing_.clear();
-  for (int j = 0; j < grid_.rows; ++j) {
-    for (int i = 0; i < grid_.columns; ++i) {
-      const int node = grid_.node(i, j);
-      PlaceCurvatures xi = stress(i, j, w, from);
-      const double squared = squared_norm(node, xi);
-      const PlasticLaw own = law(node);
-      if (!(squared > own.yield * own.yield)) continue;
-      // Curvatures that are eliminated do not flow.
-      if (along_u_[static_cast<std::size_t>(i)].is_eliminated) xi[0] = xi[1] = xi[2] = 0;
-      if (along_v_[static_cast<std::size_t>(j)].is_eliminated) xi[3] = xi[4] = xi[5] = 0;
-      const Flow& flow = flowing_.emplace_back(Flowing{i, j, {own, xi, squared}}).flow;
-      for (int k = 0; k < 9; ++k) to(node, k) += flow.whole * xi[k];
-    }
-  }
-  return !flowing_.empty();
+  bool yields = false;
+  for_each_over(1, w, from, [&](int) {
+    yields = true;
+    return false;
+  });
+  return yields;
 }
 
 void PlasticPlate::add_forces(const PlasticField& plastic, Field& forces) const {
   for (int j = 0; j < grid_.rows; ++j) {
     for (int i = 0; i < grid_.columns; ++i) {
       const int node = grid_.node(i, j);
-      PlaceCurvatures here;
+      PlaceCurvatures own;
       bool is_flat = true;
       for (int k = 0; k < 9; ++k) {
-        here[k] = plastic(node, k);
-        is_flat = is_flat && here[k] == 0;
+        own[k] = plastic(node, k);
+        is_flat = is_flat && own[k] == 0;
       }
-      if (!is_flat) add_forces(stencil(i, j), here, forces);
+      if (is_flat) continue;
+      const Stencil at = stencil(i, j);
+      const PlaceCurvatures moments = moments_of(form(i, j), own);
+      for (int k = 0; k < 3; ++k) {
+        double* const to = forces.col(k).data();
+        const double of_u = at.area * moments[k], of_v = at.area * moments[3 + k];
+        const double twist = at.area * at.twist * moments[6 + k];
+        to[at.left] += at.u.before * of_u;
+        to[at.right] += at.u.after * of_u;
+        to[at.below] += at.v.before * of_v;
+        to[at.above] += at.v.after * of_v;
+        to[at.node] += at.u.here * of_u + at.v.here * of_v;
+        to[at.corners[0]] += twist;
+        to[at.corners[1]] -= twist;
+        to[at.corners[2]] -= twist;
+        to[at.corners[3]] += twist;
+      }
     }
   }
 }
 
-void PlasticPlate::add_slope(const Field& way, Field& forces) const {
-  for (const Flowing& one : flowing_) {
-    const Stencil at = stencil(one.i, one.j);
-    const Moduli<double>& moduli = moduli_[static_cast<std::size_t>(at.node)];
-    add_forces(at, one.flow.change(moduli, curvatures(at, way)), forces);
+PlaceRows PlasticPlate::rows_of(const std::vector<int>& nodes, const std::vector<int>& numbers,
+                                const Field& w) const {
+  PlaceRows rows;
+  const int columns = grid_.columns, last = grid_.rows - 1;
+  std::array<int, 9> patterns;  // of nodes at the ends of lines, if the material is even
+  patterns.fill(-1);
+  for (const int node : nodes) {
+    const int i = node % columns, j = node / columns;
+    const Stencil at = stencil(i, j);
+    const int others[] = {at.node,       at.left,       at.right,      at.below,     at.above,
+                          at.corners[0], at.corners[1], at.corners[2], at.corners[3]};
+    int& pattern = patterns[(j == 0     ? 0
+                             : j < last ? 3
+                                        : 6) +
+                            (i == 0            ? 0
+                             : i < columns - 1 ? 1
+                                               : 2)];
+    if (pattern < 0 || factors_) {
+      pattern = static_cast<int>(rows.patterns.size());
+      const double t = at.twist;
+      rows.patterns.push_back({form(i, j),
+                               law(node),
+                               at.area,
+                               {{at.u.here, at.v.here, 0},
+                                {at.u.before, 0, 0},
+                                {at.u.after, 0, 0},
+                                {0, at.v.before, 0},
+                                {0, at.v.after, 0},
+                                {0, 0, t},
+                                {0, 0, -t},
+                                {0, 0, -t},
+                                {0, 0, t}}});
+    }
+    rows.pattern_of.push_back(pattern);
+    PlaceCurvatures& held = rows.held.emplace_back(by_tangents(i, j));
+    for (int n = 0; n < 9; ++n) {
+      const int unknown = numbers[others[n]];
+      rows.unknowns.push_back(unknown);
+      const std::array<double, 3>& by = rows.patterns[pattern].by[n];
+      for (int k = 0; unknown < 0 && k < 9; ++k) held[k] += by[k / 3] * w(others[n], k % 3);
+    }
+    rows.starts.push_back(rows.unknowns.size());
   }
+  return rows;
 }
 
 }  // namespace pliant

@@ -2,162 +2,273 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/plate/energy/flowing_places.hpp"
+#include "pliant/plate/energy/secants.hpp"
+
 namespace pliant {
 namespace {
 
-// Sums in a fixed order.
-double dot(const Field& a, const Field& b) {
-  double sums[4] = {0, 0, 0, 0};
-  const double* const x = a.data();
-  const double* const y = b.data();
-  const Eigen::Index whole = a.size() / 4 * 4;
-  for (Eigen::Index k = 0; k < whole; k += 4) {
-    for (int n = 0; n < 4; ++n) sums[n] += x[k + n] * y[k + n];
-  }
-  for (Eigen::Index k = whole; k < a.size(); ++k) sums[0] += x[k] * y[k];
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+using Numbers = Secants::Numbers;
+
+// How short the last way is, as a part of the peak: conjugate gradients leave
+// (sqrt(condition) - 1)/2 of it, which is 1e-9 at most, and the solve that follows less.
+double shortest_way(double hardening) {
+  const double h = std::max(hardening, 0.01);
+  return 1e-9 * std::min(1.0, 2 / (std::sqrt((1 + h) / h) + 1));
 }
 
-// One step: the displacement at which it and the plastic curvatures that it makes fit together,
-// the least of a convex energy, by Newton's method.
-class Settling {
- public:
-  Settling(FlowingPlate& plate, const RunContext& context, double hardening, Eigen::Index moving)
-      : plate_(plate), context_(context), hardening_(hardening), moving_(moving) {}
+Numbers sum(Numbers a, double part, const Numbers& b) {
+  add_scaled(a, part, b);
+  return a;
+}
 
-  // Its slope A - f' is solved by conjugate gradients, for which A is a good approximation: the
-  // condition is (1 + H)/H at most. A x is known for all x that occur, so that A is only solved.
-  Result<Field> settle(const PlasticField& from, const Field& right_hand_sides) {
-    constexpr int most_rounds = 100;
-    const double tolerance = 1e-10 * std::clamp(hardening_, 0.01, 1.0);
-    Field product = right_hand_sides + plate_.forces_of(from);  // A x
-    auto first = solve(product);
-    if (!first) return first;
-    Field x = *std::move(first);
-    if (!plate_.flow(x, from, flowed_)) return x;
-    double last = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < most_rounds; ++round) {
-      const Field gradient = product - right_hand_sides - plate_.forces_of(flowed_);
-      auto change = solve(gradient);
-      if (!change) return change;
-      const double size = largest(*change), peak = largest(x);
-      // Rounding may let it become no smaller; or a number is not finite.
-      const bool stalls = size < 1e-8 * peak && !(size < 0.5 * last);
-      if (!(size > tolerance * peak) || stalls) {
-        x -= *change;
-        plate_.flow(x, from, flowed_);
-        return x;
-      }
-      last = size;
-      auto way = descend(gradient, *change);
-      if (!way) return fail(way.error());
-      go(from, right_hand_sides, *way, x, product);
-    }
-    return fail(ErrorCode::SolverFailed,
-                fmt::format("a plastic step of {} nodes did not settle in {} rounds", moving_,
-                            most_rounds));
+Numbers difference(Numbers a, const Numbers& b) {
+  add_scaled(a, -1, b);
+  return a;
+}
+
+bool are_all_zero(const Numbers& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0; });
+}
+
+Error not_settled(Eigen::Index moving, int rounds) {
+  return {ErrorCode::SolverFailed,
+          fmt::format("a plastic step of {} nodes did not settle in {} rounds", moving, rounds)};
+}
+
+// A step finds the displacement at which it and the plastic curvatures that it makes fit together,
+// the least of a convex energy. Of its gradient, A x - right-hand side - f(x), only the part on the
+// places that may flow is not 0: all but the solves is done on these. N components are at work.
+template <std::size_t N>
+class SettlingSteps final : public PlasticSteps {
+ public:
+  SettlingSteps(FlowingPlate& plate, const RunContext& context, StepTerms terms, double hardening,
+                const TimeSteps& steps, std::array<int, 3> components, const PlasticField& plastic)
+      : plate_(plate),
+        context_(context),
+        terms_(std::move(terms)),
+        shortest_way_(shortest_way(hardening)),
+        steps_(steps),
+        components_(components) {
+    if (!plastic.isZero(0)) terms_.known += plate_.forces_of(plastic);
   }
 
-  // The plastic curvatures after `settle`.
-  const PlasticField& flowed() const { return flowed_; }
+  void expect(const Field& x, const PlasticField& plastic) override {
+    watch_over(x, plastic, {});
+    places_->begin(plastic);
+    places_->go_to(places_->taken_from(x));
+    growth_ = places_->growth();
+  }
+
+  Result<bool> step(Motion& motion, PlasticField& plastic) override {
+    const Field& w = motion.displacement;
+    const Field& v = motion.velocity;
+    Field right_hand_sides = terms_.known;
+    for (int k = 0; k < 3; ++k) {
+      right_hand_sides.col(k).head(w.rows()) +=
+          terms_.shift.cwiseProduct(w.col(k)) + terms_.inertia.cwiseProduct(v.col(k));
+    }
+    auto x = settle(right_hand_sides, w.rows(), plastic);
+    if (!x) return fail(x.error());
+    const bool flowed = places_ && places_->is_flowing();
+    if (flowed) {
+      const double part = steps_.are_reflected() ? 2 : 1;
+      places_->grow(plastic, part);
+      Numbers forces = places_->forces_of(places_->growth());
+      for (double& force : forces) force *= part;
+      places_->add_to(terms_.known, forces);
+    }
+    const double dt = steps_.solved_length();
+    const auto moved = x->topRows(w.rows());
+    if (steps_.are_reflected()) {
+      motion.velocity = 2 * (moved - w) / dt - v;
+      motion.displacement = 2 * moved - w;
+    } else {
+      motion.velocity = (moved - w) / dt;
+      motion.displacement = moved;
+    }
+    return flowed;
+  }
 
  private:
-  // A direction and what A makes of it.
-  struct Way {
-    Field x, product;
-  };
+  using Growth = typename FlowingPlaces<N>::Growth;
 
-  // Solves (A - f') way = -gradient roughly; `change` is A^-1 gradient.
-  Result<Way> descend(const Field& gradient, const Field& change) {
-    constexpr double enough = 0.02;
-    constexpr int most_turns = 200;
-    Way way{Field::Zero(gradient.rows(), 3), Field::Zero(gradient.rows(), 3)};
-    Field rest = -gradient;
-    Field direction = -change, product = rest;
-    double size = dot(rest, direction);
-    const double goal = enough * enough * size;
-    for (int turn = 0; turn < most_turns && size > goal; ++turn) {
-      const Field slope = product - plate_.slope_of(direction);
-      const double curvature = dot(direction, slope);
-      if (!(curvature > 0)) break;
-      const double step = size / curvature;
-      way.x += step * direction;
-      way.product += step * product;
-      rest -= step * slope;
-      auto next = solve(rest);
-      if (!next) return fail(next.error());
-      const double left = dot(rest, *next);
-      const double share = left / size;
-      size = left;
-      direction = *next + share * direction;
-      product = rest + share * product;
+  Result<Field> settle(const Field& right_hand_sides, Eigen::Index moving,
+                       const PlasticField& from) {
+    constexpr int most_rounds = 100;
+    Numbers forces;  // by what grows
+    if (places_) {
+      places_->begin(from);
+      forces = places_->forces_of(growth_);
     }
-    return way;
+    for (int round = 0; round < most_rounds; ++round) {
+      Field all = right_hand_sides;
+      if (places_) places_->add_to(all, forces);
+      auto x = solve(all);
+      if (!x) return x;
+      const bool is_near = round > 0;
+      if ((is_near || !places_) && !yields_elsewhere(*x, from, forces)) {
+        if (!places_) return x;
+        places_->go_to(places_->taken_from(*x));
+        growth_ = places_->growth();
+        return x;
+      }
+      if (auto near = descend(*x, moving, forces); !near) return fail(near.error());
+    }
+    return fail(not_settled(moving, most_rounds));
   }
 
-  // Goes the way, or less if the energy would grow again: its slope along the way is monotone.
-  void go(const PlasticField& from, const Field& right_hand_sides, const Way& way, Field& x,
-          Field& product) {
-    const auto slope_at = [&](double part) {
-      plate_.flow(x + part * way.x, from, flowed_);
-      return dot(way.x,
-                 product + part * way.product - right_hand_sides - plate_.forces_of(flowed_));
-    };
-    const double start = slope_at(0);
-    double part = 1, slope = slope_at(1);
-    for (int tries = 0; tries < 30 && slope > 0.5 * std::abs(start); ++tries) {
-      part *= std::abs(start) / (std::abs(start) + slope);
-      slope = slope_at(part);
+  // Whether places yield that are not among those that are watched: then they are from now on.
+  bool yields_elsewhere(const Field& x, const PlasticField& from, Numbers& forces) {
+    const std::vector<int> over = plate_.places_over(1, x, from);
+    if (over.empty() ||
+        (places_ && std::includes(places_->places().begin(), places_->places().end(), over.begin(),
+                                  over.end()))) {
+      return false;
     }
-    x += part * way.x;
-    product += part * way.product;
+    const std::optional<FlowingPlaces<N>> earlier = std::exchange(places_, std::nullopt);
+    watch_over(x, from, earlier ? earlier->places() : std::vector<int>());
+    places_->begin(from);
+    forces = earlier ? places_->taken_over(*earlier, forces) : places_->zero();
+    growth_ = earlier ? places_->taken_over(*earlier, growth_) : places_->growth();
+    return true;
   }
 
-  Result<Field> solve(const Field& right_hand_sides) {
+  // Those that are close to yielding too: they may soon.
+  void watch_over(const Field& x, const PlasticField& from, const std::vector<int>& others) {
+    constexpr double close = 0.8;
+    const std::vector<int> over = plate_.places_over(close, x, from);
+    std::vector<int> places;
+    std::set_union(over.begin(), over.end(), others.begin(), others.end(),
+                   std::back_inserter(places));
+    places_.emplace(plate_, std::move(places), components_, x.rows());
+    secants_.clear();
+  }
+
+  // A quasi-Newton method on the places: from `forces`, which make x, to those at which the way on
+  // is short enough.
+  Result<void> descend(const Field& x, Eigen::Index moving, Numbers& forces) {
+    constexpr int most_turns = 500;
+    const double peak = moving == 0 ? 0 : x.topRows(moving).cwiseAbs().maxCoeff();
+    Numbers flowed = places_->go_to(places_->taken_from(x));
+    Numbers gradient = difference(forces, flowed);
+    double shortest = std::numeric_limits<double>::infinity();
+    int since = 0;  // turns since it was shortest
+    for (int turn = 0; turn < most_turns && !are_all_zero(gradient); ++turn) {
+      Numbers product = secants_.to_solve(gradient);
+      auto solved = solve_on_places(product);
+      if (!solved) return fail(solved.error());
+      Numbers way = *std::move(solved);
+      secants_.finish(way, product);
+      // The energy falls against the way.
+      const double start = dot_product(way, gradient);
+      double part = -start / (dot_product(way, product) - places_->look_along(way));
+      Numbers left;
+      for (int tries = 1;; ++tries) {
+        flowed = places_->flow_after(part);
+        left = difference(sum(forces, part, product), flowed);
+        // Its slope along the way is monotone: less of the way if it grows again.
+        const double slope = -dot_product(way, left);
+        if (!(slope > 0.5 * std::abs(start)) || tries == 30) break;
+        part *= std::abs(start) / (std::abs(start) + slope);
+      }
+      places_->go(part);
+      add_scaled(forces, part, product);
+      const double length = std::abs(part) * longest(way, moving);
+      for (double& number : way) number *= part;
+      for (double& number : product) number *= part;
+      secants_.learn(std::move(way), std::move(product), difference(left, gradient));
+      gradient = std::move(left);
+      // Rounding may let it become no shorter; or a number is not finite.
+      since = length < 0.5 * shortest ? 0 : since + 1;
+      shortest = std::min(shortest, length);
+      if (!(length > shortest_way_ * peak) || (since > 20 && length < 1e-8 * peak)) {
+        forces = std::move(flowed);
+        return {};
+      }
+    }
+    if (!are_all_zero(gradient)) return fail(not_settled(moving, most_turns));
+    forces = std::move(flowed);
+    return {};
+  }
+
+  // A^-1 forces, there.
+  Result<Numbers> solve_on_places(const Numbers& forces) {
+    if (on_places_.rows() == 0) on_places_.setZero(places_->all_unknowns(), 3);
+    places_->add_to(on_places_, forces);
+    auto x = solve(on_places_);
+    places_->clear_in(on_places_);
+    if (!x) return fail(x.error());
+    return places_->taken_from(*x);
+  }
+
+  Result<Field> solve(const Field& forces) {
     if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-    return plate_.solve(right_hand_sides);
+    return plate_.solve(forces);
   }
 
-  // Of what moves: slopes of a surface have another unit.
-  double largest(const Field& field) const {
-    return moving_ == 0 ? 0 : field.topRows(moving_).cwiseAbs().maxCoeff();
+  double longest(const Numbers& way, Eigen::Index moving) const {
+    double longest = 0;
+    const std::vector<int>& unknowns = places_->unknowns();
+    for (std::size_t k = 0; k < unknowns.size() && unknowns[k] < moving; ++k) {
+      for (std::size_t n = 0; n < N; ++n) longest = std::max(longest, std::abs(way[k * N + n]));
+    }
+    return longest;
   }
 
   FlowingPlate& plate_;
   const RunContext& context_;
-  double hardening_;
-  Eigen::Index moving_;
-  PlasticField flowed_;
+  StepTerms terms_;  // known: with the forces of the plastic curvatures
+  double shortest_way_;
+  TimeSteps steps_;
+  std::array<int, 3> components_;
+  std::optional<FlowingPlaces<N>> places_;  // those that may flow; none: nothing has flowed
+  Secants secants_{4};
+  Growth growth_;    // with which the next step begins: that of the last one
+  Field on_places_;  // 0 but while it is solved for
 };
+
+// The components that are not 0 and stay so.
+std::vector<int> moving_components(const StepTerms& terms, const Motion& motion,
+                                   const PlasticField& plastic) {
+  std::vector<int> components;
+  for (int k = 0; k < 3; ++k) {
+    const bool is_still = terms.known.col(k).isZero(0) && motion.displacement.col(k).isZero(0) &&
+                          motion.velocity.col(k).isZero(0) && plastic.col(k).isZero(0) &&
+                          plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0);
+    if (!is_still) components.push_back(k);
+  }
+  return components;
+}
 
 }  // namespace
 
-Result<void> run_plastic_steps(FlowingPlate& plate, const RunContext& context,
-                               const StepTerms& terms, double hardening, const TimeSteps& steps,
-                               int first, Motion& motion, PlasticField& plastic) {
-  Settling settling(plate, context, hardening, motion.displacement.rows());
-  TimeSteps rest = steps;
-  rest.count = steps.count - first;
-  Field right_hand_sides = terms.known;
-  const auto solve = [&](const Field& w, const Field& v) {
-    right_hand_sides = terms.known;
-    for (int k = 0; k < 3; ++k) {
-      right_hand_sides.col(k).head(w.rows()) +=
-          terms.shift.cwiseProduct(w.col(k)) + terms.inertia.cwiseProduct(v.col(k));
-    }
-    return settling.settle(plastic, right_hand_sides);
-  };
-  const auto watch = [&](const Field&) {
-    plastic =
-        steps.are_reflected() ? PlasticField(2 * settling.flowed() - plastic) : settling.flowed();
-    return true;
-  };
-  return run_steps(context, rest, motion, solve, watch);
+std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunContext& context,
+                                                 StepTerms terms, double hardening,
+                                                 const TimeSteps& steps, const Motion& motion,
+                                                 const PlasticField& plastic) {
+  const std::vector<int> components = moving_components(terms, motion, plastic);
+  if (components.size() == 1) {
+    return std::make_unique<SettlingSteps<1>>(plate, context, std::move(terms), hardening, steps,
+                                              std::array{components[0], 0, 0}, plastic);
+  }
+  return std::make_unique<SettlingSteps<3>>(plate, context, std::move(terms), hardening, steps,
+                                            std::array{0, 1, 2}, plastic);
+}
+
+Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,
+                               PlasticField& plastic) {
+  for (int step = 0; step < count; ++step) {
+    if (auto stepped = steps.step(motion, plastic); !stepped) return fail(stepped.error());
+  }
+  return {};
 }
 
 }  // namespace pliant

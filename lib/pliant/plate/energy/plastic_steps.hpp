@@ -1,9 +1,34 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "pliant/plate/energy/place_curvatures.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/step_loop.hpp"
 
 namespace pliant {
+
+/// Places of a plate, nodes of a grid or triangles, and how their curvatures depend on its
+/// unknowns.
+struct PlaceRows {
+  /// What places may share: their material, and the change of k_uu, k_vv and k_uv for a
+  /// displacement of 1 of each unknown they depend on.
+  struct Pattern {
+    Moduli<double> form;
+    PlasticLaw law;
+    double area = 0;
+    std::vector<std::array<double, 3>> by;
+  };
+
+  std::vector<Pattern> patterns;
+  std::vector<int> pattern_of;            ///< of each place
+  std::vector<std::size_t> starts = {0};  ///< #places + 1: the first of each in `unknowns`
+  std::vector<int> unknowns;              ///< as its pattern has them; -1: held
+  std::vector<PlaceCurvatures> held;      ///< of each place, by what is held and prescribed
+};
 
 /// A plate that flows, on a grid or on triangles, as its steps see it. Fields of displacements x
 /// and of forces are on the unknowns (#unknowns x 3), of which the first ones move. With A the
@@ -13,25 +38,42 @@ class FlowingPlate {
  public:
   virtual ~FlowingPlate() = default;
 
-  /// A^-1 forces.
+  /// A^-1 forces. A component of the forces that is 0 is 0 in the solution.
   virtual Result<Field> solve(const Field& forces) = 0;
 
-  /// The plastic curvatures that x makes of `from`: the return mapping, eq. (8j). Remembers the
-  /// places that flow. Returns whether there are any.
-  virtual bool flow(const Field& x, const PlasticField& from, PlasticField& to) = 0;
-
-  /// Sum of omega B^T C k_p.
+  /// The forces of plastic curvatures, sum of omega B^T C k_p.
   virtual Field forces_of(const PlasticField& plastic) = 0;
 
-  /// How f changes as x goes along `way`, at the last `flow`.
-  virtual Field slope_of(const Field& way) = 0;
+  /// The places, ascending, whose stress is over `part` of the yield stress with `from`.
+  virtual std::vector<int> places_over(double part, const Field& x, const PlasticField& from) = 0;
+
+  /// Those places in detail; ascending.
+  virtual PlaceRows rows_of(const std::vector<int>& places) = 0;
 };
 
-/// Runs steps `first` to the last of an interval, each of displacement and plastic curvatures
-/// together, to 1e-9 of the peak. `terms.known` is without plastic curvatures. Errors: those of
-/// `plate`; SolverFailed if a step does not settle; Interrupted.
-Result<void> run_plastic_steps(FlowingPlate& plate, const RunContext& context,
-                               const StepTerms& terms, double hardening, const TimeSteps& steps,
-                               int first, Motion& motion, PlasticField& plastic);
+/// The steps of an interval, each of displacement and plastic curvatures together, to 1e-9 of the
+/// peak. Steps learn from those before them. Internal to plate.
+class PlasticSteps {
+ public:
+  virtual ~PlasticSteps() = default;
+
+  /// Lets the next step begin with what flows at `x`, which is near its solution.
+  virtual void expect(const Field& x, const PlasticField& plastic) = 0;
+
+  /// One step; whether a place flowed in it. Errors: those of the plate; SolverFailed if the step
+  /// does not settle; Interrupted.
+  virtual Result<bool> step(Motion& motion, PlasticField& plastic) = 0;
+};
+
+/// `terms.known` is without the plastic curvatures; `motion` and `plastic` are those before the
+/// first step. Refers to `plate` and `context`.
+std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunContext& context,
+                                                 StepTerms terms, double hardening,
+                                                 const TimeSteps& steps, const Motion& motion,
+                                                 const PlasticField& plastic);
+
+/// Runs so many steps. Errors: those of a step.
+Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,
+                               PlasticField& plastic);
 
 }  // namespace pliant

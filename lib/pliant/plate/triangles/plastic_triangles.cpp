@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace pliant {
 
@@ -94,81 +95,59 @@ void PlasticTriangles::hold(const TriangleCells& cells, const GivenSlopes& slope
   }
 }
 
-PlaceCurvatures PlasticTriangles::curvatures(int triangle, const Field& x) const {
-  PlaceCurvatures result = {};
-  for (std::size_t k = part_starts_[triangle]; k < part_starts_[triangle + 1]; ++k) {
-    const Part& part = parts_[k];
-    for (int component = 0; component < 3; ++component) {
-      const double value = x(part.unknown, component);
-      for (int n = 0; n < 3; ++n) result[3 * n + component] += part.by[n] * value;
-    }
+// Of xi = k - (1 + H) k_p.
+double PlasticTriangles::squared_stress(int triangle, const Field& x,
+                                        const PlasticField& from) const {
+  PlaceCurvatures xi;
+  const double share = 1 + laws_[triangle].hardening;
+  for (int k = 0; k < 9; ++k) xi[k] = held_(triangle, k) - share * from(triangle, k);
+  for (const Part& part : parts_of(triangle)) {
+    for (int k = 0; k < 9; ++k) xi[k] += part.by[k / 3] * x(part.unknown, k % 3);
   }
-  return result;
+  return product_of(moduli_[triangle], xi, xi);
 }
 
-// xi = k - (1 + H) k_p.
-PlaceCurvatures PlasticTriangles::stress(int triangle, const Field& x,
-                                         const PlasticField& from) const {
-  PlaceCurvatures result = curvatures(triangle, x);
-  const double share = 1 + laws_[triangle].hardening;
-  for (int k = 0; k < 9; ++k) {
-    result[k] += held_(triangle, k);
-    result[k] -= share * from(triangle, k);
+std::vector<int> PlasticTriangles::triangles_over(double part, const Field& x,
+                                                  const PlasticField& from) const {
+  std::vector<int> triangles;
+  for (int triangle = 0; triangle < count(); ++triangle) {
+    const double yield = part * laws_[triangle].yield;
+    if (squared_stress(triangle, x, from) > yield * yield) triangles.push_back(triangle);
   }
-  return result;
+  return triangles;
 }
 
 bool PlasticTriangles::yields(const Field& x, const PlasticField& from) const {
-  for (int triangle = 0; triangle < count(); ++triangle) {
-    const PlaceCurvatures xi = stress(triangle, x, from);
-    const double yield = laws_[triangle].yield;
-    if (product_of(moduli_[triangle], xi, xi) > yield * yield) return true;
-  }
-  return false;
-}
-
-bool PlasticTriangles::flow(const Field& x, const PlasticField& from, PlasticField& to) {
-  to = from;
-  flowing_.clear();
-  for (int triangle = 0; triangle < count(); ++triangle) {
-    const PlaceCurvatures xi = stress(triangle, x, from);
-    const double squared = product_of(moduli_[triangle], xi, xi);
-    const PlasticLaw& law = laws_[triangle];
-    if (!(squared > law.yield * law.yield)) continue;
-    const Flow& flow = flowing_.emplace_back(Flowing{triangle, {law, xi, squared}}).flow;
-    for (int k = 0; k < 9; ++k) to(triangle, k) += flow.whole * xi[k];
-  }
-  return !flowing_.empty();
-}
-
-void PlasticTriangles::add_forces(int triangle, const PlaceCurvatures& plastic,
-                                  Field& forces) const {
-  const PlaceCurvatures moments = moments_of(moduli_[triangle], plastic);
-  for (std::size_t k = part_starts_[triangle]; k < part_starts_[triangle + 1]; ++k) {
-    const Part& part = parts_[k];
-    for (int component = 0; component < 3; ++component) {
-      double sum = 0;
-      for (int n = 0; n < 3; ++n) sum += part.by[n] * moments[3 * n + component];
-      forces(part.unknown, component) += areas_[triangle] * sum;
-    }
-  }
+  return !triangles_over(1, x, from).empty();
 }
 
 void PlasticTriangles::add_forces(const PlasticField& plastic, Field& forces) const {
   for (int triangle = 0; triangle < count(); ++triangle) {
     if (plastic.row(triangle).isZero(0)) continue;
     PlaceCurvatures own;
-    for (int k = 0; k < 9; ++k) own[k] = plastic(triangle, k);
-    add_forces(triangle, own, forces);
+    for (int k = 0; k < 9; ++k) own[k] = areas_[triangle] * plastic(triangle, k);
+    const PlaceCurvatures moments = moments_of(moduli_[triangle], own);
+    for (const Part& part : parts_of(triangle)) {
+      for (int k = 0; k < 9; ++k) forces(part.unknown, k % 3) += part.by[k / 3] * moments[k];
+    }
   }
 }
 
-void PlasticTriangles::add_slope(const Field& way, Field& forces) const {
-  for (const Flowing& one : flowing_) {
-    const PlaceCurvatures change =
-        one.flow.change(moduli_[one.triangle], curvatures(one.triangle, way));
-    add_forces(one.triangle, change, forces);
+PlaceRows PlasticTriangles::rows_of(const std::vector<int>& triangles) const {
+  PlaceRows rows;
+  for (const int triangle : triangles) {
+    PlaceRows::Pattern pattern{moduli_[triangle], laws_[triangle], areas_[triangle], {}};
+    for (const Part& part : parts_of(triangle)) {
+      rows.unknowns.push_back(part.unknown);
+      pattern.by.push_back(part.by);
+    }
+    rows.pattern_of.push_back(static_cast<int>(rows.patterns.size()));
+    rows.patterns.push_back(std::move(pattern));
+    rows.starts.push_back(rows.unknowns.size());
+    PlaceCurvatures& held = rows.held.emplace_back();
+    for (int k = 0; k < 9; ++k) held[k] = held_(triangle, k);
   }
+  return rows;
 }
 
 std::size_t PlasticTriangles::memory() const {

@@ -2,10 +2,11 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pliant/core/field.hpp"
-#include "pliant/plate/energy/return_mapping.hpp"
+#include "pliant/plate/energy/plastic_steps.hpp"
 #include "pliant/plate/triangles/cell_factors.hpp"
 
 namespace pliant {
@@ -37,10 +38,10 @@ class PlasticTriangles {
   void hold(const TriangleCells& cells, const GivenSlopes& slopes, const Field& displacement);
 
   /// As those of `PlasticPlate`. Displacements (with slopes) and forces are on all unknowns.
+  std::vector<int> triangles_over(double part, const Field& x, const PlasticField& from) const;
   bool yields(const Field& x, const PlasticField& from) const;
-  bool flow(const Field& x, const PlasticField& from, PlasticField& to);
   void add_forces(const PlasticField& plastic, Field& forces) const;
-  void add_slope(const Field& way, Field& forces) const;
+  PlaceRows rows_of(const std::vector<int>& triangles) const;
 
   std::size_t memory() const;
 
@@ -51,15 +52,12 @@ class PlasticTriangles {
     Curvature by;
   };
 
-  struct Flowing {
-    int triangle;
-    Flow flow;
-  };
-
   int count() const { return static_cast<int>(areas_.size()); }
-  PlaceCurvatures curvatures(int triangle, const Field& x) const;
-  PlaceCurvatures stress(int triangle, const Field& x, const PlasticField& from) const;
-  void add_forces(int triangle, const PlaceCurvatures& plastic, Field& forces) const;
+  std::span<const Part> parts_of(int triangle) const {
+    const std::size_t first = part_starts_[triangle];
+    return std::span(parts_).subspan(first, part_starts_[triangle + 1] - first);
+  }
+  double squared_stress(int triangle, const Field& x, const PlasticField& from) const;
 
   std::vector<double> areas_;             // [length^2]
   std::vector<Moduli<double>> moduli_;    // [b length^4/uv^4]
@@ -68,7 +66,6 @@ class PlasticTriangles {
   std::vector<std::size_t> part_starts_ = {0};
   std::vector<Part> parts_;
   PlasticField held_;  // by what is held [1/length]
-  std::vector<Flowing> flowing_;
 };
 
 }  // namespace pliant

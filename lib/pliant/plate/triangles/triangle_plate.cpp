@@ -338,9 +338,7 @@ Result<void> TrianglePlate::prepare_plasticity() {
 class TrianglePlate::FlowingTriangles final : public FlowingPlate {
  public:
   explicit FlowingTriangles(TrianglePlate& plate)
-      : plate_(plate),
-        triangles_(plate.plasticity_->triangles),
-        zero_(Field::Zero(plate.cells_.unknown_count(), 3)) {}
+      : plate_(plate), triangles_(plate.plasticity_->triangles) {}
 
   Result<Field> solve(const Field& forces) override {
     Field eliminated = forces;
@@ -350,26 +348,21 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
     return inner.recovered(*left, eliminated);
   }
 
-  bool flow(const Field& x, const PlasticField& from, PlasticField& to) override {
-    return triangles_.flow(x, from, to);
-  }
-
   Field forces_of(const PlasticField& plastic) override {
-    Field forces = zero_;
+    Field forces = Field::Zero(plate_.cells_.unknown_count(), 3);
     triangles_.add_forces(plastic, forces);
     return forces;
   }
 
-  Field slope_of(const Field& way) override {
-    Field forces = zero_;
-    triangles_.add_slope(way, forces);
-    return forces;
+  std::vector<int> places_over(double part, const Field& x, const PlasticField& from) override {
+    return triangles_.triangles_over(part, x, from);
   }
+
+  PlaceRows rows_of(const std::vector<int>& places) override { return triangles_.rows_of(places); }
 
  private:
   TrianglePlate& plate_;
-  PlasticTriangles& triangles_;
-  Field zero_;
+  const PlasticTriangles& triangles_;
 };
 
 // The steps are elastic until one yields.
@@ -407,8 +400,9 @@ Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& prob
   if (before) {
     motion = *std::move(before);
     FlowingTriangles flowing(*this);
-    auto ran = run_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
-                                 problem.law->hardening, steps, done, motion, state.plastic);
+    const auto all = make_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
+                                        problem.law->hardening, steps, motion, state.plastic);
+    auto ran = run_plastic_steps(*all, steps.count - done, motion, state.plastic);
     if (!ran) return fail(ran.error());
   }
   state.displacement.topRows(points) = motion.displacement;
