@@ -4,9 +4,10 @@
     python3 compare.py PLIANT_BINARY SCENE... [--keep DIR]
 
 Each scene is baked with `PLIANT_BINARY bake SCENE -o OUT.npy` and with the reference; the largest
-difference must stay within 1e-8 of the surface's peak displacement over the run. A surface that
-never moves must be exactly at rest. On a surface of triangles, so must every vertex that does not
-move, and the pieces' numbers of nodes and cells must agree. Exit 1 when a scene fails.
+difference must stay within 1e-8 of the surface's peak displacement over the run, 1e-7 with exact
+motion. A surface that never moves must be exactly at rest. On a surface of triangles, so must every
+vertex that does not move, and the pieces' numbers of nodes and cells must agree. Exit 1 when a scene
+fails.
 """
 
 import argparse
@@ -26,6 +27,9 @@ from scene import Scene
 # The condition number of the 13-point operator grows like nodes^2 (about 1e5 at 25x25), so two
 # good solvers differ by about 1e-11 of the peak; 1e-8 leaves room for a hundred frames of it.
 TOLERANCE = 1e-8
+# Exact motion is right to 1e-6 of the peak in runs of 250 frames (SPEC 9); here loads jump, and runs
+# are short.
+EXACT_TOLERANCE = 1e-7
 
 
 def tolerance_of(reference):
@@ -37,7 +41,8 @@ def tolerance_of(reference):
     """
     peak = reference.peak()
     if not is_at_rest(reference):
-        return TOLERANCE * peak
+        is_exact = reference.run.surface.choices["integrator"] == "exact"
+        return (EXACT_TOLERANCE if is_exact else TOLERANCE) * peak
     if reference.is_always_identity:
         return 0.0
     return 1e-10 * float(np.abs(reference.world).max() + 1.0)

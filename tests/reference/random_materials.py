@@ -66,13 +66,12 @@ class MaterialMaker(YieldMaker):
         if rng.random() < 0.6:
             return []
         groups = [("density",), ("damping",), ("b", "c", "d")]
-        is_grid = hasattr(surface.grid, "columns")
         # Exact motion with uneven damping takes the reference the cube of their number.
         if ("integrator", "exact") in solver and surface.grid.rest.size > 3 * 160:
             groups = groups[2:]
         if yields:
             groups = [("yield",), ("hardening",)] + groups
-        if is_grid and ("combine", "union") in solver:
+        if ("combine", "union") in solver:
             groups.pop()
         lines = []
         for group in groups:

@@ -239,8 +239,7 @@ class Surface:
         self.maps = read_maps(child_or_empty(element, "material"),
                               lambda file: os.path.join(folder, file), self.grid.uvs)
         self.has_stiffness_map = any(channel in self.maps for channel in "bcd")
-        assert not (self.has_stiffness_map and self.choices["combine"] == "union" and
-                    not isinstance(self.grid, TriangleMesh))
+        assert not (self.has_stiffness_map and self.choices["combine"] == "union")
         edges = solver.get("edges", "clamped").split()
         self.edges = tuple(edges * 4 if len(edges) == 1 else edges)
         assert len(self.edges) == 4 and set(self.edges) <= {"clamped", "pinned", "free"}
