@@ -191,7 +191,7 @@ class Contents(unittest.TestCase):
         files = files_below(os.path.join(TARBALL_ROOT, "share/doc/pliant"))
         for folder in ("docs", "examples"):
             for path in files_below(os.path.join(SOURCE, folder)):
-                if path.endswith((".md", ".png", ".svg", ".xml", ".obj")):
+                if path.endswith((".md", ".png", ".svg", ".xml", ".obj", ".pc2")):
                     with self.subTest(f"{folder}/{path}"):
                         self.assertIn(f"{folder}/{path}", files)
 
