@@ -260,10 +260,11 @@ Vector3d force_at(const SampledForce& force, const Vector3d& p) {
 }
 
 Vector3d force_on(const SampledForce& force, const Vector3d& p, int node) {
-  const Vector3d load = force_at(force, p);
-  const Field* const of_nodes = vectors_of_nodes(force);
-  if (!of_nodes) return load;
-  return load + strength_everywhere(force) * of_nodes->row(node).transpose();
+  Vector3d load = force_at(force, p);
+  if (const Field* const of_nodes = vectors_of_nodes(force)) {
+    load += strength_everywhere(force) * of_nodes->row(node).transpose();
+  }
+  return load;
 }
 
 BatchNumbers distances(const ForceKind& force, const Batch& points) {

@@ -48,7 +48,7 @@ Field irregular_shapes(Eigen::Index count) {
 // if that was far off, with one of its own size, of which less is lost to rounding.
 Result<double> find_unheld(const std::function<Result<double>(double shift)>& find, double shift) {
   constexpr double far = 30;
-  const auto rough = find(shift);
+  auto rough = find(shift);
   if (!rough || *rough == 0 || (*rough < far * shift && shift < far * *rough)) return rough;
   return find(*rough);
 }

@@ -13,7 +13,7 @@ Result<double> VibrationCache::smallest(PlateSolver& solver, const PlateSystem& 
   const auto found = std::find_if(known_.begin(), known_.end(),
                                   [&](const Known& known) { return known.system == system; });
   if (found != known_.end()) return found->lambda;
-  const auto lambda = smallest_eigenvalue(solver, system);
+  auto lambda = smallest_eigenvalue(solver, system);
   if (!lambda) return lambda;
   known_.push_back({system, *lambda});
   mask_nodes_ += system.outline.mask().size();

@@ -127,9 +127,9 @@ Result<std::shared_ptr<const Field>> AnimatedShape::vertices(int frame) const {
   const double from = frames_[static_cast<std::size_t>(after) - 1];
   if (next == frames_.end() || time == from) return sample(after - 1);
   if (Shared kept = vertices_.find(frame)) return kept;
-  const auto a = sample(after - 1);
+  auto a = sample(after - 1);
   if (!a) return a;
-  const auto b = sample(after);
+  auto b = sample(after);
   if (!b) return b;
   const double share = (time - from) / (*next - from);
   auto between = std::make_shared<const Field>(**a + share * (**b - **a));
@@ -141,7 +141,7 @@ Result<std::shared_ptr<const Field>> AnimatedShape::nodes(int frame) const {
   if (is_same_) return vertices(frame);
   frame = frame_of_cycle(frame);
   if (Shared kept = node_shapes_.find(frame)) return kept;
-  const auto all = vertices(frame);
+  auto all = vertices(frame);
   if (!all) return all;
   Field of_nodes(static_cast<Eigen::Index>(lowest_.size()), 3);
   for (std::size_t node = 0; node < lowest_.size(); ++node) {

@@ -37,7 +37,7 @@ Result<BodyState> Bodies::find_cycle(std::size_t index) {
     if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
     if (!is_solved_at(scene_, surface, step.frame)) return {};
     inputs = sample_inputs(scene_, sampling_, index, step.frame, std::move(inputs));
-    const auto stepped = body.step(inputs.body);
+    auto stepped = body.step(inputs.body);
     if (std::string fault = inputs.faults->first(); !fault.empty())
       return fail(ErrorCode::InvalidInput, std::move(fault));
     return stepped;

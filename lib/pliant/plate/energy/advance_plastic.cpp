@@ -144,7 +144,7 @@ class PlasticSteps {
         return x;
       }
       last = size;
-      auto way = descend(gradient, *std::move(change));
+      auto way = descend(gradient, *change);
       if (!way) return fail(way.error());
       go(from, right_hand_sides, *way, x, product);
     }
@@ -159,7 +159,7 @@ class PlasticSteps {
   };
 
   // Solves (A - f') way = -gradient roughly; `change` is A^-1 gradient.
-  Result<Way> descend(const Field& gradient, Field change) {
+  Result<Way> descend(const Field& gradient, const Field& change) {
     constexpr double enough = 0.02;
     constexpr int most_turns = 200;
     Way way{Field::Zero(gradient.rows(), 3), Field::Zero(gradient.rows(), 3)};
