@@ -16,38 +16,52 @@ constexpr std::size_t most_tables = 2;
 
 ComplexNumber number_of(Complex a) { return {a.re, a.im}; }
 
+// Hands out parts of one block, each on its own cache line; with a null block it only counts.
+class BlockParts {
+ public:
+  explicit BlockParts(double* block) : block_(block) {}
+
+  double* take(long count) {
+    constexpr std::size_t unit = NumberBlock::line / sizeof(double);
+    double* const place = block_ ? block_ + used_ : nullptr;
+    used_ += (static_cast<std::size_t>(count) + unit - 1) / unit * unit;
+    return place;
+  }
+
+  std::size_t used() const { return used_; }
+
+ private:
+  double* block_;
+  std::size_t used_ = 0;
+};
+
 }  // namespace
 
 // Lays out the workspace; with a null block it only counts.
 std::size_t SpectralMotion::carve(double* block) {
-  std::size_t used = 0;
-  const auto take = [&](long count) {
-    double* const place = block ? block + used : nullptr;
-    used += (static_cast<std::size_t>(count) + 7) / 8 * 8;
-    return place;
-  };
+  BlockParts parts(block);
   for (int k = 0; k < 4; ++k) {
     SpectralPlate::Parity& parity = plate_.parities_[k];
     const long size = long{parity.rows} * parity.pitch;
-    diagonal_[k] = take(size);
+    diagonal_[k] = parts.take(size);
     for (int component = 0; component < 3; ++component) {
       PartWork& work = work_[k][component];
       ExactView& view = work.view;
-      parity.growth[component] = take(size);
+      parity.growth[component] = parts.take(size);
       view.load = parity.load[component];
       view.growth = parity.growth[component];
       work.w[0] = parity.displacement[component];
       work.v[0] = parity.pending[component];
-      work.w[1] = take(size);
-      work.v[1] = take(size);
-      work.doubt = take(size);
-      work.lack = take(size);
-      view.row_sums = take(2L * shift_count * parity.rows);
-      view.column_sums = take(2L * shift_count * parity.columns);
-      view.edge = take(4L * shift_count * parity.columns);
+      work.w[1] = parts.take(size);
+      work.v[1] = parts.take(size);
+      work.doubt = parts.take(size);
+      work.lack = parts.take(size);
+      view.row_sums = parts.take(2L * shift_count * parity.rows);
+      view.column_sums = parts.take(2L * shift_count * parity.columns);
+      view.edge = parts.take(4L * shift_count * parity.columns);
     }
   }
-  return used;
+  return parts.used();
 }
 
 Result<void> SpectralMotion::reserve(std::size_t tables) {
@@ -104,22 +118,17 @@ Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
   Tables tables;
   tables.length = length;
   const auto carve_tables = [&](double* block) {
-    std::size_t used = 0;
-    const auto take = [&](long count) {
-      double* const place = block ? block + used : nullptr;
-      used += (static_cast<std::size_t>(count) + 7) / 8 * 8;
-      return place;
-    };
+    BlockParts parts(block);
     for (int k = 0; k < 4; ++k) {
       const SpectralPlate::Parity& parity = plate_.parities_[k];
       const long size = long{parity.rows} * parity.pitch;
       const long inverse = long{parity.columns} * parity.inverse_pitch;
       for (ShiftTables& of_pole : tables.of[k]) {
-        of_pole = {take(size),        take(size),    take(parity.rows),
-                   take(parity.rows), take(inverse), take(inverse)};
+        of_pole = {parts.take(size),        parts.take(size),    parts.take(parity.rows),
+                   parts.take(parity.rows), parts.take(inverse), parts.take(inverse)};
       }
     }
-    return used;
+    return parts.used();
   };
   table_size_ = carve_tables(nullptr);
   if (auto reserved = reserve(tables_.size() + 1); !reserved) return fail(reserved.error());
