@@ -1,8 +1,10 @@
 #include "viewer/forces.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "viewer/force_values.hpp"
 
@@ -31,14 +33,25 @@ const Group* group_of(const Scene& scene, const Force& force) {
   return nullptr;
 }
 
-Json force_json(const Force& force, const Group* group, const FrameRange& frames) {
+// Whether it selects a region of some surface: one with region="all" is solved whole.
+bool selects(const Scene& scene, const std::vector<std::string>& targets) {
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& surface) {
+    const bool is_target =
+        targets.empty() || std::find(targets.begin(), targets.end(), surface.name) != targets.end();
+    return is_target && !surface.is_driven() && surface.solver.region == SolvedRegion::Forces;
+  });
+}
+
+Json force_json(const Scene& scene, const Force& force, const FrameRange& frames) {
+  const Group* const group = group_of(scene, force);
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
   if (group != nullptr) json["group"] = group->name;
   json["enabled"] = track(frames, [&](int frame) {
     return Json(force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame)));
   });
   json["magnitude"] = track(force.magnitude, frames);
-  if (group == nullptr) json["deformationRadius"] = track(force.deformation_radius, frames);
+  if (group == nullptr && selects(scene, force.targets))
+    json["deformationRadius"] = track(force.deformation_radius, frames);
   json["forceRadius"] = track(force.force_radius, frames);
   for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
     json[std::string(name)] = track(frames, value_at);
@@ -46,13 +59,15 @@ Json force_json(const Force& force, const Group* group, const FrameRange& frames
   return json;
 }
 
-Json group_json(const Group& group, const FrameRange& frames) {
-  return {{"name", group.name},
-          {"kind", "group"},
-          {"targets", group.targets},
-          {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
-          {"deformationRadius", track(group.deformation_radius, frames)},
-          {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
+Json group_json(const Scene& scene, const Group& group, const FrameRange& frames) {
+  Json json = {{"name", group.name},
+               {"kind", "group"},
+               {"targets", group.targets},
+               {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
+               {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
+  if (selects(scene, group.targets))
+    json["deformationRadius"] = track(group.deformation_radius, frames);
+  return json;
 }
 
 Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
@@ -62,9 +77,9 @@ Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 Json view_forces(const Scene& scene, const FrameRange& frames) {
   Json forces = Json::array();
   for (const Force& force : scene.forces) {
-    forces.push_back(force_json(force, group_of(scene, force), frames));
+    forces.push_back(force_json(scene, force, frames));
   }
-  for (const Group& group : scene.groups) forces.push_back(group_json(group, frames));
+  for (const Group& group : scene.groups) forces.push_back(group_json(scene, group, frames));
   return forces;
 }
 

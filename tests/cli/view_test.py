@@ -167,6 +167,16 @@ class Page(View):
             frame, value = (float(word) for word in row.split(",")[1:])
             self.assertIn([frame, value], channel["points"])
 
+    def test_forces_have_a_deformation_radius_where_they_select(self):
+        scene = self.write("s.xml", """<scene version="1" start="1" end="3">
+  <surface name="a"><grid columns="5" rows="5"/><solver region="all"/></surface>
+  <surface name="b"><grid columns="5" rows="5"/></surface>
+  <point name="p" targets="a"/><point name="q" targets="b"/><point name="r"/>
+  <group name="g" targets="a"><point name="s"/></group></scene>""")
+        self.run_pliant("view", scene, "-o", "a.html", "--quiet")
+        _, head, _ = read_page(self.path("a.html"))
+        self.assertEqual([force["name"] for force in head["forces"] if "deformationRadius" in force], ["q", "r"])
+
     def test_regions_are_those_that_bake_tells_of(self):
         scene = os.path.join(SOURCE, "examples/hands.xml")
         self.run_pliant("view", scene, "--quiet")
