@@ -19,6 +19,12 @@ std::vector<std::string> messages(const WarningLog& log, const Scene& scene = {}
   return result;
 }
 
+Surface surface_named(const std::string& name) {
+  Surface surface;
+  surface.name = name;
+  return surface;
+}
+
 }  // namespace
 
 TEST_CASE("warnings come once a cause, with all its frames", "[feedback][warnings]") {
@@ -108,8 +114,8 @@ TEST_CASE("what a force does on one of its surfaces is enough if it has no targe
   touching.forces = {{.touches = true}};
   missing.forces = {{}};
   WarningLog log;
-  add_facts(log, "a", 1, inputs, touching);
-  add_facts(log, "b", 1, inputs, missing);
+  add_facts(log, surface_named("a"), 1, inputs, touching);
+  add_facts(log, surface_named("b"), 1, inputs, missing);
   const std::vector<Warning> warnings = log.warnings({}, true);
   REQUIRE(warnings.size() == (has_targets ? 1 : 0));
   if (has_targets) {
@@ -126,7 +132,7 @@ TEST_CASE("facts of a surface of triangles have warnings of their own", "[feedba
   facts.forces = {{.is_too_small = true}};
   const auto kind_of = [&] {
     WarningLog log;
-    add_facts(log, "a", 1, inputs, facts);
+    add_facts(log, surface_named("a"), 1, inputs, facts);
     REQUIRE(log.warnings({}, true).size() == 1);
     return log.warnings({}, true)[0].kind;
   };

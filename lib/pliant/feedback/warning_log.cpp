@@ -54,9 +54,17 @@ std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_comp
   return warnings;
 }
 
-void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
+void add_facts(WarningLog& log, const Surface& of, int frame, const SurfaceInputs& inputs,
                const StepFacts& facts) {
   using enum Warning::Kind;
+  const std::string_view surface = of.name;
+  if (facts.has_loose_piece) log.add(LoosePiece, surface, {}, frame);
+  // A whole body waits for no force: if it is not solved, nothing of it can move, and no force and
+  // no tangent is to blame.
+  if (of.solver.region == SolvedRegion::All && !facts.is_solved) {
+    if (!facts.has_loose_piece) log.add(AllHeld, surface, {}, frame);
+    return;
+  }
   for (std::size_t k = 0; k < facts.forces.size(); ++k) {
     const ForceSource& source = inputs.sources[k];
     const std::string_view force = source.name;
@@ -80,7 +88,6 @@ void add_facts(WarningLog& log, std::string_view surface, int frame, const Surfa
       if (of_force.pushes) log.happened(PushesNothing, place, force);
     }
   }
-  if (facts.has_loose_piece) log.add(LoosePiece, surface, {}, frame);
   if (!inputs.body.tangents.are_zero()) {
     log.expect(TangentsUnused, surface, {}, frame);
     if (facts.is_solved) log.happened(TangentsUnused, surface, {});

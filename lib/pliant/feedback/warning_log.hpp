@@ -57,7 +57,7 @@ class WarningLog {
 };
 
 /// Adds the facts of one surface's step at a frame.
-void add_facts(WarningLog& log, std::string_view surface, int frame, const SurfaceInputs& inputs,
+void add_facts(WarningLog& log, const Surface& surface, int frame, const SurfaceInputs& inputs,
                const StepFacts& facts);
 
 }  // namespace pliant

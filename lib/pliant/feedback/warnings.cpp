@@ -66,6 +66,10 @@ std::string Warning::message() const {
           "warning",
           names_text(force, others), surface, when);
     case Kind::AllHeld:
+      if (force.empty())
+        return fmt::format(
+            "all nodes of \"{}\" are held {}: none can move, although region=\"all\" solves it",
+            surface, when);
       return fmt::format("all nodes of \"{}\" that {} \"{}\" selects {} are held: none can move",
                          surface, noun, force, when);
     case Kind::BetweenNodes:
@@ -107,6 +111,7 @@ int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (warning.kind == Warning::Kind::NeverStarts) {
     return origin.line_of(warning.surface, "startFrame");
   }
+  if (warning.kind == Warning::Kind::AllHeld) return origin.line_of(warning.surface, "region");
   for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
     if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
   }

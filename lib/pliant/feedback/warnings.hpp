@@ -21,7 +21,8 @@ struct Warning {
     NeverStarts,     ///< the surface's start frame is after the last solved frame
     TangentsUnused,  ///< tangents other than 0, but no region is solved in the whole range
     ForcesApart,     ///< boxes that do not meet form one region, since `combine` is box
-    AllHeld,         ///< all nodes that a force selects on a surface are held
+    AllHeld,         ///< all nodes that a force selects on a surface are held; without a force,
+                     ///< all of a surface that is solved whole
     BetweenNodes,    ///< a force reaches a surface, but no node of it
     LoosePiece,      ///< nothing holds a piece of a surface's region
     FacesLeftOut,    ///< faces of a mesh that its surface does not have

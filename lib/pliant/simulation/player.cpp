@@ -113,7 +113,7 @@ Result<void> Simulation::Player::step() {
     if (auto done = bodies_.outcome(k); !done) return done;
     is_read = is_read || step.is_read;
     if (!step.is_solved_now) continue;
-    add_facts(warnings_, surface.name, frame_, step.inputs, step.facts);
+    add_facts(warnings_, surface, frame_, step.inputs, step.facts);
     is_solved = is_solved || (!step.is_read && !step.is_again);
   }
   frame_counts_.solved += is_solved ? 1 : 0;
