@@ -6,6 +6,7 @@
 #include "body/sheets.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -87,6 +88,7 @@ TEST_CASE("awkward meshes move as they should", "[body][surface][awkward]") {
     for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
       if (plain.is_far[vertex]) CHECK(plain.ways.row(vertex).isZero(0));
     }
+    if (is_sanitized) continue;  // the rest is the same code again
     CHECK(played(mesh, force, awkward.weld).ways == plain.ways);
 
     std::vector<int> order(static_cast<std::size_t>(mesh.vertex_count()));

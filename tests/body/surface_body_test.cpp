@@ -10,6 +10,7 @@
 #include "pliant/plate/vibration.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -73,16 +74,19 @@ TEST_CASE("a disc cut from any mesh has the deflection of a clamped disc", "[bod
   for (const bool has_quads : {false, true}) {
     std::vector<double> errors;
     for (const int count : {23, 46, 92}) {
+      if (is_sanitized && count > 23) continue;
       errors.push_back(
           std::abs(settled_peak(square(count, 1, 0.3, has_quads), radius) / exact - 1));
     }
     CHECK(errors[0] < 0.05);  // 20 nodes across
+    if (is_sanitized) continue;
     CHECK(errors[1] < errors[0] / 1.8);
     CHECK(errors[2] < errors[0] / 9);
   }
 }
 
 TEST_CASE("a clamped square has the deflection of the literature", "[body][surface]") {
+  if (is_sanitized) return;  // its figures are what it is about
   CHECK(settled_peak(square(32, 1, 0), 9) == Approx(0.00126532).epsilon(0.02));
   CHECK(settled_peak(square(32, 1, 0, true), 9) == Approx(0.00126532).epsilon(0.01));
   CHECK(settled_peak(square(64, 1, 0.3), 9) == Approx(0.00126532).epsilon(0.006));
@@ -93,6 +97,7 @@ TEST_CASE("a poked sphere dents as the equation of its meridian says", "[body][s
   for (const auto& [radius, exact] : {std::pair(0.8, 0.0031619), std::pair(1.5, 0.02086)}) {
     double before = 1;
     for (const int levels : {3, 4}) {
+      if (is_sanitized && levels > 3) continue;
       const Mesh mesh = sphere(levels);
       SurfaceBody body = body_of(mesh, {.unit = one});
       const Vector3d pole = mesh.positions.row(0).transpose();
@@ -107,6 +112,7 @@ TEST_CASE("a poked sphere dents as the equation of its meridian says", "[body][s
 }
 
 TEST_CASE("slopes all round a disc make a round bump", "[body][surface]") {
+  if (is_sanitized) return;
   constexpr double radius = 0.4, slope = 0.3;
   for (const double unit : {1.0, 2.0}) {
     SurfaceBody body = body_of(square(60, 1, 0.3), {.unit = std::array{unit, unit}});
@@ -118,6 +124,7 @@ TEST_CASE("slopes all round a disc make a round bump", "[body][surface]") {
 }
 
 TEST_CASE("the unit carries a grid's numbers over to its remesh", "[body][surface]") {
+  if (is_sanitized) return;
   // A sheet of 2 x 3 over [0,1] x [0,1], whole, with b, c, d that differ.
   const auto grid = find_grid(make_mesh({.columns = 65, .rows = 65, .width = 2, .depth = 3}));
   GridBody sheet(grid->grid, grid->rest, at_rest_measured);
@@ -278,6 +285,7 @@ TEST_CASE("a force between the nodes of a coarse mesh is told from one that is f
 
 TEST_CASE("a pinned square has the deflection and the vibration of the literature",
           "[body][surface]") {
+  if (is_sanitized) return;
   // Timoshenko & Woinowsky-Krieger: 0.00406 q; clamped it is 0.00126 q.
   const Mesh mesh = square(40, 1, 0.2, true);
   SurfaceBody body =
@@ -334,7 +342,7 @@ TEST_CASE("a badly conditioned plate takes the same steps together and one by on
           "[body][surface]") {
   // Faces 3000 times as long as wide: a plain solve errs by 5e-9 of the peak, so solutions are
   // corrected: from the steps before, but afresh at a frame's first step.
-  Mesh mesh = square(80, 1, 0.3);
+  Mesh mesh = square(is_sanitized ? 16 : 80, 1, 0.3);
   mesh.positions.col(0) *= 3000;
   const MeshReading reading{.unit = one};
   BodyInputs in = moving_inputs({load_on({0, 0, 0}, 1e6, 1e4)});

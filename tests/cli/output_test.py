@@ -6,7 +6,7 @@ import socket
 import stat
 import subprocess
 
-from command import GRID, PLIANT, SCENE, Command, main
+from command import GRID, PLIANT, SANITIZED, SCENE, Command, main
 
 MESH = """v 0 0 0
 v 1 0 0
@@ -122,7 +122,7 @@ class Names(Command):
         folder = os.fsencode(self.folder)
         everything = ""
         for wild in (b"\x1b]0;title\x07", b"\nfake.xml: error: no", b"\xff\xfe", b"\xc2\x9b31m",
-                     "\u202egnp".encode(), CONTROLS.replace(b"\0", b"")):
+                     "\u202egnp".encode(), CONTROLS.replace(b"\0", b""))[::3 if SANITIZED else 1]:
             base = b"n" + wild.replace(b"/", b"")
             scene, mesh, out = (base + ending for ending in (b".xml", b".obj", b".npy"))
             with open(os.path.join(folder, mesh), "wb") as file:
@@ -167,6 +167,8 @@ class Names(Command):
                         self.assertFalse(line.startswith("fake"), (command, text))
                         self.assertTrue(all(ord(c) >= 0x20 and not 0x7f <= ord(c) < 0xa0 and c != "\u202e"
                                             for c in line), (command, line))
+        if SANITIZED:  # a sanitizer needs fewer names
+            return
         for words in (r"\\x1b\]0;title\\x07\S*: warning: ", r"\\x1b\]0;title\\x07\S*: note: ",
                       r"\\x1b\]0;title\\x07\S*: error: ", r"n\\x0afake\.xml: error: no\.xml: valid",
                       r"mesh \S*\\x0afake\.xml|mesh \S*n\\xc2\\x9b31m\.obj", r"\\xff\\xfe\.xml\nframes 1 to 3"):

@@ -1,10 +1,10 @@
 // Verifies every golden replay with this build: with the kernels of every width that the machine
-// has, and with several numbers of threads; with --lanes only the former, with --threads only with
-// three, with --once in one way only. --bless records all of them again, and prints new ones and
-// differences.
+// has, and with several numbers of threads; with --lanes only the former, with --turns each replay
+// with one width, in turn, with --threads only with three threads, with --once in one way only.
+// --bless records all of them again, and prints new ones and differences.
 // docs/replay.md, "Golden replays".
 //
-// usage: golden SOURCE_FOLDER [--once | --lanes | --threads | --bless]
+// usage: golden SOURCE_FOLDER [--once | --lanes | --turns | --threads | --bless]
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ std::vector<Run> runs_to_do(std::string_view option) {
     if (option != "--threads") runs.push_back({.lanes = kernels->lanes});
   }
   for (const int threads : {2, 3, 8}) {
-    const bool is_wanted = option != "--lanes" && (option != "--threads" || threads == 3);
+    const bool is_wanted = option.empty() || (option == "--threads" && threads == 3);
     if (is_wanted) runs.push_back({.threads = threads});
   }
   return runs;
@@ -195,9 +195,10 @@ int main(int count, char* arguments[]) {
   take_locale();
   const std::string_view option = count == 3 ? arguments[2] : "";
   const bool blesses = option == "--bless";
-  constexpr std::array options = {"--once", "--lanes", "--threads", "--bless"};
+  constexpr std::array options = {"--once", "--lanes", "--turns", "--threads", "--bless"};
   if (count != 2 && std::find(options.begin(), options.end(), option) == options.end()) {
-    std::fputs("usage: golden SOURCE_FOLDER [--once | --lanes | --threads | --bless]\n", stderr);
+    std::fputs("usage: golden SOURCE_FOLDER [--once | --lanes | --turns | --threads | --bless]\n",
+               stderr);
     return 2;
   }
   const fs::path source = arguments[1];
@@ -206,7 +207,9 @@ int main(int count, char* arguments[]) {
   std::vector<Outcome> outcomes(goldens.size());
   ThreadPool threads(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   threads.for_each(goldens.size(), [&](std::size_t k) {
-    outcomes[k] = blesses ? bless(goldens[k]) : verify(goldens[k], runs);
+    const bool is_in_turn = option == "--turns";
+    const std::vector<Run> its = is_in_turn ? std::vector{runs[k % runs.size()]} : runs;
+    outcomes[k] = blesses ? bless(goldens[k]) : verify(goldens[k], its);
   });
 
   int failed = 0;

@@ -16,6 +16,7 @@
 #include "pliant/mesh/read_assimp.hpp"
 #include "pliant/output/formats.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace pliant;
@@ -144,7 +145,9 @@ TEST_CASE("glTF gives every frame to a rounding", "[output][gltf]") {
 
 TEST_CASE("offsets are sparse where that is smaller", "[output][gltf]") {
   const ScratchFolder folder;
-  const Mesh mesh = make_mesh({.columns = 40, .rows = GENERATE(5, 10, 2000)});
+  const int rows = GENERATE(5, 10, 2000);
+  if (is_sanitized && rows > 10) return;
+  const Mesh mesh = make_mesh({.columns = 40, .rows = rows});
   const int last = mesh.vertex_count() - 1;
   const Gltf gltf(written(folder, "a.glb", mesh, bump(mesh.positions, last, 3)));
   const json& targets = gltf.root["meshes"][0]["primitives"][0]["targets"];

@@ -8,6 +8,7 @@
 
 #include "pliant/region/region.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 
@@ -105,7 +106,7 @@ NodeSet interior_nodes(const Grid& grid, const Patch& patch) {
 TEST_CASE("boxes of a closed grid meet, hold and are held as their nodes do", "[region][closed]") {
   std::mt19937 random(21);
   int twice = 0, rings = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < testing::rounds(400); ++trial) {
     const Grid grid = closed_grid(random);
     const Box a = random_box(grid, random), b = random_box(grid, random);
     CAPTURE(grid.columns, grid.rows, grid.is_closed_u, grid.is_closed_v, a.i0, a.i1, a.j0, a.j1,
@@ -147,8 +148,8 @@ TEST_CASE("boxes of a closed grid meet, hold and are held as their nodes do", "[
     twice += visits > 1;
     rings += grid.is_ring_u(around) || grid.is_ring_v(around);
   }
-  CHECK(twice > 20);
-  CHECK(rings > 50);
+  CHECK(twice > testing::rounds(20));
+  CHECK(rings > testing::rounds(50));
 }
 
 TEST_CASE("of equal runs round a grid the one that starts first is taken", "[region][closed]") {

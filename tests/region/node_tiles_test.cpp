@@ -7,6 +7,7 @@
 
 #include "pliant/region/region.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 
@@ -70,7 +71,7 @@ Box near(const Grid& grid, const Field& nodes, const ForceKind& shape, double ra
 TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
   std::mt19937 random(3);
   int partial = 0, ties = 0;
-  for (int trial = 0; trial < 60; ++trial) {
+  for (int trial = 0; trial < testing::rounds(60); ++trial) {
     const Grid grid{3 + static_cast<int>(random() % 100), 3 + static_cast<int>(random() % 100), 1,
                     1};
     const Field rest = hills(grid, random);
@@ -116,8 +117,8 @@ TEST_CASE("tiles select what a look at every node selects", "[region][tiles]") {
     selection = reselected(std::move(selection), tiles, forces, Combine::Islands);
     CHECK(selection == select_region(grid, nodes, forces, Combine::Islands));
   }
-  CHECK(partial > 200);
-  CHECK(ties > 400);
+  CHECK(partial > testing::rounds(200));
+  CHECK(ties > testing::rounds(400));
 }
 
 TEST_CASE("nodes that are no numbers are told of, and hide no others", "[region][tiles]") {

@@ -10,6 +10,7 @@
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
@@ -146,6 +147,7 @@ TEST_CASE("a live run has the bits of the scene that has its values as keys, for
   const Scene scene = of_everything();
   for (const std::string& path : paths_of(scene)) {
     CAPTURE(path);
+    if (is_sanitized && path.size() % 4 != 0) continue;
     check_against_performance(scene, frame_count, [&](const std::string& channel, int frame) {
       return channel == path && (frame == 3 || frame == 4 || frame == 7);
     });

@@ -7,6 +7,7 @@
 #include "pliant/simulation/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/moving_scene.hpp"
+#include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
@@ -60,7 +61,7 @@ TEST_CASE("once a run has been played, a frame costs less than an interval",
                        : frames <= room ? 1
                                         : 2 * frames / (std::max(1, room / 2) + 1);
   std::mt19937 random(7);
-  for (int n = 0; n < 100; ++n) {
+  for (int n = 0; n < rounds(100); ++n) {
     const int before = simulation.frame_counts().solved;
     REQUIRE(simulation.at(std::uniform_int_distribution(s.start, s.end)(random)));
     CAPTURE(kept, interval);

@@ -153,7 +153,7 @@ bool check_curve(const Way& way, double start, double length, double change) {
 TEST_CASE("keys at any distance give finite values and velocities", "[timeline][curve]") {
   for (const double length : {least, 2 * least, 3 * least, 100 * least, 1e-310, 0x1p-1022, 1e-300,
                               0x1p-900, 1e-270, 1e-160, 1e-100, 1e-30, 1.0, 1e30, 1e100, 1e150}) {
-    if (is_sanitized && length != least && length != 1 && length != 1e150) continue;
+    if (is_sanitized && length != least) continue;
     int made = 0;
     for (const Way& way : all_ways(length)) {
       for (const double start : {0.0, -length, length / 2}) {

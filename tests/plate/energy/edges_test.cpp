@@ -311,7 +311,7 @@ TEST_CASE("Square plates vibrate and bend as in the literature", "[plate][edges]
                Row{"ccpp", 28.951, 54.743, 0.0019172, 0}, Row{"cppp", 23.646, 51.674, 0.0027855, 0},
                Row{"pfpp", 11.685, 27.756, 0, 0.012852}, Row{"cfpp", 12.687, 33.065, 0, 0});
   CAPTURE(row.edges);
-  if (is_sanitized && row.edges != "cfff") return;  // all have the same code
+  if (is_sanitized) return;  // the rest is about figures
   const std::array<double, 2> coarse = frequencies(row.edges, 17);
   const std::array<double, 2> middle = frequencies(row.edges, 33);
   const std::array<double, 2> fine = frequencies(row.edges, 65);
@@ -330,6 +330,7 @@ TEST_CASE("Square plates vibrate and bend as in the literature", "[plate][edges]
 }
 
 TEST_CASE("The middle of a free edge bends as in the literature", "[plate][edges]") {
+  if (is_sanitized) return;
   const auto at_edge = [](int side) {
     const Outline outline(unit_grid(side, side), edges_of("ppff"));
     const auto solver = make_plate_solver();

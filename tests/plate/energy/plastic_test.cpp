@@ -9,6 +9,7 @@
 #include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -211,13 +212,14 @@ PlateState at_rest(const PlateProblem& problem) {
 TEST_CASE("a plate that yields moves as the dense fixed point", "[plate][plastic]") {
   for (const Case& one : cases()) {
     for (const double hardening : {0.1, 0.02, 3.0}) {
+      if (is_sanitized && hardening < 1) continue;  // the dense fixed point needs longest
       CAPTURE(one.name, hardening);
       PlateProblem problem = problem_of(one, {0.15, hardening});
       const DensePlate dense(problem);
       const auto solver = make_plate_solver(one.choice);
       PlateState state = at_rest(problem), expected = state;
       const double dt = 0.01;
-      for (int frame = 0; frame < 3; ++frame) {
+      for (int frame = 0; frame < (is_sanitized ? 1 : 3); ++frame) {
         if (frame == 2) problem.load *= -0.7;
         INFO("solves so far: " << solver->counts().solves);
         auto next = solver->advance(problem, {3, dt}, state);
@@ -266,7 +268,7 @@ TEST_CASE("energy never grows while a plate flows", "[plate][plastic]") {
       state.velocity *= 3;
       double before = dense.energy(state);
       const double first = before;
-      for (int frame = 0; frame < 40; ++frame) {
+      for (int frame = 0; frame < (is_sanitized ? 4 : 40); ++frame) {
         auto next = solver->advance(problem, {1, 0.013, integrator}, state);
         if (!next) FAIL(next.error().message);
         state = *std::move(next);

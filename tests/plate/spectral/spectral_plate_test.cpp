@@ -129,12 +129,14 @@ TEST_CASE("the spectral solver is as exact as a double allows on 150 x 200 nodes
 }
 
 TEST_CASE("the spectral solver stays exact on large plates", "[plate][spectral]") {
+  if (testing::is_sanitized) return;  // their sizes are what it is about
   for (const Grid& grid : {unit_grid(402, 390), unit_grid(60, 801)}) {
     for (const double shift : shifts) check_errors(grid, {1, 2, 1}, shift);
   }
 }
 
 TEST_CASE("the spectral solver stays exact on 401 x 401 nodes", "[plate][spectral]") {
+  if (testing::is_sanitized) return;
   for (const double shift : shifts) check_errors(unit_grid(401, 401), {1, 2, 1}, shift);
 }
 
@@ -159,6 +161,7 @@ TEST_CASE("steps in sine space are those of a factored matrix", "[plate][spectra
   const Stiffness stiffness =
       GENERATE(Stiffness{1, 2, 1}, Stiffness{3, -1, 0.5}, Stiffness{1, 0, 1}, Stiffness{1, 20, 1},
                Stiffness{100, 2, 1}, Stiffness{1, 2, 100}, Stiffness{1, -1.99, 1});
+  if (testing::is_sanitized && stiffness.c != -1) return;
   for (const Dynamics dynamics :
        {Dynamics{40, 20}, Dynamics{0, 20}, Dynamics{40, 0}, Dynamics{0, 0}}) {
     for (const double dt : {1e-6, 1e-3, 1e3}) {
