@@ -203,11 +203,8 @@ TEST_CASE("what yields needs a sound law", "[simulation][plastic]") {
           "s.poisson is 1, but with yield it must be between -1 and 1");
   refused([](Surface& s) { s.material.c = 0.1; },
           "c = 0.1 must be greater than 2 poisson sqrt(b d) = 0.6");
-  refused(
-      [](Surface& s) {
-        s.material.density = s.material.damping = s.material.hardening = 0;
-      },
-      "s.hardening is 0, but must be greater than 0 where density and damping are 0");
+  refused([](Surface& s) { s.material.density = s.material.damping = s.material.hardening = 0; },
+          "s.hardening is 0, but must be greater than 0 where density and damping are 0");
   refused([](Surface& s) { s.solver.integrator = Integrator::Exact; },
           "s.yield: s.integrator is \"exact\"");
   refused([](Surface& s) { s.solver.reference = Reference::None; },

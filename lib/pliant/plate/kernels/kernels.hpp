@@ -168,7 +168,7 @@ struct LackView {
 
 /// One component in one pair of parities, scaled as in `ComponentView`.
 struct ExactView {
-  const double* load = nullptr;  ///< rows x pitch: f at the start of the interval, then f'
+  const double* load = nullptr;    ///< rows x pitch: f at the start of the interval, then f'
   const double* growth = nullptr;  ///< null: 0
   const double* lack = nullptr;
   const double* w = nullptr;
