@@ -111,6 +111,11 @@ def held(scene, text, told, preview):
                 shape.set("file", os.path.join(os.path.dirname(scene), shape.get("file")))
         if surface.get("drivenBy"):
             continue
+        material = surface.find("material")
+        if material is not None:  # info describes it as long as it is elastic
+            material.attrib.pop("yield", None)
+            for animate in material.findall("animate[@attribute='yield']"):
+                material.remove(animate)
         solver = surface.find("solver")
         if solver is None:
             solver = tree.SubElement(surface, "solver")

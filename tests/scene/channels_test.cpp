@@ -25,10 +25,10 @@ TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
     CHECK(paths.insert(channel.path).second);
     CHECK_FALSE(channel.is_animated());
   }
-  // A damping ratio takes the place of the damping.
+  // A damping ratio takes the place of the damping, and a yield is there only if it is given.
   const Scene by_ratio =
       scene_of(scene_with("<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/><material "
-                          "dampingRatio=\"0.1\"/></surface>"));
+                          "dampingRatio=\"0.1\" yield=\"2\"/></surface>"));
   CHECK_FALSE(paths.contains("s.dampingRatio"));
   for (const NamedChannel& channel : channels_of(by_ratio)) {
     CHECK(channel.path != "s.damping");

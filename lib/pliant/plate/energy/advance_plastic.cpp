@@ -148,7 +148,7 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
                                       problem.law->hardening, steps, motion, plastic);
   if (is_expected) all->expect(motion.displacement + dt * motion.velocity, plastic);
-  const auto flowed = all->step(motion, plastic);
+  auto flowed = all->step(motion, plastic);
   if (!flowed || (is_expected && !*flowed)) return flowed;
   auto ran = run_plastic_steps(*all, steps.count - first - 1, motion, plastic);
   if (!ran) return fail(ran.error());

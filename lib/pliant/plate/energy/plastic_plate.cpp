@@ -33,7 +33,8 @@ PlasticPlate::PlasticPlate(const PlateProblem& problem, std::vector<int> compone
 const Moduli<double>& PlasticPlate::form(int i, int j) const {
   if (factors_) return forms_[static_cast<std::size_t>(grid_.node(i, j))];
   const auto kind = [](int line, int count) { return line == 0 ? 0 : line < count - 1 ? 1 : 2; };
-  return forms_[static_cast<std::size_t>(3 * kind(j, grid_.rows) + kind(i, grid_.columns))];
+  const auto row = static_cast<std::size_t>(kind(j, grid_.rows));
+  return forms_[3 * row + static_cast<std::size_t>(kind(i, grid_.columns))];
 }
 
 PlasticLaw PlasticPlate::law(int node) const {

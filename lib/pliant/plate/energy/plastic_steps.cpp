@@ -156,7 +156,7 @@ class SettlingSteps final : public PlasticSteps {
   // is short enough.
   Result<void> descend(const Field& x, Eigen::Index moving, Numbers& forces) {
     constexpr int most_turns = 500;
-    const double peak = moving == 0 ? 0 : x.topRows(moving).cwiseAbs().maxCoeff();
+    const Peaks peaks = peaks_of(x, moving);
     Numbers flowed = places_->go_to(places_->taken_from(x));
     Numbers gradient = difference(forces, flowed);
     double shortest = std::numeric_limits<double>::infinity();
@@ -181,7 +181,7 @@ class SettlingSteps final : public PlasticSteps {
       }
       places_->go(part);
       add_scaled(forces, part, product);
-      const double length = std::abs(part) * longest(way, moving);
+      const double length = std::abs(part) * longest(way, moving, peaks);
       for (double& number : way) number *= part;
       for (double& number : product) number *= part;
       secants_.learn(std::move(way), std::move(product), difference(left, gradient));
@@ -189,7 +189,7 @@ class SettlingSteps final : public PlasticSteps {
       // Rounding may let it become no shorter; or a number is not finite.
       since = length < 0.5 * shortest ? 0 : since + 1;
       shortest = std::min(shortest, length);
-      if (!(length > shortest_way_ * peak) || (since > 20 && length < 1e-8 * peak)) {
+      if (!(length > shortest_way_) || (since > 20 && length < 1e-8)) {
         forces = std::move(flowed);
         return {};
       }
@@ -214,13 +214,29 @@ class SettlingSteps final : public PlasticSteps {
     return plate_.solve(forces);
   }
 
-  double longest(const Numbers& way, Eigen::Index moving) const {
-    double longest = 0;
+  // Of what moves, and of the slopes of a surface, which have another unit: what flows may press on
+  // slopes alone.
+  struct Peaks {
+    double moving = 0, slopes = 0;
+  };
+
+  static Peaks peaks_of(const Field& x, Eigen::Index moving) {
+    const auto peak = [](const auto& rows) {
+      return rows.rows() == 0 ? 0 : rows.cwiseAbs().maxCoeff();
+    };
+    return {peak(x.topRows(moving)), peak(x.bottomRows(x.rows() - moving))};
+  }
+
+  // As a part of the peaks.
+  double longest(const Numbers& way, Eigen::Index moving, const Peaks& peaks) const {
+    double of_moving = 0, of_slopes = 0;
     const std::vector<int>& unknowns = places_->unknowns();
-    for (std::size_t k = 0; k < unknowns.size() && unknowns[k] < moving; ++k) {
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
+      double& longest = unknowns[k] < moving ? of_moving : of_slopes;
       for (std::size_t n = 0; n < N; ++n) longest = std::max(longest, std::abs(way[k * N + n]));
     }
-    return longest;
+    const auto part = [](double length, double peak) { return length > 0 ? length / peak : 0; };
+    return std::max(part(of_moving, peaks.moving), part(of_slopes, peaks.slopes));
   }
 
   FlowingPlate& plate_;

@@ -343,7 +343,7 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
   Result<Field> solve(const Field& forces) override {
     Field eliminated = forces;
     const InnerUnknowns& inner = plate_.plasticity_->inner;
-    const auto left = plate_.factor_.solve(inner.eliminate(eliminated));
+    auto left = plate_.factor_.solve(inner.eliminate(eliminated));
     if (!left) return left;
     return inner.recovered(*left, eliminated);
   }
