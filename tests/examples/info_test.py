@@ -111,11 +111,6 @@ def held(scene, text, told, preview):
                 shape.set("file", os.path.join(os.path.dirname(scene), shape.get("file")))
         if surface.get("drivenBy"):
             continue
-        material = surface.find("material")
-        if material is not None:  # info describes it as long as it is elastic
-            material.attrib.pop("yield", None)
-            for animate in material.findall("animate[@attribute='yield']"):
-                material.remove(animate)
         solver = surface.find("solver")
         if solver is None:
             solver = tree.SubElement(surface, "solver")
@@ -132,7 +127,7 @@ def crossings(way):
     return at + way[at] / (way[at] - way[at + 1])
 
 
-def check_held(frames, told, preview, vibration, count):
+def check_held(frames, told, preview, vibration, yields, count):
     displacement = frames - frames[0]
     sizes = np.linalg.norm(displacement[-1], axis=1)
     node = sizes.argmax()
@@ -142,6 +137,8 @@ def check_held(frames, told, preview, vibration, count):
         return
     assert is_close(static, sizes[node]), ("static peak", static, sizes[node])
     count["static peak"] += 1
+    if yields:
+        return  # its vibration is that of small motions
     away = displacement[:, node] @ (displacement[-1, node] / sizes[node]) / sizes[node] - 1
     far = np.nonzero(np.abs(away) > 0.05)[0]
     settled = far[-1] + 1
@@ -208,7 +205,7 @@ def check(name, scene, folder, count):
             at_rest = os.path.join(folder, "held.xml")
             with open(at_rest, "w", encoding="utf-8") as file:
                 file.write(still)
-            check_held(bake(at_rest, preview["surface"]), told, preview, vibration, count)
+            check_held(bake(at_rest, preview["surface"]), told, preview, vibration, "yield=" in still, count)
             os.remove(at_rest)
         except AssertionError as error:
             raise AssertionError(f"{name}, {preview['surface']}: {error}") from error
