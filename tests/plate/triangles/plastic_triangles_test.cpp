@@ -17,6 +17,7 @@
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "support/plates.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -318,6 +319,8 @@ TEST_CASE("triangles that yield move as the dense fixed point", "[plate][plastic
   for (const Case& one : cases()) {
     for (const double hardening : {0.3, 3.0}) {
       for (const bool is_uneven : {false, true}) {
+        // The dense fixed point needs longest; a sanitizer needs each path once.
+        if (is_sanitized && (hardening < 1 || !is_uneven)) continue;
         if (is_uneven && hardening > 1) continue;
         for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
           CAPTURE(one.name, hardening, is_uneven, static_cast<int>(integrator));
@@ -327,7 +330,7 @@ TEST_CASE("triangles that yield move as the dense fixed point", "[plate][plastic
           DenseTriangles dense(plate, problem);
           const TimeSteps steps{2, 0.01, integrator};
           dense.assemble(state.displacement, steps.solved_length());
-          for (int frame = 0; frame < 3; ++frame) {
+          for (int frame = 0; frame < (is_sanitized ? 1 : 3); ++frame) {
             if (frame == 2) problem.load *= -0.7;
             auto next = plate.advance(problem, steps, state);
             if (!next) FAIL(next.error().message);
@@ -370,7 +373,9 @@ TEST_CASE("triangles that yield nowhere have the elastic bits", "[plate][plastic
 }
 
 TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]") {
-  for (const Case& one : cases()) {
+  std::vector<Case> all = cases();
+  if (is_sanitized) all.resize(1, all.front());
+  for (const Case& one : all) {
     for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
       CAPTURE(one.name, static_cast<int>(integrator));
       TriangleProblem problem = problem_of(one.piece, 0.1);
@@ -386,7 +391,7 @@ TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]")
       dense.assemble(state.displacement, 1);
       const double first = dense.energy(state);
       double before = first;
-      for (int frame = 0; frame < 30; ++frame) {
+      for (int frame = 0; frame < (is_sanitized ? 4 : 30); ++frame) {
         auto next = plate.advance(problem, {1, 0.013, integrator}, state);
         if (!next) FAIL(next.error().message);
         state = *std::move(next);
