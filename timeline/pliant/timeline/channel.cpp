@@ -25,6 +25,15 @@ Channel<D>& Channel<D>::operator=(Channel&&) noexcept = default;
 template <int D>
 Channel<D>::~Channel() = default;
 
+template <int D>
+void Channel<D>::adjust(const Adjustments<D>& adjustments) {
+  if (curve_) {
+    curve_ = curve_->adjusted(adjustments);
+  } else {
+    constant_ = adjusted_value<D>(adjustments, constant_);
+  }
+}
+
 template class Channel<1>;
 template class Channel<3>;
 

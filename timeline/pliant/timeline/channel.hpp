@@ -30,6 +30,12 @@ class Channel {
   /// The curve. Requires: is_animated().
   const Curve<D>& curve() const { return *curve_; }
 
+  /// Adjusts its value at every frame. Requires: no component of a curve is adjusted already.
+  void adjust(const Adjustments<D>& adjustments);
+
+  /// What its curve is adjusted by; null: nothing, or it is constant.
+  const Adjustments<D>* adjustments() const { return curve_ ? curve_->adjustments() : nullptr; }
+
  private:
   Value<D> constant_ = {};
   std::optional<Curve<D>> curve_;

@@ -1,7 +1,10 @@
 #include "pliant/timeline/curve.hpp"
 
+#include <cmath>
+#include <optional>
 #include <utility>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/timeline/compile.hpp"
 #include "pliant/timeline/extrapolated_evaluation.hpp"
 #include "pliant/timeline/track_evaluation.hpp"
@@ -15,12 +18,34 @@ auto search(const timeline::Track<D>& track) {
   return [&track](double frame) { return track.segment_at(frame); };
 }
 
+template <int D>
+CurveKeys<D> adjusted_keys(CurveKeys<D> keys, const Adjustments<D>& adjustments) {
+  const auto value = [&](Value<D>& of) { of = adjusted_value<D>(adjustments, of); };
+  const auto difference = [&](Value<D>& of) { of = adjusted_difference<D>(adjustments, of); };
+  for (Key<D>& key : keys.keys) {
+    value(key.value);
+    if (key.left) value(*key.left);
+    for (Tangent<D>* const tangent : {&key.in, &key.out}) {
+      difference(tangent->slope);
+      difference(tangent->handle_value);
+    }
+    // A number for all components.
+    if (D == 1 && key.next.amplitude)
+      key.next.amplitude = std::abs(adjustments[0].of_difference(*key.next.amplitude));
+  }
+  difference(keys.before.slope);
+  difference(keys.after.slope);
+  if (keys.loop) difference(keys.loop->offset);
+  return keys;
+}
+
 }  // namespace
 
 template <int D>
 struct Curve<D>::Parts {
   CurveKeys<D> keys;
   timeline::Compiled<D> compiled;
+  std::optional<Adjustments<D>> adjustments = {};
 };
 
 template <int D>
@@ -52,34 +77,66 @@ template <int D>
 Curve<D>::~Curve() = default;
 
 template <int D>
-Value<D> Curve<D>::value(double frame) const {
-  // Between the keys no side is involved.
-  const timeline::Track<D>& track = compiled().track;
-  if (frame > track.first() && frame < track.last()) {
-    const timeline::Segment<D>& here = track.segments[track.segment_at(frame)];
-    if (frame != here.start) return track.value_in(here, frame);
+Curve<D> Curve<D>::adjusted(const Adjustments<D>& adjustments) const {
+  PLIANT_EXPECTS(!this->adjustments() || !overlap<D>(*this->adjustments(), adjustments));
+  Parts parts = *parts_;
+  parts.keys = adjusted_keys<D>(std::move(parts.keys), adjustments);
+  for (KeyHandle<D>& handle : parts.compiled.handles) {
+    handle.key_value = adjusted_value<D>(adjustments, handle.key_value);
+    handle.value = adjusted_value<D>(adjustments, handle.value);
   }
-  return compiled().value(frame, timeline::Limit::At, search(compiled().track));
+  parts.adjustments = parts.adjustments ? both<D>(*parts.adjustments, adjustments) : adjustments;
+  return Curve(std::move(parts));
+}
+
+template <int D>
+const Adjustments<D>* Curve<D>::adjustments() const {
+  return parts_->adjustments ? &*parts_->adjustments : nullptr;
+}
+
+template <int D>
+Value<D> Curve<D>::value(double frame) const {
+  const auto plain = [&] {
+    // Between the keys no side is involved.
+    const timeline::Track<D>& track = compiled().track;
+    if (frame > track.first() && frame < track.last()) {
+      const timeline::Segment<D>& here = track.segments[track.segment_at(frame)];
+      if (frame != here.start) return track.value_in(here, frame);
+    }
+    return compiled().value(frame, timeline::Limit::At, search(compiled().track));
+  };
+  const Adjustments<D>* const adjusts = adjustments();
+  return adjusts ? adjusted_value<D>(*adjusts, plain()) : plain();
 }
 
 template <int D>
 Value<D> Curve<D>::left_value(double frame) const {
-  return compiled().value(frame, timeline::Limit::Left, search(compiled().track));
+  const Value<D> plain = compiled().value(frame, timeline::Limit::Left, search(compiled().track));
+  return adjustments() ? adjusted_value<D>(*adjustments(), plain) : plain;
 }
 
 template <int D>
 Value<D> Curve<D>::velocity(double frame) const {
-  return compiled().velocity(frame, timeline::Limit::Right, search(compiled().track));
+  const Value<D> plain =
+      compiled().velocity(frame, timeline::Limit::Right, search(compiled().track));
+  return adjustments() ? adjusted_difference<D>(*adjustments(), plain) : plain;
 }
 
 template <int D>
 Value<D> Curve<D>::left_velocity(double frame) const {
-  return compiled().velocity(frame, timeline::Limit::Left, search(compiled().track));
+  const Value<D> plain =
+      compiled().velocity(frame, timeline::Limit::Left, search(compiled().track));
+  return adjustments() ? adjusted_difference<D>(*adjustments(), plain) : plain;
 }
 
 template <int D>
 ValueRange<D> Curve<D>::range(double from, double to) const {
-  return compiled().bounds(from, to);
+  const ValueRange<D> plain = compiled().bounds(from, to);
+  if (!adjustments()) return plain;
+  const Value<D> low = adjusted_value<D>(*adjustments(), plain.low);
+  ValueRange<D> range{low, low};
+  range.add(adjusted_value<D>(*adjustments(), plain.high));
+  return range;
 }
 
 template <int D>

@@ -5,6 +5,7 @@
 
 #include <tl/expected.hpp>
 
+#include "pliant/timeline/adjustment.hpp"
 #include "pliant/timeline/bounds.hpp"
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/handle.hpp"
@@ -61,6 +62,14 @@ class Curve {
   /// for any number of copies.
   ValueRange<D> range(double from, double to) const;
 
+  /// The curve whose values are those of this one, adjusted. Requires: no component is adjusted
+  /// already.
+  Curve adjusted(const Adjustments<D>& adjustments) const;
+
+  /// What it is adjusted by; null: it is not.
+  const Adjustments<D>* adjustments() const;
+
+  /// Of an adjusted curve, its keys with values, slopes and handles adjusted, for drawing it.
   const CurveKeys<D>& keys() const;
   const std::vector<CurveNote>& notes() const;
 

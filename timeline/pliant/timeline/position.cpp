@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "pliant/core/expects.hpp"
+
 namespace pliant {
 
 PositionChannel::PositionChannel(Value<3> constant) : way_(Channel<3>(constant)) {}
@@ -16,8 +18,22 @@ PositionChannel& PositionChannel::operator=(PositionChannel&&) noexcept = defaul
 PositionChannel::~PositionChannel() = default;
 
 Value<3> PositionChannel::at(double frame) const {
-  if (const auto* motion = path()) return motion->path.at(motion->progress.at(frame)[0]);
+  if (const auto* motion = path()) {
+    const Value<3> place = motion->path.at(motion->progress.at(frame)[0]);
+    return adjustments_ ? adjusted_value<3>(*adjustments_, place) : place;
+  }
   return channel()->at(frame);
+}
+
+void PositionChannel::adjust(const Adjustments<3>& adjustments) {
+  if (auto* const own = channel()) return own->adjust(adjustments);
+  PLIANT_EXPECTS(!adjustments_ || !overlap<3>(*adjustments_, adjustments));
+  adjustments_ = adjustments_ ? both<3>(*adjustments_, adjustments) : adjustments;
+}
+
+const Adjustments<3>* PositionChannel::adjustments() const {
+  if (const auto* own = channel()) return own->adjustments();
+  return adjustments_ ? &*adjustments_ : nullptr;
 }
 
 bool PositionChannel::is_animated() const {

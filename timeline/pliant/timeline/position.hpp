@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include "pliant/timeline/channel.hpp"
@@ -31,6 +32,13 @@ class PositionChannel {
 
   bool is_animated() const;
 
+  /// Adjusts its value at every frame. Requires: no component is adjusted already, unless it is
+  /// constant.
+  void adjust(const Adjustments<3>& adjustments);
+
+  /// What it is adjusted by; null: nothing, or it is constant.
+  const Adjustments<3>* adjustments() const;
+
   /// The path; null: a constant or curve.
   const PathMotion* path() const { return std::get_if<PathMotion>(&way_); }
 
@@ -42,6 +50,7 @@ class PositionChannel {
 
  private:
   std::variant<Channel<3>, PathMotion> way_;
+  std::optional<Adjustments<3>> adjustments_;  // of a path
 };
 
 }  // namespace pliant

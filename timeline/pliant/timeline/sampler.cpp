@@ -6,7 +6,8 @@
 namespace pliant {
 
 template <int D>
-Sampler<D>::Sampler(const Curve<D>& curve) : curve_(&curve.compiled()) {
+Sampler<D>::Sampler(const Curve<D>& curve)
+    : curve_(&curve.compiled()), adjustments_(curve.adjustments()) {
   const auto& segments = curve_->track.segments;
   if (segments.empty()) return;
   here_ = segments.data();
@@ -26,6 +27,7 @@ std::size_t Sampler<D>::locate(double frame) {
 
 template <int D>
 Value<D> Sampler<D>::value(double frame) {
+  if (adjustments_ != nullptr) return adjusted_anywhere(frame);
   // Playback: between the same two keys as before, or the next two.
   if (here_ != nullptr) {
     if (frame >= here_->end && here_ != last_) ++here_;
@@ -42,21 +44,29 @@ Value<D> Sampler<D>::value_anywhere(double frame) {
 }
 
 template <int D>
+Value<D> Sampler<D>::adjusted_anywhere(double frame) {
+  return adjusted_value<D>(*adjustments_, value_anywhere(frame));
+}
+
+template <int D>
 Value<D> Sampler<D>::left_value(double frame) {
-  return curve_->value(frame, timeline::Limit::Left,
-                       [this](double inner) { return locate(inner); });
+  const Value<D> plain =
+      curve_->value(frame, timeline::Limit::Left, [this](double inner) { return locate(inner); });
+  return adjustments_ ? adjusted_value<D>(*adjustments_, plain) : plain;
 }
 
 template <int D>
 Value<D> Sampler<D>::velocity(double frame) {
-  return curve_->velocity(frame, timeline::Limit::Right,
-                          [this](double inner) { return locate(inner); });
+  const Value<D> plain = curve_->velocity(frame, timeline::Limit::Right,
+                                          [this](double inner) { return locate(inner); });
+  return adjustments_ ? adjusted_difference<D>(*adjustments_, plain) : plain;
 }
 
 template <int D>
 Value<D> Sampler<D>::left_velocity(double frame) {
-  return curve_->velocity(frame, timeline::Limit::Left,
-                          [this](double inner) { return locate(inner); });
+  const Value<D> plain = curve_->velocity(frame, timeline::Limit::Left,
+                                          [this](double inner) { return locate(inner); });
+  return adjustments_ ? adjusted_difference<D>(*adjustments_, plain) : plain;
 }
 
 template class Sampler<1>;

@@ -31,8 +31,10 @@ class Sampler {
  private:
   std::size_t locate(double frame);
   [[gnu::noinline]] Value<D> value_anywhere(double frame);  // keeps value() short
+  [[gnu::noinline]] Value<D> adjusted_anywhere(double frame);
 
   const timeline::Extrapolated<D>* curve_;
+  const Adjustments<D>* adjustments_;           // null: none
   const timeline::Segment<D>* here_ = nullptr;  // of the last frame; null for a single key
   const timeline::Segment<D>* last_ = nullptr;  // the last one of the curve
 };
