@@ -288,6 +288,7 @@ void add_bake(CLI::App& app, BakeOptions& options) {
       "--resume", options.resume,
       "Keep the files of an .obj or .ply sequence that are already identical to the result");
   add_root(*bake, options.root);
+  add_changes(*bake, options.changes);
   add_cache(*bake, options.cache);
   add_threads(*bake, options.resources);
   add_memory(*bake, options.resources);
@@ -314,7 +315,7 @@ int run_bake(const BakeOptions& options) {
     auto place = check_output_file("--regions", *options.regions);
     if (!place) return report(place.error());
   }
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());

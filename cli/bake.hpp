@@ -24,6 +24,7 @@ struct BakeOptions {
   bool is_profiled = false;
   bool checks_dt = false;
   Root root = {};
+  Changes changes = {};
   CacheOptions cache;
   ResourceOptions resources;
 };

@@ -265,6 +265,7 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
   curves->add_option("-o,--out", options.out,
                      "Output file, a .csv table or an .svg plot; CSV on stdout by default");
   add_root(*curves, options.root);
+  add_changes(*curves, options.changes);
   curves->add_flag("--sides", options.has_sides,
                    "Add left value, velocity and left velocity (per frame) to each row");
 }
@@ -280,7 +281,7 @@ int run_curves(const CurvesOptions& options) {
                    fmt::format("{}: no format has the ending \"{}\"; allowed: .csv, .svg",
                                options.out, ending)});
   }
-  const auto scene = read_scene(options.scene, options.root);
+  const auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   const auto channels = choose_channels(*scene, options.channels);
   if (!channels) return report(channels.error());

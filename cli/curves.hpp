@@ -18,6 +18,7 @@ struct CurvesOptions {
   std::string out;                    ///< .csv or .svg; empty: CSV on stdout
   bool has_sides = false;
   Root root = {};
+  Changes changes = {};
 };
 
 void add_curves(CLI::App& app, CurvesOptions& options);

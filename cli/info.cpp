@@ -65,13 +65,14 @@ void add_info(CLI::App& app, InfoOptions& options) {
       app.add_subcommand("info", "Show what is in a scene and what each force would do");
   info->add_option("SCENE", options.scene, "Scene file")->required();
   add_root(*info, options.root);
+  add_changes(*info, options.changes);
   info->add_flag("--json", options.is_json, "Print JSON instead; docs/info.md describes it");
   add_memory(*info, options.resources);
 }
 
 int run_info(const InfoOptions& options) {
   catch_interrupts();
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   print_notes(*scene);
   const SimulationOptions run = simulation_options(options.resources);

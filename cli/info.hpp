@@ -12,6 +12,7 @@ namespace pliant::cli {
 struct InfoOptions {
   std::string scene;
   Root root = {};
+  Changes changes = {};
   bool is_json = false;
   ResourceOptions resources;
 };

@@ -37,6 +37,7 @@ auto with_progress(const ReplayCommandOptions& options, const Work& work) {
   std::optional<Progress> progress;
   ReplayOptions replay;
   replay.root = options.root.value_or("");
+  replay.changes = options.changes;
   replay.simulation = simulation_options(options.resources);
   replay.simulation.round_done = round_line(options.is_quiet);
   replay.last_frame = options.last_frame;
@@ -118,6 +119,7 @@ void add_record(CLI::App& replay, ReplayCommandOptions& options) {
   CLI::App* record =
       replay.add_subcommand("record", "Simulate a scene and write its log: hashes of every frame");
   record->add_option("SCENE", options.scene, "Scene file")->required();
+  add_changes(*record, options.changes);
   record->add_option("-o,--out", options.log, "The log, RUN.replay")->required();
   record
       ->add_option("--states", options.states_every,

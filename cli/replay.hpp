@@ -19,6 +19,7 @@ struct ReplayCommandOptions {
   bool keeps_going = false;
   bool is_quiet = false;
   Root root = {};
+  Changes changes = {};
   ResourceOptions resources;
 };
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "interrupt.hpp"
+#include "pliant/scene/change.hpp"
 #include "pliant/scene/read.hpp"
 
 namespace pliant::cli {
@@ -59,7 +60,21 @@ Result<std::filesystem::path> folder_of(const Root& root) {
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
-Result<Scene> read_scene(const std::string& scene, const Root& root) {
+void add_changes(CLI::App& command, Changes& changes) {
+  command
+      .add_option("--set", changes,
+                  "Changes for this run, as often as needed: NAME.ATTRIBUTE=TEXT as if the scene "
+                  "said so; a channel times K at every frame, NAME.ATTRIBUTE*=K, or plus V, "
+                  "NAME.ATTRIBUTE+=V")
+      ->type_name("PATH=TEXT")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+namespace {
+
+Result<Scene> read_unchanged(const std::string& scene, const Root& root) {
   const auto folder = folder_of(root);
   if (!folder) return fail(folder.error());
   if (!is_standard_input(scene)) {
@@ -76,6 +91,15 @@ Result<Scene> read_scene(const std::string& scene, const Root& root) {
   const auto text = read_standard_input();
   if (!text) return fail(text.error());
   return parse_scene(*text, name, {}, *folder);
+}
+
+}  // namespace
+
+Result<Scene> read_scene(const std::string& scene, const Root& root, const Changes& changes) {
+  auto read = read_unchanged(scene, root);
+  if (!read || changes.empty()) return read;
+  if (auto changed = change_scene(*read, changes); !changed) return fail(changed.error());
+  return read;
 }
 
 Result<void> check_scene_is_file(std::string_view scene, std::string_view reason) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "command_line.hpp"
 #include "pliant/core/result.hpp"
@@ -16,6 +17,11 @@ using Root = std::optional<std::string>;
 
 void add_root(CLI::App& command, Root& root);
 
+/// `--set PATH=TEXT`, `PATH*=K` and `PATH+=V`, as typed.
+using Changes = std::vector<std::string>;
+
+void add_changes(CLI::App& command, Changes& changes);
+
 /// The folder given; an empty path if null. Errors: InvalidInput if it is not a folder.
 Result<std::filesystem::path> folder_of(const Root& root);
 
@@ -25,7 +31,9 @@ bool is_standard_input(std::string_view scene);
 /// `load_scene`, or for "-" the same from the standard input: its mesh paths are relative to the
 /// current folder. Errors: those of `load_scene` and `folder_of`; InvalidInput if the standard
 /// input is a terminal; Interrupted.
-Result<Scene> read_scene(const std::string& scene, const Root& root);
+///
+/// With `changes` made in it; their errors begin with `--set CHANGE: `.
+Result<Scene> read_scene(const std::string& scene, const Root& root, const Changes& changes = {});
 
 /// For commands that read the scene again later. Errors: InvalidInput for "-", with the reason.
 Result<void> check_scene_is_file(std::string_view scene, std::string_view reason);

@@ -54,7 +54,7 @@ Result<void> check_places(const ViewOptions& options) {
 int page_view(const ViewOptions& options, std::string_view page) {
   const auto begin = std::chrono::steady_clock::now();
   const std::string out = page_file(options);
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   if (const auto input = input_named(out, *scene); !input.empty()) {
     return report({ErrorCode::InvalidInput,
@@ -129,6 +129,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
     }
   });
   add_root(*view, options.root);
+  add_changes(*view, options.changes);
   add_threads(*view, options.resources);
   add_memory(*view, options.resources);
   view->add_flag("--quiet", options.is_quiet, "No progress and no summary");

@@ -24,6 +24,7 @@ struct ViewOptions {
   std::string look;               ///< of the picture or movie, in the syntax of the page's address
   bool is_quiet = false;
   Root root = {};
+  Changes changes = {};
   ResourceOptions resources;
 };
 

@@ -94,7 +94,7 @@ struct Movie {
 Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
   // All checks that do not need a run come first.
   if (auto format = movie_format(*options.movie); !format) return fail(format.error());
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return fail(scene.error());
   const auto plan = make_plan(options, *scene);
   if (!plan) return fail(plan.error());

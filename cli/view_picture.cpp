@@ -164,7 +164,7 @@ viewer::PictureOrder order_of(int number, const std::vector<int>& frames, viewer
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return fail(scene.error());
   if (const auto input = input_named(*options.png, *scene); !input.empty()) {
     return fail(ErrorCode::InvalidInput,

@@ -106,7 +106,7 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer&
   // Watch the file before reading it, so that no save is missed.
   auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
   server.tell_working();
-  auto scene = read_scene(options.scene, options.root);
+  auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) {
     report(scene.error());
     server.tell_failure(error_json(scene.error()));

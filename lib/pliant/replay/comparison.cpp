@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pliant/core/result.hpp"
 
@@ -110,6 +111,13 @@ std::vector<std::string> causes_in(const ReplayHeader& a, const ReplayHeader& b)
     causes.push_back(fmt::format("the scene {} was edited; the first change is in line {}",
                                  a.scene_file.empty() ? "of the program" : printable(a.scene_file),
                                  first_other_line(a.scene_text, b.scene_text)));
+  }
+  if (a.changes != b.changes) {
+    const auto list = [](const std::vector<std::string>& changes) {
+      return changes.empty() ? "none" : printable(fmt::format("{}", fmt::join(changes, ", ")));
+    };
+    causes.push_back(
+        fmt::format("the changes by --set differ: {}, and {}", list(a.changes), list(b.changes)));
   }
   for (const ReplayFile& file : a.files) {
     const ReplayFile* const other = find(b.files, file.name);

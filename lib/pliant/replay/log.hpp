@@ -52,6 +52,7 @@ struct ReplayHeader {
   std::string version;     ///< of pliant
   std::string scene_file;  ///< relative to the log's folder, if there is such a path
   std::string scene_text;
+  std::vector<std::string> changes = {};  ///< made in the scene, as typed after --set
   std::vector<ReplayFile> files;
   std::string solver;   ///< a name that `solver_choice` accepts
   std::string factors;  ///< the solver for sparse factors, as returned by `name_of`

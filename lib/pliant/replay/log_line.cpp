@@ -107,6 +107,7 @@ std::string to_json(const ReplayHeader& header) {
   json["version"] = header.version;
   json["scene"] = header.scene_file;
   json["text"] = header.scene_text;
+  if (!header.changes.empty()) json["changes"] = header.changes;
   json["files"] = Json::array();
   for (const ReplayFile& file : header.files) {
     json["files"].push_back({{"name", file.name}, {"hash", to_text(file.hash)}});
@@ -188,6 +189,11 @@ std::optional<ReplayHeader> read_header(std::string_view line) {
     return read(member(element, "columns"), surface.columns) &&
            read(member(element, "rows"), surface.rows) && surface.columns >= 0 && surface.rows >= 0;
   };
+  const auto read_change = [](const Json& element, std::string& change) {
+    return read(&element, change);
+  };
+  const Json* const changes = member(json, "changes");
+  if (changes && !read_all(changes, header.changes, read_change)) return {};
   const bool is_header = read(member(json, "version"), header.version) &&
                          read(member(json, "scene"), header.scene_file) &&
                          read(member(json, "text"), header.scene_text) &&

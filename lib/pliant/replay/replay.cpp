@@ -157,8 +157,9 @@ Result<void> compare(ReplayLogReader& log, const ReplayHeader& now, Simulation& 
 
 Result<ReplayHeader> record_replay(const std::string& scene_file, const std::string& log_file,
                                    const ReplayOptions& options) {
-  const auto written = read_scene_text(scene_file, options.root);
+  auto written = read_scene_text(scene_file, options.root);
   if (!written) return fail(written.error());
+  written->changes = options.changes;
   auto simulation = simulation_of(*written, options.simulation);
   if (!simulation) return fail(simulation.error());
   return record(*simulation,
@@ -182,8 +183,9 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file,
   if (!recorded) return fail(recorded.error());
   auto& [log, solver] = *recorded;
   const ReplayHeader& then = log.header();
-  const auto found = find_scene(log_file, then, scene_file, options.root);
+  auto found = find_scene(log_file, then, scene_file, options.root);
   if (!found) return fail(found.error());
+  found->written.changes = then.changes;
   ReplayVerdict verdict;
   if (found->remark) verdict.causes.push_back(*found->remark);
 
@@ -222,6 +224,7 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& sim
   ReplayVerdict verdict;
   // The text of a scene file may say the same in other words.
   if (!then.scene_file.empty()) now.scene_text = then.scene_text;
+  now.changes = then.changes;
   verdict.causes = causes_in(then, now);
   if (auto compared = compare(log, now, simulation, options, verdict); !compared) {
     return fail(compared.error());

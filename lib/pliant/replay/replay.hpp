@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/replay/comparison.hpp"
@@ -19,6 +20,10 @@ struct ReplayOptions {
 
   /// The folder for files that meshes refer to, as in `load_scene`.
   std::string root = {};
+
+  /// Changes to make in the scene ahead of recording it, as `--set` takes them: `PATH=TEXT`,
+  /// `PATH*=K`, `PATH+=V`. A log has them, and they are made again to verify it.
+  std::vector<std::string> changes = {};
 
   /// Records up to this frame; nullopt: up to the scene's last one.
   std::optional<int> last_frame = {};

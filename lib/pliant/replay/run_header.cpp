@@ -12,6 +12,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/plate/solver_choice.hpp"
+#include "pliant/scene/change.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
@@ -46,7 +47,10 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 }
 
 Result<Scene> scene_of(const WrittenScene& written) {
-  return parse_scene(written.text, written.file.string(), written.folder, written.root);
+  auto scene = parse_scene(written.text, written.file.string(), written.folder, written.root);
+  if (!scene || written.changes.empty()) return scene;
+  if (auto changed = change_scene(*scene, written.changes); !changed) return fail(changed.error());
+  return scene;
 }
 
 }  // namespace
@@ -68,6 +72,7 @@ ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs
   header.version = PLIANT_VERSION;
   if (!written.file.empty()) header.scene_file = name_from(log_file.parent_path(), written.file);
   header.scene_text = written.text;
+  header.changes = written.changes;
   for (const SceneInput& input : inputs_of(scene)) {
     // The scene is stored as text. Reading a pipe or a device could block, or never end.
     std::error_code ignored;

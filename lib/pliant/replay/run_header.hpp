@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pliant/replay/replay.hpp"
 
@@ -16,6 +17,7 @@ struct WrittenScene {
   std::string text = {};            ///< empty: of a program, and no file can contain it
   std::filesystem::path folder = file.parent_path();  ///< of the meshes' relative names
   std::filesystem::path root = {};                    ///< as in `load_scene`
+  std::vector<std::string> changes = {};              ///< as in `ReplayOptions`
 };
 
 /// Errors: as `read_file`.

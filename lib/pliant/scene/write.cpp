@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/scene/change.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/key_text.hpp"
@@ -385,6 +386,8 @@ bool is_plain_falloff(const CurveKeys<1>& keys) {
 }
 
 std::optional<std::string> what_no_file_contains(const Scene& scene) {
+  if (const auto channel = first_adjusted_channel(scene))
+    return fmt::format("the curve of {} is adjusted, which a scene file cannot contain", *channel);
   for (const Surface& surface : scene.surfaces)
     if (std::holds_alternative<Mesh>(surface.shape))
       return fmt::format(

@@ -1,0 +1,393 @@
+#include "pliant/scene/change.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/description.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/slot.hpp"
+#include "pliant/scene/text.hpp"
+#include "pliant/timeline/adjustment.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace xml;
+namespace fs = std::filesystem;
+
+constexpr std::string_view part_words[] = {"x", "y", "z", "progress"};
+
+tl::unexpected<Error> refuse(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+// `NAME.attribute`, `NAME.attribute.x` or `NAME.attribute.progress`.
+struct ValuePath {
+  std::string name, attribute;
+  std::string part = {};  // one of `part_words`; empty: the whole
+
+  bool is_progress() const { return part == "progress"; }
+  std::optional<std::size_t> component() const {
+    if (part.empty() || is_progress()) return {};
+    return static_cast<std::size_t>(part[0] - 'x');
+  }
+  std::string title() const { return fmt::format("{}.{}", name, attribute); }
+};
+
+std::optional<ValuePath> split(std::string_view path) {
+  const std::size_t first = path.find('.');
+  if (first == std::string_view::npos || first == 0) return {};
+  const std::string_view rest = path.substr(first + 1);
+  const std::size_t second = std::min(rest.find('.'), rest.size());
+  ValuePath parts{std::string(path.substr(0, first)), std::string(rest.substr(0, second))};
+  if (second < rest.size()) parts.part = rest.substr(second + 1);
+  if (parts.attribute.empty() || (second < rest.size() && parts.part.empty())) return {};
+  return parts;
+}
+
+// The slots of a part after those before it.
+void append(Table& table, Table part) {
+  std::move(part.begin(), part.end(), std::back_inserter(table));
+}
+
+void append_shape(Table& table, Surface& surface) {
+  if (auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
+    append(table, table_of(*sheet, surface.cache));
+  } else if (auto* const net = std::get_if<NurbsNet>(&surface.shape)) {
+    append(table, table_of(*net));
+  } else if (auto* const mesh = std::get_if<MeshFile>(&surface.shape)) {
+    append(table, surface.subdivision
+                      ? table_of(*mesh, surface.reading, surface.cache, *surface.subdivision)
+                      : table_of(*mesh, surface.reading, surface.cache));
+  }
+}
+
+Table all_slots(Surface& surface) {
+  Table table = table_of(surface);
+  append_shape(table, surface);
+  append(table, table_of(surface.transform));
+  if (surface.is_driven()) return table;
+  append(table, table_of(surface.material));
+  append(table, table_of(surface.tangents));
+  append(table, table_of(surface.solver));
+  return table;
+}
+
+// In a group, the group selects the region.
+Table all_slots(Force& force) {
+  Table table = table_of(force);
+  if (!force.group.empty())
+    std::erase_if(table, [](const Slot& slot) {
+      return slot.attribute.name == deformation_radius_attribute.name;
+    });
+  return table;
+}
+
+Table all_slots(Scene& scene, std::string_view name) {
+  for (Surface& surface : scene.surfaces)
+    if (surface.name == name) return all_slots(surface);
+  for (Force& force : scene.forces)
+    if (force.name == name) return all_slots(force);
+  for (Group& group : scene.groups)
+    if (group.name == name) return table_of(group);
+  return name == Description<Scene>::element ? table_of(scene) : Table();
+}
+
+std::string no_object(const Scene& scene, std::string_view name) {
+  std::vector<std::string_view> names = {Description<Scene>::element};
+  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
+  for (const Force& force : scene.forces) names.push_back(force.name);
+  for (const Group& group : scene.groups) names.push_back(group.name);
+  return fmt::format("nothing is named {}{}", in_quotes(name), hint(name, names));
+}
+
+bool may_change(const Slot& slot) {
+  return slot.attribute.syntax != Syntax::Version && slot.attribute.name != "name" &&
+         slot.attribute.need != Need::Later;
+}
+
+std::string no_attribute(const Table& table, const ValuePath& path) {
+  std::vector<std::string_view> names;
+  for (const Slot& slot : table)
+    if (may_change(slot)) names.push_back(slot.attribute.name);
+  for (const Slot& slot : table) {
+    if (slot.attribute.name != path.attribute) continue;
+    return fmt::format("{} {}", path.attribute,
+                       slot.attribute.need == Need::Later ? not_supported(slot.attribute.instead)
+                                                          : "cannot be changed");
+  }
+  return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
+                     hint(path.attribute, names));
+}
+
+// Adjusts the channel of a slot, or a component of it.
+class Adjust {
+ public:
+  Adjust(const ValuePath& path, const SceneChange& change) : path_(path), change_(change) {}
+
+  template <int D>
+  Result<void> operator()(Channel<D>* channel) const {
+    if (path_.is_progress()) return no_path();
+    return adjust<D>(*channel);
+  }
+  template <int D>
+  Result<void> operator()(std::optional<Channel<D>>* channel) const {
+    if (!*channel) return refuse(path_.title() + " is not given");
+    return (*this)(&**channel);
+  }
+  Result<void> operator()(TangentChannel* tangent) const {
+    return std::visit([&](auto& channel) { return (*this)(&channel); }, *tangent);
+  }
+  Result<void> operator()(PositionChannel* position) const {
+    if (!path_.is_progress()) return adjust<3>(*position);
+    if (!position->path()) return no_path();
+    Channel<1>& progress = position->path()->progress;
+    if (change_.kind != SceneChange::Kind::Set) return adjust<1>(progress);
+    return read(slot(progress_attribute, &progress));
+  }
+  template <class Other>
+  Result<void> operator()(const Other&) const {
+    if (path_.part.empty()) return refuse(path_.title() + " is no numeric channel");
+    return refuse(fmt::format("{} has no {}", path_.title(), path_.part));
+  }
+
+  Result<void> read(const Slot& slot) const {
+    if (const Reading<void> reading = slot.read(change_.text); !reading)
+      return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error()));
+    return {};
+  }
+
+ private:
+  Result<void> no_path() const {
+    return refuse(path_.title() + " is not on a <path>, so it has no progress");
+  }
+
+  template <int D, class Place>
+  Result<void> adjust(Place& place) const {
+    const auto adjustments = read_numbers<D>();
+    if (!adjustments) return fail(adjustments.error());
+    if (place.adjustments() && overlap<D>(*place.adjustments(), *adjustments))
+      return refuse(path_.title() + " is changed already");
+    place.adjust(*adjustments);
+    return {};
+  }
+
+  // One number for a component or for all, or, to add to a vector, one for each.
+  template <int D>
+  Result<Adjustments<D>> read_numbers() const {
+    const auto component = path_.component();
+    if (component && D == 1)
+      return refuse(path_.title() + " is a single number, so it has no x, y and z");
+    const bool is_factor = change_.kind == SceneChange::Kind::Times;
+    const std::size_t count = component || is_factor ? 1 : std::size_t{D};
+    std::array<double, 3> numbers = {};
+    const Reading<void> reading = parse_numbers(change_.text, std::span(numbers).first(count));
+    if (!reading) return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error()));
+    const auto kind = is_factor                                 ? Adjustment::Kind::Times
+                      : change_.kind == SceneChange::Kind::Plus ? Adjustment::Kind::Plus
+                                                                : Adjustment::Kind::Set;
+    Adjustments<D> adjustments;
+    for (std::size_t c = 0; c < std::size_t{D}; ++c) {
+      if (!component || *component == c) adjustments[c] = {kind, numbers[count == 1 ? 0 : c]};
+    }
+    return adjustments;
+  }
+
+  const ValuePath& path_;
+  const SceneChange& change_;
+};
+
+// What a file would do beside the value itself.
+void settle(Scene& scene, const ValuePath& path, const Slot& slot) {
+  if (slot.attribute.syntax == Syntax::Path) {
+    auto& file = *std::get<std::string*>(slot.place);
+    const fs::path folder = fs::path(scene.origin.file).parent_path();
+    if (!file.empty()) file = (folder / file).string();
+  }
+  if (slot.attribute.name == "falloff") {
+    for (Force& force : scene.forces)
+      if (force.name == path.name) force.falloff_curve.reset();
+  }
+  // From now on the attribute counts as given.
+  const std::string name = path.name == Description<Scene>::element ? "" : path.name;
+  if (scene.origin.gives(name, path.attribute)) return;
+  const SceneLine line{name + '.' + path.attribute, std::max(1, scene.origin.line_of(name))};
+  std::vector<SceneLine>& lines = scene.origin.lines;
+  lines.insert(
+      std::lower_bound(lines.begin(), lines.end(), line,
+                       [](const SceneLine& a, const SceneLine& b) { return a.part < b.part; }),
+      line);
+}
+
+Result<void> make_change(Scene& scene, const SceneChange& change) {
+  const auto path = split(change.path);
+  if (!path)
+    return refuse(
+        fmt::format("{} is no path of an attribute; write NAME.ATTRIBUTE or "
+                    "scene.ATTRIBUTE",
+                    in_quotes(change.path)));
+  const Table table = all_slots(scene, path->name);
+  if (table.empty()) return refuse(no_object(scene, path->name));
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == path->attribute && may_change(slot);
+  });
+  if (found == table.end()) return refuse(no_attribute(table, *path));
+  if (!path->part.empty() &&
+      std::find(std::begin(part_words), std::end(part_words), path->part) == std::end(part_words))
+    return refuse(fmt::format("{} has no part {}{}", path->title(), in_quotes(path->part),
+                              hint(path->part, part_words)));
+  const Adjust adjust(*path, change);
+  if (change.kind != SceneChange::Kind::Set || !path->part.empty())
+    return std::visit(adjust, found->place);
+  if (auto read = adjust.read(*found); !read) return read;
+  settle(scene, *path, *found);
+  return {};
+}
+
+template <class Member>
+bool is_adjusted(const Member& member) {
+  if constexpr (requires { member.adjustments(); }) {
+    return member.adjustments() != nullptr;
+  } else if constexpr (requires { member->adjustments(); }) {
+    return member && member->adjustments() != nullptr;
+  } else if constexpr (std::is_same_v<Member, TangentChannel>) {
+    return std::visit([](const auto& channel) { return channel.adjustments() != nullptr; }, member);
+  } else {
+    return false;
+  }
+}
+
+// Calls look_at(attribute, member) for each row that may be a channel.
+template <class LookAt>
+void for_each_member(const Surface& surface, const LookAt& look_at) {
+  describe(look_at, surface.transform);
+  describe(look_at, surface.material);
+  describe(look_at, surface.tangents);
+  describe(look_at, surface.solver);
+}
+template <class LookAt>
+void for_each_member(const Force& force, const LookAt& look_at) {
+  describe(look_at, force);
+  std::visit([&](const auto& kind) { describe(look_at, kind); }, force.kind);
+}
+template <class LookAt>
+void for_each_member(const Group& group, const LookAt& look_at) {
+  describe(look_at, group);
+}
+
+}  // namespace
+
+std::string SceneChange::typed() const {
+  const std::string_view sign = kind == Kind::Times ? "*=" : kind == Kind::Plus ? "+=" : "=";
+  return path + std::string(sign) + text;
+}
+
+bool SceneChange::overlaps(const SceneChange& other) const {
+  const auto own = split(path), others = split(other.path);
+  if (!own || !others) return path == other.path;
+  if (own->name != others->name || own->attribute != others->attribute) return false;
+  // Parts of a position on a path are those of another value than its progress.
+  if (own->is_progress() != others->is_progress()) return own->part.empty() && kind == Kind::Set;
+  return own->part.empty() || others->part.empty() || own->part == others->part;
+}
+
+Result<SceneChange> parse_change(std::string_view typed) {
+  const std::size_t equals = typed.find('=');
+  SceneChange change;
+  std::size_t end = equals;
+  if (equals != std::string_view::npos && equals > 0) {
+    const char sign = typed[equals - 1];
+    if (sign == '*') change.kind = SceneChange::Kind::Times;
+    if (sign == '+') change.kind = SceneChange::Kind::Plus;
+    if (change.kind != SceneChange::Kind::Set) --end;
+  }
+  if (equals != std::string_view::npos) {
+    change.path = trimmed(typed.substr(0, end));
+    change.text = typed.substr(equals + 1);
+  }
+  if (!change.path.empty()) return change;
+  return refuse(
+      fmt::format("{} is no change; write PATH=TEXT, PATH*=K or PATH+=V, such as "
+                  "poke.magnitude*=2",
+                  in_quotes(typed)));
+}
+
+Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes) {
+  Scene changed = scene;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    const SceneChange& change = changes[k];
+    const auto complain = [&](const std::string& message) {
+      return refuse(fmt::format("{}: {}", change.typed(), message));
+    };
+    for (const SceneChange& other : changes.first(k)) {
+      if (change.overlaps(other) || other.overlaps(change))
+        return complain(fmt::format("{} changes the same value", other.typed()));
+    }
+    if (const auto made = make_change(changed, change); !made)
+      return complain(made.error().message);
+  }
+  scene = std::move(changed);
+  return {};
+}
+
+Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes) {
+  Scene changed = scene;
+  if (auto made = make_changes(changed, changes); !made) return made;
+  std::vector<Error> errors = check_scene(changed);
+  if (errors.empty()) errors = check_channels(changed);
+  if (!errors.empty()) return fail(as_one(std::move(errors), changed.origin.file));
+  scene = std::move(changed);
+  return {};
+}
+
+Result<void> change_scene(Scene& scene, std::span<const std::string> typed) {
+  std::vector<SceneChange> changes;
+  for (const std::string& one : typed) {
+    auto change = parse_change(one);
+    if (!change) return refuse("--set " + change.error().message);
+    changes.push_back(*std::move(change));
+  }
+  Scene changed = scene;
+  if (auto made = make_changes(changed, changes); !made)
+    return refuse("--set " + made.error().message);
+  if (auto sound = change_scene(changed, std::span<const SceneChange>()); !sound) return sound;
+  scene = std::move(changed);
+  return {};
+}
+
+std::optional<std::string> first_adjusted_channel(const Scene& scene) {
+  std::optional<std::string> first;
+  const auto look_at_all = [&](const auto& thing) {
+    const auto look_at = [&](const Attribute& attribute, const auto&... members) {
+      const auto look = [&](const auto& member) {
+        if (first) return;
+        if (is_adjusted(member)) {
+          first = fmt::format("{}.{}", thing.name, attribute.name);
+        } else if constexpr (requires { member.path()->progress; }) {
+          if (member.path() && member.path()->progress.adjustments())
+            first = fmt::format("{}.{}.progress", thing.name, attribute.name);
+        }
+      };
+      (look(members), ...);
+    };
+    for_each_member(thing, look_at);
+  };
+  for (const Surface& surface : scene.surfaces) look_at_all(surface);
+  for (const Force& force : scene.forces) look_at_all(force);
+  for (const Group& group : scene.groups) look_at_all(group);
+  return first;
+}
+
+}  // namespace pliant
