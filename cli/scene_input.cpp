@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "interrupt.hpp"
+#include "pliant/core/read_file.hpp"
 #include "pliant/scene/read.hpp"
 
 namespace pliant::cli {
@@ -59,23 +60,34 @@ Result<std::filesystem::path> folder_of(const Root& root) {
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
-Result<Scene> read_scene(const std::string& scene, const Root& root) {
-  const auto folder = folder_of(root);
-  if (!folder) return fail(folder.error());
+Result<SceneText> read_scene_text(const std::string& scene) {
   if (!is_standard_input(scene)) {
-    auto loaded = load_scene(scene, *folder);
-    if (!loaded && was_interrupted())
-      return interruption();  // interrupted while waiting for a pipe
-    return loaded;
+    auto text = read_file(scene, largest_scene_file);
+    if (!text && was_interrupted()) return interruption();  // while waiting for a pipe
+    if (!text) return fail(text.error());
+    return SceneText{*std::move(text), scene, std::filesystem::path(scene).parent_path().string()};
   }
   if (isatty(STDIN_FILENO) != 0) {
     return fail(
         ErrorCode::InvalidInput,
         "SCENE -: the standard input is a terminal; give a file, or pipe the scene: … | pliant");
   }
-  const auto text = read_standard_input();
+  auto text = read_standard_input();
   if (!text) return fail(text.error());
-  return parse_scene(*text, name, {}, *folder);
+  return SceneText{*std::move(text), name, {}};
+}
+
+Result<Scene> parse_source(const SceneText& source, const Root& root) {
+  const auto folder = folder_of(root);
+  if (!folder) return fail(folder.error());
+  return parse_scene(source.text, source.name, source.folder, *folder);
+}
+
+Result<Scene> read_scene(const std::string& scene, const Root& root) {
+  if (const auto folder = folder_of(root); !folder) return fail(folder.error());
+  const auto source = read_scene_text(scene);
+  if (!source) return fail(source.error());
+  return parse_source(*source, root);
 }
 
 Result<void> check_scene_is_file(std::string_view scene, std::string_view reason) {

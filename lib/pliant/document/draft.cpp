@@ -163,7 +163,7 @@ std::uint32_t Draft::end_with_comments(std::uint32_t end) const {
       const bool ends_line = rest.empty() || rest[0] == '\n' || rest[0] == '\r';
       return static_cast<std::uint32_t>(ends_line || rest.starts_with("</") ? found : end);
     }
-    at = found = text.find("-->", at) + 3;
+    at = found = text.find("-->", at + 4) + 3;
   }
 }
 
@@ -269,7 +269,7 @@ std::string Draft::reindented(TextRange range, std::string_view from, std::strin
   bool is_in_tag = false;
   for (std::size_t at = 0; at < text.size();) {
     if (!is_in_tag && text.substr(at).starts_with("<!--")) {
-      const std::size_t end = std::min(text.find("-->", at), text.size() - 3) + 3;
+      const std::size_t end = std::min(text.find("-->", at + 4), text.size() - 3) + 3;
       result += text.substr(at, end - at);
       at = end;
       continue;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,9 @@ class Draft {
   std::vector<Element> children(Element element, std::string_view name) const;
   /// The place of an attribute; null if the element does not have it.
   const xml::AttributePlace* attribute(Element element, std::string_view name) const;
+  std::span<const xml::AttributePlace> attributes(Element element) const {
+    return markup_.attributes_of(element);
+  }
   /// The value of an attribute; null if the element does not have it.
   std::optional<std::string> value(Element element, std::string_view name) const;
 

@@ -14,8 +14,6 @@ std::string to_text(const std::vector<double>& numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-std::string to_text(bool value) { return value ? "true" : "false"; }
-
 namespace {
 
 /// `poke.center`, `poke.center and pull.center`, `3 channels`.

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -18,7 +19,10 @@ namespace edit {
 /// The fewest digits that are read as the same double; several numbers are separated by blanks.
 std::string to_text(double number);
 std::string to_text(const std::vector<double>& numbers);
-std::string to_text(bool value);
+template <class Boolean>
+requires std::is_same_v<Boolean, bool> std::string to_text(Boolean value) {
+  return value ? "true" : "false";
+}
 
 // Values.
 
