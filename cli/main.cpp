@@ -10,6 +10,7 @@
 #include "bake.hpp"
 #include "complete.hpp"
 #include "curves.hpp"
+#include "format.hpp"
 #include "info.hpp"
 #include "interrupt.hpp"
 #include "replay.hpp"
@@ -39,6 +40,8 @@ int run(int count, char* arguments[]) {
   add_validate(app, validate);
   InfoOptions info;
   add_info(app, info);
+  FormatOptions format;
+  add_format(app, format);
   ReplayCommandOptions replay;
   add_replay(app, replay);
   ViewOptions view;
@@ -63,6 +66,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
+  if (app.got_subcommand("format")) return run_format(format);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
   return run_bake(bake);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "interrupt.hpp"
+#include "pliant/core/read_file.hpp"
 #include "pliant/scene/change.hpp"
 #include "pliant/scene/read.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr const char* name = "standard input";
 
 // One byte more than `parse_scene` accepts, to detect a scene that is too large.
-constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
+constexpr std::size_t most_bytes = largest_scene_file + 1;
 
 tl::unexpected<Error> interruption() {
   return fail(ErrorCode::Interrupted, "interrupted before the first frame");
@@ -72,31 +73,34 @@ void add_changes(CLI::App& command, Changes& changes) {
       ->allow_extra_args(false);
 }
 
-namespace {
-
-Result<Scene> read_unchanged(const std::string& scene, const Root& root) {
-  const auto folder = folder_of(root);
-  if (!folder) return fail(folder.error());
+Result<SceneText> read_scene_text(const std::string& scene) {
   if (!is_standard_input(scene)) {
-    auto loaded = load_scene(scene, *folder);
-    if (!loaded && was_interrupted())
-      return interruption();  // interrupted while waiting for a pipe
-    return loaded;
+    auto text = read_file(scene, largest_scene_file);
+    if (!text && was_interrupted()) return interruption();  // while waiting for a pipe
+    if (!text) return fail(text.error());
+    return SceneText{*std::move(text), scene, std::filesystem::path(scene).parent_path().string()};
   }
   if (isatty(STDIN_FILENO) != 0) {
     return fail(
         ErrorCode::InvalidInput,
         "SCENE -: the standard input is a terminal; give a file, or pipe the scene: … | pliant");
   }
-  const auto text = read_standard_input();
+  auto text = read_standard_input();
   if (!text) return fail(text.error());
-  return parse_scene(*text, name, {}, *folder);
+  return SceneText{*std::move(text), name, {}};
 }
 
-}  // namespace
+Result<Scene> parse_source(const SceneText& source, const Root& root) {
+  const auto folder = folder_of(root);
+  if (!folder) return fail(folder.error());
+  return parse_scene(source.text, source.name, source.folder, *folder);
+}
 
 Result<Scene> read_scene(const std::string& scene, const Root& root, const Changes& changes) {
-  auto read = read_unchanged(scene, root);
+  if (const auto folder = folder_of(root); !folder) return fail(folder.error());
+  const auto source = read_scene_text(scene);
+  if (!source) return fail(source.error());
+  auto read = parse_source(*source, root);
   if (!read || changes.empty()) return read;
   if (auto changed = change_scene(*read, changes); !changed) return fail(changed.error());
   return read;

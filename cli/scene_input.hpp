@@ -28,6 +28,19 @@ Result<std::filesystem::path> folder_of(const Root& root);
 /// Whether a command's SCENE means the standard input: "-". A file of that name is "./-".
 bool is_standard_input(std::string_view scene);
 
+/// The text of a scene.
+struct SceneText {
+  std::string text;
+  std::string name;    ///< of its file, in messages
+  std::string folder;  ///< of the files that it names
+};
+
+/// Reads the text of a scene file, or for "-" of the standard input. Errors: as `read_scene`.
+Result<SceneText> read_scene_text(const std::string& scene);
+
+/// Reads a scene from its text. Errors: as `read_scene`.
+Result<Scene> parse_source(const SceneText& source, const Root& root);
+
 /// `load_scene`, or for "-" the same from the standard input: its mesh paths are relative to the
 /// current folder. Errors: those of `load_scene` and `folder_of`; InvalidInput if the standard
 /// input is a terminal; Interrupted.

@@ -2,6 +2,7 @@
 
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
+#include "pliant/document/document.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/replay/replay.hpp"

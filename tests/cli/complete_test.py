@@ -51,6 +51,7 @@ class Complete(Command):
         for ending in (".npy", ".obj", ".glb", ".usda"):
             self.assertIn(f" {ending}", kind)
         self.assertEqual(self.offered("curves", "a.xml", "--out", "")[0], "files .csv .svg")
+        self.assertEqual(self.offered("format", "a.xml", "-o", "")[0], "files .xml")
         self.assertEqual(self.offered("replay", "diff", "a.replay", "")[0], "files .replay")
         self.assertEqual(self.offered("bake", "a.xml", "--cache", "")[0], "folders")
         self.assertEqual(self.offered("curves", "a.xml", "--at", "")[0], "files")

@@ -407,6 +407,37 @@ TEST_CASE("deleting a key leaves its neighbours to the rules", "[timeline][edit]
   CHECK(edited.keys().keys == std::vector<Key<1>>{keys[0], keys[2], keys[3]});
 }
 
+TEST_CASE("deleting keys at once is deleting one after the other", "[timeline][edit]") {
+  Whim whim(11);
+  int joined = 0;
+  for (int round = 0; round < rounds(3000); ++round) {
+    CurveKeys<1> keys = whim.keys(6);
+    for (Key<1>& each : keys.keys)
+      if (each.next.kind == SegmentKind::Easing) each.next.kind = SegmentKind::Bezier;
+    Curve<1> curve = make(keys);
+    const double first = keys.keys.front().frame;
+    const double last = keys.keys.back().frame;
+    for (int more = 0; more < 3 && first < last; ++more)
+      if (auto longer = insert_key(curve, first + whim.between(0.01, 0.99) * (last - first)))
+        curve = *std::move(longer);
+    std::vector<std::size_t> deleted;
+    for (std::size_t k = 0; k < curve.keys().keys.size(); ++k)
+      if (whim.between(0, 1) < 0.4) deleted.push_back(k);
+    tl::expected<Curve<1>, CurveError> one_by_one = curve;
+    for (std::size_t k = 0; k < deleted.size() && one_by_one; ++k)
+      one_by_one = delete_key(*one_by_one, deleted[k] - k);
+    const auto at_once = delete_keys(curve, deleted);
+    CAPTURE(round);
+    REQUIRE(at_once.has_value() == one_by_one.has_value());
+    if (!at_once) continue;
+    REQUIRE(at_once->keys() == one_by_one->keys());
+    for (const Key<1>& key : at_once->keys().keys)
+      joined += std::find(curve.keys().keys.begin(), curve.keys().keys.end(), key) ==
+                curve.keys().keys.end();
+  }
+  CHECK(joined > rounds(100));
+}
+
 TEST_CASE("moving one key leaves the others", "[timeline][edit]") {
   CurveKeys<1> keys;
   keys.keys = {key(0, 0), with_left(key(5, 9), 8), key(10, 2)};
@@ -469,6 +500,7 @@ TEST_CASE("edits that cannot be are refused with the reason", "[timeline][edit]"
 
   check_error(delete_key(curve, 3), "there is no key 3; the curve has keys 0 to 2");
   check_error(delete_key(make({key(0, 1)}), 0), "only one");
+  check_error(delete_keys(curve, {0, 1, 2}), "all others cannot be deleted");
   CurveKeys<1> looped = curve.keys();
   looped.loop = Loop<1>{5, 9, 0, 1, {0}};
   check_error(delete_key(make(looped), 1), "the loop starts from it");

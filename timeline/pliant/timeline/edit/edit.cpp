@@ -36,44 +36,73 @@ bool is_written(const Tangent<D>& tangent) {
   return tangent.length && (tangent.kind == Kind::Slope || tangent.kind == Kind::Flat);
 }
 
+/// Whether the segments around a key may be the halves of one.
+template <int D>
+bool may_join(const Key<D>& before, const Key<D>& key, const Key<D>& after) {
+  constexpr auto bezier = Interpolation::Kind::Bezier;
+  return before.next.kind == bezier && key.next.kind == bezier && is_written(before.out) &&
+         is_written(after.in);
+}
+
 /// Lengthens the handles beside a key so that the curve does not need the key, if possible.
+/// Requires: it may be.
 template <int D>
 void join_around(std::size_t key, CurveKeys<D>& keys) {
-  constexpr auto bezier = Interpolation::Kind::Bezier;
-  if (key == 0 || key + 1 == keys.keys.size() || has_copies(keys)) return;
-  Key<D>& before = keys.keys[key - 1];
-  Key<D>& after = keys.keys[key + 1];
-  if (before.next.kind != bezier || keys.keys[key].next.kind != bezier) return;
-  if (!is_written(before.out) || !is_written(after.in) || timeline::has_jump(keys.keys, key)) {
-    return;
-  }
+  if (has_copies(keys) || timeline::has_jump(keys.keys, key)) return;
   const auto compiled = timeline::compile(keys);
   if (!compiled) return;
   const auto handles = timeline::joined(compiled->curve.track, key - 1);
   if (!handles) return;
-  before.out = handles->start.as_tangent(true);
-  after.in = handles->end.as_tangent(false);
+  keys.keys[key - 1].out = handles->start.as_tangent(true);
+  keys.keys[key + 1].in = handles->end.as_tangent(false);
 }
 
 }  // namespace
 
 template <int D>
+tl::expected<Curve<D>, CurveError> delete_keys(const Curve<D>& curve,
+                                               const std::vector<std::size_t>& keys) {
+  CurveKeys<D> fewer = curve.keys();
+  for (const std::size_t key : keys) {
+    if (const auto error = missing(curve, key)) return tl::unexpected(*error);
+    const double frame = fewer.keys[key].frame;
+    if (keys.size() == fewer.keys.size()) {
+      return tl::unexpected(
+          CurveError{key, "the key at frame " + timeline::number_text(frame) +
+                              (keys.size() == 1 ? " is the only one and" : " and all others") +
+                              " cannot be deleted; a curve must have at least one key"});
+    }
+    if (fewer.loop && fewer.loop->from == frame) {
+      return tl::unexpected(CurveError{key, "the key at frame " + timeline::number_text(frame) +
+                                                " cannot be deleted; the loop starts from it"});
+    }
+  }
+  std::vector<bool> is_deleted(fewer.keys.size());
+  for (const std::size_t key : keys) is_deleted[key] = true;
+  std::vector<Key<D>> old = std::exchange(fewer.keys, {});
+  for (std::size_t key = 0; key < old.size(); ++key) {
+    if (!is_deleted[key]) {
+      fewer.keys.push_back(old[key]);
+      continue;
+    }
+    if (fewer.keys.empty() || key + 1 == old.size() ||
+        !may_join(fewer.keys.back(), old[key], old[key + 1])) {
+      continue;
+    }
+    // Its neighbours are those that are there when it is its turn.
+    const std::size_t place = fewer.keys.size();
+    CurveKeys<D> present = fewer;
+    present.keys.insert(present.keys.end(), old.begin() + key, old.end());
+    join_around(place, present);
+    fewer.keys.back() = present.keys[place - 1];
+    old[key + 1] = present.keys[place + 1];
+  }
+  return Curve<D>::make(std::move(fewer));
+}
+
+template <int D>
 tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key) {
-  if (const auto error = missing(curve, key)) return tl::unexpected(*error);
-  CurveKeys<D> keys = curve.keys();
-  const double frame = keys.keys[key].frame;
-  if (keys.keys.size() == 1) {
-    return tl::unexpected(CurveError{
-        key, "the key at frame " + timeline::number_text(frame) +
-                 " is the only one and cannot be deleted; a curve must have at least one key"});
-  }
-  if (keys.loop && keys.loop->from == frame) {
-    return tl::unexpected(CurveError{key, "the key at frame " + timeline::number_text(frame) +
-                                              " cannot be deleted; the loop starts from it"});
-  }
-  join_around(key, keys);
-  keys.keys.erase(keys.keys.begin() + key);
-  return Curve<D>::make(std::move(keys));
+  return delete_keys(curve, {key});
 }
 
 template <int D>
@@ -92,6 +121,10 @@ tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t k
   return Curve<D>::make(std::move(keys));  // checks that the numbers are finite
 }
 
+template tl::expected<Curve<1>, CurveError> delete_keys(const Curve<1>&,
+                                                        const std::vector<std::size_t>&);
+template tl::expected<Curve<3>, CurveError> delete_keys(const Curve<3>&,
+                                                        const std::vector<std::size_t>&);
 template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);
 template tl::expected<Curve<3>, CurveError> delete_key(const Curve<3>&, std::size_t);
 template tl::expected<Curve<1>, CurveError> move_key(const Curve<1>&, std::size_t, double,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <type_traits>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -35,6 +36,12 @@ template <int D>
 /// Change of value, for each component [unit]. Not used to deduce D.
 template <int D>
 using Rise = std::type_identity_t<Value<D>>;
+
+/// The same for several keys, in the order of their frames, in one pass. `keys`: their indices in
+/// the curve, increasing. Errors also: all keys.
+template <int D>
+[[nodiscard]] tl::expected<Curve<D>, CurveError> delete_keys(const Curve<D>& curve,
+                                                             const std::vector<std::size_t>& keys);
 
 /// The curve with one key moved by `frames`, its value and `left` raised by `rise`; the rest
 /// follows from the rules. An inner loop that starts at the key is adjusted; its end stays. Errors:
@@ -83,6 +90,10 @@ extern template tl::expected<Curve<1>, CurveError> insert_key(const Curve<1>&, d
 extern template tl::expected<Curve<3>, CurveError> insert_key(const Curve<3>&, double);
 extern template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);
 extern template tl::expected<Curve<3>, CurveError> delete_key(const Curve<3>&, std::size_t);
+extern template tl::expected<Curve<1>, CurveError> delete_keys(const Curve<1>&,
+                                                               const std::vector<std::size_t>&);
+extern template tl::expected<Curve<3>, CurveError> delete_keys(const Curve<3>&,
+                                                               const std::vector<std::size_t>&);
 extern template tl::expected<Curve<1>, CurveError> move_key(const Curve<1>&, std::size_t, double,
                                                             const Value<1>&);
 extern template tl::expected<Curve<3>, CurveError> move_key(const Curve<3>&, std::size_t, double,

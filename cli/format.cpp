@@ -1,0 +1,85 @@
+#include "format.hpp"
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "inputs.hpp"
+#include "interrupt.hpp"
+#include "output_file.hpp"
+#include "pliant/document/format_scene.hpp"
+#include "pliant/output/atomic_file.hpp"
+#include "pliant/scene/read.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+namespace {
+
+Result<void> write_file(const std::string& file, const std::string& text) {
+  auto output = AtomicFile::create(file);
+  if (!output) return fail(output.error());
+  if (auto written = output->write(text); !written) return written;
+  return output->commit();
+}
+
+// To a terminal without what would act on it; elsewhere byte for byte.
+void write_out(const std::string& text) {
+  if (isatty(STDOUT_FILENO) != 0) return print(stdout, text);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+Result<void> check_out(const FormatOptions& options, const Scene& scene) {
+  if (options.out.empty()) return {};
+  const std::string input = input_named(options.out, scene);
+  if (input.empty()) return {};
+  const bool is_scene = name_one_file(options.out, options.scene);
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("-o {}: {}; {}", printable(options.out), input,
+                          is_scene ? "--in-place replaces it" : "choose another name"));
+}
+
+}  // namespace
+
+void add_format(CLI::App& app, FormatOptions& options) {
+  CLI::App* format =
+      app.add_subcommand("format", "Write a scene in its canonical layout, comments kept");
+  format->add_option("SCENE", options.scene, "Scene file")->required();
+  CLI::Option* const out =
+      format->add_option("-o,--out", options.out, "Output file; the standard output by default");
+  format->add_flag("--in-place", options.is_in_place, "Replace the scene file")->excludes(out);
+  add_root(*format, options.root);
+}
+
+int run_format(const FormatOptions& options) {
+  catch_interrupts();
+  if (options.is_in_place) {
+    if (auto file = check_scene_is_file(options.scene, "--in-place replaces the file"); !file)
+      return report(file.error());
+  }
+  const std::string& target = options.is_in_place ? options.scene : options.out;
+  const char* const name = options.is_in_place ? "SCENE" : "-o";
+  if (!target.empty()) {
+    if (auto place = check_output_file(name, target); !place) return report(place.error());
+  }
+  const auto source = read_scene_text(options.scene);
+  if (!source) return report(source.error());
+  const auto scene = parse_source(*source, options.root);
+  if (!scene) return report(scene.error());
+  if (!options.is_in_place) {
+    if (auto free = check_out(options, *scene); !free) return report(free.error());
+  }
+  const auto text = format_scene(source->text, source->name);
+  if (!text) return report(text.error());
+  if (target.empty()) {
+    write_out(*text);
+    return exit_done;
+  }
+  if (options.is_in_place && *text == source->text) return exit_done;
+  if (auto written = write_file(target, *text); !written)
+    return report(with_kept(written.error(), "nothing was written"));
+  return exit_done;
+}
+
+}  // namespace pliant::cli

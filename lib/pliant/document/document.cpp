@@ -1,0 +1,193 @@
+#include "pliant/document/document.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/read_file.hpp"
+#include "pliant/document/draft.hpp"
+#include "pliant/document/editor.hpp"
+#include "pliant/output/atomic_file.hpp"
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/read.hpp"
+#include "pliant/scene/write.hpp"
+
+namespace pliant {
+namespace {
+
+Result<void> write(std::string_view text, const std::string& file) {
+  auto output = AtomicFile::create(file);
+  if (!output) return fail(output.error());
+  if (auto written = output->write(text); !written) return written;
+  return output->commit();
+}
+
+std::string folder_of_file(const std::string& file) {
+  return std::filesystem::path(file).parent_path().string();
+}
+
+/// The edits of batches as a list: those of one from the last to the first, so that each offset is
+/// that of the text at its turn.
+std::vector<TextEdit> in_order(const std::vector<edit::EditBatch>& batches) {
+  std::vector<TextEdit> edits;
+  for (const edit::EditBatch& batch : batches)
+    edits.insert(edits.end(), batch.rbegin(), batch.rend());
+  return edits;
+}
+
+const std::string no_name;
+
+}  // namespace
+
+Result<SceneDocument> SceneDocument::open(const std::string& file, DocumentOptions options) {
+  auto text = read_file(file, largest_scene_file);
+  if (!text) return fail(text.error());
+  return from_text(*std::move(text), file, folder_of_file(file), std::move(options));
+}
+
+Result<SceneDocument> SceneDocument::from_text(std::string text, const std::string& name,
+                                               const std::string& folder, DocumentOptions options) {
+  SceneDocument document;
+  document.file_ = name;
+  document.folder_ = folder;
+  document.options_ = std::move(options);
+  auto scene = document.checked(text);
+  if (!scene) return fail(scene.error());
+  document.scene_ = *std::move(scene);
+  document.saved_ = text;
+  document.text_ = std::move(text);
+  return document;
+}
+
+Result<Scene> SceneDocument::parse(const std::string& text) const {
+  return parse_scene(text, file_, folder_, options_.root);
+}
+
+/// The scene of a text that satisfies all that `validate` asks.
+Result<Scene> SceneDocument::checked(const std::string& text) const {
+  auto scene = parse(text);
+  if (!scene) return scene;
+  if (std::vector<Error> errors = check_channels(*scene); !errors.empty())
+    return fail(as_one(std::move(errors), file_));
+  if (options_.check)
+    if (auto satisfied = options_.check(*scene); !satisfied) return fail(satisfied.error());
+  return scene;
+}
+
+Result<Change> SceneDocument::apply(const std::vector<Operation>& operations,
+                                    const std::string& name) {
+  auto draft = edit::Draft::make(text_, file_);
+  if (!draft) return fail(draft.error());
+  edit::Editor editor(*draft, scene_, [this](const std::string& text) { return parse(text); });
+  for (const Operation& operation : operations)
+    if (auto done = editor.apply(operation); !done) return fail(done.error());
+  Step step{.name = name,
+            .batches = draft->take_batches(),
+            .parts = {editor.parts().begin(), editor.parts().end()}};
+  if (name.empty() && !operations.empty()) step.name = described(operations.front());
+  if (name.empty() && operations.size() > 1)
+    step.name += fmt::format(" and {} more", operations.size() - 1);
+  if (draft->text() == text_) return Change{.name = step.name};
+  auto scene = checked(draft->text());
+  if (!scene) return fail(scene.error());
+  scene_ = *std::move(scene);
+  text_ = draft->text();
+  steps_.resize(done_);
+  steps_.push_back(std::move(step));
+  ++done_;
+  const Step& last = steps_.back();
+  return Change{.name = last.name, .edits = in_order(last.batches), .parts = last.parts};
+}
+
+/// Takes the text that the batches make of the present one.
+Result<Change> SceneDocument::take(std::string text, const Step& step,
+                                   const std::vector<edit::EditBatch>& batches) {
+  auto scene = parse(text);
+  if (!scene) return fail(scene.error());
+  scene_ = *std::move(scene);
+  text_ = std::move(text);
+  return Change{.name = step.name, .edits = in_order(batches), .parts = step.parts};
+}
+
+Result<Change> SceneDocument::undo() {
+  if (!can_undo()) return fail(ErrorCode::InvalidInput, "there is nothing to undo", file_);
+  const Step& step = steps_[done_ - 1];
+  std::vector<edit::EditBatch> batches;
+  std::string text = text_;
+  for (auto batch = step.batches.rbegin(); batch != step.batches.rend(); ++batch) {
+    batches.push_back(edit::reversed(*batch));
+    text = edit::made(text, batches.back());
+  }
+  auto change = take(std::move(text), step, batches);
+  if (change) --done_;
+  return change;
+}
+
+Result<Change> SceneDocument::redo() {
+  if (!can_redo()) return fail(ErrorCode::InvalidInput, "there is nothing to redo", file_);
+  const Step& step = steps_[done_];
+  std::string text = text_;
+  for (const edit::EditBatch& batch : step.batches) text = edit::made(text, batch);
+  auto change = take(std::move(text), step, step.batches);
+  if (change) ++done_;
+  return change;
+}
+
+const std::string& SceneDocument::undo_name() const {
+  return can_undo() ? steps_[done_ - 1].name : no_name;
+}
+
+const std::string& SceneDocument::redo_name() const {
+  return can_redo() ? steps_[done_].name : no_name;
+}
+
+Result<void> SceneDocument::save() {
+  if (auto written = write(text_, file_); !written) return written;
+  saved_ = text_;
+  return {};
+}
+
+Result<void> SceneDocument::save_as(const std::string& file) {
+  namespace fs = std::filesystem;
+  const std::string folder = folder_of_file(file);
+  std::error_code unknown;
+  const auto or_here = [](const std::string& name) { return fs::path(name.empty() ? "." : name); };
+  const bool is_same = fs::equivalent(or_here(folder), or_here(folder_), unknown) && !unknown;
+  if (!is_same && names_files())
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the scene names files relative to its own folder {}; save it there",
+                            or_here(folder_).string()),
+                file);
+  if (auto written = write(text_, file); !written) return written;
+  file_ = file;
+  folder_ = folder;
+  scene_.origin.file = file;
+  saved_ = text_;
+  return {};
+}
+
+/// Whether the scene names a file by a relative path.
+bool SceneDocument::names_files() const {
+  const auto draft = edit::Draft::make(text_, file_);
+  PLIANT_EXPECTS(draft);
+  return draft->any_attribute([](std::string_view name, const std::string& value) {
+    return (name == "file" || name == "cache") && std::filesystem::path(value).is_relative();
+  });
+}
+
+Result<bool> SceneDocument::has_file_changed() const {
+  const auto bytes = read_file(file_, largest_scene_file);
+  if (!bytes) return fail(bytes.error());
+  return *bytes != saved_;
+}
+
+Result<void> save_scene(const Scene& scene, const std::string& file) {
+  const auto text = to_xml(scene, folder_of_file(file));
+  if (!text) return fail(text.error());
+  return write(*text, file);
+}
+
+}  // namespace pliant

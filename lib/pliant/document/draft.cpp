@@ -1,0 +1,311 @@
+#include "pliant/document/draft.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/scene/findings.hpp"
+#include "pliant/scene/read.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::edit {
+
+using xml::AttributePlace;
+using xml::blanks;
+using xml::ElementPlace;
+using xml::TextRange;
+
+namespace {
+
+constexpr std::string_view space = " \t";  // blanks within a line
+
+bool has_line_end(std::string_view text) { return text.find('\n') != std::string_view::npos; }
+
+/// The line end at a line feed.
+std::string line_end_at(std::string_view text, std::size_t feed) {
+  return feed > 0 && text[feed - 1] == '\r' ? "\r\n" : "\n";
+}
+
+/// The line ends of a text, without anything else.
+std::string line_ends_of(std::string_view text) {
+  std::string ends;
+  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
+    ends += line_end_at(text, at);
+  return ends;
+}
+
+/// The blanks after the last line end.
+std::string last_line_of(std::string_view text) {
+  return std::string(text.substr(text.rfind('\n') + 1));
+}
+
+}  // namespace
+
+Result<Draft> Draft::make(std::string text, const std::string& name) {
+  Draft draft(name);
+  PLIANT_EXPECTS(text.size() <= largest_scene_file);
+  draft.text_ = std::move(text);
+  if (auto scanned = draft.scan(); !scanned) return fail(scanned.error());
+  return draft;
+}
+
+Result<void> Draft::scan() {
+  xml::Findings findings(file_);
+  auto markup = xml::scan_markup(text_, findings);
+  if (!markup) return fail(findings.to_error());
+  markup_ = *std::move(markup);
+  return {};
+}
+
+int Draft::line_of(Element element) const {
+  return xml::LineCounter(text_).line_of(place(element).name.begin);
+}
+
+std::vector<Element> Draft::children(Element element) const {
+  std::vector<Element> found;
+  for (Element child = element + 1; child < markup_.elements.size(); ++child) {
+    const ElementPlace& at = place(child);
+    if (at.name.begin >= place(element).end) break;
+    if (at.parent == element) found.push_back(child);
+  }
+  return found;
+}
+
+std::vector<Element> Draft::children(Element element, std::string_view name) const {
+  std::vector<Element> found = children(element);
+  std::erase_if(found, [&](Element child) { return this->name(child) != name; });
+  return found;
+}
+
+const AttributePlace* Draft::attribute(Element element, std::string_view name) const {
+  for (const AttributePlace& given : markup_.attributes_of(element))
+    if (given.name.of(text_) == name) return &given;
+  return nullptr;
+}
+
+std::optional<std::string> Draft::value(Element element, std::string_view name) const {
+  const AttributePlace* const given = attribute(element, name);
+  if (!given) return std::nullopt;
+  return xml::decoded(given->value.of(text_));
+}
+
+void Draft::replace(TextRange range, std::string text) {
+  noted_.push_back(
+      {.at = range.begin, .removed = std::string(range.of(text_)), .inserted = std::move(text)});
+}
+
+void Draft::set(Element element, std::string_view attribute, std::string_view value) {
+  const auto given = markup_.attributes_of(element);
+  if (const AttributePlace* const own = this->attribute(element, attribute)) {
+    if (xml::decoded(own->value.of(text_)) == value) return;
+    return replace(own->value, xml::encoded(value, text_[own->value.begin - 1]));
+  }
+  const char quote =
+      given.empty() ? inside({element}).layout.quote : text_[given.back().value.begin - 1];
+  // One line for each, or all on the lines that there are.
+  std::string separator = " ";
+  const auto blanks_of = [&](const AttributePlace& one) {
+    return text_.substr(blanks_begin(one.name.begin),
+                        one.name.begin - blanks_begin(one.name.begin));
+  };
+  const bool has_lines = given.size() > 1 &&
+                         std::all_of(given.begin() + 1, given.end(),
+                                     [&](const auto& one) { return has_line_end(blanks_of(one)); });
+  if (has_lines && !keeps_lines_) separator = blanks_of(given.back());
+  insert(
+      given.empty() ? place(element).name.end : given.back().whole().end,
+      fmt::format("{}{}={}{}{}", separator, attribute, quote, xml::encoded(value, quote), quote));
+}
+
+void Draft::remove_attribute(Element element, std::string_view attribute) {
+  const AttributePlace* const given = this->attribute(element, attribute);
+  if (!given) return;
+  const TextRange range{blanks_begin(given->name.begin), given->whole().end};
+  replace(range, keeps_lines_ ? line_ends_of(range.of(text_)) : "");
+}
+
+void Draft::remove(Element element) {
+  TextRange range = with_blanks_before(element);
+  const std::uint32_t end = place(element).end;
+  if (end_with_comments(end) != end) {
+    // Comments behind it stay in its place.
+    range = {place(element).whole().begin,
+             static_cast<std::uint32_t>(text_.find_first_not_of(space, end))};
+  }
+  replace(range, keeps_lines_ ? line_ends_of(range.of(text_)) : "");
+}
+
+std::uint32_t Draft::blanks_begin(std::uint32_t at) const {
+  const std::size_t before = std::string_view(text_).substr(0, at).find_last_not_of(blanks);
+  return before == std::string_view::npos ? 0 : static_cast<std::uint32_t>(before + 1);
+}
+
+std::string Draft::blanks_before(Element element) const {
+  const std::uint32_t begin = place(element).whole().begin;
+  return text_.substr(blanks_begin(begin), begin - blanks_begin(begin));
+}
+
+TextRange Draft::with_blanks_before(Element element) const {
+  const TextRange range = place(element).whole();
+  return {blanks_begin(range.begin), range.end};
+}
+
+std::uint32_t Draft::end_with_comments(std::uint32_t end) const {
+  const std::string_view text = text_;
+  for (std::size_t at = end, found = end;;) {
+    at = std::min(text.find_first_not_of(space, at), text.size());
+    const std::string_view rest = text.substr(at);
+    if (!rest.starts_with("<!--")) {
+      // Comments before another element on the line may belong to that.
+      const bool ends_line = rest.empty() || rest[0] == '\n' || rest[0] == '\r';
+      return static_cast<std::uint32_t>(ends_line || rest.starts_with("</") ? found : end);
+    }
+    at = found = text.find("-->", at + 4) + 3;
+  }
+}
+
+std::optional<std::string> Draft::margin_of(Element element) const {
+  const std::uint32_t begin = place(element).whole().begin;
+  const std::string_view before = std::string_view(text_).substr(0, begin);
+  const std::string_view line = before.substr(before.rfind('\n') + 1);
+  if (line.find_first_not_of(space) != std::string_view::npos) return std::nullopt;
+  return std::string(line);
+}
+
+std::string Draft::line_end_near(std::size_t at) const {
+  std::size_t feed = at == 0 ? std::string::npos : text_.rfind('\n', at - 1);
+  if (feed == std::string::npos) feed = text_.find('\n', at);
+  return feed == std::string::npos ? "\n" : line_end_at(text_, feed);
+}
+
+std::string Draft::indent() const {
+  for (Element child = 1; child < markup_.elements.size(); ++child) {
+    const auto outer = margin_of(place(child).parent);
+    const auto inner = margin_of(child);
+    if (outer && inner && inner->size() > outer->size() && inner->starts_with(*outer))
+      return inner->substr(outer->size());
+  }
+  return "  ";
+}
+
+Draft::Surroundings Draft::inside(const Place& place) const {
+  Surroundings result;
+  const std::uint32_t begin = this->place(place.parent).whole().begin;
+  const std::vector<Element> all = children(place.parent);
+  std::optional<Element> neighbour = place.after;
+  if (!neighbour && !all.empty()) neighbour = all.front();
+  if (neighbour) {
+    const std::string before = blanks_before(*neighbour);
+    result.is_inline = !has_line_end(before);
+    result.margin = last_line_of(before);
+  } else {
+    const auto margin = margin_of(place.parent);
+    result.is_inline = !margin || !has_line_end(text_);
+    result.margin = margin.value_or("") + indent();
+  }
+  result.is_inline = result.is_inline || keeps_lines_;
+  result.layout.line_end = line_end_near(neighbour ? this->place(*neighbour).whole().begin : begin);
+  result.layout.indent = indent();
+  if (result.is_inline) {
+    result.layout.line_end.clear();
+    result.layout.indent.clear();
+    result.layout.columns = std::numeric_limits<std::size_t>::max();
+    result.margin = neighbour && !keeps_lines_ ? blanks_before(*neighbour) : "";
+  }
+  // The quotes of the nearest attribute.
+  for (const Element near : {neighbour.value_or(place.parent), place.parent, root}) {
+    const auto given = markup_.attributes_of(near);
+    if (given.empty()) continue;
+    result.layout.quote = text_[given.front().value.begin - 1];
+    break;
+  }
+  return result;
+}
+
+void Draft::insert(const xml::ElementText& element, const Place& place) {
+  const Surroundings around = inside(place);
+  insert(std::vector{xml::text_of(element, around.layout, around.is_inline ? "" : around.margin)},
+         place);
+}
+
+void Draft::insert(const std::vector<std::string>& elements, const Place& place) {
+  if (elements.empty()) return;
+  const ElementPlace& parent = this->place(place.parent);
+  const Surroundings around = inside(place);
+  std::string separator = around.layout.line_end + around.margin;
+  if (place.keeps_blank_line && place.after && !around.is_inline)
+    separator = blanks_before(*place.after);
+  std::string text;
+  for (const std::string& element : elements) text += separator + element;
+  const std::string closing =
+      around.is_inline ? "" : around.layout.line_end + margin_of(place.parent).value_or("");
+
+  if (parent.closes_itself()) {
+    const std::uint32_t begin = blanks_begin(parent.tag_end - 2);
+    const bool is_own_line = has_line_end(TextRange{begin, parent.tag_end}.of(text_));  // of the />
+    return replace({is_own_line ? parent.tag_end - 2 : begin, parent.tag_end},
+                   fmt::format(">{}{}</{}>", text, closing, parent.name.of(text_)));
+  }
+  const std::uint32_t at =
+      end_with_comments(place.after ? this->place(*place.after).end : parent.tag_end);
+  if (!place.after && children(place.parent).empty()) {
+    const auto end = static_cast<std::uint32_t>(text_.rfind("</", parent.end - 1));
+    if (!has_line_end(TextRange{at, end}.of(text_))) text += closing;
+  }
+  insert(at, std::move(text));
+}
+
+std::string Draft::reindented(Element element, std::string_view from, std::string_view to) const {
+  return reindented(place(element).whole(), from, to);
+}
+
+std::string Draft::reindented(TextRange range, std::string_view from, std::string_view to) const {
+  const std::string_view text = range.of(text_);
+  std::string result;
+  char quote = 0;  // around the present place; 0: none
+  bool is_in_tag = false;
+  for (std::size_t at = 0; at < text.size();) {
+    if (!is_in_tag && text.substr(at).starts_with("<!--")) {
+      const std::size_t end = std::min(text.find("-->", at + 4), text.size() - 3) + 3;
+      result += text.substr(at, end - at);
+      at = end;
+      continue;
+    }
+    const char c = text[at++];
+    result += c;
+    if (quote != 0) {
+      if (c == quote) quote = 0;
+    } else if (is_in_tag && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (c == '<' || c == '>') {
+      is_in_tag = c == '<';
+    } else if (c == '\n' && text.substr(at).starts_with(from)) {
+      const bool is_blank = at + from.size() < text.size() &&
+                            (text[at + from.size()] == '\n' || text[at + from.size()] == '\r');
+      if (is_blank) continue;
+      at += from.size();
+      result += to;
+    }
+  }
+  return result;
+}
+
+Result<void> Draft::commit() {
+  if (noted_.empty()) return {};
+  // What is inserted at a place comes before what replaces the text there.
+  std::stable_sort(noted_.begin(), noted_.end(), [](const TextEdit& a, const TextEdit& b) {
+    if (a.at != b.at) return a.at < b.at;
+    return a.removed.empty() && !b.removed.empty();
+  });
+  std::string text = made(text_, noted_);
+  if (text.size() > largest_scene_file)
+    return refuse(fmt::format("the scene would be larger than {} MiB", largest_scene_file >> 20U));
+  text_ = std::move(text);
+  batches_.push_back(std::exchange(noted_, {}));
+  return scan();
+}
+
+}  // namespace pliant::edit

@@ -1,0 +1,196 @@
+// Operations on surfaces, forces and groups.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pliant/document/editor.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::edit {
+
+using xml::in_quotes;
+
+namespace {
+
+/// Names between blanks, without those of a list. Null: nothing is left.
+std::optional<std::string> without(std::string_view names,
+                                   const std::vector<std::string>& removed) {
+  std::string left;
+  for (const std::string_view word : xml::words_of(names)) {
+    if (std::ranges::find(removed, word) != removed.end()) continue;
+    left += left.empty() ? "" : " ";
+    left += word;
+  }
+  return left.empty() ? std::nullopt : std::optional(left);
+}
+
+}  // namespace
+
+Result<void> Editor::operator()(const Add& addition) {
+  const bool is_surface = addition.kind == "surface";
+  const bool is_group = addition.kind == "group";
+  const std::vector<Force> kinds = xml::force_kinds();
+  const bool is_force =
+      std::ranges::any_of(kinds, [&](const Force& kind) { return kind_of(kind) == addition.kind; });
+  if (!is_surface && !is_group && !is_force) {
+    std::vector<std::string_view> known = {"surface", "group"};
+    for (const Force& kind : kinds) known.push_back(kind_of(kind));
+    return draft_.refuse(
+        fmt::format("no kind {}{}", in_quotes(addition.kind), xml::hint(addition.kind, known)));
+  }
+  if (!addition.group.empty() && !is_force)
+    return draft_.refuse(fmt::format("a <{}> cannot be in a group", addition.kind));
+
+  xml::ElementText element{.name = addition.kind, .attributes = {{"name", addition.name}}};
+  if (is_surface) {
+    std::vector<std::string> parts = {"surface",  addition.shape, "transform",
+                                      "material", "tangents",     "solver"};
+    element.children.push_back({.name = addition.shape});
+    for (const auto& [name, value] : addition.attributes) {
+      const auto part = std::ranges::find_if(
+          parts, [&](const std::string& one) { return find_attribute(one, name) != nullptr; });
+      if (part == parts.begin() || part == parts.end()) {
+        element.attributes.emplace_back(name, value);  // an unknown one is found when it is read
+        continue;
+      }
+      auto own = std::ranges::find(element.children, *part, &xml::ElementText::name);
+      if (own == element.children.end()) {
+        const auto rank = [&](const xml::ElementText& child) {
+          return std::ranges::find(parts, child.name) < part;
+        };
+        own = element.children.insert(std::ranges::partition_point(element.children, rank),
+                                      {.name = *part});
+      }
+      own->attributes.emplace_back(name, value);
+    }
+  } else {
+    element.attributes.insert(element.attributes.end(), addition.attributes.begin(),
+                              addition.attributes.end());
+  }
+
+  Draft::Place place{.parent = Draft::root, .keeps_blank_line = true};
+  if (!addition.group.empty()) {
+    const auto group = object(addition.group);
+    if (!group) return fail(group.error());
+    if (draft_.name(*group) != "group")
+      return draft_.refuse(
+          fmt::format("{} is a <{}>, not a group", in_quotes(addition.group), draft_.name(*group)));
+    place.parent = *group;
+  }
+  // Surfaces stand behind surfaces, if there are some; all else at the end.
+  for (const Element child : draft_.children(place.parent))
+    if (!is_surface || draft_.name(child) == "surface") place.after = child;
+  draft_.insert(element, place);
+  parts_.insert(addition.name);
+  return {};
+}
+
+Result<void> Editor::operator()(const Duplicate& duplication) {
+  const auto found = object(duplication.object);
+  if (!found) return fail(found.error());
+  const Element original = *found;
+  if (original == Draft::root) return draft_.refuse("the scene cannot be duplicated");
+  auto copy = Draft::make(std::string(draft_.whole(original)), draft_.file());
+  if (!copy) return fail(copy.error());
+  copy->set(Draft::root, "name", duplication.name);
+  parts_.insert(duplication.name);
+  if (draft_.name(original) == "group") {
+    std::set<std::string> taken = {duplication.name};
+    for (const Element member : copy->children(Draft::root)) {
+      const auto name = copy->value(member, "name");
+      if (!name) continue;
+      const std::string own = free_name(*name, taken);
+      copy->set(member, "name", own);
+      taken.insert(own);
+      parts_.insert(own);
+    }
+  }
+  if (auto done = copy->commit(); !done) return done;
+  draft_.insert(
+      std::vector{copy->text()},
+      {.parent = draft_.place(original).parent, .after = original, .keeps_blank_line = true});
+  return {};
+}
+
+Result<void> Editor::operator()(const Delete& deletion) {
+  std::vector<Element> elements;
+  for (const std::string& name : deletion.objects) {
+    const auto element = object(name);
+    if (!element) return fail(element.error());
+    if (*element == Draft::root) return draft_.refuse("the scene cannot be deleted");
+    elements.push_back(*element);
+    parts_.insert(name);
+    for (const Element member : draft_.children(*element))
+      if (is_force(member)) parts_.insert(name_of(member));
+  }
+  std::ranges::sort(elements);
+  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  const auto is_deleted = [&](Element element) {
+    return std::ranges::binary_search(elements, element);
+  };
+  for (const auto& [name, element] : objects()) {
+    if (is_deleted(element) || is_deleted(draft_.place(element).parent)) continue;
+    const auto targets = draft_.value(element, "targets");
+    if (!targets) continue;
+    const auto left = without(*targets, deletion.objects);
+    if (!left)
+      return draft_.refuse(fmt::format(
+          "{0}.targets: only {1} is left to delete there; {0} would act on all surfaces "
+          "without it. Delete {0} too, or give it other targets",
+          name, *targets));
+    if (xml::words_of(*left).size() == xml::words_of(*targets).size()) continue;
+    draft_.set(element, "targets", *left);
+    parts_.insert(name + ".targets");
+  }
+  for (const Element element : elements)
+    if (!is_deleted(draft_.place(element).parent)) draft_.remove(element);
+  return {};
+}
+
+Result<void> Editor::operator()(const Rename& rename) {
+  const auto found = object(rename.object);
+  if (!found) return fail(found.error());
+  if (*found == Draft::root) return draft_.refuse("the scene has no name");
+  draft_.set(*found, "name", rename.name);
+  parts_.insert(rename.object);
+  parts_.insert(rename.name);
+  for (const auto& [name, element] : objects()) {
+    for (const char* const reference : {"targets", "drivenBy"}) {
+      if (!draft_.attribute(element, reference)) continue;
+      const std::string value = *draft_.value(element, reference);
+      std::string renamed;
+      std::size_t copied = 0;
+      bool is_changed = false;
+      for (const std::string_view word : xml::words_of(value)) {
+        if (word != rename.object) continue;
+        const std::size_t at = word.data() - value.data();
+        renamed.append(value, copied, at - copied).append(rename.name);
+        copied = at + word.size();
+        is_changed = true;
+      }
+      if (!is_changed) continue;
+      draft_.set(element, reference, renamed.append(value, copied));
+      parts_.insert(fmt::format("{}.{}", name, reference));
+    }
+  }
+  return {};
+}
+
+Result<void> Editor::operator()(const Target& target) {
+  for (const std::string& name : target.objects) {
+    const auto element = object(name);
+    if (!element) return fail(element.error());
+    if (*element == Draft::root || draft_.name(*element) == "surface")
+      return draft_.refuse(
+          fmt::format("{} is no force and no group", *element == Draft::root ? "the scene" : name));
+    set_or_remove(*element, "targets", fmt::format("{}", fmt::join(target.surfaces, " ")));
+    parts_.insert(name + ".targets");
+    if (auto done = draft_.commit(); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace pliant::edit

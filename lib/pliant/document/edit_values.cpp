@@ -1,0 +1,180 @@
+// Operations on constant values, and between constants and curves.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pliant/document/editor.hpp"
+#include "pliant/scene/channels.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::edit {
+namespace {
+
+/// The position of that name in a force or group, null if there is none.
+template <class Thing>
+const PositionChannel* position_in(const Thing& thing, std::string_view attribute) {
+  const PositionChannel* found = nullptr;
+  describe(
+      [&](const Attribute& row, const auto&... members) {
+        const auto look = [&](const auto& member) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(member)>, PositionChannel>)
+            if (row.name == attribute) found = &member;
+        };
+        (look(members), ...);
+      },
+      thing);
+  return found;
+}
+
+const PositionChannel* find_position(const Scene& scene, std::string_view name,
+                                     std::string_view attribute) {
+  for (const Force& force : scene.forces)
+    if (force.name == name)
+      return std::visit([&](const auto& kind) { return position_in(kind, attribute); }, force.kind);
+  for (const pliant::Group& group : scene.groups)
+    if (group.name == name) return position_in(group, attribute);
+  return nullptr;
+}
+
+}  // namespace
+
+Result<void> Editor::operator()(const Set& set) {
+  const auto spot = this->spot(set.path);
+  if (!spot) return fail(spot.error());
+  if (spot->attribute() == "name")
+    return draft_.refuse(
+        fmt::format("{} is changed by a rename, so that what refers to it follows", spot->path));
+  if (spot->attribute() == "version")
+    return draft_.refuse(fmt::format("{} is that of the format, and cannot be set", spot->path));
+  if (!spot->component) return set_constant(*spot, set.value);
+  const auto value = with_component(*spot, set.value);
+  if (!value) return fail(value.error());
+  return set_constant(*spot, *value);
+}
+
+/// The constant vector with one component replaced; the others stay as they are written.
+Result<std::string> Editor::with_component(const Spot& spot, const std::string& value) const {
+  constexpr std::size_t components = 3;
+  if (const auto number = xml::parse_number(value); !number)
+    return draft_.refuse(fmt::format("{}: {}", spot.path, number.error()));
+  auto whole = constant(spot);
+  if (!whole) {
+    whole.error().message += "; a component is set of a constant vector only";
+    return whole;
+  }
+  std::vector<std::string_view> words = xml::words_of(*whole);
+  const std::string only(words.size() == 1 ? words.front() : "");
+  if (words.size() == 1) whole = fmt::format("{0} {0} {0}", only);
+  words = xml::words_of(*whole);
+  if (words.size() != components)  // its problem is found when the whole is read
+    return draft_.refuse(fmt::format("{} is not a vector of three numbers", spot.path));
+  const std::string_view old = words[*spot.component];
+  return whole->replace(old.data() - whole->data(), old.size(), xml::trimmed(value));
+}
+
+Result<void> Editor::set_constant(const Spot& spot, const std::string& value) {
+  if (const auto curve = animated(spot)) draft_.remove(*curve);
+  if (const auto path = on_path(spot)) draft_.remove(*path);
+  if (spot.element)
+    draft_.set(*spot.element, spot.attribute(), value);
+  else
+    insert_part(spot, {.name = spot.part, .attributes = {{std::string(spot.attribute()), value}}});
+  parts_.insert(spot.path);
+  return draft_.commit();
+}
+
+/// Inserts a part that a surface lacks, in the order of the format.
+void Editor::insert_part(const Spot& spot, xml::ElementText part) {
+  constexpr std::string_view order[] = {"grid",      "mesh",     "nurbs",    "subdivision",
+                                        "transform", "material", "tangents", "solver"};
+  Draft::Place place{.parent = spot.object};
+  const auto* const own = std::ranges::find(order, part.name);
+  for (const Element child : draft_.children(spot.object))
+    if (std::ranges::find(order, draft_.name(child)) < own) place.after = child;
+  draft_.insert(part, place);
+}
+
+Result<void> Editor::operator()(const Reset& reset) {
+  const auto spot = this->spot(reset.path);
+  if (!spot) return fail(spot.error());
+  if (spot->component)
+    return draft_.refuse(
+        fmt::format("{} is a component; reset {} as a whole", reset.path, spot->path));
+  if (const auto curve = animated(*spot)) draft_.remove(*curve);
+  if (const auto path = on_path(*spot)) draft_.remove(*path);
+  if (spot->element) draft_.remove_attribute(*spot->element, spot->attribute());
+  parts_.insert(spot->path);
+  return {};
+}
+
+Result<void> Editor::operator()(const Animate& animate) {
+  for (const std::string& channel : animate.channels) {
+    const auto spot = this->spot(channel);
+    if (!spot) return fail(spot.error());
+    const auto value = constant(*spot);
+    if (!value) return fail(value.error());
+    if (auto done = insert_animate(*spot, animate.frame, *value); !done) return done;
+  }
+  return {};
+}
+
+/// Makes a curve of one key of a channel that is constant.
+Result<void> Editor::insert_animate(const Spot& spot, double frame, const std::string& value) {
+  if (!spot.format.is_keyable || spot.component)
+    return draft_.refuse(fmt::format("{} cannot be animated", spot.path));
+  const xml::ElementText animate{
+      .name = "animate",
+      .attributes = {{"attribute", std::string(spot.attribute())}},
+      .children = {{.name = "key", .attributes = {{"frame", to_text(frame)}, {"value", value}}}}};
+  parts_.insert(spot.path);
+  if (!spot.element) {
+    insert_part(spot, {.name = spot.part, .children = {animate}});
+    return draft_.commit();
+  }
+  draft_.remove_attribute(*spot.element, spot.attribute());
+  if (auto done = draft_.commit(); !done) return done;
+  // Elements keep their numbers. The curves of an element stand together, behind its waypoints.
+  Draft::Place place{.parent = *spot.element};
+  for (const Element child : draft_.children(*spot.element)) {
+    const std::string_view name = draft_.name(child);
+    if (name == "animate" || name == "path" || name == "waypoint") place.after = child;
+  }
+  draft_.insert(animate, place);
+  return draft_.commit();
+}
+
+Result<void> Editor::operator()(const Freeze& freeze) {
+  for (const std::string& channel : freeze.channels) {
+    const auto spot = this->spot(channel);
+    if (!spot) return fail(spot.error());
+    const auto value = value_at(*spot, freeze.frame);
+    if (!value) return fail(value.error());
+    if (auto done = set_constant(*spot, *value); !done) return done;
+  }
+  return {};
+}
+
+/// The text of an animated channel's value at a frame.
+Result<std::string> Editor::value_at(const Spot& spot, double frame) const {
+  if (on_path(spot)) {
+    const auto scene = parse_(draft_.text());
+    if (!scene) return fail(scene.error());
+    const PositionChannel* const position =
+        find_position(*scene, name_of(spot.object), spot.attribute());
+    if (!position) return draft_.refuse(fmt::format("{} is no position", spot.path));
+    const Value<3> value = position->at(frame);
+    return xml::value_text<3>(value, xml::ValueKind::Vector);
+  }
+  if (!animated(spot) || spot.attribute() == "falloff")
+    return draft_.refuse(fmt::format("{} is not animated", spot.path));
+  const auto curve = curve_of(spot);
+  if (!curve) return fail(curve.error());
+  return std::visit(
+      [&]<int D>(const KeyedCurve<D>& one) {
+        return xml::value_text<D>(one.curve.value(frame), one.kind);
+      },
+      *curve);
+}
+
+}  // namespace pliant::edit

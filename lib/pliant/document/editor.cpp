@@ -1,0 +1,219 @@
+#include "pliant/document/editor.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::edit {
+
+using xml::in_quotes;
+
+namespace {
+
+constexpr std::string_view component_names[] = {"x", "y", "z"};
+
+bool has_components(const AttributeFormat& format) {
+  return format.type == "vector" || format.type == "number or vector";
+}
+
+std::string hint_of(std::string_view word, const std::vector<std::string>& known) {
+  const std::vector<std::string_view> words(known.begin(), known.end());
+  return xml::hint(word, words);
+}
+
+}  // namespace
+
+Editor::Editor(Draft& draft, const Scene& scene, Parse parse)
+    : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(scene_format()) {}
+
+Result<void> Editor::apply(const Operation& operation) {
+  if (auto done = std::visit([&](const auto& one) { return (*this)(one); }, operation); !done)
+    return done;
+  return draft_.commit();
+}
+
+std::vector<Editor::NamedElement> Editor::objects() const {
+  std::vector<NamedElement> found;
+  const auto add = [&](Element element) {
+    if (const auto name = draft_.value(element, "name")) found.emplace_back(*name, element);
+  };
+  for (const Element child : draft_.children(Draft::root)) {
+    add(child);
+    if (draft_.name(child) != "group") continue;
+    for (const Element member : draft_.children(child))
+      if (is_force(member)) add(member);
+  }
+  return found;
+}
+
+Result<Element> Editor::object(std::string_view name) const {
+  if (name.empty()) return Draft::root;
+  std::vector<std::string> names;
+  for (const auto& [other, element] : objects()) {
+    if (other == name) return element;
+    names.push_back(other);
+  }
+  if (name == "scene") return Draft::root;
+  const auto is_it = [&](const auto& thing) { return thing.name == name; };
+  if (std::ranges::any_of(scene_.surfaces, is_it) || std::ranges::any_of(scene_.forces, is_it) ||
+      std::ranges::any_of(scene_.groups, is_it))
+    return draft_.refuse(
+        fmt::format("{} does not stand in this file, but in one that it includes; edit that file",
+                    in_quotes(name)));
+  return draft_.refuse(fmt::format("no surface, force or group is named {}{}", in_quotes(name),
+                                   hint_of(name, names)));
+}
+
+bool Editor::is_force(Element element) const {
+  const std::vector<Force> kinds = xml::force_kinds();
+  return std::ranges::any_of(
+      kinds, [&](const Force& kind) { return kind_of(kind) == draft_.name(element); });
+}
+
+Result<Element> Editor::force(std::string_view name) const {
+  const auto element = object(name);
+  if (!element || (*element != Draft::root && is_force(*element))) return element;
+  return draft_.refuse(fmt::format("{} is a <{}>, not a force",
+                                   in_quotes(name.empty() ? "scene" : name),
+                                   draft_.name(*element)));
+}
+
+std::string Editor::name_of(Element element) const {
+  return draft_.value(element, "name").value_or("");
+}
+
+std::string Editor::free_name(const std::string& like, const std::set<std::string>& taken) const {
+  const std::string base = like.substr(0, like.find_last_not_of("0123456789") + 1);
+  for (int number = 2;; ++number) {
+    std::string name = fmt::format("{}{}", base, number);
+    const std::vector<NamedElement> all = objects();
+    const bool is_used =
+        std::ranges::any_of(all, [&](const auto& one) { return one.first == name; });
+    if (!is_used && !taken.contains(name)) return name;
+  }
+}
+
+const ElementFormat& Editor::format_of(std::string_view element) const {
+  static const ElementFormat none;
+  const auto found = std::ranges::find(formats_, element, &ElementFormat::name);
+  return found != formats_.end() ? *found : none;
+}
+
+const AttributeFormat* Editor::find_attribute(std::string_view element,
+                                              std::string_view name) const {
+  const std::vector<AttributeFormat>& attributes = format_of(element).attributes;
+  const auto found = std::ranges::find(attributes, name, &AttributeFormat::name);
+  return found != attributes.end() ? &*found : nullptr;
+}
+
+/// The elements whose attributes an object has: its own, and the parts of a surface.
+std::vector<std::string> Editor::parts_of(Element object) const {
+  std::vector<std::string> parts{std::string(draft_.name(object))};
+  if (draft_.name(object) != "surface") return parts;
+  for (const char* const shape : {"grid", "mesh", "nurbs", "subdivision"})
+    if (!draft_.children(object, shape).empty()) parts.emplace_back(shape);
+  for (const char* const part : {"transform", "material", "tangents", "solver"})
+    parts.emplace_back(part);
+  return parts;
+}
+
+Result<Spot> Editor::spot(const std::string& path) const {
+  const std::size_t point = path.find('.');
+  const std::string name = path.substr(0, point);
+  if (point == std::string::npos)
+    return draft_.refuse(fmt::format(
+        "{} is not a path: NAME.ATTRIBUTE, such as poke.magnitude or scene.fps", in_quotes(path)));
+  const auto object = this->object(name);
+  if (!object) return fail(object.error());
+  return spot_in(path, *object, path.substr(point + 1));
+}
+
+Result<Spot> Editor::spot_in(const std::string& path, Element object,
+                             const std::string& rest) const {
+  const std::size_t point = rest.find('.');
+  const std::string attribute = rest.substr(0, point);
+  const std::string inner = point == std::string::npos ? "" : rest.substr(point + 1);
+  std::vector<std::string> known;
+  for (const std::string& part : parts_of(object)) {
+    for (const AttributeFormat& format : format_of(part).attributes) {
+      if (format.name != attribute) {
+        if (format.need != Need::Later) known.emplace_back(format.name);
+        continue;
+      }
+      Spot spot{.path = path, .object = object, .part = part, .format = format};
+      if (part == draft_.name(object)) {
+        spot.element = object;
+      } else if (const auto parts = draft_.children(object, part); !parts.empty()) {
+        spot.element = parts.front();
+      }
+      if (inner.empty() && point == std::string::npos) return spot;
+      spot.path = path.substr(0, path.size() - inner.size() - 1);
+      const auto component = std::ranges::find(component_names, inner);
+      if (has_components(format) && component != std::end(component_names)) {
+        spot.component = component - std::begin(component_names);
+        return spot;
+      }
+      return spot_on_path(path, object, attribute, inner);
+    }
+  }
+  const std::string name = object == Draft::root ? "the scene" : name_of(object);
+  return draft_.refuse(fmt::format("{} has no attribute {}{}", name, in_quotes(attribute),
+                                   hint_of(attribute, known)));
+}
+
+/// `center.progress`, an attribute of the <path> that a position follows.
+Result<Spot> Editor::spot_on_path(const std::string& path, Element object,
+                                  const std::string& position, const std::string& attribute) const {
+  const std::string whole = fmt::format("{}.{}", name_of(object), position);
+  const AttributeFormat* const format = find_attribute("path", attribute);
+  if (!format || format->name == "attribute")
+    return draft_.refuse(fmt::format("{} has no attribute {}{}", whole, in_quotes(attribute),
+                                     hint_of(attribute, {"progress", "closed", "x", "y", "z"})));
+  for (const Element child : draft_.children(object, "path"))
+    if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == position)
+      return Spot{
+          .path = path, .object = object, .element = child, .part = "path", .format = *format};
+  return draft_.refuse(
+      fmt::format("{} follows no path, so it has no {}", whole, in_quotes(attribute)));
+}
+
+std::optional<Element> Editor::animated(const Spot& spot) const {
+  if (!spot.element && draft_.name(spot.object) != "surface") return std::nullopt;
+  if (spot.attribute() == "falloff") {
+    const std::vector<Element> curves = draft_.children(*spot.element, "falloff");
+    return curves.empty() ? std::nullopt : std::optional(curves.front());
+  }
+  if (!spot.format.is_keyable) return std::nullopt;
+  std::vector<Element> owners;
+  if (spot.element) owners.push_back(*spot.element);
+  if (draft_.name(spot.object) == "surface") owners.push_back(spot.object);
+  for (const Element owner : owners)
+    for (const Element child : draft_.children(owner, "animate"))
+      if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == spot.attribute())
+        return child;
+  return std::nullopt;
+}
+
+std::optional<Element> Editor::on_path(const Spot& spot) const {
+  if (!spot.element) return std::nullopt;
+  for (const Element child : draft_.children(*spot.element, "path"))
+    if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == spot.attribute())
+      return child;
+  return std::nullopt;
+}
+
+Result<std::string> Editor::constant(const Spot& spot) const {
+  if (animated(spot)) return draft_.refuse(fmt::format("{} is animated", spot.path));
+  if (on_path(spot)) return draft_.refuse(fmt::format("{} follows a path", spot.path));
+  if (spot.element)
+    if (auto given = draft_.value(*spot.element, spot.attribute())) return *std::move(given);
+  const std::string& standard = spot.format.standard;
+  if (!standard.empty() && !standard.starts_with('(')) return standard;
+  return draft_.refuse(fmt::format("{} is not given, and has no value to begin with", spot.path));
+}
+
+}  // namespace pliant::edit

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pliant/document/draft.hpp"
+#include "pliant/document/keyed_curve.hpp"
+#include "pliant/document/operation.hpp"
+#include "pliant/scene/format.hpp"
+#include "pliant/scene/scene.hpp"
+
+namespace pliant::edit {
+
+/// The place of an attribute in a draft, whether it is given there or not.
+struct Spot {
+  std::string path;                     ///< without a component
+  Element object = 0;                   ///< the surface, force, group or scene
+  std::optional<Element> element = {};  ///< that may have the attribute; null: it is absent
+  std::string part = {};                ///< the name of that element
+  AttributeFormat format = {};
+  std::optional<std::size_t> component = {};
+
+  std::string_view attribute() const { return format.name; }
+};
+
+/// Makes operations on a draft. Each commits its changes, or returns an error, after which the
+/// draft must not be used.
+class Editor {
+ public:
+  using Parse = std::function<Result<Scene>(const std::string& text)>;
+
+  /// `scene`: that of the draft's text before the first operation. `parse`: makes that of a text.
+  Editor(Draft& draft, const Scene& scene, Parse parse);
+
+  Result<void> apply(const Operation& operation);
+
+  /// Of what was changed: `NAME.attribute`, or `NAME` for what was added, moved or deleted.
+  const std::set<std::string>& parts() const { return parts_; }
+
+ private:
+  // Values: edit_values.cpp.
+  Result<void> operator()(const Set& set);
+  Result<void> operator()(const Reset& reset);
+  Result<void> operator()(const Animate& animate);
+  Result<void> operator()(const Freeze& freeze);
+
+  // Keys: edit_keys.cpp, and those that make curves anew: edit_curves.cpp.
+  Result<void> operator()(const SetKey& set);
+  Result<void> operator()(const DeleteKeys& deletion);
+  Result<void> operator()(const MoveKeys& move);
+  Result<void> operator()(const SetTangent& set);
+  Result<void> operator()(const SetHandle& set);
+  Result<void> operator()(const SetInterpolation& set);
+  Result<void> operator()(const SetExtrapolation& set);
+  Result<void> operator()(const BakeKeys& bake);
+  Result<void> operator()(const SimplifyKeys& simplification);
+
+  // Objects: edit_objects.cpp and edit_groups.cpp.
+  Result<void> operator()(const Add& addition);
+  Result<void> operator()(const Duplicate& duplication);
+  Result<void> operator()(const Delete& deletion);
+  Result<void> operator()(const Rename& rename);
+  Result<void> operator()(const Target& target);
+  Result<void> operator()(const Group& group);
+  Result<void> operator()(const Ungroup& ungroup);
+
+  // Finding things: editor.cpp.
+  using NamedElement = std::pair<std::string, Element>;
+  std::vector<NamedElement> objects() const;
+  Result<Element> object(std::string_view name) const;
+  bool is_force(Element element) const;
+  std::string name_of(Element element) const;
+  std::string free_name(const std::string& like, const std::set<std::string>& taken) const;
+  const ElementFormat& format_of(std::string_view element) const;
+  const AttributeFormat* find_attribute(std::string_view element, std::string_view name) const;
+  std::vector<std::string> parts_of(Element object) const;
+  Result<Spot> spot(const std::string& path) const;
+  Result<Spot> spot_in(const std::string& path, Element object, const std::string& rest) const;
+  Result<Spot> spot_on_path(const std::string& path, Element object, const std::string& position,
+                            const std::string& attribute) const;
+
+  /// The <animate>, <falloff> or <path> of an attribute.
+  std::optional<Element> animated(const Spot& spot) const;
+  std::optional<Element> on_path(const Spot& spot) const;
+  /// The constant text of an attribute, or its default. Errors: it is animated; it has none.
+  Result<std::string> constant(const Spot& spot) const;
+
+  Result<void> set_constant(const Spot& spot, const std::string& value);
+  void insert_part(const Spot& spot, xml::ElementText part);
+  Result<void> insert_animate(const Spot& spot, double frame, const std::string& value);
+  Result<std::string> with_component(const Spot& spot, const std::string& value) const;
+  Result<std::string> value_at(const Spot& spot, double frame) const;
+
+  // Curves.
+  Result<AnyCurve> curve_of(const Spot& spot) const;
+  Result<AnyCurve> curve_of(const std::string& channel) const;
+  /// Calls `change(curve, spot)` for the curve of each channel.
+  template <class Change>
+  Result<void> for_each_curve(const std::vector<std::string>& channels, const Change& change);
+  /// Calls `change(curve, indices of its keys, spot)` for the keys of each channel.
+  template <class Change>
+  Result<void> for_each_keys(const std::vector<KeysOf>& keys, const Change& change);
+  template <int D>
+  Result<void> write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted);
+  template <int D>
+  Result<void> write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                           const std::vector<KeyEntry<D>>& keys);
+  template <int D>
+  Result<void> write_keys(const KeyedCurve<D>& curve, const std::vector<KeyEntry<D>>& wanted);
+  template <int D>
+  void write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEntry<D>& wanted);
+  template <int D>
+  void write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<D>& wanted);
+  template <int D>
+  Result<void> set_key(const KeyedCurve<D>& curve, const SetKey& set);
+  void set_side(Element key, Side side, std::string_view name, const std::string& value);
+  void set_or_remove(Element element, std::string_view name, const std::string& value);
+
+  // Objects.
+  Result<void> forget_target(const std::string& name, const std::vector<std::string>& deleted);
+  Result<Element> force(std::string_view name) const;
+  Result<void> move_into(const std::string& force, const std::string& group);
+  Result<void> move_behind(const std::string& force, const std::string& other);
+  Result<void> ungroup(const std::string& group);
+  Result<void> inherit(const std::string& group, const std::string& force);
+  Result<void> inherit_targets(Element group, Element force);
+
+  Draft& draft_;
+  const Scene& scene_;
+  Parse parse_;
+  std::vector<ElementFormat> formats_;
+  std::set<std::string> parts_;
+};
+
+}  // namespace pliant::edit

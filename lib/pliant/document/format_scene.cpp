@@ -1,0 +1,178 @@
+#include "pliant/document/format_scene.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/document/draft.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant {
+
+using edit::Draft;
+using edit::Element;
+
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
+/// Lays out a text from its begin to its end.
+class Formatter {
+ public:
+  explicit Formatter(const Draft& draft) : draft_(draft), text_(draft.text()) {
+    const std::size_t feed = text_.find('\n');
+    if (feed != std::string_view::npos && feed > 0 && text_[feed - 1] == '\r')
+      layout_.line_end = "\r\n";
+  }
+
+  std::string format() {
+    const auto begin = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+    result_ = text_.substr(0, begin);
+    is_empty_ = true;
+    write_content(begin, text_.size(), {Draft::root}, "");
+    return std::move(result_) + layout_.line_end;
+  }
+
+ private:
+  /// Writes what stands from `begin` to `end`: some elements, and between them blanks, comments,
+  /// declarations and a doctype.
+  void write_content(std::size_t begin, std::size_t end, const std::vector<Element>& elements,
+                     const std::string& margin) {
+    auto element = elements.begin();
+    bool is_first = true;
+    for (std::size_t at = begin; at < end;) {
+      const std::size_t next = std::min(text_.find_first_not_of(xml::blanks, at), end);
+      const std::string_view blanks = text_.substr(at, next - at);
+      if (next == end) return;
+      const auto lines = std::count(blanks.begin(), blanks.end(), '\n');
+      const bool is_element =
+          element != elements.end() && next == draft_.place(*element).whole().begin;
+      const std::string_view rest = text_.substr(next);
+      const bool is_behind = lines == 0 && rest.starts_with("<!--") && !is_empty_;
+      if (is_behind) {
+        result_ += ' ';
+      } else {
+        begin_line(margin, lines > 1 && !is_first);
+      }
+      // A comment behind the opening tag belongs to that.
+      is_first = is_first && is_behind;
+      is_empty_ = false;
+      if (is_element) {
+        write(*element, margin);
+        at = draft_.place(*element++).end;
+        continue;
+      }
+      // Only these stand between elements.
+      const std::string_view closing = rest.starts_with("<!--")        ? "-->"
+                                       : rest.starts_with("<![CDATA[") ? "]]>"
+                                       : rest.starts_with("<?")        ? "?>"
+                                                                       : ">";
+      at = std::min(text_.find(closing, next + (closing == "-->" ? 4 : 0)) + closing.size(), end);
+      write_lines(text_.substr(next, at - next), margin_at(next), margin);
+    }
+  }
+
+  void begin_line(const std::string& margin, bool has_blank_line) {
+    if (is_empty_) return;
+    if (has_blank_line) result_ += layout_.line_end;
+    result_ += layout_.line_end + margin;
+  }
+
+  void write(Element element, const std::string& margin) {
+    const xml::ElementPlace& place = draft_.place(element);
+    std::vector<std::string> attributes;
+    for (const xml::AttributePlace& given : draft_.attributes(element))
+      attributes.push_back(fmt::format("{}=\"{}\"", given.name.of(text_), in_double_quotes(given)));
+    const std::string_view name = draft_.name(element);
+    const std::size_t end =
+        place.closes_itself() ? place.tag_end : text_.rfind("</", place.end - 1);
+    const std::string_view content = text_.substr(place.tag_end, end - place.tag_end);
+    const bool is_empty = xml::trimmed(content).empty();
+    result_ += xml::opening_tag(name, attributes, is_empty ? "/>" : ">", margin, layout_);
+    if (is_empty) return;
+    const std::vector<Element> children = draft_.children(element);
+    if (has_text(place.tag_end, end, children)) {
+      // Text stays as it is, but for the indentation of its lines.
+      write_lines(content, margin_at(place.whole().begin), margin);
+    } else {
+      write_content(place.tag_end, end, children, margin + layout_.indent);
+      result_ += layout_.line_end + margin;
+    }
+    result_ += fmt::format("</{}>", name);
+  }
+
+  /// Whether there is text between the elements of a content, or a CDATA section.
+  bool has_text(std::size_t begin, std::size_t end, const std::vector<Element>& children) const {
+    auto child = children.begin();
+    for (std::size_t at = begin; at < end;) {
+      at = std::min(text_.find_first_not_of(xml::blanks, at), end);
+      if (at == end) return false;
+      if (child != children.end() && at == draft_.place(*child).whole().begin) {
+        at = draft_.place(*child++).end;
+      } else if (text_.substr(at).starts_with("<!--")) {
+        at = text_.find("-->", at + 4) + 3;
+      } else {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// An attribute's value as written, for double quotes.
+  std::string in_double_quotes(const xml::AttributePlace& given) const {
+    std::string value;
+    for (const char c : given.value.of(text_))
+      if (c == '"')
+        value += "&quot;";
+      else
+        value += c;
+    return value;
+  }
+
+  /// The blanks before a place on its line; empty if something else stands there.
+  std::string_view margin_at(std::size_t at) const {
+    const std::size_t line = text_.substr(0, at).rfind('\n') + 1;
+    const std::string_view before = text_.substr(line, at - line);
+    return xml::trimmed(before).empty() ? before : std::string_view();
+  }
+
+  /// Writes a text whose first line began behind `from` with the others moved to `to`.
+  void write_lines(std::string_view text, std::string_view from, std::string_view to) {
+    for (bool is_first = true;; is_first = false) {
+      if (!is_first) {
+        result_ += layout_.line_end;
+        if (text.starts_with(from) && !from.empty()) {
+          text.remove_prefix(from.size());
+          result_ += to;
+        }
+      }
+      const std::size_t feed = text.find('\n');
+      if (feed == std::string_view::npos) {
+        result_ += text;
+        return;
+      }
+      const bool has_return = feed > 0 && text[feed - 1] == '\r';
+      result_ += text.substr(0, feed - (has_return ? 1 : 0));
+      text.remove_prefix(feed + 1);
+    }
+  }
+
+  const Draft& draft_;
+  std::string_view text_;
+  xml::Layout layout_;
+  std::string result_;
+  bool is_empty_ = true;  // nothing but a byte order mark is written
+};
+
+}  // namespace
+
+Result<std::string> format_scene(const std::string& text, const std::string& name) {
+  const auto draft = Draft::make(text, name);
+  if (!draft) return fail(draft.error());
+  return Formatter(*draft).format();
+}
+
+}  // namespace pliant

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pliant {
+
+/// A change of a text: at a byte offset, some bytes are replaced by others.
+struct TextEdit {
+  std::size_t at = 0;
+  std::string removed = {};
+  std::string inserted = {};
+
+  friend bool operator==(const TextEdit&, const TextEdit&) = default;
+};
+
+namespace edit {
+
+/// Changes of one text, in the order of their offsets in it. They do not overlap.
+using EditBatch = std::vector<TextEdit>;
+
+/// The text with the changes made. Requires: it contains what they remove.
+std::string made(const std::string& text, const EditBatch& batch);
+
+/// The changes that take them back.
+EditBatch reversed(const EditBatch& batch);
+
+}  // namespace edit
+
+}  // namespace pliant

@@ -1,0 +1,445 @@
+// Random operations on random scenes. Whatever is done: bytes that no edit names stay, values that
+// no edit is for stay, and steps can be taken back and made again to the byte.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pliant/document/document.hpp"
+#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/channels.hpp"
+#include "pliant/scene/read.hpp"
+#include "support/catch.hpp"
+#include "support/random_scene.hpp"
+#include "support/sanitized.hpp"
+#include "support/scene_values.hpp"
+
+namespace pliant::testing {
+namespace {
+
+/// A random operation on a scene: most are possible, some are not.
+class RandomOperation {
+ public:
+  RandomOperation(const Scene& scene, Chance& chance) : scene_(scene), chance_(chance) {
+    for (const Surface& one : scene.surfaces) objects_.push_back(one.name);
+    surfaces_ = objects_;
+    for (const Force& one : scene.forces) objects_.push_back(one.name);
+    for (const Group& one : scene.groups) objects_.push_back(one.name);
+    for (const NamedChannel& one : channels_of(scene)) {
+      channels_.push_back(one.path);
+      if (!one.is_animated()) continue;
+      animated_.push_back(one.path);
+      std::vector<double>& frames = frames_[one.path];
+      const auto add = [&](const auto& curve) {
+        for (const auto& key : curve.keys().keys) frames.push_back(key.frame);
+      };
+      std::visit(
+          [&](const auto* channel) {
+            if constexpr (std::is_same_v<decltype(channel), const Switch*>)
+              add(channel->channel().curve());
+            else
+              add(channel->curve());
+          },
+          one.channel);
+    }
+  }
+
+  Operation make() {
+    if (objects_.empty()) return addition();
+    switch (chance_.below(animated_.empty() ? 12 : 25)) {
+      case 0:
+      case 1:
+        return edit::Set{chance_.of(channels_), value()};
+      case 2:
+        return edit::Set{attribute(), value()};
+      case 3:
+        return edit::Set{chance_.of(channels_) + chance_.pick({".x", ".y", ".z"}), value()};
+      case 4:
+        return edit::Reset{chance_.once_in(2) ? chance_.of(channels_) : attribute()};
+      case 5:
+        return edit::Animate{{chance_.of(channels_)}, frame()};
+      case 6:
+        return chance_.once_in(2) ? addition() : Operation(edit::Delete{{object()}});
+      case 7:
+        return edit::Duplicate{object(), new_name()};
+      case 8:
+        return edit::Rename{object(), chance_.once_in(8) ? object() : new_name()};
+      case 9:
+        return target();
+      case 10:
+        return group();
+      case 11:
+        return chance_.once_in(3)
+                   ? Operation(edit::Ungroup{{object()}})
+                   : Operation(edit::SetKey{chance_.of(channels_), frame(), value()});
+      case 12:
+      case 13:
+        return edit::SetKey{chance_.of(animated_), frame(), value()};
+      case 14:
+        return edit::SetKey{chance_.of(animated_), frame()};
+      case 15:
+        return edit::DeleteKeys{keys()};
+      case 16:
+      case 17:
+        return edit::MoveKeys{
+            keys(), chance_.once_in(3) ? 0 : chance_.between(-6, 6) / 2.0, rise(),
+            chance_.once_in(2) ? edit::Collision::Replace : edit::Collision::Refuse};
+      case 18:
+        return tangent();
+      case 19:
+        return edit::SetHandle{chance_.of(animated_), old_frame(),
+                               chance_.once_in(2) ? edit::Side::In : edit::Side::Out,
+                               chance_.pick({"1 2", "-1 2.50", "-1 0 0 0", "2 1 1 1", "3"})};
+      case 20:
+        return interpolation();
+      case 21:
+        return edit::SetExtrapolation{{chance_.of(animated_)},
+                                      chance_.pick({"hold", "repeat", "slope 1", "mirror 2"}),
+                                      chance_.pick({"hold", "linear", "repeatOffset"})};
+      case 22:
+        return edit::BakeKeys{{chance_.of(animated_)},
+                              -1,
+                              9,
+                              chance_.pick({"1", "2"}) == "1" ? 1.0 : 2.5,
+                              chance_.once_in(3)};
+      case 23:
+        return edit::SimplifyKeys{{chance_.of(animated_)}, chance_.once_in(5) ? 0 : 0.1};
+      default:
+        return edit::Freeze{{chance_.of(animated_)}, frame()};
+    }
+  }
+
+ private:
+  std::string object() {
+    return chance_.once_in(20) ? chance_.pick({"nobody", "scene", ""}) : chance_.of(objects_);
+  }
+  std::string new_name() {
+    return chance_.once_in(15) ? chance_.pick({"", "2", "a b", "a&b", "\xFF"})
+                               : fmt::format("new{}", chance_.below(1'000'000));
+  }
+  std::string attribute() {
+    if (chance_.once_in(6))
+      return chance_.pick({"scene.fps", "scene.seed", ".end", "scene.version", "nobody.magnitude"});
+    if (!surfaces_.empty() && chance_.once_in(2))
+      return chance_.of(surfaces_) +
+             chance_.pick({".columns", ".rows", ".width", ".dt", ".combine", ".file",
+                           ".rotateOrder", ".enabled", ".su0", ".yield", ".preroll", ".name",
+                           ".drivenBy", ".wrap", ".integrator", ".border", ".wdith"});
+    return chance_.of(objects_) + chance_.pick({".targets", ".falloff", ".seed", ".enabled",
+                                                ".center", ".center.closed", ".direction", ".to"});
+  }
+  std::string value() {
+    switch (chance_.below(11)) {
+      case 0:
+        return chance_.pick({"true", "false", "smooth", "box", "zxy", "exact", "u", "a & 'b'.obj"});
+      case 1:
+        return chance_.pick(
+            {"", "nan", "1,5", "1 2", "-1e300 0 0", "<", "\"'&", "a\nb\r\t", "\x01"});
+      case 2:
+      case 3:
+      case 4:
+        return chance_.vector(1, 9);
+      case 5:
+        return chance_.number(-9, 9);
+      default:
+        return chance_.number(1, 9);
+    }
+  }
+  double frame() {
+    if (chance_.once_in(40)) return std::numeric_limits<double>::infinity();
+    return chance_.between(-8, 30) / 2.0;
+  }
+  double old_frame() {
+    const std::string& channel = chance_.of(animated_);
+    return chance_.of(frames_[channel]);
+  }
+  std::vector<double> rise() {
+    if (chance_.once_in(3)) return {};
+    if (chance_.once_in(3)) return {0.5, 0, -0.25};
+    return {chance_.between(-3, 3) / 4.0};
+  }
+  std::vector<edit::KeysOf> keys() {
+    std::vector<edit::KeysOf> selection;
+    for (int k = chance_.between(1, 2); k > 0; --k) {
+      edit::KeysOf some{chance_.of(animated_), {}};
+      for (const double frame : frames_[some.channel])
+        if (chance_.once_in(2)) some.frames.push_back(frame);
+      if (chance_.once_in(30)) some.frames.push_back(1234.5);
+      selection.push_back(some);
+    }
+    return selection;
+  }
+  Operation tangent() {
+    edit::SetTangent set{keys(), edit::Side(chance_.below(3))};
+    if (!chance_.once_in(4))
+      set.tangent = chance_.pick({"flat", "spline", "1.50", "auto", "0 1 2", "fast"});
+    if (chance_.once_in(2)) set.length = chance_.pick({"1", "0.50", "-1"});
+    return set;
+  }
+  Operation interpolation() {
+    edit::SetInterpolation set{
+        keys(), chance_.pick({"linear", "step", "bezier", "elasticIn", "cubicBezier", "backOut"})};
+    if (chance_.once_in(2)) set.control = "0 0 1 1";
+    if (set.interpolation != "cubicBezier") set.control.reset();
+    return set;
+  }
+  Operation addition() {
+    edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "blob"}), new_name()};
+    if (add.kind == "surface")
+      add.attributes = {{"columns", "5"}, {"density", "2.0"}, {"rows", "4"}, {"enabled", "true"}};
+    else
+      add.attributes = {{"deformationRadius", "2"}};
+    if (!scene_.groups.empty() && chance_.once_in(3)) {
+      add.group = chance_.of(scene_.groups).name;
+      add.attributes.clear();
+    }
+    return add;
+  }
+  Operation target() {
+    edit::Target target{{object()}, {}};
+    for (const std::string& surface : surfaces_)
+      if (chance_.once_in(2)) target.surfaces.push_back(surface);
+    return target;
+  }
+  Operation group() {
+    edit::Group group{{}, new_name()};
+    for (const Force& force : scene_.forces)
+      if (chance_.once_in(3)) group.forces.push_back(force.name);
+    if (!scene_.groups.empty() && chance_.once_in(3)) group.name = chance_.of(scene_.groups).name;
+    return group;
+  }
+
+  const Scene& scene_;
+  Chance& chance_;
+  std::vector<std::string> objects_, surfaces_, channels_, animated_;
+  std::map<std::string, std::vector<double>> frames_;
+};
+
+/// Whether a changed path belongs to a part that the change names.
+bool is_named(const std::string& path, const std::vector<std::string>& parts) {
+  return path == "order" || std::ranges::any_of(parts, [&](const std::string& part) {
+           const std::string whole = part.starts_with('.') ? "scene" + part : part;
+           return path == whole || path.starts_with(whole + ".");
+         });
+}
+
+/// The path of something that changed although no part of the change has it; empty: there is none.
+std::string stray_change(const SceneValues& before, const SceneValues& after,
+                         const Change& change) {
+  for (const auto& [one, other] : {std::pair{&before, &after}, std::pair{&after, &before}})
+    for (const auto& [path, text] : one->texts()) {
+      const auto found = other->texts().find(path);
+      const bool is_same = found != other->texts().end() && found->second == text;
+      if (!is_same && !is_named(path, change.parts)) return path;
+    }
+  return "";
+}
+
+std::vector<std::string> comments_of(const std::string& text) {
+  std::vector<std::string> comments;
+  for (std::size_t at = text.find("<!--"); at != std::string::npos; at = text.find("<!--", at)) {
+    const std::size_t end = text.find("-->", at) + 3;
+    comments.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  std::ranges::sort(comments);
+  return comments;
+}
+
+/// Whether the operation may delete or copy comments: those in a thing that goes or is copied.
+bool keeps_comments(const Operation& operation) {
+  return !std::holds_alternative<edit::Set>(operation) &&
+         !std::holds_alternative<edit::Reset>(operation) &&
+         !std::holds_alternative<edit::Freeze>(operation) &&
+         !std::holds_alternative<edit::Duplicate>(operation) &&
+         !std::holds_alternative<edit::Delete>(operation) &&
+         !std::holds_alternative<edit::Group>(operation) &&
+         !std::holds_alternative<edit::Ungroup>(operation);
+}
+
+std::vector<double> numbers_of(const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* end = nullptr;; at = end) {
+    const double number = std::strtod(at, &end);
+    if (end == at) return numbers;
+    numbers.push_back(number);
+  }
+}
+
+/// What the scene says differently from what was set; empty: nothing.
+struct ReadBack {
+  const Scene& scene;
+
+  const NamedChannel* find(const std::string& path) {
+    channels = channels_of(scene);
+    const auto found = std::ranges::find(channels, path, &NamedChannel::path);
+    return found == channels.end() ? nullptr : &*found;
+  }
+
+  std::string value_at(const std::string& path, double frame) {
+    const NamedChannel* const channel = find(path);
+    if (!channel) return "";
+    return std::visit(
+        [&](const auto* one) {
+          if constexpr (std::is_same_v<decltype(one), const Switch*>)
+            return std::string(one->at(frame) ? "true" : "false");
+          else
+            return SceneValues::text(one->at(frame));
+        },
+        channel->channel);
+  }
+  static bool says(const std::string& value, const std::string& text) {
+    if (value == "true" || value == "false") return text.find(value) != std::string::npos;
+    std::vector<double> wanted = numbers_of(text);
+    const std::vector<double> is = numbers_of(value);
+    if (wanted.size() == 1 && is.size() == 3) wanted.resize(3, wanted[0]);
+    return wanted == is;
+  }
+
+  std::string operator()(const edit::Set& set) {
+    const NamedChannel* const channel = find(set.path);
+    if (!channel) return "";  // no channel, or a component
+    if (channel->is_animated()) return "it is animated";
+    const std::string value = value_at(set.path, 1);
+    return says(value, set.value) ? "" : value;
+  }
+  std::string operator()(const edit::SetKey& set) {
+    const NamedChannel* const channel = find(set.channel);
+    if (!set.value || !channel) return "";
+    const auto key_in = [&](const auto& keys) -> std::string {
+      for (const auto& key : keys)
+        if (key.frame == set.frame) return SceneValues::text(key.value);
+      return "no such key";
+    };
+    const bool is_switch = std::holds_alternative<const Switch*>(channel->channel);
+    std::string value = std::visit(
+        [&](const auto* one) {
+          if constexpr (std::is_same_v<decltype(one), const Switch*>)
+            return key_in(one->channel().curve().keys().keys);
+          else
+            return key_in(one->curve().keys().keys);
+        },
+        channel->channel);
+    if (is_switch) value = value == "1" ? "true" : "false";
+    return says(value, *set.value) ? "" : value;
+  }
+  std::string operator()(const edit::Rename& rename) {
+    const SceneValues values(scene);
+    return values.texts().contains(rename.name + ".enabled") ? "" : "no such name";
+  }
+  std::string operator()(const edit::Freeze& freeze) {
+    const NamedChannel* const channel = find(freeze.channels[0]);
+    return channel && channel->is_animated() ? "it is animated" : "";
+  }
+  template <class Other>
+  std::string operator()(const Other&) {
+    return "";
+  }
+
+  std::vector<NamedChannel> channels = {};
+};
+
+/// How many operations were made.
+struct Counts {
+  std::map<std::size_t, int> accepted;  // by the alternative of `Operation`
+  int refused = 0;
+  int scenes = 0;
+};
+
+/// Runs operations on the scene of a seed.
+void run(unsigned seed, int operations, Counts& counts) {
+  Chance chance(seed);
+  const std::string first = RandomScene(seed).text();
+  CAPTURE(seed, first);
+  auto opened = SceneDocument::from_text(first, "random.xml", "");
+  if (!opened) {
+    CAPTURE(to_lines(opened.error()));
+    FAIL("the scene cannot be read");
+  }
+  SceneDocument& document = *opened;
+  ++counts.scenes;
+  std::vector<std::string> texts = {first};  // after each step
+  SceneValues values(document.scene());
+  for (int k = 0; k < operations; ++k) {
+    const Operation operation = RandomOperation(document.scene(), chance).make();
+    const std::string before = document.text();
+    const auto change = document.apply({operation});
+    CAPTURE(k, described(operation), before);
+    if (!change) {
+      ++counts.refused;
+      if (change.error().message.empty()) FAIL("a refusal says nothing");
+      if (document.text() != before) FAIL("a refused operation changed the text");
+      continue;
+    }
+    ++counts.accepted[operation.index()];
+    const std::string& after = document.text();
+    CAPTURE(after);
+    std::string made = before;
+    for (const TextEdit& edit : change->edits) {
+      if (made.compare(edit.at, edit.removed.size(), edit.removed) != 0)
+        FAIL("not the edit's text");
+      made.replace(edit.at, edit.removed.size(), edit.inserted);
+    }
+    if (made != after) FAIL("the edits are not those of the text");
+    if (after != before) texts.push_back(after);
+    const SceneValues now(document.scene());
+    if (const std::string stray = stray_change(values, now, *change); !stray.empty()) {
+      CAPTURE(stray);
+      FAIL("something else changed");
+    }
+    if (keeps_comments(operation) && comments_of(before) != comments_of(after))
+      FAIL("comments changed");
+    ReadBack read_back{document.scene()};
+    if (const std::string wrong = std::visit(read_back, operation); !wrong.empty()) {
+      CAPTURE(wrong);
+      FAIL("what is read is not what was set");
+    }
+    values = now;
+    if (k % 16 != 0) continue;
+    const auto again = parse_scene(after, "random.xml", "");
+    if (!again || !check_channels(*again).empty()) FAIL("the text cannot be read");
+    if (SceneValues(*again) != values) FAIL("the text is not the scene");
+  }
+  const std::string last = document.text();
+  for (std::size_t step = texts.size(); step-- > 1;) {
+    if (document.text() != texts[step]) FAIL("a step was not taken back");
+    if (!document.undo()) FAIL("a step cannot be taken back");
+  }
+  if (document.can_undo() || document.text() != first) FAIL("not the first bytes");
+  while (document.can_redo())
+    if (!document.redo()) FAIL("a step cannot be made again");
+  if (document.text() != last || SceneValues(document.scene()) != values)
+    FAIL("not the last bytes");
+}
+
+int count_from_environment(const char* name, int standard) {
+  const char* const text = std::getenv(name);
+  return text ? std::atoi(text) : standard;
+}
+
+TEST_CASE("operations change what they say and nothing else", "[document][random]") {
+  Counts counts;
+  const int scenes = count_from_environment("PLIANT_RANDOM_SCENES", rounds(60));
+  const int first = count_from_environment("PLIANT_RANDOM_SEED", 0);
+  for (int seed = first; seed < first + scenes; ++seed) run(seed, 100, counts);
+  // No kind of operation is refused always.
+  for (std::size_t kind = 0; kind < std::variant_size_v<Operation>; ++kind) {
+    CAPTURE(kind, scenes);
+    if (scenes >= 60) CHECK(counts.accepted[kind] > 5);
+  }
+  int accepted = 0;
+  for (const auto& [kind, count] : counts.accepted) accepted += count;
+  INFO(accepted << " accepted, " << counts.refused << " refused");
+  CHECK(accepted > counts.refused);
+}
+
+}  // namespace
+}  // namespace pliant::testing
