@@ -46,8 +46,8 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
     return findings.add_problem(
         given.GetLineNum(),
         value_problem(element, given.Name(), given.Value(),
-                      fmt::format("{} is already animated (line {}); remove one of them",
-                                  given.Name(), row.line)));
+                      fmt::format("{} is already animated ({}); remove one of them", given.Name(),
+                                  findings.title_of(row.line, given.GetLineNum()))));
   row.line = given.GetLineNum();
   if (row.attribute.need == Need::Later) {
     row.is_sound = false;

@@ -98,7 +98,8 @@ bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
   }
   file_.findings.add_problem(
       element.GetLineNum(),
-      fmt::format("{} has two shapes; the first is at line {}", title(), shape_line_));
+      fmt::format("{} has two shapes; the first is at {}", title(),
+                  file_.findings.title_of(shape_line_, element.GetLineNum())));
   return false;
 }
 
@@ -165,9 +166,10 @@ void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
 /// Whether this is the first such part of the surface; reads its attributes then.
 bool SurfaceReader::takes_part(const tinyxml2::XMLElement& element, Part& part) {
   if (part.line != 0) {
-    file_.findings.add_problem(element.GetLineNum(),
-                               fmt::format("{} has a second {}; the first is at line {}", title(),
-                                           tag(element), part.line));
+    file_.findings.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} has a second {}; the first is at {}", title(), tag(element),
+                    file_.findings.title_of(part.line, element.GetLineNum())));
     return false;
   }
   part.line = element.GetLineNum();
