@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/nearest.hpp"
 
 namespace pliant::xml {
@@ -33,6 +36,13 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
                           std::span<const Child> children) {
   std::vector<std::string_view> names;
   for (const Child& known : children) names.push_back(known.name);
+  // Those are gone from the text that is read, unless one is misspelt.
+  constexpr std::string_view expanded[] = {Description<IncludeText>::element,
+                                           Description<DefineText>::element};
+  const std::vector<std::string_view> parents = including_elements();
+  if (nearest_word(child.Name(), expanded) &&
+      std::find(parents.begin(), parents.end(), parent.Name()) != parents.end())
+    names.insert(names.end(), std::begin(expanded), std::end(expanded));
   const std::string belongs = where_it_belongs(child.Name());
   return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
                      belongs.empty()
@@ -159,6 +169,18 @@ std::string tag(const tinyxml2::XMLElement& element) {
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint) {
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
+}
+
+void locate_file(const tinyxml2::XMLElement& element, Slot& row, const std::string& surface,
+                 const std::string& named_by, std::string& path, SceneFile& file) {
+  if (row.line == 0 || !row.is_sound) return;
+  const std::string written = std::exchange(path, (file.folder_at(row.line) / path).string());
+  if (const auto below = check_below(path, file.root); !below) {
+    row.is_sound = false;
+    return file.findings.add_problem(
+        row.line, value_problem(element, row.attribute.name, written, below.error().message));
+  }
+  file.meshes.push_back({surface, path, row.line, named_by});
 }
 
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file) {

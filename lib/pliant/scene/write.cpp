@@ -83,6 +83,13 @@ class SceneWriter {
   std::filesystem::path folder_;
 };
 
+/// The text in which no `$` stands for a definition.
+std::string with_doubled_dollars(std::string_view text) {
+  std::string doubled;
+  for (const char c : text) doubled.append(c == '$' ? 2 : 1, c);
+  return doubled;
+}
+
 /// The attributes that differ from `standard`, a table of the same rows with the default values,
 /// and those that are required.
 void SceneWriter::write_attributes(const Table& table, const Table& standard) {
@@ -91,7 +98,9 @@ void SceneWriter::write_attributes(const Table& table, const Table& standard) {
     const std::string& text = table[k].text;
     const bool is_needed = attribute.need == Need::Required && !text.empty();
     if (is_needed || text != standard[k].text)
-      if (!text.empty()) printer_.PushAttribute(std::string(attribute.name).c_str(), text.c_str());
+      if (!text.empty())
+        printer_.PushAttribute(std::string(attribute.name).c_str(),
+                               with_doubled_dollars(text).c_str());
   }
 }
 
