@@ -8,6 +8,7 @@
 #include <tinyxml2.h>
 
 #include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/expand.hpp"
 #include "pliant/scene/nearest.hpp"
 
@@ -83,10 +84,10 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
       read_value(element, *given, *row, findings);
       continue;
     }
-    findings.add_problem(given->GetLineNum(),
-                         fmt::format("{} has no attribute {}{}", tag(element),
-                                     in_quotes(given->Name()), hint(given->Name(), names)));
-    if (const auto near = nearest_word(given->Name(), names)) meant.push_back(*near);
+    findings.add_problem(
+        given->GetLineNum(),
+        fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given->Name()),
+                    attribute_hint(element.Name(), given->Name(), names, meant)));
   }
   for (Slot& row : table) {
     if (std::find(meant.begin(), meant.end(), row.attribute.name) != meant.end())
