@@ -41,7 +41,7 @@ int report(const Error& error) {
 
 void print_notes(const Scene& scene, std::size_t first) {
   for (const SceneNote& note : std::span(scene.notes).subspan(first)) {
-    print(stderr, fmt::format("{}:{}: note: {}\n", printable(scene.origin.file), note.line,
+    print(stderr, fmt::format("{}:{}: note: {}\n", printable(note.file), note.line,
                               printable(note.message)));
   }
 }
@@ -49,8 +49,9 @@ void print_notes(const Scene& scene, std::size_t first) {
 void print_warnings(const Simulation& simulation) {
   const SceneOrigin& origin = simulation.scene().origin;
   for (const Warning& warning : simulation.warnings()) {
-    print(stderr, fmt::format("{}:{}: warning: {}\n", printable(origin.file),
-                              line_of(warning, origin), printable(warning.message())));
+    const ScenePlace place = origin.place_at(line_of(warning, origin));
+    print(stderr, fmt::format("{}:{}: warning: {}\n", printable(place.file), place.line,
+                              printable(place.told(warning.message()))));
   }
 }
 

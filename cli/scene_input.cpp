@@ -49,7 +49,9 @@ Result<std::string> read_standard_input() {
 void add_root(CLI::App& command, Root& root) {
   command.add_option(
       "--root", root,
-      "Folder that must contain the files that meshes refer to; the scene's folder by default");
+      "Folder that must contain every file that the scene leads to: includes, meshes, caches, "
+      "maps, "
+      "and what meshes refer to; by default only the latter are confined, to the scene's folder");
 }
 
 Result<std::filesystem::path> folder_of(const Root& root) {

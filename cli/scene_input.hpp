@@ -12,7 +12,7 @@
 
 namespace pliant::cli {
 
-/// `--root DIR` of every command that reads scenes; null: each scene's own folder.
+/// `--root DIR` of every command that reads scenes; null: see `load_scene`.
 using Root = std::optional<std::string>;
 
 void add_root(CLI::App& command, Root& root);

@@ -70,7 +70,7 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
   if (!findings) print_notes(*scene);
   if (findings) {
     for (const SceneNote& note : scene->notes) {
-      add_problem(*findings, scene->origin.file, note.line, "note", note.message);
+      add_problem(*findings, note.file, note.line, "note", note.message);
     }
   }
   if (!checked) return tell(checked.error(), file, findings);

@@ -103,8 +103,8 @@ std::size_t store_bytes(const ResourceOptions& resources) {
 // Bakes the scene in its present state. Returns the watch over its files.
 std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer& server,
                                  MemoryStateStore& store) {
-  // Watch the file before reading it, so that no save is missed.
-  auto watch = std::make_unique<Watch>(std::vector<std::filesystem::path>{options.scene});
+  // Watch the files before reading them, so that no save is missed.
+  auto watch = std::make_unique<Watch>(text_files_of(options.scene, options.root.value_or("")));
   server.tell_working();
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -193,13 +194,18 @@ class SurfaceView {
 Json messages_of(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   Json messages = Json::array();
+  const auto add = [&](std::string_view kind, const ScenePlace& place, const std::string& text) {
+    Json message = {{"kind", kind}, {"line", place.line}, {"text", text}};
+    if (place.file != scene.origin.file)
+      message["file"] = std::filesystem::path(place.file).filename().string();
+    messages.push_back(std::move(message));
+  };
   for (const SceneNote& note : scene.notes) {
-    messages.push_back({{"kind", "note"}, {"line", note.line}, {"text", note.message}});
+    add("note", {note.file, note.line}, note.message);
   }
   for (const Warning& warning : simulation.warnings()) {
-    messages.push_back({{"kind", "warning"},
-                        {"line", line_of(warning, scene.origin)},
-                        {"text", warning.message()}});
+    const ScenePlace place = scene.origin.place_at(line_of(warning, scene.origin));
+    add("warning", place, place.told(warning.message()));
   }
   return messages;
 }

@@ -214,7 +214,8 @@ def check(name, scene, folder, count):
 
 def main():
     count = dict.fromkeys(["peak", "static peak", "settling", "ring frequency", "damping ratio"], 0)
-    examples = sorted(glob.glob(os.path.join(SOURCE, "examples/**/*.xml"), recursive=True))
+    examples = sorted(name for name in glob.glob(os.path.join(SOURCE, "examples/**/*.xml"), recursive=True)
+                      if "parts" not in name.split(os.sep))  # those are included
     assert len(examples) >= 18, examples
     with tempfile.TemporaryDirectory() as folder:
         for scene in examples:

@@ -37,7 +37,7 @@ TEST_CASE("notes come in the order of lines", "[scene][findings]") {
   Findings findings("plate.xml");
   findings.add_note(5, "b");
   findings.add_note(3, "a");
-  CHECK(findings.notes() == std::vector<SceneNote>{{3, "a"}, {5, "b"}});
+  CHECK(findings.notes() == std::vector<SceneNote>{{3, "a", "plate.xml"}, {5, "b", "plate.xml"}});
   CHECK(findings.problem_count() == 0);
 }
 

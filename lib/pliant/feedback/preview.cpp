@@ -220,9 +220,7 @@ class SurfacePreviewer {
     if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     error.message =
         fmt::format("surface \"{}\", frame {}: {}", surface_.name, frame, error.message);
-    error.file = scene_.origin.file;
-    error.line = scene_.origin.line_of(surface_.name);
-    return fail(std::move(error));
+    return fail(scene_.origin.located(std::move(error), scene_.origin.line_of(surface_.name)));
   }
 
   const Scene& scene_;

@@ -42,7 +42,8 @@ struct Warning {
 /// The warnings about meshes, known before any frame.
 std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes);
 
-/// The line of a warning's cause: the force, or the tangents or start frame of its surface.
+/// The line of a warning's cause in the expanded text: the force, or the tangents or start frame of
+/// its surface.
 int line_of(const Warning& warning, const SceneOrigin& origin);
 
 }  // namespace pliant

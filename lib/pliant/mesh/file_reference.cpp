@@ -95,6 +95,26 @@ Result<fs::path> find_reference(const std::string& uri, const fs::path& mesh_fil
   return file;
 }
 
+Result<void> check_below(const fs::path& file, const fs::path& root) {
+  if (root.empty()) return {};
+  const auto refuse_file = [&](const std::string& reason) {
+    return fail(ErrorCode::InvalidInput, reason, file.string());
+  };
+  std::error_code trouble;
+  const auto real = [&](const fs::path& path) {
+    return fs::weakly_canonical(fs::absolute(path, trouble), trouble);
+  };
+  const fs::path allowed = real(root);
+  if (trouble) return refuse_file("the folder that must contain it cannot be found");
+  const fs::path found = real(file);
+  if (trouble) return refuse_file(fmt::format("it cannot be found: {}", trouble.message()));
+  if (!is_below(found, allowed))
+    return refuse_file(fmt::format("it is outside {}, the folder of --root", allowed.string()));
+  if (fs::is_symlink(fs::symlink_status(found, trouble)))
+    return refuse_file("it is a symbolic link to a file that does not exist");
+  return {};
+}
+
 Result<std::string> read_reference(const std::string& uri, const fs::path& mesh_file,
                                    const fs::path& root, std::size_t max_bytes) {
   const auto file = find_reference(uri, mesh_file, root);

@@ -22,4 +22,10 @@ Result<std::filesystem::path> find_reference(const std::string& uri,
 Result<std::string> read_reference(const std::string& uri, const std::filesystem::path& mesh_file,
                                    const std::filesystem::path& root, std::size_t max_bytes);
 
+/// Whether a file, existing or not, is in the folder `root` or below it after links are resolved;
+/// an empty `root` contains all. Errors: InvalidInput: it is outside, or a link to a file that does
+/// not exist. Like `find_reference`, it trusts those who can rename files in these folders
+/// meanwhile.
+Result<void> check_below(const std::filesystem::path& file, const std::filesystem::path& root);
+
 }  // namespace pliant

@@ -18,7 +18,7 @@ struct ReplayOptions {
   /// To verify a log, the solver that recorded it is used instead of the one given here.
   SimulationOptions simulation = {};
 
-  /// The folder for files that meshes refer to, as in `load_scene`.
+  /// The folder for all files that the scene leads to, as in `load_scene`.
   std::string root = {};
 
   /// Changes to make in the scene ahead of recording it, as `--set` takes them: `PATH=TEXT`,

@@ -215,9 +215,8 @@ Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& s
     if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     const std::string part = error.file.empty() ? "" : fmt::format("cache {}: ", error.file);
     error.message = fmt::format("surface \"{}\": {}{}", surface.name, part, error.message);
-    error.file = scene.origin.file;
-    error.line = scene.origin.line_of(surface.name, "cache");
-    return fail(std::move(error));
+    return fail(
+        scene.origin.located(std::move(error), scene.origin.line_of(surface.name, "cache")));
   };
   auto cache = PointCache::open(file.path);
   if (!cache) return located(cache.error());

@@ -194,11 +194,10 @@ class MapChecker {
     const std::string when = is_animated_ ? fmt::format(" at frame {}", frame) : "";
     std::vector<std::string> parts = {std::string(channel)};
     for (const MaterialMap& map : surface_.maps) parts.push_back(name_of(map.channel));
-    errors_.push_back(
+    errors_.push_back(scene_.origin.located(
         {.code = ErrorCode::InvalidInput,
-         .message = fmt::format("{}.{}{} {}", surface_.name, channel, when, complaint),
-         .file = scene_.origin.file,
-         .line = line_of(channel, parts)});
+         .message = fmt::format("{}.{}{} {}", surface_.name, channel, when, complaint)},
+        line_of(channel, parts)));
   }
 
   // Of the map that changes the channel; else of the last of all that may have caused it.

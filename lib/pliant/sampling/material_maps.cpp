@@ -168,9 +168,7 @@ class MapReader {
     const std::string file = error.file.empty() ? "" : error.file + ": ";
     error.message =
         fmt::format("{}.{}: {}{}", surface_.name, name_of(map.channel), file, error.message);
-    error.file = origin_.file;
-    error.line = origin_.line_of(surface_.name, name_of(map.channel));
-    return error;
+    return origin_.located(std::move(error), origin_.line_of(surface_.name, name_of(map.channel)));
   }
 
   const Surface& surface_;

@@ -66,10 +66,10 @@ struct BytesToMake {
 Result<void> take(std::size_t bytes, const std::string& surface, const SceneOrigin& origin,
                   MemoryShare& memory) {
   if (memory.try_resize(bytes)) return {};
-  return fail({.code = ErrorCode::OutOfMemory,
-               .message = fmt::format("surface \"{}\" {}", surface, memory.complaint(bytes)),
-               .file = origin.file,
-               .line = origin.line_of(surface)});
+  return fail(origin.located(
+      {.code = ErrorCode::OutOfMemory,
+       .message = fmt::format("surface \"{}\" {}", surface, memory.complaint(bytes))},
+      origin.line_of(surface)));
 }
 
 // `surface "head", mesh head.obj`
@@ -254,12 +254,11 @@ class ShapeMaker {
   Result<void> check_as_surface(const RestShape& shape) const {
     if (shape.grid || surface_.is_driven()) return {};
     const auto refuse = [&](const char* attribute, std::string_view reason) {
-      return fail(
+      return fail(origin_.located(
           {.code = ErrorCode::InvalidInput,
            .message = fmt::format("{}: {}, but the mesh is read as a surface{}", title_of(surface_),
-                                  reason, shape.note.empty() ? "" : ", since it is no even grid"),
-           .file = origin_.file,
-           .line = origin_.line_of(surface_.name, attribute)});
+                                  reason, shape.note.empty() ? "" : ", since it is no even grid")},
+          origin_.line_of(surface_.name, attribute)));
     };
     const SolverSettings& solver = surface_.solver;
     if (solver.reference != Reference::Rest) {
@@ -282,11 +281,8 @@ class ShapeMaker {
   // names the file.
   Error at_scene(Error error, const std::string& attribute = "file") const {
     if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
-    if (error.file.empty()) {
-      error.file = origin_.file;
-      error.line = origin_.line_of(surface_.name, attribute);
-    }
-    return error;
+    if (!error.file.empty()) return error;
+    return origin_.located(std::move(error), origin_.line_of(surface_.name, attribute));
   }
   Error about_mesh(Error error, const std::string& attribute = "file") const {
     error.message = fmt::format("{}: {}", title_of(surface_), error.message);
@@ -422,11 +418,11 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
     triangles = std::make_shared<const TriangleSurface>(posed(**triangles, **nodes));
   }
   if (!triangles) {
-    return fail({.code = ErrorCode::InvalidInput,
-                 .message = fmt::format("{} cannot drive {}: {}", title_of(driving), own.name,
-                                        triangles.error().message),
-                 .file = scene.origin.file,
-                 .line = scene.origin.line_of(own.name, "drivenBy")});
+    return fail(
+        scene.origin.located({.code = ErrorCode::InvalidInput,
+                              .message = fmt::format("{} cannot drive {}: {}", title_of(driving),
+                                                     own.name, triangles.error().message)},
+                             scene.origin.line_of(own.name, "drivenBy")));
   }
   shape.binding = std::make_shared<const Binding>(
       **triangles, sample_transform(driving.transform, scene.start),
@@ -437,7 +433,8 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
 std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,
                                  const SceneOrigin& origin) {
   if (note.empty()) return {};
-  return SceneNote{origin.line_of(surface.name, "file"), note};
+  ScenePlace place = origin.place_of(surface.name, "file");
+  return SceneNote{place.line, place.told(note), std::move(place.file)};
 }
 
 }  // namespace pliant

@@ -124,8 +124,9 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Slot* const> ro
       findings.add_problem(
           animate.GetLineNum(),
           value_problem(animate, "attribute", name,
-                        fmt::format("is already {} (line {}); remove one of them",
-                                    row.is_animated ? "animated" : "given", row.line)));
+                        fmt::format("is already {} ({}); remove one of them",
+                                    row.is_animated ? "animated" : "given",
+                                    findings.title_of(row.line, animate.GetLineNum()))));
     else
       row.line = animate.GetLineNum();
     row.is_animated = true;

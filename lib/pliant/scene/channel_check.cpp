@@ -240,10 +240,10 @@ class ChannelChecker {
   void add_error(const std::string& name, std::string_view attribute, bool is_animated, int frame,
                  const std::string& complaint, int line) {
     const std::string when = is_animated ? fmt::format(" at frame {}", frame) : "";
-    errors_.push_back({.code = ErrorCode::InvalidInput,
-                       .message = fmt::format("{}.{}{} {}", name, attribute, when, complaint),
-                       .file = scene_.origin.file,
-                       .line = line});
+    errors_.push_back(scene_.origin.located(
+        {.code = ErrorCode::InvalidInput,
+         .message = fmt::format("{}.{}{} {}", name, attribute, when, complaint)},
+        line));
   }
 
   const Scene& scene_;

@@ -29,10 +29,10 @@ Result<void> check_mesh_file(const std::filesystem::path& file) {
 
 Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
                       const std::string& attribute) {
-  return {.code = ErrorCode::Unreadable,
-          .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message),
-          .file = origin.file,
-          .line = origin.line_of(surface, attribute)};
+  return origin.located(
+      {.code = ErrorCode::Unreadable,
+       .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message)},
+      origin.line_of(surface, attribute));
 }
 
 std::vector<Error> check_scene(const Scene& scene) {
@@ -43,7 +43,7 @@ std::vector<Error> check_scene(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) add(Description<Surface>::element, surface.name);
   for (const Force& force : scene.forces) add(kind_of(force), force.name);
   for (const Group& group : scene.groups) add(Description<Group>::element, group.name);
-  xml::Findings findings(scene.origin.file);
+  xml::Findings findings(scene.origin);
   xml::check_whole(scene, named, {}, findings);
   return findings.problems();
 }

@@ -19,6 +19,13 @@ void add_side(const Tangent<D>& side, std::optional<double>& length,
     length = side.length;
 }
 
+/// The text in which no `$` stands for a definition.
+std::string with_doubled_dollars(std::string_view text) {
+  std::string doubled;
+  for (const char c : text) doubled.append(c == '$' ? 2 : 1, c);
+  return doubled;
+}
+
 }  // namespace
 
 void add_attributes(ElementText& element, const Table& table, const Table& standard) {
@@ -26,7 +33,8 @@ void add_attributes(ElementText& element, const Table& table, const Table& stand
     const Attribute& attribute = table[k].attribute;
     const std::string& text = table[k].text;
     const bool is_needed = attribute.need == Need::Required || text != standard[k].text;
-    if (is_needed && !text.empty()) element.attributes.emplace_back(attribute.name, text);
+    if (is_needed && !text.empty())
+      element.attributes.emplace_back(attribute.name, with_doubled_dollars(text));
   }
 }
 

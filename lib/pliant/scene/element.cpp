@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/artist_words.hpp"
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/nearest.hpp"
 
 namespace pliant::xml {
@@ -33,6 +37,13 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
                           std::span<const Child> children) {
   std::vector<std::string_view> names;
   for (const Child& known : children) names.push_back(known.name);
+  // Those are gone from the text that is read, unless one is misspelt.
+  constexpr std::string_view expanded[] = {Description<IncludeText>::element,
+                                           Description<DefineText>::element};
+  const std::vector<std::string_view> parents = including_elements();
+  if (nearest_word(child.Name(), expanded) &&
+      std::find(parents.begin(), parents.end(), parent.Name()) != parents.end())
+    names.insert(names.end(), std::begin(expanded), std::end(expanded));
   const std::string belongs = where_it_belongs(child.Name());
   return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
                      belongs.empty()
@@ -46,8 +57,8 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
     return findings.add_problem(
         given.GetLineNum(),
         value_problem(element, given.Name(), given.Value(),
-                      fmt::format("{} is already animated (line {}); remove one of them",
-                                  given.Name(), row.line)));
+                      fmt::format("{} is already animated ({}); remove one of them", given.Name(),
+                                  findings.title_of(row.line, given.GetLineNum()))));
   row.line = given.GetLineNum();
   if (row.attribute.need == Need::Later) {
     row.is_sound = false;
@@ -73,10 +84,10 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
       read_value(element, *given, *row, findings);
       continue;
     }
-    findings.add_problem(given->GetLineNum(),
-                         fmt::format("{} has no attribute {}{}", tag(element),
-                                     in_quotes(given->Name()), hint(given->Name(), names)));
-    if (const auto near = nearest_word(given->Name(), names)) meant.push_back(*near);
+    findings.add_problem(
+        given->GetLineNum(),
+        fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given->Name()),
+                    attribute_hint(element.Name(), given->Name(), names, meant)));
   }
   for (Slot& row : table) {
     if (std::find(meant.begin(), meant.end(), row.attribute.name) != meant.end())
@@ -159,6 +170,18 @@ std::string tag(const tinyxml2::XMLElement& element) {
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint) {
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
+}
+
+void locate_file(const tinyxml2::XMLElement& element, Slot& row, const std::string& surface,
+                 const std::string& named_by, std::string& path, SceneFile& file) {
+  if (row.line == 0 || !row.is_sound) return;
+  const std::string written = std::exchange(path, (file.folder_at(row.line) / path).string());
+  if (const auto below = check_below(path, file.root); !below) {
+    row.is_sound = false;
+    return file.findings.add_problem(
+        row.line, value_problem(element, row.attribute.name, written, below.error().message));
+  }
+  file.meshes.push_back({surface, path, row.line, named_by});
 }
 
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file) {

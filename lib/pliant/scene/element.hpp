@@ -46,6 +46,12 @@ std::string tag(const tinyxml2::XMLElement& element);
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint);
 
+/// Finds the file that an attribute names, relative to the folder of the file that the attribute
+/// stands in, and adds it to the scene's meshes; does nothing without a sound attribute. Problem:
+/// it is outside the scene's root. `named_by`: see `NamedMesh`.
+void locate_file(const tinyxml2::XMLElement& element, Slot& row, const std::string& surface,
+                 const std::string& named_by, std::string& path, SceneFile& file);
+
 /// Records the lines of the attributes of a table, and which attributes have problems.
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file);
 

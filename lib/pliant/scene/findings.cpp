@@ -17,37 +17,54 @@ constexpr std::size_t most_listed = 10'000;
 }  // namespace
 
 void Findings::add_problem(int line, std::string message) {
+  add_problem(files_.place_of(line), std::move(message));
+}
+
+void Findings::add_problem(ScenePlace place, std::string message) {
   ++problem_count_;
   if (is_full()) return;
-  problems_.push_back(Error{
-      .code = ErrorCode::InvalidInput, .message = std::move(message), .file = file_, .line = line});
+  const bool is_new =
+      place.chain.empty() || included_.emplace(place.file, place.line, message).second;
+  if (!is_new) return;
+  message = place.told(std::move(message));
+  problems_.push_back(Error{.code = ErrorCode::InvalidInput,
+                            .message = std::move(message),
+                            .file = std::move(place.file),
+                            .line = place.line});
 }
 
 bool Findings::is_full() const { return problems_.size() >= most_listed; }
 
 void Findings::add_note(int line, std::string message) {
-  if (notes_.size() < most_listed) notes_.push_back({line, std::move(message)});
+  if (notes_.size() < most_listed) notes_.emplace_back(line, std::move(message));
 }
 
 std::vector<Error> Findings::problems() const {
-  std::vector<Error> problems = sorted(problems_, file_);
+  const std::string& file = files_.texts().front().file;
+  std::vector<Error> problems = sorted(problems_, file);
   if (is_full())
     problems.push_back(Error{.code = ErrorCode::InvalidInput,
                              .message = "too many problems; reading stopped here",
-                             .file = file_,
+                             .file = problems.back().file,
                              .line = problems.back().line});
   return problems;
 }
 
 Error Findings::to_error() const {
   PLIANT_EXPECTS(!problems_.empty());
-  return as_one(problems(), file_);
+  return as_one(problems(), files_.texts().front().file);
 }
 
 std::vector<SceneNote> Findings::notes() const {
-  std::vector<SceneNote> notes = notes_;
-  std::stable_sort(notes.begin(), notes.end(),
-                   [](const SceneNote& a, const SceneNote& b) { return a.line < b.line; });
+  std::vector<std::pair<int, std::string>> ordered = notes_;
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<SceneNote> notes;
+  for (auto& [line, message] : ordered) {
+    ScenePlace place = files_.place_of(line);
+    message = place.told(std::move(message));
+    notes.push_back({place.line, std::move(message), std::move(place.file)});
+  }
   return notes;
 }
 

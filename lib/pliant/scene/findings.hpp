@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -13,10 +16,22 @@ namespace pliant::xml {
 /// first.
 class Findings {
  public:
-  explicit Findings(std::string file) : file_(std::move(file)) {}
+  explicit Findings(std::string file) : files_(std::move(file)) {}
+  explicit Findings(const SceneOrigin& origin)
+      : files_(origin.files ? *origin.files : LineMap(origin.file)) {}
+
+  /// From now on lines are those of the expanded text.
+  void use(LineMap files) { files_ = std::move(files); }
 
   void add_problem(int line, std::string message);
   void add_note(int line, std::string message);
+
+  /// The same of a place that is known. Problems that are alike, in a file that is included several
+  /// times, are one.
+  void add_problem(ScenePlace place, std::string message);
+
+  /// `line 5`, for a message at the line `from`: see `LineMap`.
+  std::string title_of(int line, int from) const { return files_.title_of(line, from); }
 
   /// The number of problems added. If it has not changed, the elements read in between have no
   /// problem.
@@ -35,9 +50,10 @@ class Findings {
   std::vector<SceneNote> notes() const;
 
  private:
-  std::string file_;
+  LineMap files_;
   std::vector<Error> problems_;
-  std::vector<SceneNote> notes_;
+  std::set<std::tuple<std::string, int, std::string>> included_;  // problems of included files
+  std::vector<std::pair<int, std::string>> notes_;                // lines of the expanded text
   std::size_t problem_count_ = 0;
 };
 

@@ -27,13 +27,13 @@ void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attri
   const int line = falloff.GetLineNum();
   const std::string parent = tag(*falloff.Parent()->ToElement());
   if (first_line != 0)
-    findings.add_problem(line, fmt::format("{} has a second <falloff>; the first is at line {}",
-                                           parent, first_line));
+    findings.add_problem(line, fmt::format("{} has a second <falloff>; the first is at {}", parent,
+                                           findings.title_of(first_line, line)));
   else if (attribute.line != 0)
     findings.add_problem(
-        line, fmt::format(
-                  "{} has both a <falloff> and the attribute falloff (line {}); remove one of them",
-                  parent, attribute.line));
+        line,
+        fmt::format("{} has both a <falloff> and the attribute falloff ({}); remove one of them",
+                    parent, findings.title_of(attribute.line, line)));
   if (first_line == 0) first_line = line;
 }
 

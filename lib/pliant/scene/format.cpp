@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/net.hpp"
 #include "pliant/scene/path.hpp"
@@ -109,6 +110,9 @@ std::vector<ElementFormat> scene_format() {
   ElementFormat knots = element<KnotsText>({"nurbs"});
   knots.text = "columns + degreeU + 1 numbers that never fall; along v likewise";
 
+  std::vector<std::string_view> defining = including_elements();
+  defining.emplace_back(Description<IncludeText>::element);
+
   std::vector<ElementFormat> formats = {
       element<Scene>({}, Need::Required),
       element<Surface>({"scene"}),
@@ -131,6 +135,8 @@ std::vector<ElementFormat> scene_format() {
       key_element<AnimateText<1>>("animate", with_groups(animated), Need::Optional, KeyAxis::Frame),
       key(),
       {"loop", {"animate"}, Need::Optional, formats_of(table_of(loop, ValueKind::Number))},
+      element<IncludeText>(including_elements()),
+      element<DefineText>(std::move(defining)),
   };
   formats.insert(formats.end(), force_formats.begin(), force_formats.end());
   return formats;

@@ -1,10 +1,13 @@
 #include "pliant/scene/inputs.hpp"
 
 #include <set>
+#include <system_error>
 #include <utility>
 #include <variant>
 
+#include "pliant/core/read_file.hpp"
 #include "pliant/mesh/read_mesh.hpp"
+#include "pliant/scene/expand.hpp"
 
 namespace pliant {
 
@@ -17,6 +20,11 @@ std::vector<SceneInput> inputs_of(const Scene& scene) {
     return is_new;
   };
   if (!scene.origin.file.empty()) add(scene.origin.file, "the scene");
+  if (scene.origin.files) {
+    for (const SceneText& text : scene.origin.files->texts()) {
+      if (text.parent != SceneText::none) add(text.file, "a file that the scene includes");
+    }
+  }
   for (const Surface& surface : scene.surfaces) {
     if (surface.is_animated()) add(surface.cache.path, "a cache of the scene");
     for (const MaterialMap& map : surface.maps) {
@@ -28,6 +36,28 @@ std::vector<SceneInput> inputs_of(const Scene& scene) {
       add(std::move(file), "a file that a mesh of the scene refers to");
   }
   return inputs;
+}
+
+std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
+                                                 const std::filesystem::path& root) {
+  std::vector<std::filesystem::path> files = {scene};
+  std::error_code ignored;
+  // A pipe would be empty for the one who reads it next.
+  if (!std::filesystem::is_regular_file(scene, ignored)) return files;
+  const auto text = read_file(scene, xml::most_expanded);
+  if (!text) return files;
+  xml::Findings findings(scene.string());
+  const auto markup = xml::scan_markup(*text, findings);
+  if (!markup) return files;
+  const xml::SourceText source{*text, *markup, scene.string(), scene.parent_path()};
+  xml::TextFiles disk = xml::files_on_disk(root);
+  std::set<std::filesystem::path> seen;
+  disk.identify = [&, identify = disk.identify](const std::filesystem::path& file) {
+    if (file != scene && seen.insert(file).second) files.push_back(file);
+    return identify(file);
+  };
+  if (xml::needs_expansion(source)) xml::expand(source, disk, findings);
+  return files;
 }
 
 }  // namespace pliant

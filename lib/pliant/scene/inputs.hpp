@@ -11,15 +11,20 @@ namespace pliant {
 /// A file that a scene is made from.
 struct SceneInput {
   std::filesystem::path file;
-  /// "the scene", "a mesh of the scene", "a cache of the scene", "a map of the scene", "…that a
-  /// mesh … refers to"
+  /// "the scene", "a file that the scene includes", "a mesh of the scene", "a cache of the scene",
+  /// "a map of the scene", "…that a mesh … refers to"
   std::string_view role;
 };
 
-/// All files that reading a scene and its meshes opens: the scene's own, if it came from one, its
-/// meshes with their caches and maps, and what meshes refer to, each once. For a mesh that cannot
-/// be read, only its own file. Cost: each mesh of a format that may refer to files is read to find
-/// their names.
+/// All files that reading a scene and its meshes opens: the scene's own, if it came from one, those
+/// that it includes, its meshes with their caches and maps, and what meshes refer to, each once.
+/// For a mesh that cannot be read, only its own file. Cost: each mesh of a format that may refer to
+/// files is read to find their names.
 std::vector<SceneInput> inputs_of(const Scene& scene);
+
+/// A scene's file and those that it includes, each once, existing or not, also if there is a
+/// problem with them. `root` as in `load_scene`.
+std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
+                                                 const std::filesystem::path& root);
 
 }  // namespace pliant

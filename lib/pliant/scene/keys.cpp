@@ -141,14 +141,16 @@ void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
     return;
   }
   if (previous_ && key_.frame == *previous_)
-    findings_.add_problem(element.GetLineNum(),
-                          fmt::format("{} {} {} repeats the key of line {}", tag(element), name,
-                                      key_.frame, previous_line_));
+    findings_.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} {} {} repeats the key of {}", tag(element), name, key_.frame,
+                    findings_.title_of(previous_line_, element.GetLineNum())));
   else if (previous_ && key_.frame < *previous_)
     findings_.add_problem(
         element.GetLineNum(),
-        fmt::format("{} {} {} is not after {} {} of line {}: keys must be in increasing order",
-                    tag(element), name, key_.frame, name, *previous_, previous_line_));
+        fmt::format("{} {} {} is not after {} {} of {}: keys must be in increasing order",
+                    tag(element), name, key_.frame, name, *previous_,
+                    findings_.title_of(previous_line_, element.GetLineNum())));
   previous_ = key_.frame;
   previous_line_ = element.GetLineNum();
 }
@@ -258,7 +260,8 @@ void CurveReader<D>::read_loop(const tinyxml2::XMLElement& element) {
   if (curve_.loop)
     return findings_.add_problem(
         element.GetLineNum(),
-        fmt::format("{} has a second <loop>; the first is at line {}", tag(animate_), loop_line_));
+        fmt::format("{} has a second <loop>; the first is at {}", tag(animate_),
+                    findings_.title_of(loop_line_, element.GetLineNum())));
   check_stepping(element, table, {});
   curve_.loop = loop;
   loop_line_ = element.GetLineNum();

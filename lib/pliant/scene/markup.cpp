@@ -21,8 +21,6 @@ constexpr std::size_t most_attributes = 100;  // per element
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
-constexpr std::string_view one_scene = "; a scene file must contain one <scene>";
-
 unsigned byte_at(std::string_view text, std::size_t at) {
   return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
 }
@@ -108,8 +106,9 @@ bool is_reference(std::string_view name) {
 /// Scans a text once, tag by tag. Places are offsets; lines are counted only for problems.
 class MarkupScanner {
  public:
-  MarkupScanner(std::string_view text, Findings& findings, std::size_t most)
-      : text_(text), findings_(findings), lines_(text), most_(most) {
+  MarkupScanner(std::string_view text, Findings& findings, std::size_t most,
+                std::span<const std::string_view> roots)
+      : text_(text), findings_(findings), lines_(text), most_(most), roots_(roots) {
     if (stands(byte_order_mark)) at_ = byte_order_mark.size();
   }
 
@@ -143,6 +142,15 @@ class MarkupScanner {
   }
 
   bool has_root() const { return !markup_.elements.empty(); }
+  bool may_be_root(std::string_view name) const {
+    if (roots_.empty()) return name == "scene";
+    return std::find(roots_.begin(), roots_.end(), name) != roots_.end();
+  }
+  std::string_view root() const { return roots_.empty() ? "<scene>" : "root element"; }
+  std::string_view one_root() const {
+    return roots_.empty() ? "; a scene file must contain one <scene>"
+                          : "; a file that is included must contain one element";
+  }
   ElementPlace& innermost() { return markup_.elements[open_.back()]; }
   std::string_view name_of(const ElementPlace& element) const { return element.name.of(text_); }
   /// Whether there are too many elements and attributes, the last one at `where`; if so, stops.
@@ -158,10 +166,11 @@ class MarkupScanner {
 
   // Messages do not quote a file that is probably not a scene.
   void add(std::size_t where, std::string_view message) {
-    const bool is_other = has_root() && name_of(markup_.elements.front()) != "scene";
+    const bool is_other = has_root() && !may_be_root(name_of(markup_.elements.front()));
     if (is_other && is_stopped_) return;
     findings_.add_problem(lines_.line_of(where),
-                          is_other ? "malformed XML, and the root element is not <scene>"
+                          is_other ? fmt::format("malformed XML, and the root element is not {}",
+                                                 roots_.empty() ? "<scene>" : "one of a scene")
                                    : fmt::format("malformed XML: {}", message));
     is_stopped_ = is_stopped_ || is_other;
   }
@@ -175,7 +184,8 @@ class MarkupScanner {
   std::string_view text_;
   Findings& findings_;
   LineCounter lines_;
-  std::size_t most_;  // elements and attributes
+  std::size_t most_;                         // elements and attributes
+  std::span<const std::string_view> roots_;  // empty: a scene
   std::size_t at_ = 0;
   Markup markup_;
   std::vector<std::uint32_t> open_;  // indices of elements, from the root inwards
@@ -246,8 +256,8 @@ void MarkupScanner::finish() {
                 fmt::format("the file ends inside {}, which is not closed", title(innermost())));
   if (has_root()) return;
   if (text_.find('<') == std::string_view::npos)
-    return findings_.add_problem(1, fmt::format("the file is empty{}", one_scene));
-  stop(at_, fmt::format("the file contains no element{}", one_scene));
+    return findings_.add_problem(1, fmt::format("the file is empty{}", one_root()));
+  stop(at_, fmt::format("the file contains no element{}", one_root()));
 }
 
 void MarkupScanner::scan_text() {
@@ -255,9 +265,9 @@ void MarkupScanner::scan_text() {
   check_references(text);
   const std::string_view inner = trimmed(text);
   if (open_.empty() && !inner.empty())
-    stop(offset_of(inner), has_root()
-                               ? fmt::format("the text {} is outside the <scene>", in_quotes(inner))
-                               : fmt::format("there is text before the <scene>{}", one_scene));
+    stop(offset_of(inner),
+         has_root() ? fmt::format("the text {} is outside the {}", in_quotes(inner), root())
+                    : fmt::format("there is text before the {}{}", root(), one_root()));
 }
 
 void MarkupScanner::scan_comment() {
@@ -267,7 +277,7 @@ void MarkupScanner::scan_comment() {
 }
 
 void MarkupScanner::scan_cdata() {
-  if (open_.empty()) return stop(at_, "a CDATA section is outside the <scene>");
+  if (open_.empty()) return stop(at_, fmt::format("a CDATA section is outside the {}", root()));
   take(9);
   take_until("]]>", "a CDATA section");
 }
@@ -275,7 +285,8 @@ void MarkupScanner::scan_cdata() {
 void MarkupScanner::scan_doctype() {
   const std::size_t start = at_;
   is_prologue_ = false;
-  if (has_root()) return stop(start, "a DOCTYPE is allowed only before the <scene>");
+  if (has_root())
+    return stop(start, fmt::format("a DOCTYPE is allowed only before the {}", root()));
   const std::string_view text = take_until(">", "a DOCTYPE");
   if (text.find('[') != std::string_view::npos)
     stop(start,
@@ -317,7 +328,7 @@ void MarkupScanner::scan_closing_tag() {
   take(1);
   if (open_.empty()) {
     return stop(start, has_root() ? fmt::format("</{}> has no opening tag", name)
-                                  : std::string("there is a closing tag before the <scene>"));
+                                  : fmt::format("there is a closing tag before the {}", root()));
   }
   if (name_of(innermost()) != name)
     return stop(start, fmt::format("</{}> comes before {} is closed", name, title(innermost())));
@@ -335,9 +346,8 @@ void MarkupScanner::scan_opening_tag() {
                                 : fmt::format("{} does not begin a tag; write a literal < as &lt;",
                                               in_quotes(fmt::format("<{}", next()))));
   if (open_.empty() && has_root())
-    return stop(
-        start,
-        fmt::format("<{}> is outside the root element; a file must contain one <scene>", name));
+    return stop(start, fmt::format("<{}> is outside the root element; a file must contain one {}",
+                                   name, roots_.empty() ? "<scene>" : "element"));
   const auto index = static_cast<std::uint32_t>(markup_.elements.size());
   markup_.elements.push_back(
       {.name = range_of(name),
@@ -454,10 +464,11 @@ int LineCounter::column_of(std::size_t offset) const {
   return static_cast<int>(offset - line - (has_mark ? byte_order_mark.size() : 0)) + 1;
 }
 
-std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std::size_t most) {
+std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std::size_t most,
+                                  std::span<const std::string_view> roots) {
   PLIANT_EXPECTS(text.size() < ElementPlace::no_parent);
   const std::size_t problems_before = findings.problem_count();
-  Markup markup = MarkupScanner(text, findings, most).scan();
+  Markup markup = MarkupScanner(text, findings, most, roots).scan();
   if (findings.problem_count() != problems_before) return std::nullopt;
   return markup;
 }

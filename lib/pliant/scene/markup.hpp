@@ -64,8 +64,12 @@ inline constexpr std::size_t most_markup = 20'000'000;
 /// element with all others, so an element with very many is slow. Here each of these is a problem,
 /// reported with its line. Null if there was one; otherwise the places are those of the elements
 /// and attributes in tinyxml2's tree.
+///
+/// `roots`: the elements that the root may be, of a file that a scene includes; empty: it is a
+/// scene. The messages quote nothing of a file with another root.
 std::optional<Markup> scan_markup(std::string_view text, Findings& findings,
-                                  std::size_t most = most_markup);
+                                  std::size_t most = most_markup,
+                                  std::span<const std::string_view> roots = {});
 
 /// Lines and columns of offsets in a text, counted from 1. It counts lines from the offset before,
 /// so that all offsets in their order need one pass.

@@ -38,9 +38,10 @@ bool NetReader::read_part(const Element& element, const std::string& part,
                                fmt::format("{} has no numbers", tag(element)));
   }
   if (!is_new)
-    file_.findings.add_problem(element.GetLineNum(),
-                               fmt::format("<nurbs> has a second {}; the first is at line {}",
-                                           tag(element), first->second));
+    file_.findings.add_problem(
+        element.GetLineNum(),
+        fmt::format("<nurbs> has a second {}; the first is at {}", tag(element),
+                    file_.findings.title_of(first->second, element.GetLineNum())));
   if (!is_sound || !is_new) {
     unsound_.push_back(part);
     return false;

@@ -56,8 +56,9 @@ Slot* find_position(const tinyxml2::XMLElement& element, std::span<Slot> rows, F
     findings.add_problem(
         element.GetLineNum(),
         value_problem(element, "attribute", name,
-                      fmt::format("is already {} (line {}); remove one of them",
-                                  row->is_animated ? "animated" : "given", row->line)));
+                      fmt::format("is already {} ({}); remove one of them",
+                                  row->is_animated ? "animated" : "given",
+                                  findings.title_of(row->line, element.GetLineNum()))));
   else
     row->line = element.GetLineNum();
   row->is_animated = true;

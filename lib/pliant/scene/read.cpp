@@ -15,6 +15,7 @@
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -112,13 +113,35 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   return scene;
 }
 
+/// Scans the text, and expands it into `expanded` if it needs that; `text` is then the expanded
+/// one. Returns whether there was no problem.
+bool prepare(std::string_view& text, std::string& expanded, const std::string& name,
+             SceneFile& file) {
+  const std::optional<Markup> markup = scan_markup(text, file.findings);
+  if (!markup) return false;
+  const SourceText source{text, *markup, name, file.folder};
+  if (!needs_expansion(source)) return true;
+  std::optional<Expansion> expansion = expand(source, files_on_disk(file.root), file.findings);
+  if (!expansion) return false;
+  expanded = std::move(expansion->text);
+  text = expanded;
+  file.findings.use(expansion->files);
+  file.files = std::move(expansion->files);
+  // Each file is well-formed, but all together may be nested too deep, or too large.
+  return scan_markup(text, file.findings).has_value();
+}
+
 /// Reads a document whose root is probably a <scene>.
 std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneFile& file) {
   const tinyxml2::XMLElement& root = *document.RootElement();
   constexpr std::string_view expected[] = {"scene"};
   if (root.Name() != expected[0]) {
-    file.findings.add_problem(root.GetLineNum(), fmt::format("the root element is {}{}", tag(root),
-                                                             hint(root.Name(), expected)));
+    const bool is_fragment = root.Name() == std::string_view("fragment");
+    file.findings.add_problem(
+        root.GetLineNum(),
+        fmt::format("the root element is {}{}", tag(root),
+                    is_fragment ? ", which a <scene> may include, but which is none itself"
+                                : hint(root.Name(), expected)));
     return std::nullopt;
   }
   return read_root(root, file);
@@ -134,13 +157,12 @@ Result<Scene> load_scene(const std::string& file, const std::string& root) {
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
                           const std::string& root) {
-  // An empty root would mean each mesh's own folder.
-  const std::string own = folder.empty() ? "." : folder;
-  SceneFile file{.folder = folder, .root = root.empty() ? own : root, .findings = Findings(name)};
+  SceneFile file{.folder = folder, .root = root, .findings = Findings(name)};
   if (text.size() > largest_scene_file)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);
-  if (!scan_markup(text, file.findings)) return fail(file.findings.to_error());
+  std::string expanded;
+  if (!prepare(text, expanded, name, file)) return fail(file.findings.to_error());
 
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
@@ -151,6 +173,7 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
   std::optional<Scene> scene = read_document(document, file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
   scene->origin.file = name;
+  if (file.files && file.files->texts().size() > 1) scene->origin.files = std::move(file.files);
   scene->notes = file.findings.notes();
   return std::move(*scene);
 }

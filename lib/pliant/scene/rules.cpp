@@ -370,7 +370,8 @@ class WholeChecker {
       }
       const auto [first, is_new] = first_lines.emplace(name, line);
       if (is_new) continue;
-      const std::string place = first->second != 0 ? fmt::format(" at line {}", first->second) : "";
+      const std::string place =
+          first->second != 0 ? fmt::format(" at {}", findings_.title_of(first->second, line)) : "";
       findings_.add_problem(
           line, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces and groups "
                             "must have different names",

@@ -1,6 +1,7 @@
 #include "pliant/scene/scene.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "pliant/scene/description.hpp"
 
@@ -19,6 +20,26 @@ int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
 
 std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
+}
+
+ScenePlace SceneOrigin::place_at(int line) const {
+  return files ? files->place_of(line) : ScenePlace{file, line};
+}
+
+ScenePlace SceneOrigin::place_of(const std::string& name, const std::string& attribute) const {
+  return place_at(line_of(name, attribute));
+}
+
+bool SceneOrigin::is_own(const std::string& name, const std::string& attribute) const {
+  return !files || files->text_of(line_of(name, attribute)) == 0;
+}
+
+Error SceneOrigin::located(Error error, int line) const {
+  ScenePlace place = place_at(line);
+  error.message = place.told(std::move(error.message));
+  error.file = std::move(place.file);
+  error.line = place.line;
+  return error;
 }
 
 int SceneOrigin::line_of(const std::string& name, const std::string& attribute) const {

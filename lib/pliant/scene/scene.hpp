@@ -11,6 +11,7 @@
 #include "pliant/body/settings.hpp"
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
+#include "pliant/core/result.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/falloff.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
@@ -18,6 +19,7 @@
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/mesh/nurbs_net.hpp"
 #include "pliant/mesh/subdivision.hpp"
+#include "pliant/scene/line_map.hpp"
 #include "pliant/timeline/channel.hpp"
 #include "pliant/timeline/curve.hpp"
 #include "pliant/timeline/position.hpp"
@@ -238,15 +240,31 @@ struct Group {
 /// A part of a scene that its file contains.
 struct SceneLine {
   std::string part;  ///< `NAME` or `NAME.attribute`; the scene itself: ``, `.fps`, `.end`
-  int line = 0;      ///< counted from 1
+  int line = 0;      ///< of the expanded text, counted from 1
 
   friend bool operator==(const SceneLine&, const SceneLine&) = default;
 };
 
-/// The lines of a scene's parts in its file, for messages. Empty for a scene built in code.
+/// The lines of a scene's parts in its file, for messages. Empty for a scene built in code. Lines
+/// are those of the expanded text, in which each included file stands in the place of its
+/// <include>; without one they are those of the file.
 struct SceneOrigin {
-  std::string file;              ///< the name given by the caller
-  std::vector<SceneLine> lines;  ///< in the order of `part`, each part once
+  std::string file;                   ///< the name given by the caller
+  std::vector<SceneLine> lines;       ///< in the order of `part`, each part once
+  std::optional<LineMap> files = {};  ///< absent: nothing is included
+
+  /// The file and line of a line of the expanded text.
+  ScenePlace place_at(int line) const;
+
+  /// The file and line of `NAME.attribute`, otherwise of `NAME`.
+  ScenePlace place_of(const std::string& name, const std::string& attribute = {}) const;
+
+  /// Whether it stands in the scene's own file, not in one that is included.
+  bool is_own(const std::string& name, const std::string& attribute = {}) const;
+
+  /// The error at a line of the expanded text: with its file, its line there, and, at the end of
+  /// the message, how the file was included.
+  Error located(Error error, int line) const;
 
   /// The line of `NAME.attribute`, otherwise of `NAME`, otherwise 0.
   int line_of(const std::string& name, const std::string& attribute = {}) const;
@@ -262,6 +280,7 @@ struct SceneOrigin {
 struct SceneNote {
   int line = 0;         ///< counted from 1
   std::string message;  ///< one line, begins with the channel: `poke.magnitude: key 12: …`
+  std::string file;     ///< the scene's, or one that is included
 
   friend bool operator==(const SceneNote&, const SceneNote&) = default;
 };

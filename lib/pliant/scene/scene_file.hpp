@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,13 +23,21 @@ struct NamedMesh {
 
 /// A scene file while it is read: its location, and the findings so far.
 struct SceneFile {
-  std::filesystem::path folder;  ///< mesh paths are relative to it
-  std::filesystem::path root;    ///< contains the files that meshes refer to
+  std::filesystem::path folder;  ///< paths in the file itself are relative to it
+  std::filesystem::path root;    ///< contains all files that the scene leads to; empty: any may
   Findings findings;
+  std::optional<LineMap> files = {};  ///< of the expanded text's lines; absent: nothing is included
   std::map<std::string, int> lines = {};  ///< see SceneLine
   std::vector<NamedMesh> meshes = {};
   /// `NAME.attribute` of those with a problem: their values are not those of the author.
   std::set<std::string, std::less<>> unsound = {};
+
+  /// The folder of the file that contains a line of the expanded text.
+  std::filesystem::path folder_at(int line) const {
+    const int text = files ? files->text_of(line) : 0;
+    if (text == 0) return folder;
+    return std::filesystem::path(files->texts()[static_cast<std::size_t>(text)].file).parent_path();
+  }
 };
 
 }  // namespace pliant::xml

@@ -33,7 +33,7 @@ class SurfaceReader {
   void read_grid(const tinyxml2::XMLElement& element);
   void read_mesh(const tinyxml2::XMLElement& element, bool is_cage);
   void read_net(const tinyxml2::XMLElement& element);
-  void note_cache(const Table& table, CacheFile& cache);
+  void locate_cache(const tinyxml2::XMLElement& element, Table& table, CacheFile& cache);
   void read_part(const tinyxml2::XMLElement& element, Part& part);
   void read_material(const tinyxml2::XMLElement& element);
   void read_map(const tinyxml2::XMLElement& element);
@@ -98,7 +98,8 @@ bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
   }
   file_.findings.add_problem(
       element.GetLineNum(),
-      fmt::format("{} has two shapes; the first is at line {}", title(), shape_line_));
+      fmt::format("{} has two shapes; the first is at {}", title(),
+                  file_.findings.title_of(shape_line_, element.GetLineNum())));
   return false;
 }
 
@@ -108,7 +109,7 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   CacheFile cache;
   Table table = table_of(grid, cache);
   read_attributes(element, table, file_.findings);
-  note_cache(table, cache);
+  locate_cache(element, table, cache);
   read_children(element, {}, file_.findings);
   if (!is_first) return;
   surface_.shape = grid;
@@ -119,18 +120,17 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
 void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
-  mesh.root = file_.root;
   MeshReading reading;
   CacheFile cache;
   Subdivision subdivision;
   Table table =
       is_cage ? table_of(mesh, reading, cache, subdivision) : table_of(mesh, reading, cache);
   read_attributes(element, table, file_.findings);
-  note_cache(table, cache);
-  if (!mesh.path.empty()) mesh.path = (file_.folder / mesh.path).string();
+  locate_cache(element, table, cache);
+  locate_file(element, *find(table, "file"), surface_.name, "file", mesh.path, file_);
+  mesh.root = (file_.root.empty() ? file_.folder_at(element.GetLineNum()) : file_.root).string();
+  if (mesh.root.empty()) mesh.root = ".";  // empty would mean the mesh's own folder
   read_children(element, {}, file_.findings);
-  if (const Slot* path = find(table, "file"); path->line != 0 && path->is_sound)
-    file_.meshes.push_back({surface_.name, mesh.path, path->line, "file"});
   if (!is_first) return;
   surface_.shape = mesh;
   surface_.reading = reading;
@@ -139,13 +139,9 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage)
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
-/// Finds a cache's file from the scene's folder.
-void SurfaceReader::note_cache(const Table& table, CacheFile& cache) {
-  if (!cache.path.empty()) cache.path = (file_.folder / cache.path).string();
-  for (const Slot& slot : table) {
-    if (slot.attribute.name == "cache" && slot.line != 0 && slot.is_sound)
-      file_.meshes.push_back({surface_.name, cache.path, slot.line, "cache"});
-  }
+void SurfaceReader::locate_cache(const tinyxml2::XMLElement& element, Table& table,
+                                 CacheFile& cache) {
+  locate_file(element, *find(table, "cache"), surface_.name, "cache", cache.path, file_);
 }
 
 void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
@@ -165,9 +161,10 @@ void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
 /// Whether this is the first such part of the surface; reads its attributes then.
 bool SurfaceReader::takes_part(const tinyxml2::XMLElement& element, Part& part) {
   if (part.line != 0) {
-    file_.findings.add_problem(element.GetLineNum(),
-                               fmt::format("{} has a second {}; the first is at line {}", title(),
-                                           tag(element), part.line));
+    file_.findings.add_problem(
+        element.GetLineNum(),
+        fmt::format("{} has a second {}; the first is at {}", title(), tag(element),
+                    file_.findings.title_of(part.line, element.GetLineNum())));
     return false;
   }
   part.line = element.GetLineNum();
@@ -202,10 +199,7 @@ void SurfaceReader::read_map(const tinyxml2::XMLElement& element) {
         element.GetLineNum(),
         fmt::format("{} has a second map of {}; a channel has one", title(),
                     map_channel_words[static_cast<std::size_t>(map.channel)]));
-  if (!map.file.empty()) {
-    map.file = (file_.folder / map.file).string();
-    file_.meshes.push_back({surface_.name, map.file, find(table, "file")->line, name});
-  }
+  locate_file(element, *find(table, "file"), surface_.name, name, map.file, file_);
   surface_.maps.push_back(map);
   if (!surface_.name.empty())
     record_element(element, fmt::format("{}.{}", surface_.name, name), table, file_);

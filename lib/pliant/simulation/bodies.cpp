@@ -370,9 +370,7 @@ Error Bodies::located(Error error, const Surface& surface, int frame) const {
     return {ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame)};
   }
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
-  error.file = scene_.origin.file;
-  error.line = scene_.origin.line_of(surface.name);
-  return error;
+  return scene_.origin.located(std::move(error), scene_.origin.line_of(surface.name));
 }
 
 Profile* Bodies::profile_of(std::size_t surface) {

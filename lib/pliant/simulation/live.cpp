@@ -75,10 +75,10 @@ Result<void> key_rates(Scene& scene) {
     if (!noise || noise->rate.is_animated()) continue;
     const Value<1> rate = noise->rate.at(scene.start);
     if (!(std::abs(rate[0]) <= timeline::largest_number)) {
-      return fail(
-          ErrorCode::InvalidInput,
-          fmt::format("{}.rate is {}, but a live run takes at most 1e150", force.name, rate[0]),
-          scene.origin.file, scene.origin.line_of(force.name, "rate"));
+      return fail(scene.origin.located(
+          {ErrorCode::InvalidInput,
+           fmt::format("{}.rate is {}, but a live run takes at most 1e150", force.name, rate[0])},
+          scene.origin.line_of(force.name, "rate")));
     }
     noise->rate = curve_of<1>({step_key<1>(scene.start, rate)});
   }
@@ -393,12 +393,12 @@ Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& opti
   if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
   for (const Surface& surface : scene.surfaces) {
     if (!surface.solver.loop) continue;
-    return fail(
-        ErrorCode::InvalidInput,
-        fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
-                    "is not known before",
-                    surface.name, *surface.solver.loop),
-        scene.origin.file, scene.origin.line_of(surface.name, "loop"));
+    return fail(scene.origin.located(
+        {ErrorCode::InvalidInput,
+         fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
+                     "is not known before",
+                     surface.name, *surface.solver.loop)},
+        scene.origin.line_of(surface.name, "loop")));
   }
   if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
   auto run = std::make_unique<Run>(std::move(scene), options);

@@ -1,0 +1,174 @@
+#include "pliant/scene/artist_words.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::xml {
+namespace {
+
+constexpr std::string_view force_elements = "point radial line uniform vortex noise inertia";
+constexpr std::string_view selecting_elements =
+    "point radial line uniform vortex noise inertia group";
+constexpr std::string_view centred_elements = "point radial vortex noise group";
+constexpr std::string_view mesh_elements = "mesh subdivision";
+
+// A word is in the first row that has it for the element. The names are those of Maya, Houdini,
+// Blender, Cinema 4D, After Effects and of physics.
+constexpr ArtistWords known_words[] = {
+    {"material",
+     "stiffness elasticity rigidity bend bending bendstiffness bendingstiffness young "
+     "youngsmodulus springs tension",
+     "b c d"},
+    {"material", "mass weight rho surfacedensity massdensity heaviness thickness", "density"},
+    {"material", "drag friction viscosity eta damp dampen resistance airdrag", "damping"},
+    {"material", "zeta dampratio ratio", "dampingRatio"},
+    {"material", "plasticity plastic yieldstress yieldstrength threshold", "yield"},
+    {"material", "nu poissonratio poissonsratio", "poisson"},
+    {"surface", "stiffness elasticity rigidity bend bending", "b@material c@material d@material"},
+    {"surface", "mass weight density", "density@material"},
+    {"surface", "drag friction viscosity damping", "damping@material"},
+    {"surface", "position location translation translate pos offset origin center",
+     "translate@transform"},
+    {"surface", "rotation rotate orientation rot euler", "rotate@transform"},
+    {"surface", "scale scaling size", "scale@transform"},
+    {"surface", "file filename path mesh src source geometry obj", "file@mesh"},
+    {"surface", "dt timestep step", "dt@solver"},
+    {"surface", "id label title", "name"},
+    {"surface", "active on visible mute simulate", "enabled"},
+    {"surface", "driver parent follows target", "drivenBy"},
+    {"transform", "position location translation pos offset origin center t", "translate"},
+    {"transform", "rotation orientation rot euler angles r", "rotate"},
+    {"transform", "scaling size s", "scale"},
+    {"transform", "order rotationorder eulerorder", "rotateOrder"},
+    {force_elements,
+     "strength force intensity power amplitude amount weight gain speed velocity value",
+     "magnitude"},
+    {selecting_elements, "id label title", "name"},
+    {selecting_elements, "active on visible mute", "enabled"},
+    {selecting_elements, "surfaces surface affects objects object meshes mesh", "targets"},
+    {force_elements, "radius size falloffradius range maxdistance distance reach influence radii",
+     "deformationRadius forceRadius"},
+    {"group", "radius size falloffradius range maxdistance distance reach influence",
+     "deformationRadius"},
+    {force_elements, "decay attenuation profile curve ramp softness", "falloff"},
+    {centred_elements, "position location translation translate pos origin place at offset",
+     "center"},
+    {"line", "position location translation translate pos origin center place at offset points",
+     "from to"},
+    {"line", "start begin a", "from"},
+    {"line", "finish b", "to"},
+    {"point line uniform", "rotation rotate orientation angle normal vector dir axis aim",
+     "direction"},
+    {"vortex", "rotation rotate orientation angle normal vector dir direction aim", "axis"},
+    {"vortex", "swirl spin twist", "magnitude"},
+    {"vortex", "inward suction attraction radial", "pull"},
+    {"noise", "scale detail turbulencescale", "frequency"},
+    {"noise", "rotation rotate evolution evolutionspeed animationspeed", "rate"},
+    {"noise", "randomseed", "seed"},
+    {"scene", "framerate framespersecond rate frames timeunit playbackspeed", "fps"},
+    {"scene", "first startframe firstframe from framestart begin in", "start"},
+    {"scene", "last endframe lastframe to frameend finish out duration length", "end"},
+    {"scene", "randomseed", "seed"},
+    {"grid", "size scale", "width depth"},
+    {"grid", "height length", "depth"},
+    {"grid", "segments subdivisions divisions resolution samples", "columns rows"},
+    {"grid", "position location translation translate center", "translate@transform"},
+    {"grid", "rotation rotate", "rotate@transform"},
+    {"grid", "type", "faces"},
+    {mesh_elements, "path filename src source url href geometry", "file"},
+    {mesh_elements, "name node shape part", "object"},
+    {mesh_elements, "uvmap uvchannel uvlayer", "uvSet"},
+    {mesh_elements, "position location translation translate center", "translate@transform"},
+    {mesh_elements, "rotation rotate orientation", "rotate@transform"},
+    {mesh_elements, "scale size", "scale@transform"},
+    {"subdivision", "iterations subdivisions depth steps", "levels"},
+    {"subdivision", "type method", "scheme"},
+    {"solver", "timestep step stepsize delta substep", "dt"},
+    {"solver", "speed rate timefactor", "timeScale"},
+    {"solver", "first start firstframe begin", "startFrame"},
+    {"solver", "type method scheme", "integrator"},
+    {"solver", "warmup prerun runup presimulate", "preroll"},
+    {"solver", "cycle period", "loop"},
+    {"map", "texture image path picture src", "file"},
+    {"map", "type property target name", "channel"},
+    {"map", "vertexattribute vertexcolor vertexgroup weights", "attribute"},
+    {"map", "min black", "low"},
+    {"map", "max white", "high"},
+    {"animate", "channel property target name path", "attribute"},
+    {"animate", "pre preinfinity extrapolatebefore", "before"},
+    {"animate", "post postinfinity extrapolateafter loop cycle", "after"},
+    {"animate falloff key", "ease easing type mode", "interpolation"},
+    {"key", "time t", "frame"},
+    {"key", "v y", "value"},
+    {"key", "intangent tangentin", "in"},
+    {"key", "outtangent tangentout", "out"},
+    {"loop", "first start begin", "from"},
+    {"loop", "last end finish", "to"},
+    {"loop", "count repeat times", "after"},
+    {"path", "channel property target name", "attribute"},
+    {"path", "cyclic loop", "closed"},
+    {"path", "position time u t percent", "progress"},
+    {"waypoint", "position location point pos center translate value", "at"},
+};
+
+bool has_word(std::string_view list, std::string_view word) {
+  const std::vector<std::string_view> words = words_of(list);
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// As in the table.
+std::string plain_word(std::string_view word) {
+  std::string text;
+  for (const char c : word) {
+    if (c == '_' || c == '-') continue;
+    text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return text;
+}
+
+/// `"b", "c" and "d"`
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text = words.front();
+  for (std::size_t k = 1; k < words.size(); ++k)
+    text += (k + 1 == words.size() ? " and " : ", ") + words[k];
+  return text;
+}
+
+}  // namespace
+
+std::span<const ArtistWords> artist_words() { return known_words; }
+
+std::string attribute_hint(std::string_view element, std::string_view word,
+                           std::span<const std::string_view> allowed,
+                           std::vector<std::string_view>& own) {
+  constexpr std::size_t longest = 30;  // of the table
+  const std::string wanted = word.size() <= longest ? plain_word(word) : "";
+  const auto found =
+      std::find_if(std::begin(known_words), std::end(known_words), [&](const ArtistWords& row) {
+        return has_word(row.elements, element) && has_word(row.words, wanted);
+      });
+  std::vector<std::string> meant;
+  if (found != std::end(known_words)) {
+    for (const std::string_view target : words_of(found->meant)) {
+      const std::string_view attribute = target.substr(0, target.find('@'));
+      if (attribute.size() < target.size()) {
+        meant.push_back(
+            fmt::format("{} of <{}>", in_quotes(attribute), target.substr(attribute.size() + 1)));
+      } else if (std::find(allowed.begin(), allowed.end(), attribute) != allowed.end()) {
+        own.push_back(attribute);
+        meant.push_back(in_quotes(attribute));
+      }
+    }
+  }
+  if (!meant.empty())
+    return fmt::format("; did you mean {}? allowed: {}", joined_words(meant), listed(allowed));
+  if (const auto near = nearest_word(word, allowed)) own.push_back(*near);
+  return hint(word, allowed);
+}
+
+}  // namespace pliant::xml

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pliant::xml {
+
+/// Words of other programs for attributes of these elements. Each list is separated by blanks.
+struct ArtistWords {
+  std::string_view elements;
+  std::string_view words;  ///< in lower case, without - and _
+  std::string_view meant;  ///< attributes of the element; `density@material`: of another one
+};
+
+/// The words that are known, for tests.
+std::span<const ArtistWords> artist_words();
+
+/// `; did you mean "b", "c" and "d"? allowed: density, …` for an attribute that an element does not
+/// have: what an artist may mean by it, otherwise as `hint`. `own` receives the attributes of the
+/// element that are probably meant.
+std::string attribute_hint(std::string_view element, std::string_view word,
+                           std::span<const std::string_view> allowed,
+                           std::vector<std::string_view>& own);
+
+}  // namespace pliant::xml

@@ -1,0 +1,643 @@
+#include "pliant/scene/expand.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/scene/confined.hpp"
+#include "pliant/scene/definitions.hpp"
+#include "pliant/scene/format.hpp"
+#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/read_elements.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::xml {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view include_name = Description<IncludeText>::element;
+constexpr std::string_view define_name = Description<DefineText>::element;
+constexpr std::string_view fragment_name = "fragment";
+constexpr std::string_view scene_name = Description<Scene>::element;
+
+bool has_definition(std::string_view raw) {
+  return raw.find('$') != std::string_view::npos || raw.find("&#") != std::string_view::npos;
+}
+
+/// A character in UTF-8.
+void append_character(std::uint32_t code, std::string& text) {
+  const auto byte = [&](std::uint32_t bits) { text += static_cast<char>(bits); };
+  const auto following = [&](int shift) { byte(0x80U | (code >> shift & 0x3FU)); };
+  if (code < 0x80) return byte(code);
+  if (code < 0x800) {
+    byte(0xC0U | code >> 6U);
+  } else if (code < 0x10000) {
+    byte(0xE0U | code >> 12U);
+    following(6);
+  } else {
+    byte(0xF0U | code >> 18U);
+    following(12);
+    following(6);
+  }
+  following(0);
+}
+
+/// The value of an attribute as an XML reader passes it on. Requires: `scan_markup` accepts it.
+std::string decoded(std::string_view raw) {
+  constexpr std::pair<std::string_view, char> entities[] = {
+      {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
+  std::string text;
+  for (std::size_t at = 0; at < raw.size(); ++at) {
+    if (raw[at] == '\r') {  // XML has one kind of line end
+      text += '\n';
+      if (raw.substr(at + 1, 1) == "\n") ++at;
+      continue;
+    }
+    if (raw[at] != '&') {
+      text += raw[at];
+      continue;
+    }
+    const std::string_view name = raw.substr(at + 1, raw.find(';', at) - at - 1);
+    if (name.starts_with('#')) {
+      const bool is_hex = name.starts_with("#x");
+      std::uint32_t code = 0;
+      std::from_chars(name.data() + (is_hex ? 2 : 1), name.data() + name.size(), code,
+                      is_hex ? 16 : 10);
+      append_character(code, text);
+    } else {
+      for (const auto& [entity, character] : entities)
+        if (name == entity) text += character;
+    }
+    at += name.size() + 1;
+  }
+  return text;
+}
+
+/// The value as it may stand between either kind of quotes, on one line.
+std::string encoded(std::string_view text) {
+  std::string raw;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        raw += "&amp;";
+        break;
+      case '<':
+        raw += "&lt;";
+        break;
+      case '"':
+        raw += "&quot;";
+        break;
+      case '\'':
+        raw += "&apos;";
+        break;
+      case '\n':
+        raw += "&#10;";
+        break;
+      case '\r':
+        raw += "&#13;";
+        break;
+      default:
+        raw += c;
+    }
+  }
+  return raw;
+}
+
+/// Text that is not in comments or elements of the content of an element; empty: none.
+std::string_view bare_text(std::string_view content) {
+  while (!content.empty()) {
+    const std::string_view before = trimmed(content.substr(0, content.find('<')));
+    if (!before.empty() || content.find('<') == std::string_view::npos) return before;
+    content.remove_prefix(content.find('<'));
+    if (!content.starts_with("<!--")) return content;
+    content.remove_prefix(content.find("-->") + 3);
+  }
+  return {};
+}
+
+/// What the format says about places and values.
+class Rules {
+ public:
+  Rules() : containers_(including_elements()) {
+    for (const ElementFormat& format : scene_format()) {
+      const bool may_be_included =
+          std::any_of(format.parents.begin(), format.parents.end(), [&](std::string_view parent) {
+            return std::find(containers_.begin(), containers_.end(), parent) != containers_.end();
+          });
+      if (may_be_included && format.name != include_name && format.name != define_name)
+        roots_.push_back(format.name);
+      for (const AttributeFormat& attribute : format.attributes)
+        if (is_text(attribute.type)) texts_.emplace(format.name, attribute.name);
+    }
+  }
+
+  bool may_contain(std::string_view element) const {
+    return std::find(containers_.begin(), containers_.end(), element) != containers_.end();
+  }
+  const std::vector<std::string_view>& containers() const { return containers_; }
+
+  /// The elements that a file that is included may consist of.
+  const std::vector<std::string_view>& roots() const { return roots_; }
+
+  /// Whether the value is a text, which is not computed.
+  bool is_text(std::string_view element, std::string_view attribute) const {
+    return texts_.contains({element, attribute});
+  }
+
+ private:
+  static bool is_text(std::string_view type) {
+    constexpr std::string_view types[] = {
+        "path", "text", "name", "names", "word", "one or four words", "boolean"};
+    return std::find(std::begin(types), std::end(types), type) != std::end(types);
+  }
+
+  std::vector<std::string_view> containers_;
+  std::vector<std::string_view> roots_ = {fragment_name, scene_name};
+  std::set<std::pair<std::string_view, std::string_view>> texts_;
+};
+
+/// A file that is included, read once.
+struct IncludedFile {
+  std::string text;
+  std::optional<Markup> markup;  ///< null: it has problems
+  std::vector<Error> problems;
+};
+
+/// A text while it is expanded.
+struct OpenText {
+  std::string_view text;
+  const Markup& markup;
+  int index;  ///< in the map of lines
+  fs::path folder;
+  std::string identity;  ///< of its file; empty: unknown
+  const OpenText* includer = nullptr;
+  LineCounter lines{text};
+
+  std::string_view name_of(const ElementPlace& element) const { return element.name.of(text); }
+};
+
+/// The lines of all definitions of a text, by name, counted when one is asked for.
+std::function<std::optional<int>(std::string_view)> later_definitions(const OpenText& text) {
+  return [&text, lines = std::optional<std::map<std::string_view, int, std::less<>>>()](
+             std::string_view name) mutable -> std::optional<int> {
+    if (!lines) {
+      lines.emplace();
+      LineCounter counter(text.text);
+      for (std::size_t k = 0; k < text.markup.elements.size(); ++k) {
+        const ElementPlace& element = text.markup.elements[k];
+        if (text.name_of(element) != define_name) continue;
+        for (const AttributePlace& attribute : text.markup.attributes_of(k))
+          if (attribute.name.of(text.text) == "name")
+            lines->emplace(attribute.value.of(text.text), counter.line_of(element.whole().begin));
+      }
+    }
+    const auto found = lines->find(name);
+    return found == lines->end() ? std::nullopt : std::optional(found->second);
+  };
+}
+
+class Expander {
+ public:
+  Expander(const TextFiles& files, Findings& findings, std::string name)
+      : files_(files), findings_(findings), map_(std::move(name)) {}
+
+  std::optional<Expansion> expand(const SourceText& scene);
+
+ private:
+  void expand(OpenText& text, std::size_t begin, std::size_t end, Scope& scope);
+  void expand_attribute(OpenText& text, const ElementPlace& element,
+                        const AttributePlace& attribute, Scope& scope);
+  void define(OpenText& text, std::size_t index, const Scope& scope, Definitions& definitions,
+              const Definitions* given);
+  void include(OpenText& text, std::size_t index, Scope& scope);
+  void expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
+                   const std::string& identity, Scope& inner);
+  const IncludedFile* read(const fs::path& path, const std::string& identity, int index);
+  bool read_attributes(OpenText& text, std::size_t index,
+                       std::span<std::pair<std::string_view, std::optional<std::string>>> table);
+  bool check_place(OpenText& text, const ElementPlace& element);
+  void report_unused(OpenText& text, const std::string& file, const Definitions& given,
+                     const Scope& inner);
+
+  std::size_t after(const OpenText& text, std::size_t index) const;
+  std::string_view content_of(const OpenText& text, const ElementPlace& element) const;
+
+  void emit(std::string_view part) {
+    out_ += part;
+    line_ += static_cast<int>(std::count(part.begin(), part.end(), '\n'));
+  }
+  void begin_run(int text, int line) {
+    emit("\n");
+    map_.add_run(line_, text, line);
+  }
+
+  void add(OpenText& text, std::size_t where, std::string message) {
+    findings_.add_problem(map_.place_in(text.index, text.lines.line_of(where)), std::move(message));
+  }
+  void add_value(OpenText& text, std::size_t where, std::string_view element,
+                 std::string_view attribute, std::string_view value, std::string_view complaint) {
+    add(text, where,
+        fmt::format("<{}> {}={}: {}", element, attribute, in_quotes(value), complaint));
+  }
+  /// Adds a problem that concerns a limit, after which nothing is expanded further.
+  void stop(OpenText& text, std::size_t where, std::string message) {
+    if (!is_stopped_) add(text, where, std::move(message));
+    is_stopped_ = true;
+  }
+  /// Counts bytes that are read or defined. Returns whether they are within the limit.
+  bool spend(std::size_t bytes, OpenText& text, std::size_t where) {
+    spent_ += bytes;
+    if (spent_ <= most_expanded && out_.size() <= most_expanded) return true;
+    stop(text, where,
+         fmt::format("the scene, with all that it includes and defines, is larger than {} MiB",
+                     most_expanded >> 20U));
+    return false;
+  }
+
+  const TextFiles& files_;
+  Findings& findings_;
+  LineMap map_;
+  Rules rules_;
+  std::map<std::string, std::unique_ptr<IncludedFile>> read_;  // by identity
+  std::string out_;
+  int line_ = 1;  // of the end of out_
+  std::size_t spent_ = 0;
+  std::size_t markup_count_ = 0;
+  int include_count_ = 0;
+  int definition_count_ = 0;
+  bool is_stopped_ = false;
+};
+
+/// The index of the first element that is not in this one.
+std::size_t Expander::after(const OpenText& text, std::size_t index) const {
+  const auto& elements = text.markup.elements;
+  const auto next = std::upper_bound(
+      elements.begin() + static_cast<std::ptrdiff_t>(index) + 1, elements.end(),
+      elements[index].end,
+      [](std::uint32_t end, const ElementPlace& element) { return end <= element.name.begin; });
+  return static_cast<std::size_t>(next - elements.begin());
+}
+
+std::string_view Expander::content_of(const OpenText& text, const ElementPlace& element) const {
+  if (element.closes_itself()) return {};
+  const std::size_t closing = text.text.rfind('<', element.end - 1);
+  return text.text.substr(element.tag_end, closing - element.tag_end);
+}
+
+std::optional<Expansion> Expander::expand(const SourceText& scene) {
+  const std::size_t problems = findings_.problem_count();
+  const Result<std::string> identity = files_.identify(scene.name);
+  OpenText text{.text = scene.text,
+                .markup = scene.markup,
+                .index = 0,
+                .folder = scene.folder,
+                .identity = identity ? *identity : std::string()};
+  markup_count_ = scene.markup.elements.size() + scene.markup.attributes.size();
+  out_.reserve(scene.text.size());
+  Scope scope;
+  scope.later = later_definitions(text);
+  expand(text, 0, scene.text.size(), scope);
+  if (!is_stopped_) spend(0, text, 0);
+  if (findings_.problem_count() != problems) return std::nullopt;
+  return Expansion{std::move(out_), std::move(map_)};
+}
+
+/// Expands the bytes from `begin` to `end`, which contain whole elements.
+void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope& scope) {
+  const auto& elements = text.markup.elements;
+  const auto first = std::lower_bound(
+      elements.begin(), elements.end(), begin,
+      [](const ElementPlace& element, std::size_t at) { return element.name.begin < at; });
+  std::size_t written = begin;
+  const auto write_to = [&](std::size_t to) {
+    emit(text.text.substr(written, to - written));
+    written = to;
+  };
+  for (auto k = static_cast<std::size_t>(first - elements.begin());
+       k < elements.size() && elements[k].name.begin < end && !is_stopped_;) {
+    const ElementPlace& element = elements[k];
+    const std::string_view name = text.name_of(element);
+    if (name == define_name) {
+      write_to(element.whole().begin);
+      if (check_place(text, element)) define(text, k, scope, scope.own, scope.given);
+      // Its lines stay, so that those after it keep theirs.
+      const std::string_view whole = element.whole().of(text.text);
+      emit(std::string(static_cast<std::size_t>(std::count(whole.begin(), whole.end(), '\n')),
+                       '\n'));
+      written = element.end;
+      k = after(text, k);
+    } else if (name == include_name) {
+      write_to(element.whole().begin);
+      if (check_place(text, element)) include(text, k, scope);
+      begin_run(text.index, text.lines.line_of(element.end));
+      written = element.end;
+      k = after(text, k);
+    } else {
+      for (const AttributePlace& attribute : text.markup.attributes_of(k)) {
+        if (!has_definition(attribute.value.of(text.text))) continue;
+        write_to(attribute.value.begin);
+        expand_attribute(text, element, attribute, scope);
+        written = attribute.whole().end;
+      }
+      ++k;
+    }
+  }
+  write_to(end);
+}
+
+/// Writes a value with its closing quote.
+void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
+                                const AttributePlace& attribute, Scope& scope) {
+  const std::string_view raw = attribute.value.of(text.text);
+  const std::string value = decoded(raw);
+  const std::string_view owner = text.name_of(element), name = attribute.name.of(text.text);
+  const auto expanded =
+      expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number);
+  if (!expanded) {
+    if (!expanded.error().empty())
+      add_value(text, attribute.name.begin, owner, name, value, expanded.error());
+    return;
+  }
+  emit(encoded(*expanded));
+  emit(text.text.substr(attribute.value.end, 1));
+  spend(0, text, attribute.name.begin);
+  // The value is on one line now. Its other lines follow it.
+  emit(std::string(static_cast<std::size_t>(std::count(raw.begin(), raw.end(), '\n')), '\n'));
+}
+
+bool Expander::check_place(OpenText& text, const ElementPlace& element) {
+  const std::string_view name = text.name_of(element);
+  const std::string_view parent = element.parent == ElementPlace::no_parent
+                                      ? ""
+                                      : text.name_of(text.markup.elements[element.parent]);
+  if (rules_.may_contain(parent) || parent == fragment_name) return true;
+  add(text, element.whole().begin,
+      parent.empty()
+          ? fmt::format("the root element is <{}>, which belongs in a <scene> or <fragment>", name)
+          : fmt::format("<{}> has no element {}; it belongs in {}", parent, in_quotes(name),
+                        listed(rules_.containers())));
+  return false;
+}
+
+/// Reads the attributes of an <include> or <define>, all of which are required. Returns whether
+/// they are complete.
+bool Expander::read_attributes(
+    OpenText& text, std::size_t index,
+    std::span<std::pair<std::string_view, std::optional<std::string>>> table) {
+  const ElementPlace& element = text.markup.elements[index];
+  const std::string_view owner = text.name_of(element);
+  std::vector<std::string_view> names;
+  for (const auto& [name, value] : table) names.push_back(name);
+  bool is_complete = true;
+  for (const AttributePlace& given : text.markup.attributes_of(index)) {
+    const std::string_view name = given.name.of(text.text);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) {
+      table[static_cast<std::size_t>(found - names.begin())].second =
+          decoded(given.value.of(text.text));
+      continue;
+    }
+    is_complete = false;
+    add(text, given.name.begin,
+        fmt::format("<{}> has no attribute {}{}", owner, in_quotes(name), hint(name, names)));
+  }
+  if (!is_complete) return false;
+  for (const auto& [name, value] : table) {
+    if (value) continue;
+    is_complete = false;
+    add(text, element.whole().begin, fmt::format("<{}> needs the attribute \"{}\"", owner, name));
+  }
+  return is_complete;
+}
+
+/// Reads a <define> into `definitions`. What is given from outside replaces its value.
+void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
+                      Definitions& definitions, const Definitions* given) {
+  const ElementPlace& element = text.markup.elements[index];
+  std::pair<std::string_view, std::optional<std::string>> table[] = {{"name", {}}, {"value", {}}};
+  const bool is_complete = read_attributes(text, index, table);
+  if (const std::string_view content = bare_text(content_of(text, element)); !content.empty())
+    add(text, element.tag_end,
+        fmt::format("<{}> contains {}; nothing is allowed in it", define_name, in_quotes(content)));
+  if (!table[0].second) return;
+  const std::string& name = *table[0].second;
+  const std::size_t where = text.markup.attributes_of(index).front().name.begin;
+  if (!is_definition_name(name))
+    return add_value(text, where, define_name, "name", name,
+                     "must be a letter or _ followed by letters, digits and _");
+  if (const auto first = definitions.find(name); first != definitions.end())
+    return add_value(text, where, define_name, "name", name,
+                     fmt::format("the name is already defined at line {}", first->second.line));
+  if (++definition_count_ > most_definitions)
+    return stop(text, where,
+                fmt::format("the scene has more than {} definitions", most_definitions));
+  Definition& definition = definitions[name];
+  definition.line = text.lines.line_of(element.whole().begin);
+  if (!is_complete) return;
+  if (given) {
+    if (const auto instead = given->find(name); instead != given->end()) {
+      instead->second.is_used = true;
+      const int line = std::exchange(definition.line, 0);
+      definition = instead->second;
+      definition.line = line;
+      spend(definition.text.size(), text, where);
+      return;
+    }
+  }
+  const auto value = expand_value(*table[1].second, scope, Use::Definition);
+  if (!value) {
+    if (!value.error().empty())
+      add_value(text, where, define_name, "value", *table[1].second, value.error());
+    return;
+  }
+  spend(value->size(), text, where);
+  definition.set(*value);
+}
+
+void Expander::include(OpenText& text, std::size_t index, Scope& scope) {
+  const ElementPlace& element = text.markup.elements[index];
+  std::pair<std::string_view, std::optional<std::string>> table[] = {{"file", {}}};
+  const bool is_complete = read_attributes(text, index, table);
+  Definitions given;
+  std::size_t content = element.tag_end;
+  const auto check_text = [&](std::size_t to) {
+    const std::string_view bare = bare_text(text.text.substr(content, to - content));
+    if (!bare.empty())
+      add(text, content,
+          fmt::format("<{}> contains {}; only <{}> is allowed in it", include_name, in_quotes(bare),
+                      define_name));
+  };
+  for (std::size_t k = index + 1; k < after(text, index); k = after(text, k)) {
+    const ElementPlace& child = text.markup.elements[k];
+    check_text(child.whole().begin);
+    content = child.end;
+    const std::string_view name = text.name_of(child);
+    constexpr std::string_view allowed[] = {define_name};
+    if (name == define_name)
+      define(text, k, scope, given, nullptr);
+    else
+      add(text, child.whole().begin,
+          fmt::format("<{}> has no element {}{}", include_name, in_quotes(name),
+                      hint(name, allowed)));
+  }
+  if (!element.closes_itself()) check_text(text.text.rfind('<', element.end - 1));
+  if (!is_complete) return;
+
+  const std::string& written = *table[0].second;
+  const std::size_t where = text.markup.attributes_of(index).front().name.begin;
+  const auto refuse = [&](std::string_view complaint) {
+    add_value(text, where, include_name, "file", written, complaint);
+  };
+  const auto expanded = expand_value(written, scope, Use::Text);
+  if (!expanded) {
+    if (!expanded.error().empty()) refuse(expanded.error());
+    return;
+  }
+  if (trimmed(*expanded).empty()) return refuse("is empty; the name of a file is required");
+  if (expanded->find('\0') != std::string::npos) return refuse("is not the name of a file");
+  const fs::path path = text.folder / *expanded;
+  if (++include_count_ > most_includes)
+    return stop(text, where, fmt::format("the scene includes more than {} files", most_includes));
+  int depth = 1;
+  for (const OpenText* one = &text; one->includer; one = one->includer) ++depth;
+  if (depth > deepest_include)
+    return refuse(fmt::format("files include each other deeper than {}", deepest_include));
+  const Result<std::string> identity = files_.identify(path);
+  if (!identity)
+    return refuse(fmt::format("{}: {}", printable(path.string()), identity.error().message));
+  for (const OpenText* one = &text; one; one = one->includer)
+    if (one->identity == *identity)
+      return refuse(fmt::format("{} includes itself", printable(path.string())));
+
+  const std::size_t problems = findings_.problem_count();
+  Scope inner;
+  inner.outer = &scope;
+  inner.given = &given;
+  expand_file(text, element, path, *identity, inner);
+  if (findings_.problem_count() == problems) report_unused(text, *expanded, given, inner);
+  scope.take(std::move(inner));
+}
+
+/// A definition that is given to a file which neither has nor uses it is probably misspelt.
+void Expander::report_unused(OpenText& text, const std::string& file, const Definitions& given,
+                             const Scope& inner) {
+  for (const auto& [name, definition] : given) {
+    if (definition.is_used) continue;
+    std::vector<std::string_view> names;
+    for (const auto& [own, value] : inner.own) names.push_back(own);
+    const auto near = nearest_word(name, names);
+    findings_.add_problem(
+        map_.place_in(text.index, definition.line),
+        fmt::format("<{}> name={}: {} neither defines nor uses it{}", define_name, in_quotes(name),
+                    in_quotes(file),
+                    near ? fmt::format("; did you mean {}?", in_quotes(*near)) : ""));
+  }
+}
+
+/// The file, from the disk or as it was read before; null: it has problems.
+const IncludedFile* Expander::read(const fs::path& path, const std::string& identity, int index) {
+  std::unique_ptr<IncludedFile>& file = read_[identity];
+  if (!file) {
+    file = std::make_unique<IncludedFile>();
+    Findings own(path.string());
+    Result<std::string> bytes = files_.read(path, most_expanded - std::min(spent_, most_expanded));
+    if (bytes) {
+      file->text = *std::move(bytes);
+      file->markup = scan_markup(
+          file->text, own, most_markup - std::min(markup_count_, most_markup), rules_.roots());
+    } else {
+      own.add_problem(0, bytes.error().message);
+    }
+    file->problems = own.problems();
+  }
+  if (file->markup) return file.get();
+  for (const Error& error : file->problems)
+    findings_.add_problem(map_.place_in(index, error.line), error.message);
+  return nullptr;
+}
+
+/// Writes the content of a file.
+void Expander::expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
+                           const std::string& identity, Scope& inner) {
+  const std::size_t where = element.whole().begin;
+  const int index = map_.add_text(path.string(), text.index, text.lines.line_of(where));
+  const IncludedFile* const file = read(path, identity, index);
+  if (!file || !spend(file->text.size(), text, where)) return;
+  const auto& elements = file->markup->elements;
+  markup_count_ += elements.size() + file->markup->attributes.size();
+  if (markup_count_ > most_markup)
+    return stop(text, where,
+                fmt::format("the scene, with all that it includes, has more than {} elements and "
+                            "attributes",
+                            most_markup));
+  OpenText inside{.text = file->text,
+                  .markup = *file->markup,
+                  .index = index,
+                  .folder = path.parent_path(),
+                  .identity = identity,
+                  .includer = &text};
+  const ElementPlace& root = elements.front();
+  const std::string_view name = inside.name_of(root);
+  if (std::find(rules_.roots().begin(), rules_.roots().end(), name) == rules_.roots().end())
+    return add(
+        inside, root.whole().begin,
+        fmt::format("the root element is <{}>; a file that is included must contain one of: {}",
+                    name, listed(rules_.roots())));
+  if (name == fragment_name)
+    for (const AttributePlace& attribute : file->markup->attributes_of(0))
+      add(inside, attribute.name.begin,
+          fmt::format("<{}> has no attribute {}; allowed: none", name,
+                      in_quotes(attribute.name.of(inside.text))));
+  std::size_t begin = root.whole().begin, end = root.end;
+  if (name == fragment_name || name == scene_name) {
+    begin = root.tag_end;
+    end = begin + content_of(inside, root).size();
+  }
+  begin_run(index, inside.lines.line_of(begin));
+  inner.later = later_definitions(inside);
+  expand(inside, begin, end, inner);
+  inner.later = {};
+}
+
+}  // namespace
+
+TextFiles files_on_disk(const fs::path& root) {
+  return {.identify = [root](const fs::path& path) { return identify_file(path, root); },
+          .read = [](const fs::path& path,
+                     std::size_t most_bytes) { return read_file(path, most_bytes); }};
+}
+
+std::vector<std::string_view> including_elements() {
+  std::vector<std::string_view> names = {Description<Scene>::element, Description<Surface>::element,
+                                         Description<MaterialChannels>::element,
+                                         Description<Group>::element};
+  for (const Force& kind : force_kinds()) names.push_back(kind_of(kind));
+  return names;
+}
+
+bool needs_expansion(const SourceText& source) {
+  // A $ may also be written as &#36;.
+  for (const std::string_view sign : {"$", "&#"})
+    if (source.text.find(sign) != std::string_view::npos) return true;
+  return std::any_of(source.markup.elements.begin(), source.markup.elements.end(),
+                     [&](const ElementPlace& element) {
+                       const std::string_view name = element.name.of(source.text);
+                       return name == include_name || name == define_name;
+                     });
+}
+
+std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,
+                                Findings& findings) {
+  return Expander(files, findings, scene.name).expand(scene);
+}
+
+}  // namespace pliant::xml
