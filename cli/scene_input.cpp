@@ -104,7 +104,8 @@ Result<Scene> read_scene(const std::string& scene, const Root& root, const Chang
   if (!source) return fail(source.error());
   auto read = parse_source(*source, root);
   if (!read || changes.empty()) return read;
-  if (auto changed = change_scene(*read, changes); !changed) return fail(changed.error());
+  if (auto changed = change_scene(*read, changes, root.value_or("")); !changed)
+    return fail(changed.error());
   return read;
 }
 

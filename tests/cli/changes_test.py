@@ -1,6 +1,7 @@
 """`--set` of the commands that read a scene."""
 
 import json
+import os
 
 from command import Command, animated, main
 
@@ -94,6 +95,20 @@ class Changes(Command):
         self.run_pliant("replay", "verify", log)
         self.assertIn("the changes by --set differ: poke.magnitude*=3, sheet.d=2, and none",
                       self.run_pliant("replay", "diff", log, plain, code=1).stderr)
+
+    def test_a_root_confines_the_files_of_changes(self):
+        os.mkdir(self.path("shots"))
+        for folder in ("", "shots/"):
+            self.write(folder + "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n")
+        scene = self.write("shots/a.xml", """<scene version="1" start="1" end="2">
+  <surface name="s"><mesh file="quad.obj"/></surface></scene>""")
+        inside, outside = "s.file=./quad.obj", "s.file=../quad.obj"
+        self.run_pliant("info", scene, "--set", outside)
+        self.run_pliant("info", scene, "--set", inside, "--root", self.path("shots"))
+        for command in (["info", scene], ["replay", "record", scene, "-o", self.path("a.replay")]):
+            errors = self.run_pliant(*command, "--set", outside, "--root", self.path("shots"), code=2).stderr
+            self.assertIn("--set s.file=../quad.obj: ", errors)
+            self.assertIn("the folder of --root", errors)
 
     def test_info_knows_the_changes(self):
         scene = self.scene_with("plain.xml")

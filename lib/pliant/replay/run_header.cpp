@@ -49,7 +49,8 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
 Result<Scene> scene_of(const WrittenScene& written) {
   auto scene = parse_scene(written.text, written.file.string(), written.folder, written.root);
   if (!scene || written.changes.empty()) return scene;
-  if (auto changed = change_scene(*scene, written.changes); !changed) return fail(changed.error());
+  if (auto changed = change_scene(*scene, written.changes, written.root.string()); !changed)
+    return fail(changed.error());
   return scene;
 }
 

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/mesh/file_reference.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
@@ -210,11 +211,15 @@ class Adjust {
 };
 
 // What a file would do beside the value itself.
-void settle(Scene& scene, const ValuePath& path, const Slot& slot) {
+Result<void> settle(Scene& scene, const ValuePath& path, const Slot& slot,
+                    const std::string& root) {
   if (slot.attribute.syntax == Syntax::Path) {
     auto& file = *std::get<std::string*>(slot.place);
     const fs::path folder = fs::path(scene.origin.file).parent_path();
-    if (!file.empty()) file = (folder / file).string();
+    if (!file.empty()) {
+      file = (folder / file).string();
+      if (auto below = check_below(file, root); !below) return below;
+    }
   }
   if (slot.attribute.name == "falloff") {
     for (Force& force : scene.forces)
@@ -222,16 +227,17 @@ void settle(Scene& scene, const ValuePath& path, const Slot& slot) {
   }
   // From now on the attribute counts as given.
   const std::string name = path.name == Description<Scene>::element ? "" : path.name;
-  if (scene.origin.gives(name, path.attribute)) return;
+  if (scene.origin.gives(name, path.attribute)) return {};
   const SceneLine line{name + '.' + path.attribute, std::max(1, scene.origin.line_of(name))};
   std::vector<SceneLine>& lines = scene.origin.lines;
   lines.insert(
       std::lower_bound(lines.begin(), lines.end(), line,
                        [](const SceneLine& a, const SceneLine& b) { return a.part < b.part; }),
       line);
+  return {};
 }
 
-Result<void> make_change(Scene& scene, const SceneChange& change) {
+Result<void> make_change(Scene& scene, const SceneChange& change, const std::string& root) {
   const auto path = split(change.path);
   if (!path)
     return refuse(
@@ -252,8 +258,7 @@ Result<void> make_change(Scene& scene, const SceneChange& change) {
   if (change.kind != SceneChange::Kind::Set || !path->part.empty())
     return std::visit(adjust, found->place);
   if (auto read = adjust.read(*found); !read) return read;
-  settle(scene, *path, *found);
-  return {};
+  return settle(scene, *path, *found, root);
 }
 
 template <class Member>
@@ -324,7 +329,8 @@ Result<SceneChange> parse_change(std::string_view typed) {
                   in_quotes(typed)));
 }
 
-Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes) {
+Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
+                          const std::string& root) {
   Scene changed = scene;
   for (std::size_t k = 0; k < changes.size(); ++k) {
     const SceneChange& change = changes[k];
@@ -335,16 +341,17 @@ Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes) {
       if (change.overlaps(other) || other.overlaps(change))
         return complain(fmt::format("{} changes the same value", other.typed()));
     }
-    if (const auto made = make_change(changed, change); !made)
+    if (const auto made = make_change(changed, change, root); !made)
       return complain(made.error().message);
   }
   scene = std::move(changed);
   return {};
 }
 
-Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes) {
+Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes,
+                          const std::string& root) {
   Scene changed = scene;
-  if (auto made = make_changes(changed, changes); !made) return made;
+  if (auto made = make_changes(changed, changes, root); !made) return made;
   std::vector<Error> errors = check_scene(changed);
   if (errors.empty()) errors = check_channels(changed);
   if (!errors.empty()) return fail(as_one(std::move(errors), changed.origin.file));
@@ -352,7 +359,8 @@ Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes) {
   return {};
 }
 
-Result<void> change_scene(Scene& scene, std::span<const std::string> typed) {
+Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
+                          const std::string& root) {
   std::vector<SceneChange> changes;
   for (const std::string& one : typed) {
     auto change = parse_change(one);
@@ -360,7 +368,7 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed) {
     changes.push_back(*std::move(change));
   }
   Scene changed = scene;
-  if (auto made = make_changes(changed, changes); !made)
+  if (auto made = make_changes(changed, changes, root); !made)
     return refuse("--set " + made.error().message);
   if (auto sound = change_scene(changed, std::span<const SceneChange>()); !sound) return sound;
   scene = std::move(changed);

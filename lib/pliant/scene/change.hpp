@@ -34,20 +34,23 @@ struct SceneChange {
 Result<SceneChange> parse_change(std::string_view typed);
 
 /// Makes changes, all or none, and checks the scene. Files are relative to the folder of the
-/// scene's file.
+/// scene's file, and must be in the folder `root` or below; empty: anywhere.
 ///
 /// Errors: InvalidInput, the message begins with the change as it was typed: no such object,
 /// attribute or component, with the nearest; a value that the attribute does not take, with its
 /// rule; a channel that is not numeric, or not given; two changes of one value. What `check_scene`
 /// and `check_channels` find in the changed scene.
-Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes);
+Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes,
+                          const std::string& root = {});
 
 /// The same for changes as typed after `--set`, which each message begins with. Errors: those of
 /// `parse_change` too.
-Result<void> change_scene(Scene& scene, std::span<const std::string> typed);
+Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
+                          const std::string& root = {});
 
 /// The same without the checks of the changed scene: of each value only the range.
-Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes);
+Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
+                          const std::string& root = {});
 
 /// The path of the first channel whose curve or path is adjusted, by Times or Plus or in a
 /// component; null: none is.
