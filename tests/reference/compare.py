@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Compares an engine's bakes with the reference implementation, scene by scene.
 
-    python3 compare.py PLIANT_BINARY SCENE... [--keep DIR]
+    python3 compare.py PLIANT_BINARY SCENE... [--also PLIANT_BINARY] [--keep DIR]
 
-Each scene is baked with `PLIANT_BINARY bake SCENE -o OUT.npy` and with the reference; the largest
-difference must stay within 1e-8 of the surface's peak displacement over the run, 1e-7 with exact
-motion. A surface that never moves must be exactly at rest. On a surface of triangles, so must every
-vertex that does not move, and the pieces' numbers of nodes and cells must agree. Exit 1 when a scene
-fails.
+Each scene is baked once with the reference, and with `PLIANT_BINARY bake SCENE -o OUT.npy` of each
+binary; the largest difference must stay within 1e-8 of the surface's peak displacement over the run,
+1e-7 with exact motion. A surface that never moves must be exactly at rest. On a surface of triangles,
+so must every vertex that does not move, and the pieces' numbers of nodes and cells must agree. Exit 1
+when a scene fails.
 """
 
 import argparse
@@ -111,18 +111,25 @@ def pieces_difference(told, name, reference):
     return None
 
 
-def compare_scene(binary, path, folder):
-    """Bakes and compares one scene; returns whether it agrees."""
+def compare_scene(binaries, path, folder):
+    """Bakes and compares one scene; returns whether all binaries agree."""
     scene = Scene(path)
     began = time.monotonic()
     references = bake(scene)
-    took = time.monotonic() - began
+    print(f"     {path}: reference {time.monotonic() - began:.1f} s")
+    return all([compare_binary(binary, scene, path, references, folder) for binary in binaries])
+
+
+def compare_binary(binary, scene, path, references, folder):
+    """Bakes a scene with one binary; returns whether it agrees."""
+    folder = os.path.join(folder, os.path.basename(binary))
+    os.makedirs(folder, exist_ok=True)
     out = os.path.join(folder, os.path.splitext(os.path.basename(path))[0] + ".npy")
     regions = os.path.join(folder, "regions.json")
     run = subprocess.run([binary, "bake", path, "-o", out, "--quiet", "--regions", regions],
                          capture_output=True, text=True, check=False)
     if run.returncode != 0:
-        print(f"FAIL {path}: exit {run.returncode} from bake: {run.stderr.strip()}")
+        print(f"FAIL {path}: {os.path.basename(binary)}: exit {run.returncode} from bake: {run.stderr.strip()}")
         return False
     with open(regions, encoding="utf-8") as file:
         told = json.load(file)
@@ -130,7 +137,7 @@ def compare_scene(binary, path, folder):
     for name, reference in references.items():
         file = output_path(out, scene, name)
         if not os.path.exists(file):
-            print(f"FAIL {path}: {os.path.basename(file)} was not written")
+            print(f"FAIL {path}: {os.path.basename(binary)}: {os.path.basename(file)} was not written")
             agrees = False
             continue
         positions = np.load(file)
@@ -145,9 +152,9 @@ def compare_scene(binary, path, folder):
             worst = float(np.abs(positions - reference.world).max())
             relative = worst / peak if tolerance > 0 and peak > 0 else worst
             print(f"ok   {path}: {name}: difference {relative:.2e} of peak {peak:.6g}, "
-                  f"{len(positions)} frames, reference {took:.1f} s")
+                  f"{len(positions)} frames")
         else:
-            print(f"FAIL {path}: {message}")
+            print(f"FAIL {path}: {os.path.basename(binary)}: {message}")
             agrees = False
     return agrees
 
@@ -156,13 +163,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("binary", help="the pliant executable")
     parser.add_argument("scenes", nargs="+", metavar="SCENE")
-    parser.add_argument("--keep", metavar="DIR", help="keep the engine's bakes here")
+    parser.add_argument("--also", metavar="PLIANT_BINARY", help="another executable, for the same scenes")
+    parser.add_argument("--keep", metavar="DIR", help="keep the bakes here, in a folder of each executable's name")
     arguments = parser.parse_args()
+    binaries = [binary for binary in (arguments.binary, arguments.also) if binary]
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.keep or temporary
-        os.makedirs(folder, exist_ok=True)
         failed = [path for path in arguments.scenes
-                  if not compare_scene(arguments.binary, path, folder)]
+                  if not compare_scene(binaries, path, folder)]
     count = len(arguments.scenes)
     print(f"{count - len(failed)} of {count} scenes agree")
     for path in failed:

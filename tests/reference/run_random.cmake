@@ -1,5 +1,5 @@
 # Generates random scenes, by KIND_scenes.py, and compares them.
-# usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
+# usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DALSO=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
 execute_process(COMMAND "${PYTHON}" "${REFERENCE}/${KIND}_scenes.py"
@@ -9,5 +9,5 @@ list(LENGTH scenes count)
 if(NOT count EQUAL COUNT)
   message(FATAL_ERROR "${count} scenes of ${COUNT} were made")
 endif()
-execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes}
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes} ${ALSO}
   COMMAND_ERROR_IS_FATAL ANY)

@@ -9,7 +9,7 @@ import tempfile
 import numpy as np
 
 from random_yield import has_yields, with_yields
-from well_posed import trouble_of
+from well_posed import amplifies_noise, trouble_of
 
 
 def make_scene(kind, prefix, seed, index, folder, rejections):
@@ -31,7 +31,7 @@ def make_scene(kind, prefix, seed, index, folder, rejections):
                 with open(trial, "w", encoding="utf-8") as stream:
                     stream.write(text)
                 try:
-                    trouble, peak, diagnostics = trouble_of(trial)
+                    trouble, peak, diagnostics, results = trouble_of(trial)
                 except AssertionError as error:
                     trouble, peak = f"not legal ({str(error).split('=')[0]})", 0.0
                     break
@@ -43,7 +43,10 @@ def make_scene(kind, prefix, seed, index, folder, rejections):
                                 for surface, stress in diagnostics.stresses.items() if stress}
                     continue
                 factor *= 0.3 / peak
-            if trouble is None and not 0.03 <= peak <= 1.0:
+            is_moved = 0.03 <= peak <= 1.0
+            if trouble is None and (is_moved or peak == 0) and amplifies_noise(trial, results):
+                trouble = "the reference amplifies noise"
+            if trouble is None and not is_moved:
                 # A few scenes without motion are wanted: they must stay exactly at rest.
                 if peak > 0 or rng.random() > 0.05:
                     trouble = "too little or too much motion"
