@@ -1,6 +1,7 @@
 // Verifies every golden replay with this build: with the kernels of every width that the machine
-// has, and with several numbers of threads; with --lanes only the former, with --turns each replay
-// with one width, in turn, with --threads only with three threads, with --once in one way only.
+// has, and with several numbers of threads, each at least once; with --lanes with every width and
+// one thread, with --turns each replay with one width, in turn, with --threads only with three
+// threads, with --once in one way only.
 // --bless records all of them again, and prints new ones and differences.
 // docs/replay.md, "Golden replays".
 //
@@ -49,21 +50,25 @@ struct Run {
   int threads = 1;
 
   std::string name() const {
-    return lanes == widest_lanes ? fmt::format("{} threads", threads)
-                                 : fmt::format("{} doubles a vector", lanes);
+    if (lanes == widest_lanes) return fmt::format("{} threads", threads);
+    return fmt::format("{} doubles a vector, {} threads", lanes, threads);
   }
 };
 
-// By the program's option; without one all of them.
+// By the program's option.
 std::vector<Run> runs_to_do(std::string_view option) {
   if (option == "--once") return {Run{}};
+  if (option == "--threads") return {Run{.threads = 3}};
   std::vector<Run> runs;
   for (int k = 0; const PlateKernels* kernels = runnable_kernels(k); ++k) {
-    if (option != "--threads") runs.push_back({.lanes = kernels->lanes});
+    runs.push_back({.lanes = kernels->lanes});
   }
-  for (const int threads : {2, 3, 8}) {
-    const bool is_wanted = option.empty() || (option == "--threads" && threads == 3);
-    if (is_wanted) runs.push_back({.threads = threads});
+  if (!option.empty()) return runs;
+  // Numbers of threads beside widths: a run shows both.
+  constexpr std::array threads = {1, 2, 3, 8};
+  for (std::size_t k = 0; k < threads.size(); ++k) {
+    if (k == runs.size()) runs.push_back(runs[0]);
+    runs[k].threads = threads[k];
   }
   return runs;
 }
