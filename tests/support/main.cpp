@@ -1,5 +1,6 @@
 // Runs the tests. A test that starts a thread must have the tag [threads], by which the thread
-// sanitizer's build chooses its tests: without it the run fails.
+// sanitizer's build chooses its tests: without it the run fails. When a sanitizer ends the run, it
+// says in which test.
 
 #include <atomic>
 #include <cstdio>
@@ -27,12 +28,16 @@ namespace {
 
 std::atomic<int> started_threads = 0;
 std::vector<std::string> untagged_tests;  // that started a thread
+std::string current_test;
 
 class ThreadWatch : public EventListener {
  public:
   using EventListener::EventListener;
 
-  void testCaseStarting(const Catch::TestCaseInfo&) override { started_threads = 0; }
+  void testCaseStarting(const Catch::TestCaseInfo& test) override {
+    started_threads = 0;
+    current_test = test.name;
+  }
 
   void testCaseEnded(const Catch::TestCaseStats& stats) override {
     if (started_threads == 0) return;
@@ -57,10 +62,18 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
 }
 #endif
 
+#ifdef PLIANT_SANITIZED
+extern "C" void __sanitizer_set_death_callback(void (*callback)());
+#endif
+
 // assimp 5.2 leaks memory if it refuses a file. Only the address sanitizer calls this.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
 int main(int count, char* arguments[]) {
+#ifdef PLIANT_SANITIZED
+  __sanitizer_set_death_callback(
+      [] { std::fprintf(stderr, "in the test \"%s\"\n", current_test.c_str()); });
+#endif
   const int failed = Catch::Session().run(count, arguments);
   for (const std::string& name : untagged_tests) {
     std::fprintf(stderr, "the test \"%s\" starts a thread, but lacks the tag [threads]\n",
