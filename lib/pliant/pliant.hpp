@@ -3,6 +3,7 @@
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
 #include "pliant/feedback/preview.hpp"
+#include "pliant/feedback/suggestion.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/replay/replay.hpp"
 #include "pliant/scene/changed_text.hpp"
