@@ -14,6 +14,7 @@
 #include "interrupt.hpp"
 #include "replay.hpp"
 #include "report.hpp"
+#include "suggest.hpp"
 #include "usage.hpp"
 #include "validate.hpp"
 #include "view.hpp"
@@ -39,6 +40,8 @@ int run(int count, char* arguments[]) {
   add_validate(app, validate);
   InfoOptions info;
   add_info(app, info);
+  SuggestOptions suggest;
+  add_suggest(app, suggest);
   ReplayCommandOptions replay;
   add_replay(app, replay);
   ViewOptions view;
@@ -63,6 +66,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
+  if (app.got_subcommand("suggest")) return run_suggest(suggest);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
   return run_bake(bake);
