@@ -85,6 +85,38 @@ Json region_json(const RegionPreview& region) {
   return json;
 }
 
+Json previews_json(const SceneFacts& facts, Preview::Of of, std::size_t index) {
+  Json json = Json::array();
+  for (const Preview& preview : facts.previews) {
+    if (preview.of != of || preview.index != index) continue;
+    json.push_back(preview_json(preview, facts.scene));
+  }
+  return json;
+}
+
+template <int D>
+Json keys_json(const Channel<D>& channel, bool is_switch = false) {
+  Json json = Json::array();
+  for (const auto& key : channel.curve().keys().keys) {
+    Json value;
+    if constexpr (D == 1) {
+      value = is_switch ? Json(key.value[0] != 0) : Json(key.value[0]);
+    } else {
+      value = key.value;
+    }
+    json.push_back({{"frame", key.frame}, {"value", value}});
+  }
+  return json;
+}
+
+struct KeysJson {
+  Json operator()(const Channel<1>* channel) const { return keys_json(*channel); }
+  Json operator()(const Channel<3>* channel) const { return keys_json(*channel); }
+  Json operator()(const Switch* channel) const { return keys_json(channel->channel(), true); }
+};
+
+}  // namespace
+
 Json preview_json(const Preview& preview, const Scene& scene) {
   Json json = {{"surface", scene.surfaces[preview.surface].name}};
   const bool is_force = preview.of == Preview::Of::Force;
@@ -121,38 +153,6 @@ Json preview_json(const Preview& preview, const Scene& scene) {
   }
   return json;
 }
-
-Json previews_json(const SceneFacts& facts, Preview::Of of, std::size_t index) {
-  Json json = Json::array();
-  for (const Preview& preview : facts.previews) {
-    if (preview.of != of || preview.index != index) continue;
-    json.push_back(preview_json(preview, facts.scene));
-  }
-  return json;
-}
-
-template <int D>
-Json keys_json(const Channel<D>& channel, bool is_switch = false) {
-  Json json = Json::array();
-  for (const auto& key : channel.curve().keys().keys) {
-    Json value;
-    if constexpr (D == 1) {
-      value = is_switch ? Json(key.value[0] != 0) : Json(key.value[0]);
-    } else {
-      value = key.value;
-    }
-    json.push_back({{"frame", key.frame}, {"value", value}});
-  }
-  return json;
-}
-
-struct KeysJson {
-  Json operator()(const Channel<1>* channel) const { return keys_json(*channel); }
-  Json operator()(const Channel<3>* channel) const { return keys_json(*channel); }
-  Json operator()(const Switch* channel) const { return keys_json(channel->channel(), true); }
-};
-
-}  // namespace
 
 std::string info_json(const SceneFacts& facts) {
   const Scene& scene = facts.scene;

@@ -15,6 +15,7 @@
 #include "interrupt.hpp"
 #include "replay.hpp"
 #include "report.hpp"
+#include "suggest.hpp"
 #include "usage.hpp"
 #include "validate.hpp"
 #include "view.hpp"
@@ -42,6 +43,8 @@ int run(int count, char* arguments[]) {
   add_info(app, info);
   FormatOptions format;
   add_format(app, format);
+  SuggestOptions suggest;
+  add_suggest(app, suggest);
   ReplayCommandOptions replay;
   add_replay(app, replay);
   ViewOptions view;
@@ -67,6 +70,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);
   if (app.got_subcommand("format")) return run_format(format);
+  if (app.got_subcommand("suggest")) return run_suggest(suggest);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
   return run_bake(bake);

@@ -27,7 +27,8 @@ struct RegionPreview {
                                   ///< shows it: including what its steps damp
   Settling settling;              ///< to 5 % at the node of the static peak, as the animation shows
                                   ///< it
-  bool is_held = true;            ///< false: then only the frequency and its ratio are known
+  bool is_held = true;            ///< false: then only frequencies and ratios are known, of its
+                                  ///< slowest vibration
   bool has_vibration = false;     ///< false: too many nodes, or none that moves; then the values of
                                   ///< vibrations are 0
   std::size_t solver_memory = 0;  ///< of the solver that found the vibrations [bytes]

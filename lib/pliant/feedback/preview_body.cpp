@@ -15,22 +15,10 @@
 namespace pliant {
 namespace {
 
-// The vibration of a node that is most visible: the one with the largest product of share and
-// period. By share alone it might be one of a bundle of fast ones, which fade at once.
-double seen_lambda(std::span<const ExcitedMode> modes) {
-  const auto weight = [](const ExcitedMode& mode) {
-    return std::abs(mode.share) / std::sqrt(mode.lambda);
-  };
-  return std::max_element(
-             modes.begin(), modes.end(),
-             [&](const auto& one, const auto& other) { return weight(one) < weight(other); })
-      ->lambda;
-}
-
-// The dynamics that a vibration of a shape feels: a map of damping counts by its mean over the
-// shape's squares, relative to that of density, which the shape's eigenvalue knows already. `maps`:
-// the factors of density and damping of each unknown; `shape`: its displacements.
-Dynamics felt_dynamics(const Dynamics& dynamics, const Field& maps, const Field& shape) {
+// What a map of damping makes of it in a vibration of a shape: its mean over the shape's squares,
+// relative to that of density, which the shape's eigenvalue knows already. `maps`: the factors of
+// density and damping of each unknown; `shape`: its displacements.
+double drag_of(const Field& maps, const Field& shape) {
   const bool has_shape = !shape.isZero(0);
   double inertia = 0, drag = 0;
   for (Eigen::Index k = 0; k < shape.rows(); ++k) {
@@ -38,7 +26,7 @@ Dynamics felt_dynamics(const Dynamics& dynamics, const Field& maps, const Field&
     inertia += weight * maps(k, 0);
     drag += weight * maps(k, 1);
   }
-  return {dynamics.density, inertia > 0 ? dynamics.damping * (drag / inertia) : dynamics.damping};
+  return inertia > 0 ? drag / inertia : 1;
 }
 
 // The factors of density and damping at nodes, in the first two of three columns.
@@ -49,6 +37,11 @@ Field maps_of(const NodeFactors& factors, std::span<const int> nodes) {
     maps(static_cast<Eigen::Index>(k), 1) = factor_at(factors.damping, nodes[k]);
   }
   return maps;
+}
+
+Dynamics felt_by(const RegionMotion& motion, const BodyInputs& inputs) {
+  return motion.felt(inputs.dynamics.density,
+                     inputs.damping_ratio.value_or(inputs.dynamics.damping));
 }
 
 }  // namespace
@@ -211,8 +204,8 @@ std::vector<RegionPreview> regions_of(const StepPlan& plan) {
   return regions;
 }
 
-Result<RegionPreview> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
-                                              std::size_t k, RegionPreview region) const {
+Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
+                                             std::size_t k, RegionPreview region) const {
   if (plan.surface) return piece_vibrations(inputs, *plan.surface, k, std::move(region));
   return patch_vibrations(inputs, std::move(region));
 }
@@ -232,8 +225,8 @@ void PreviewBody::set_natural(const BodyInputs& inputs, const Dynamics& dynamics
   region.damping_ratio = natural.damping_ratio;
 }
 
-Result<RegionPreview> PreviewBody::unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
-                                                    std::size_t k, RegionPreview region) const {
+Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
+                                                   std::size_t k, RegionPreview region) const {
   const auto smallest = [&]() -> Result<double> {
     if (!plan.surface) {
       const auto solver = make_plate_solver(SolverChoice::Auto, context_);
@@ -250,17 +243,16 @@ Result<RegionPreview> PreviewBody::unheld_vibration(const BodyInputs& inputs, co
   const auto lambda = smallest();
   if (!lambda) return fail(lambda.error());
   region.is_held = false;
-  if (*lambda == 0) return region;
-  const bool has_ratio = inputs.asks_for_vibrations();
-  set_natural(inputs,
-              has_ratio ? damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, *lambda)
-                        : inputs.dynamics,
-              *lambda, region);
-  return region;
+  if (*lambda == 0) return MovingRegion{std::move(region)};
+  const RegionMotion motion = motion_of(inputs, {{*lambda, 1}}, *lambda, 1);
+  const Dynamics felt = felt_by(motion, inputs);
+  set_natural(inputs, felt, *lambda, region);
+  region.animated = motion.swing(felt);
+  return MovingRegion{std::move(region), motion};
 }
 
-Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
-                                                    RegionPreview region) const {
+Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs,
+                                                   RegionPreview region) const {
   const std::vector<Patch>& patches = region.region.patches;
   const Patch* moved = &patches[0];
   int most = 0;
@@ -274,7 +266,9 @@ Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
   }
   const Box& box = moved->box;
   const PlateSystem system = system_of(inputs, *moved);
-  if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) return region;
+  if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) {
+    return MovingRegion{std::move(region)};
+  }
   const auto solver = make_plate_solver(SolverChoice::Auto, context_);
   const auto plate = vibrating(*solver, system);
   if (!plate) return fail(plate.error());
@@ -288,22 +282,20 @@ Result<RegionPreview> PreviewBody::patch_vibrations(const BodyInputs& inputs,
     least = std::min(least, *lambda);
   }
   const Field ways = interior_of(system.outline, displacements(box));
-  Dynamics felt = inputs.dynamics;
+  double drag = 1;
   if (system.factors) {
     std::vector<int> nodes(static_cast<std::size_t>(system.outline.grid().node_count()));
     std::iota(nodes.begin(), nodes.end(), 0);
-    felt = felt_dynamics(felt, interior_of(system.outline, maps_of(*system.factors, nodes)), ways);
+    drag = drag_of(interior_of(system.outline, maps_of(*system.factors, nodes)), ways);
   }
-  if (auto added = add_vibrations(inputs, *plate, felt, ways, least, region); !added) {
-    return fail(added.error());
-  }
-  region.solver_memory = solver->memory();
-  return region;
+  auto moving = add_vibrations(inputs, *plate, drag, ways, least, std::move(region));
+  if (moving) moving->preview.solver_memory = solver->memory();
+  return moving;
 }
 
-Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
-                                                    const SurfaceSelection& selection,
-                                                    std::size_t k, RegionPreview region) const {
+Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
+                                                   const SurfaceSelection& selection, std::size_t k,
+                                                   RegionPreview region) const {
   const SurfacePiece& piece = selection.pieces[k];
   std::vector<int> nodes;
   for (int n = 0; n < piece.free_nodes; ++n) {
@@ -312,7 +304,7 @@ Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   const Field ways = displacements(nodes);
   const Field world = vectors_to_world(inputs.transform, ways);
   region.static_peak = std::sqrt(world.rowwise().squaredNorm().maxCoeff());
-  if (piece.free_nodes > most_factored_unknowns) return region;
+  if (piece.free_nodes > most_factored_unknowns) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
   TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
                           factors_of(*shape_.surface, selection.level_set, piece, factors));
@@ -320,22 +312,20 @@ Result<RegionPreview> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   const Bending bending = bending_of(inputs, shape_.surface->unit, border, factors);
   const auto plate = vibrating(triangles, bending);
   if (!plate) return fail(plate.error());
-  const Dynamics felt =
-      factors ? felt_dynamics(inputs.dynamics, maps_of(*factors, nodes), ways) : inputs.dynamics;
+  const double drag = factors ? drag_of(maps_of(*factors, nodes), ways) : 1;
   constexpr double none = std::numeric_limits<double>::infinity();
-  if (auto added = add_vibrations(inputs, *plate, felt, ways, none, region); !added) {
-    return fail(added.error());
-  }
-  region.solver_memory = triangles.memory();
-  return region;
+  auto moving = add_vibrations(inputs, *plate, drag, ways, none, std::move(region));
+  if (moving) moving->preview.solver_memory = triangles.memory();
+  return moving;
 }
 
-// `ways`: the displacement of each unknown, object space. `least`: the smallest eigenvalue of other
-// plates of the region, if that matters.
-Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
-                                         const Dynamics& felt, const Field& ways, double least,
-                                         RegionPreview& region) const {
-  if (!(plate.masses.sum() > 0)) return {};  // a map makes all of it weightless
+// `drag`: of the map of damping in the shape of `ways`, the displacement of each unknown, object
+// space. `least`: the smallest eigenvalue of other plates of the region, if that matters.
+Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
+                                                 const VibratingPlate& plate, double drag,
+                                                 const Field& ways, double least,
+                                                 RegionPreview region) const {
+  if (!(plate.masses.sum() > 0)) return MovingRegion{std::move(region)};  // a map: no weight
   std::vector<ExcitedMode> modes;
   Eigen::Index node = 0;
   const Field world = vectors_to_world(inputs.transform, ways);
@@ -351,16 +341,36 @@ Result<void> PreviewBody::add_vibrations(const BodyInputs& inputs, const Vibrati
   const auto lambda = smallest_eigenvalue(plate);
   if (!lambda) return fail(lambda.error());
   if (modes.empty()) modes.push_back({*lambda, 1});
-  least = std::min(least, *lambda);
-  const Dynamics dynamics = inputs.asks_for_vibrations()
-                                ? damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, least)
-                                : felt;
-  const TimeSteps steps = steps_of(inputs, real_->settings(), shape_.factors.get());
-  if (dynamics.density > 0) set_natural(inputs, dynamics, least, region);
-  region.animated = stepped_swing(seen_lambda(modes), dynamics, steps, frame_seconds_);
-  region.settling = settling_of(modes, dynamics, steps, frame_seconds_);
-  region.has_vibration = true;
-  return {};
+  MovingRegion moving{std::move(region),
+                      motion_of(inputs, std::move(modes), std::min(least, *lambda), drag)};
+  const RegionMotion& motion = *moving.motion;
+  const Dynamics felt = felt_by(motion, inputs);
+  if (felt.density > 0) set_natural(inputs, felt, motion.slowest, moving.preview);
+  moving.preview.animated = motion.swing(felt);
+  moving.preview.settling = motion.settling(felt);
+  moving.preview.has_vibration = true;
+  return moving;
+}
+
+RegionMotion PreviewBody::motion_of(const BodyInputs& inputs, std::vector<ExcitedMode> modes,
+                                    double slowest, double drag) const {
+  BodyInputs own;
+  own.frame_length = inputs.frame_length;
+  own.dt = inputs.dt;
+  const auto steps = [&](const Dynamics& dynamics) {
+    own.dynamics = dynamics;
+    return steps_of(own, real_->settings());
+  };
+  return {.modes = std::move(modes),
+          .slowest = slowest,
+          .drag = drag,
+          .has_ratio = inputs.damping_ratio.has_value(),
+          .frame_seconds = frame_seconds_,
+          .interval = inputs.frame_length,
+          .stepping = real_->settings().stepping,
+          .swinging = steps({1, 1}),
+          .creeping = steps({0, 1}),
+          .still = steps({0, 0})};
 }
 
 }  // namespace pliant

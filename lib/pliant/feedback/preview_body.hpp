@@ -9,6 +9,7 @@
 #include "pliant/body/body.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/feedback/preview.hpp"
+#include "pliant/feedback/region_motion.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/scene.hpp"
@@ -21,6 +22,12 @@ inline constexpr int most_factored_unknowns = 50'000;
 
 /// The regions of a plan, or its pieces, without their vibrations. Internal to feedback.
 std::vector<RegionPreview> regions_of(const StepPlan& plan);
+
+/// A region with its vibrations. Internal to feedback.
+struct MovingRegion {
+  RegionPreview preview;
+  std::optional<RegionMotion> motion = {};  ///< null: it has none
+};
 
 // A body for trying forces, for `preview_forces`; internal to feedback. It is the engine's own
 // `Body`, so that a preview and a bake agree. *Plain* means: elastic about its rest shape and
@@ -72,29 +79,30 @@ class PreviewBody {
 
   /// The vibrations of a settled region when it is released, for its patch with the peak: those of
   /// region or piece `k` of `plan`. Requires: it is settled under `inputs`; `region.is_solvable`.
-  Result<RegionPreview> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
-                                   RegionPreview region) const;
+  Result<MovingRegion> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
+                                  RegionPreview region) const;
 
   /// The frequency of the slowest vibration and its damping ratio, of region or piece `k` of a plan
   /// that nothing holds. Requires: `region.is_solvable`; inputs with density.
-  Result<RegionPreview> unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
-                                         std::size_t k, RegionPreview region) const;
+  Result<MovingRegion> unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
+                                        std::size_t k, RegionPreview region) const;
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   std::unique_ptr<Body> make(Reference reference) const;
   Field displacements(const Box& box) const;
   Field displacements(std::span<const int> nodes) const;
-  Result<RegionPreview> patch_vibrations(const BodyInputs& inputs, RegionPreview region) const;
-  Result<RegionPreview> piece_vibrations(const BodyInputs& inputs,
-                                         const SurfaceSelection& selection, std::size_t k,
-                                         RegionPreview region) const;
+  Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region) const;
+  Result<MovingRegion> piece_vibrations(const BodyInputs& inputs, const SurfaceSelection& selection,
+                                        std::size_t k, RegionPreview region) const;
   PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;
   void set_natural(const BodyInputs& inputs, const Dynamics& dynamics, double lambda,
                    RegionPreview& region) const;
-  Result<void> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
-                              const Dynamics& felt, const Field& ways, double least,
-                              RegionPreview& region) const;
+  Result<MovingRegion> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
+                                      double drag, const Field& ways, double least,
+                                      RegionPreview region) const;
+  RegionMotion motion_of(const BodyInputs& inputs, std::vector<ExcitedMode> modes, double slowest,
+                         double drag) const;
 
   const RestShape& shape_;
   const Surface& surface_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
@@ -78,6 +79,14 @@ Result<void> AtomicFile::write(std::string_view bytes) {
 Result<void> AtomicFile::write(std::span<const double> numbers) { return write(bytes_of(numbers)); }
 
 Result<void> AtomicFile::write(std::span<const float> numbers) { return write(bytes_of(numbers)); }
+
+Result<void> AtomicFile::keep_permissions() {
+  PLIANT_EXPECTS(stream_);
+  struct stat old = {};
+  if (::stat(file_.c_str(), &old) != 0) return {};
+  if (fchmod(fileno(stream_.get()), old.st_mode & 07777U) != 0) return unwritable(errno);
+  return {};
+}
 
 Result<void> AtomicFile::commit() { return commit_as(file_); }
 

@@ -34,6 +34,10 @@ class AtomicFile {
   Result<void> write(std::span<const double> numbers);  ///< little-endian
   Result<void> write(std::span<const float> numbers);   ///< little-endian
 
+  /// Gives it the permissions of the file that it will replace, if there is one. Errors:
+  /// Unwritable.
+  Result<void> keep_permissions();
+
   /// Gives the file its name. Errors: Unwritable. Requires: not committed before.
   Result<void> commit();
 

@@ -33,6 +33,19 @@ Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene, boo
   return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
 }
 
+// What `work` returns, given what a simulation leaves of the memory.
+template <class Work>
+auto beside(const Simulation& simulation, const SimulationOptions& options, const Work& work)
+    -> decltype(work(RunContext())) {
+  MemoryBudget memory(options.max_memory);
+  MemoryShare surfaces(&memory);
+  const std::size_t bytes = simulation.surface_memory();
+  if (!surfaces.try_resize(std::min(options.max_memory, bytes))) {
+    return fail(ErrorCode::OutOfMemory, "simulating the surfaces " + surfaces.complaint(bytes));
+  }
+  return work(RunContext{.memory = &memory, .should_stop = options.should_stop});
+}
+
 }  // namespace
 
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
@@ -115,14 +128,16 @@ Profile Simulation::profile() const { return player_->bodies().profile(); }
 
 Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options) {
-  MemoryBudget memory(options.max_memory);
-  MemoryShare surfaces(&memory);
-  const std::size_t bytes = simulation.surface_memory();
-  if (!surfaces.try_resize(std::min(options.max_memory, bytes))) {
-    return fail(ErrorCode::OutOfMemory, "simulating the surfaces " + surfaces.complaint(bytes));
-  }
-  return preview_forces(simulation.scene(), simulation.rest_shapes(),
-                        {.memory = &memory, .should_stop = options.should_stop});
+  return beside(simulation, options, [&](const RunContext& context) {
+    return preview_forces(simulation.scene(), simulation.rest_shapes(), context);
+  });
+}
+
+Result<Suggestion> suggest_material(const Simulation& simulation, const MotionGoals& goals,
+                                    const SimulationOptions& options) {
+  return beside(simulation, options, [&](const RunContext& context) {
+    return suggest_material(simulation.scene(), simulation.rest_shapes(), goals, context);
+  });
 }
 
 }  // namespace pliant

@@ -15,6 +15,7 @@
 #include "pliant/core/run_context.hpp"
 #include "pliant/feedback/frame_report.hpp"
 #include "pliant/feedback/preview.hpp"
+#include "pliant/feedback/suggestion.hpp"
 #include "pliant/feedback/warnings.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/sampling/rest_shape.hpp"
@@ -172,5 +173,10 @@ class Simulation {
 /// `options.max_memory`. Errors: further OutOfMemory.
 Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options = {});
+
+/// Finds numbers for a motion, as `suggest_material` of feedback/suggestion.hpp, within
+/// `options.max_memory`. Errors: further OutOfMemory.
+Result<Suggestion> suggest_material(const Simulation& simulation, const MotionGoals& goals,
+                                    const SimulationOptions& options = {});
 
 }  // namespace pliant
