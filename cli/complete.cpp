@@ -52,7 +52,9 @@ void pass_option(Place& place, std::string_view word) {
 void pass_word(Place& place, std::string_view word) {
   if (place.option) {
     // An option with several values continues until the next option.
-    if (place.option->get_items_expected_max() == 1) place.option = nullptr;
+    const bool takes_one =
+        place.option->get_items_expected_max() == 1 || !place.option->get_allow_extra_args();
+    if (takes_one) place.option = nullptr;
     place.may_end = place.option != nullptr;
     return;
   }
