@@ -17,7 +17,7 @@ namespace {
 constexpr const char* name = "standard input";
 
 // One byte more than `parse_scene` accepts, to detect a scene that is too large.
-constexpr std::size_t most_bytes = (std::size_t{256} << 20U) + 1;
+constexpr std::size_t most_bytes = largest_scene_file + 1;
 
 tl::unexpected<Error> interruption() {
   return fail(ErrorCode::Interrupted, "interrupted before the first frame");

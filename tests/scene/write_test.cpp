@@ -4,115 +4,12 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "pliant/scene/description.hpp"
 #include "scene/scene_text.hpp"
+#include "support/scene_values.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant::testing {
 namespace {
-
-/// What a scene says, member by member: two scenes that say the same are the same.
-class Says {
- public:
-  explicit Says(const Scene& scene) {
-    describe(*this, scene);
-    for (const Surface& surface : scene.surfaces) {
-      describe(*this, surface);
-      std::visit([this](const auto& shape) { add(shape); }, surface.shape);
-      describe(*this, surface.reading);
-      if (surface.subdivision) describe(*this, *surface.subdivision);
-      describe(*this, surface.transform);
-      describe(*this, surface.material);
-      describe(*this, surface.tangents);
-      describe(*this, surface.solver);
-    }
-    for (const Force& force : scene.forces) {
-      text_ += std::string(kind_of(force)) + " in " + force.group + '\n';
-      describe(*this, force);
-      std::visit([this](const auto& kind) { describe(*this, kind); }, force.kind);
-      if (force.falloff_curve) add(force.falloff_curve->keys());
-    }
-    for (const Group& group : scene.groups) describe(*this, group);
-  }
-
-  void operator()(const Attribute&) {}
-  template <class T>
-  void operator()(const Attribute& attribute, const T& value) {
-    text_ += std::string(attribute.name) + ": ";
-    add(value);
-    text_ += '\n';
-  }
-
-  friend bool operator==(const Says& a, const Says& b) {
-    return a.text_ == b.text_ && a.scalar_ == b.scalar_ && a.vector_ == b.vector_;
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  void add(double number) { text_ += fmt::format("{} ", number); }
-  void add(std::uint64_t number) { text_ += fmt::format("{} ", number); }
-  void add(int number) { text_ += fmt::format("{} ", number); }
-  void add(bool value) { text_ += value ? "true " : "false "; }
-  void add(const std::string& text) { text_ += text + ' '; }
-  template <class E>
-  requires std::is_enum_v<E>
-  void add(E value) { add(static_cast<int>(value)); }
-  template <class T>
-  void add(const std::optional<T>& value) {
-    if (value) add(*value);
-  }
-  template <class T>
-  void add(const std::vector<T>& values) {
-    for (const T& value : values) add(value);
-  }
-  void add(const Edges& edges) {
-    for (const Edge edge : {edges.u0, edges.u1, edges.v0, edges.v1}) add(edge);
-  }
-  void add(const Value<1>& value) { add(value[0]); }
-  void add(const Value<2>& value) {
-    for (const double number : value) add(number);
-  }
-  void add(const Value<3>& value) {
-    for (const double number : value) add(number);
-  }
-  void add(const CurveKeys<1>& keys) { scalar_.push_back(keys); }
-  void add(const CurveKeys<3>& keys) { vector_.push_back(keys); }
-  template <int D>
-  void add(const Channel<D>& channel) {
-    text_ += fmt::format("{}D ", D);
-    if (channel.is_animated()) return add(channel.curve().keys());
-    add(channel.at(0));
-  }
-  void add(const Switch& channel) { add(channel.channel()); }
-  void add(const TangentChannel& tangent) {
-    std::visit([this](const auto& channel) { add(channel); }, tangent);
-  }
-  void add(const PositionChannel& position) {
-    if (position.channel()) return add(*position.channel());
-    add(position.path()->path.waypoints());
-    add(position.path()->path.is_closed());
-    add(position.path()->progress);
-  }
-  void add(const GridSheet& sheet) { describe(*this, sheet); }
-  void add(const MeshFile& mesh) { describe(*this, mesh); }
-  void add(const NurbsNet& net) {
-    describe(*this, net);
-    for (const NurbsDirection* const direction : {&net.u, &net.v}) {
-      add(direction->is_closed);
-      add(direction->knots);
-    }
-    add(net.weights);
-    for (const double coordinate : net.points.reshaped()) add(coordinate);
-  }
-  void add(const Mesh&) { FAIL("a scene file has no such mesh"); }
-
-  std::string text_;
-  std::vector<CurveKeys<1>> scalar_;
-  std::vector<CurveKeys<3>> vector_;
-};
 
 void check_round_trip(const Scene& scene, const std::string& folder) {
   const Result<std::string> text = to_xml(scene, folder);
@@ -122,8 +19,7 @@ void check_round_trip(const Scene& scene, const std::string& folder) {
   if (!again)
     for (const std::string& line : to_lines(again.error())) UNSCOPED_INFO(line);
   REQUIRE(again);
-  CHECK(Says(*again).text() == Says(scene).text());
-  CHECK(Says(*again) == Says(scene));
+  CHECK(SceneValues(*again).texts() == SceneValues(scene).texts());
   CHECK(to_xml(*again, folder).value() == *text);
 }
 

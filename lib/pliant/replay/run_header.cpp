@@ -52,7 +52,7 @@ Result<Scene> scene_of(const WrittenScene& written) {
 }  // namespace
 
 Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root) {
-  auto text = read_file(file, std::size_t{256} << 20);  // the same limit as `load_scene`
+  auto text = read_file(file, largest_scene_file);
   if (!text) return fail(text.error());
   return WrittenScene{.file = file, .text = *std::move(text), .root = root};
 }

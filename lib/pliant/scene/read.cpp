@@ -26,8 +26,6 @@ using namespace xml;
 
 namespace {
 
-constexpr std::size_t largest_file = std::size_t{256} << 20U;  // bytes
-
 /// Appends all children that have a valid name, whatever their other problems, and those of groups.
 void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& named) {
   for (const auto* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
@@ -129,7 +127,7 @@ std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneF
 }  // namespace
 
 Result<Scene> load_scene(const std::string& file, const std::string& root) {
-  const Result<std::string> text = read_file(file, largest_file);
+  const Result<std::string> text = read_file(file, largest_scene_file);
   if (!text) return fail(text.error());
   return parse_scene(*text, file, std::filesystem::path(file).parent_path(), root);
 }
@@ -139,9 +137,9 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
   // An empty root would mean each mesh's own folder.
   const std::string own = folder.empty() ? "." : folder;
   SceneFile file{.folder = folder, .root = root.empty() ? own : root, .findings = Findings(name)};
-  if (text.size() > largest_file)
+  if (text.size() > largest_scene_file)
     return fail(ErrorCode::InvalidInput,
-                fmt::format("the scene is larger than {} MiB", largest_file >> 20U), name);
+                fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);
   if (!scan_markup(text, file.findings)) return fail(file.findings.to_error());
 
   tinyxml2::XMLDocument document;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -7,6 +8,9 @@
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
+
+/// The most bytes of a scene file.
+inline constexpr std::size_t largest_scene_file = std::size_t{256} << 20U;
 
 /// Reads a scene file, version 1 (docs/scene-format.md). Mesh paths are relative to its folder;
 /// `Simulation::make` reads the meshes. A mesh may be anywhere, but the files it refers to must be

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
+#include "pliant/scene/curve_text.hpp"
+#include "pliant/scene/element_text.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/path.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -23,21 +24,13 @@ using namespace xml;
 
 namespace {
 
-/// Indents by two blanks.
-class Printer : public tinyxml2::XMLPrinter {
- protected:
-  void PrintSpace(int depth) override {
-    for (int k = 0; k < depth; ++k) Write("  ");
-  }
-};
-
 class SceneWriter {
  public:
   explicit SceneWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void write(const Scene& scene);
 
-  std::string text() const { return printer_.CStr(); }
+  std::string text() const { return text_of(top_.children.front()) + '\n'; }
 
  private:
   void write(const Surface& surface);
@@ -63,96 +56,37 @@ class SceneWriter {
   template <class Other>
   void write_channel(const Attribute&, const Other&) {}  // not a channel
 
-  template <int D>
-  void write_curve(std::string_view element, std::string_view attribute, const Curve<D>& curve,
-                   ValueKind kind);
-  template <int D>
-  void write_key(const Key<D>& key, KeyAxis axis, ValueKind kind);
   void write_path(std::string_view attribute, const PathMotion& motion);
-  void write_attributes(const Table& table, const Table& standard);
+  void write_attributes(const Table& table, const Table& standard) {
+    add_attributes(*current_, table, standard);
+  }
+
+  void give(std::string_view name, std::string_view value) {
+    current_->attributes.emplace_back(name, value);
+  }
 
   template <class Write>
   void element(std::string_view name, const Write& write_content) {
-    const std::string own(name);  // the printer keeps only a pointer to it
-    printer_.OpenElement(own.c_str());
+    ElementText* const parent = std::exchange(current_, &current_->children.emplace_back());
+    current_->name = name;
     write_content();
-    printer_.CloseElement();
+    current_ = parent;
+  }
+  template <int D>
+  void write_curve(std::string_view attribute, const Curve<D>& curve, ValueKind kind) {
+    current_->children.push_back(curve_element(attribute, curve.keys(), kind));
   }
 
-  Printer printer_;
+  ElementText top_ = {};          // contains the root
+  ElementText* current_ = &top_;  // that is being written
   std::filesystem::path folder_;
 };
-
-/// The attributes that differ from `standard`, a table of the same rows with the default values,
-/// and those that are required.
-void SceneWriter::write_attributes(const Table& table, const Table& standard) {
-  for (std::size_t k = 0; k < table.size(); ++k) {
-    const Attribute& attribute = table[k].attribute;
-    const std::string& text = table[k].text;
-    const bool is_needed = attribute.need == Need::Required && !text.empty();
-    if (is_needed || text != standard[k].text)
-      if (!text.empty()) printer_.PushAttribute(std::string(attribute.name).c_str(), text.c_str());
-  }
-}
-
-template <int D>
-KeyText<D> text_of_key(const Key<D>& key) {
-  using Kind = typename Tangent<D>::Kind;
-  KeyText<D> text{
-      .frame = key.frame, .value = key.value, .interpolation = key.next, .left = key.left};
-  if (key.next.kind == Interpolation::Kind::Bezier) text.interpolation.reset();
-  if (key.next.kind == Interpolation::Kind::Easing && key.next.ease == Ease::Elastic) {
-    text.amplitude = key.next.amplitude;
-    text.period = key.next.period;
-  }
-  if (key.next.kind == Interpolation::Kind::Easing && key.next.ease == Ease::Back)
-    text.back = key.next.back;
-  if (key.next.kind == Interpolation::Kind::CubicBezier) text.control = key.next.control;
-  const auto add = [](const Tangent<D>& tangent, auto& own, auto& length, auto& handle) {
-    length = tangent.length;
-    if (tangent.kind == Kind::Handle) {
-      handle = Handle<D>{tangent.handle_frames, tangent.handle_value};
-      length.reset();
-    } else if (tangent.kind != Kind::Auto) {
-      own = tangent;
-    }
-  };
-  add(key.in, text.in, text.in_length, text.in_handle);
-  add(key.out, text.out, text.out_length, text.out_handle);
-  return text;
-}
-
-template <int D>
-void SceneWriter::write_key(const Key<D>& key, KeyAxis axis, ValueKind kind) {
-  KeyText<D> text = text_of_key(key);
-  KeyText<D> standard;
-  element("key",
-          [&] { write_attributes(table_of(text, axis, kind), table_of(standard, axis, kind)); });
-}
-
-template <int D>
-void SceneWriter::write_curve(std::string_view name, std::string_view attribute,
-                              const Curve<D>& curve, ValueKind kind) {
-  const CurveKeys<D>& keys = curve.keys();
-  const KeyAxis axis = name == "falloff" ? KeyAxis::Falloff : KeyAxis::Frame;
-  AnimateText<D> text{.before = keys.before, .after = keys.after, .overshoot = keys.overshoot};
-  AnimateText<D> standard;
-  element(name, [&] {
-    if (axis == KeyAxis::Frame) printer_.PushAttribute("attribute", std::string(attribute).c_str());
-    write_attributes(table_of(text, axis, kind), table_of(standard, axis, kind));
-    for (const Key<D>& key : keys.keys) write_key(key, axis, kind);
-    if (!keys.loop) return;
-    Loop<D> loop = *keys.loop;
-    Loop<D> no_loop;
-    element("loop", [&] { write_attributes(table_of(loop, kind), table_of(no_loop, kind)); });
-  });
-}
 
 void SceneWriter::write_path(std::string_view attribute, const PathMotion& motion) {
   PathText text{motion.progress, motion.path.is_closed()};
   PathText standard;
   element("path", [&] {
-    printer_.PushAttribute("attribute", std::string(attribute).c_str());
+    give("attribute", attribute);
     write_attributes(table_of(text), table_of(standard));
     for (const Value<3>& place : motion.path.waypoints()) {
       Waypoint waypoint{place};
@@ -172,18 +106,16 @@ void SceneWriter::write_channels(const Thing& thing) {
 }
 
 void SceneWriter::write_channel(const Attribute& attribute, const Channel<1>& channel) {
-  if (channel.is_animated())
-    write_curve("animate", attribute.name, channel.curve(), ValueKind::Number);
+  if (channel.is_animated()) write_curve(attribute.name, channel.curve(), ValueKind::Number);
 }
 
 void SceneWriter::write_channel(const Attribute& attribute, const Channel<3>& channel) {
-  if (channel.is_animated())
-    write_curve("animate", attribute.name, channel.curve(), ValueKind::Vector);
+  if (channel.is_animated()) write_curve(attribute.name, channel.curve(), ValueKind::Vector);
 }
 
 void SceneWriter::write_channel(const Attribute& attribute, const Switch& channel) {
   if (channel.is_animated())
-    write_curve("animate", attribute.name, channel.channel().curve(), ValueKind::Boolean);
+    write_curve(attribute.name, channel.channel().curve(), ValueKind::Boolean);
 }
 
 template <int D>
@@ -296,16 +228,16 @@ void SceneWriter::write(const NurbsNet& net) {
     for (Eigen::Index k = 0; k < net.points.rows(); ++k)
       points += fmt::format("{}{} {} {}", k == 0 ? "" : "\n", net.points(k, 0), net.points(k, 1),
                             net.points(k, 2));
-    element("points", [&] { printer_.PushText(points.c_str()); });
+    element("points", [&] { current_->text = points; });
     const auto write_numbers = [&](const std::vector<double>& numbers) {
-      printer_.PushText(fmt::format("{}", fmt::join(numbers, " ")).c_str());
+      current_->text = fmt::format("{}", fmt::join(numbers, " "));
     };
     if (!net.weights.empty()) element("weights", [&] { write_numbers(net.weights); });
     for (const bool is_u : {true, false}) {
       const std::vector<double>& knots = (is_u ? net.u : net.v).knots;
       if (knots.empty()) continue;
       element("knots", [&] {
-        printer_.PushAttribute("along", is_u ? "u" : "v");
+        give("along", is_u ? "u" : "v");
         write_numbers(knots);
       });
     }
@@ -337,7 +269,7 @@ void SceneWriter::write(const Force& force) {
     write_attributes(table_of(own), table_of(standard));
     write_channels(own);
     std::visit([&](const auto& kind) { write_channels(kind); }, own.kind);
-    if (force.falloff_curve) write_curve("falloff", "", *force.falloff_curve, ValueKind::Number);
+    if (force.falloff_curve) write_curve("", *force.falloff_curve, ValueKind::Number);
   });
 }
 
@@ -359,7 +291,7 @@ void SceneWriter::write(const Scene& scene) {
   own.seed = scene.seed;
   Scene standard;
   element("scene", [&] {
-    printer_.PushAttribute("version", "1");
+    give("version", "1");
     write_attributes(table_of(own), table_of(standard));
     for (const Surface& surface : scene.surfaces) write(surface);
     auto group = scene.groups.begin();
