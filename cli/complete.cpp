@@ -134,27 +134,39 @@ struct Files {
   bool are_folders = false;
 };
 
+// `bake`; `export curves`, since there are several commands `curves`.
+std::string name_of_writer(const CLI::App& command) {
+  const std::string& name = command.get_name();
+  return name == "curves" && command.get_parent()->get_parent()
+             ? command.get_parent()->get_name() + ' ' + name
+             : name;
+}
+
 const Files* files_of(const CLI::App& command, const CLI::Option& option) {
   static const std::map<std::string, Files> any = {{"SCENE", {{".xml"}}},
                                                    {"LOG", {{".replay"}}},
                                                    {"A", {{".replay"}}},
                                                    {"B", {{".replay"}}},
+                                                   {"FILE", {{".json", ".gltf", ".glb", ".anim"}}},
                                                    {"--at", {}},
                                                    {"--png", {{".png"}}},
                                                    {"--cache", {{}, true}},
                                                    {"--regions", {{".json"}}},
                                                    {"--root", {{}, true}},
                                                    {"--movie", {{".mp4", ".gif", ".webm"}}}};
-  static const std::map<std::string, Files> outputs = {{"bake", {known_endings()}},
-                                                       {"curves", {{".csv", ".svg"}}},
-                                                       {"format", {{".xml"}}},
-                                                       {"record", {{".replay"}}},
-                                                       {"view", {{".html"}}}};
+  static const std::map<std::string, Files> outputs = {
+      {"bake", {known_endings()}},
+      {"curves", {{".csv", ".svg"}}},
+      {"format", {{".xml"}}},
+      {"record", {{".replay"}}},
+      {"import curves", {{".xml"}}},
+      {"export curves", {{".json", ".gltf", ".glb", ".anim"}}},
+      {"view", {{".html"}}}};
   const std::string name = option.get_positional()       ? option.get_name(true)
                            : option.get_lnames().empty() ? ""
                                                          : "--" + option.get_lnames().front();
   const auto& table = name == "--out" ? outputs : any;
-  const auto found = table.find(name == "--out" ? command.get_name() : name);
+  const auto found = table.find(name == "--out" ? name_of_writer(command) : name);
   return found == table.end() ? nullptr : &found->second;
 }
 

@@ -9,6 +9,7 @@
 
 #include "bake.hpp"
 #include "complete.hpp"
+#include "curve_exchange.hpp"
 #include "curves.hpp"
 #include "format.hpp"
 #include "info.hpp"
@@ -49,6 +50,10 @@ int run(int count, char* arguments[]) {
   add_replay(app, replay);
   ViewOptions view;
   add_view(app, view);
+  CurveExchangeOptions importing;
+  add_import(app, importing);
+  CurveExchangeOptions exporting;
+  add_export(app, exporting);
   HelpOptions help;
   add_help(app, help);
 
@@ -73,6 +78,8 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("suggest")) return run_suggest(suggest);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
+  if (app.got_subcommand("import")) return run_import(importing);
+  if (app.got_subcommand("export")) return run_export(exporting);
   return run_bake(bake);
 }
 

@@ -8,6 +8,7 @@ configure_package_config_file(cmake/pliant-config.cmake.in
   "${PROJECT_BINARY_DIR}/pliant-config.cmake" INSTALL_DESTINATION "${pliant_package_dir}")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/pliant-config-version.cmake"
   COMPATIBILITY SameMinorVersion)
+install(FILES script/blender_curves.py DESTINATION "${CMAKE_INSTALL_DATADIR}/pliant")
 install(FILES
   "${PROJECT_BINARY_DIR}/pliant-config.cmake"
   "${PROJECT_BINARY_DIR}/pliant-config-version.cmake"

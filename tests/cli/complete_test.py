@@ -55,6 +55,9 @@ class Complete(Command):
         self.assertEqual(self.offered("replay", "diff", "a.replay", "")[0], "files .replay")
         self.assertEqual(self.offered("bake", "a.xml", "--cache", "")[0], "folders")
         self.assertEqual(self.offered("curves", "a.xml", "--at", "")[0], "files")
+        self.assertEqual(self.offered("import", "curves", "")[0], "files .json .gltf .glb .anim")
+        self.assertEqual(self.offered("import", "curves", "a.anim", "-o", "")[0], "files .xml")
+        self.assertEqual(self.offered("export", "curves", "a.xml", "-o", "")[0], "files .json .gltf .glb .anim")
 
     def bash(self, line):
         """The completions that Bash offers for the last word of a line."""

@@ -55,6 +55,18 @@ TEST_CASE("the handles are the control points of the curve", "[timeline][handle]
   }
 }
 
+TEST_CASE("an upright handle has its tip on its own side of the key", "[timeline][handle]") {
+  CurveKeys<1> keys{.keys = {{.frame = 0}, {.frame = 10, .value = {6}}}};
+  keys.keys[0].out = {.kind = Kind::Handle, .handle_value = {2}};
+  keys.keys[1].in = {.kind = Kind::Handle, .handle_value = {3}};
+  const Curve<1> curve = Curve<1>::make(keys).value();
+  REQUIRE(curve.handles().size() == 2);
+  CHECK(curve.handles()[0].frame == 0);
+  CHECK(curve.handles()[0].value[0] == 2);
+  CHECK(curve.handles()[1].frame == 10);
+  CHECK(curve.handles()[1].value[0] == 9);
+}
+
 TEST_CASE("only Bezier segments have handles", "[timeline][handle]") {
   CurveKeys<1> keys;
   keys.keys = {{.frame = 0, .value = {0}}, {.frame = 5, .value = {1}}, {.frame = 9, .value = {2}}};

@@ -6,55 +6,12 @@
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "pliant/mesh/file_object.hpp"
+#include "pliant/mesh/json_reader.hpp"
 
 namespace pliant::gltf {
 namespace {
-
-using Json = nlohmann::json;
-
-// Checked before parsing: each value needs about a hundred bytes, even if it is written in two.
-Result<void> check_size(std::string_view json) {
-  std::size_t depth = 0, values = 1;
-  bool is_quoted = false;
-  for (std::size_t k = 0; k < json.size(); ++k) {
-    const char c = json[k];
-    if (is_quoted && c == '\\') {
-      ++k;
-    } else if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (!is_quoted && (c == '[' || c == '{')) {
-      ++values;
-      if (++depth > deepest_json)
-        return invalid(fmt::format("the file's JSON is nested more than {} deep", deepest_json));
-    } else if (!is_quoted && (c == ']' || c == '}') && depth > 0) {
-      --depth;
-    } else if (!is_quoted && c == ',') {
-      ++values;
-    }
-  }
-  if (values <= most_json_values) return {};
-  return invalid(fmt::format("the file's JSON has more than {} values", most_json_values));
-}
-
-// The parser's own messages quote the text, which may be that of any file.
-Result<Json> parse(std::string_view text) {
-  const auto line_at = [&](std::size_t byte) {
-    const std::string_view before = text.substr(0, byte);
-    return static_cast<int>(1 + std::count(before.begin(), before.end(), '\n'));
-  };
-  if (auto checked = check_size(text); !checked) return fail(checked.error());
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    return invalid("the file is not glTF: it is not valid JSON from here on",
-                   line_at(error.byte > 0 ? error.byte - 1 : 0));
-  } catch (const Json::exception&) {
-    return invalid("the file is not glTF: its JSON has a number that is too large");
-  }
-}
 
 // Extensions that affect appearance or other parts of a scene: the mesh is the same without them.
 bool is_known(std::string_view extension) {
@@ -66,12 +23,11 @@ bool is_known(std::string_view extension) {
   return extension.starts_with("KHR_materials_");
 }
 
-/// Reads values from the JSON. The first error is kept, and values read after it are meaningless.
-class DocumentReader {
+class DocumentReader : private JsonReader {
  public:
-  explicit DocumentReader(Json& root) : root_(root) {}
+  explicit DocumentReader(Json& root) : JsonReader(root) {}
 
-  Result<Document> read() {
+  Result<Document> read(Subject subject) {
     if (auto checked = check_asset(); !checked) return fail(checked.error());
     check_extensions();
     if (list_size("buffers") > most_buffers)
@@ -84,33 +40,17 @@ class DocumentReader {
          [&](Json& json) { document_.materials.push_back(text(json, "name").value_or("")); });
     each(root_, "meshes", [&](Json& json) { document_.meshes.push_back(read_mesh(json)); });
     each(root_, "nodes", [&](Json& json) { document_.nodes.push_back(read_node(json)); });
-    read_roots();
+    if (subject == Subject::Meshes) {
+      read_roots();
+    } else {
+      each(root_, "animations",
+           [&](Json& json) { document_.animations.push_back(read_animation(json)); });
+    }
     if (fault_) return invalid(*std::move(fault_));
     return std::move(document_);
   }
 
  private:
-  // The path to the current value: `meshes[2].primitives[0]`.
-  struct Step {
-    const char* key;
-    std::optional<std::size_t> index;  // in a list
-  };
-
-  std::string place() const {
-    std::string text;
-    for (const auto& [key, index] : place_) {
-      text += fmt::format("{}{}", text.empty() ? "" : ".", key);
-      if (index) text += fmt::format("[{}]", *index);
-    }
-    return text;
-  }
-
-  void refuse(std::string_view key, std::string_view rule) {
-    if (fault_) return;
-    const std::string at = place();
-    fault_ = fmt::format("{}{}{} {}", at, at.empty() || key.empty() ? "" : ".", key, rule);
-  }
-
   Result<void> check_asset() {
     Json* const asset = root_.is_object() ? member(root_, "asset") : nullptr;
     const Json* const version = asset && asset->is_object() ? member(*asset, "version") : nullptr;
@@ -143,69 +83,10 @@ class DocumentReader {
     }
   }
 
-  static Json* member(Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : &*found;
-  }
-
-  // Calls `read` for the objects in a list that may be missing.
-  template <class Read>
-  void each(Json& parent, const char* key, const Read& read) {
-    Json* const list = member(parent, key);
-    if (!list) return;
-    if (!list->is_array()) return refuse(key, "is not a list");
-    for (std::size_t k = 0; k < list->size() && !fault_; ++k) {
-      place_.push_back({key, k});
-      Json& element = (*list)[k];
-      if (element.is_object())
-        read(element);
-      else
-        refuse("", "is not an object");
-      place_.pop_back();
-    }
-  }
-
-  template <class Read>
-  void within(const char* key, const Read& read) {
-    place_.push_back({key, {}});
-    read();
-    place_.pop_back();
-  }
-
-  std::size_t list_size(const char* key) {
-    const Json* const list = member(root_, key);
-    return list && list->is_array() ? list->size() : 0;
-  }
-
-  std::optional<std::string> text(Json& parent, const char* key) {
-    Json* const json = member(parent, key);
-    if (!json) return {};
-    if (auto* const written = json->get_ptr<std::string*>()) return std::move(*written);
-    refuse(key, "is not text");
-    return {};
-  }
-
   // The path of the current element if it has no name.
   std::string name_or_place(Json& json) {
     std::string name = text(json, "name").value_or("");
     return name.empty() ? place() : name;
-  }
-
-  static std::optional<std::uint64_t> to_whole(const Json& json) {
-    return json.is_number_unsigned() ? std::optional(json.get<std::uint64_t>()) : std::nullopt;
-  }
-
-  std::optional<std::uint64_t> whole(Json& parent, const char* key) {
-    const Json* const json = member(parent, key);
-    if (!json) return {};
-    const auto number = to_whole(*json);
-    if (!number) refuse(key, "is not a whole number of at least 0");
-    return number;
-  }
-
-  std::uint64_t required_whole(Json& parent, const char* key) {
-    if (!member(parent, key)) refuse(key, "is missing");
-    return whole(parent, key).value_or(0);
   }
 
   // An index into one of the document's lists.
@@ -228,14 +109,6 @@ class DocumentReader {
   std::size_t required_index(Json& parent, const char* key, const char* list) {
     if (!member(parent, key)) refuse(key, "is missing");
     return index(parent, key, list).value_or(0);
-  }
-
-  // An object that may be missing.
-  Json* part(Json& parent, const char* key) {
-    Json* const json = member(parent, key);
-    if (!json || json->is_object()) return json;
-    refuse(key, "is not an object");
-    return nullptr;
   }
 
   Buffer read_buffer(Json& json) { return {required_whole(json, "byteLength"), text(json, "uri")}; }
@@ -338,20 +211,11 @@ class DocumentReader {
     return nodes;
   }
 
-  // `count` numbers; nullopt: the member is missing.
   template <int count>
-  std::optional<Eigen::Vector<double, count>> numbers(Json& parent, const char* key) {
-    const Json* const list = member(parent, key);
-    if (!list) return {};
-    Eigen::Vector<double, count> values = Eigen::Vector<double, count>::Zero();
-    bool is_sound = list->is_array() && list->size() == count;
-    for (int k = 0; is_sound && k < count; ++k) {
-      const Json& number = (*list)[static_cast<std::size_t>(k)];
-      is_sound = number.is_number();
-      if (is_sound) values[k] = number.get<double>();
-    }
-    if (!is_sound) refuse(key, fmt::format("is not a list of {} numbers", count));
-    return values;
+  std::optional<Eigen::Vector<double, count>> vector(Json& parent, const char* key) {
+    const auto values = numbers(parent, key, count);
+    if (!values) return {};
+    return Eigen::Map<const Eigen::Vector<double, count>>(values->data());
   }
 
   Node read_node(Json& json) {
@@ -361,10 +225,10 @@ class DocumentReader {
 
   // A matrix by columns, or T R S.
   Eigen::Matrix4d read_transform(Json& json) {
-    const auto matrix = numbers<16>(json, "matrix");
-    const auto translation = numbers<3>(json, "translation");
-    const auto rotation = numbers<4>(json, "rotation");
-    const auto scale = numbers<3>(json, "scale");
+    const auto matrix = vector<16>(json, "matrix");
+    const auto translation = vector<3>(json, "translation");
+    const auto rotation = vector<4>(json, "rotation");
+    const auto scale = vector<3>(json, "scale");
     if (matrix) {
       if (translation || rotation || scale)
         refuse("matrix", "is given together with a translation, rotation or scale");
@@ -394,18 +258,64 @@ class DocumentReader {
     if (number == 0) refuse("scenes", "is missing: the file has no scene");
   }
 
-  Json& root_;
+  Animation read_animation(Json& json) {
+    Animation animation{name_or_place(json)};
+    each(json, "samplers",
+         [&](Json& sampler) { animation.samplers.push_back(read_sampler(sampler)); });
+    each(json, "channels",
+         [&](Json& channel) { animation.channels.push_back(read_channel(channel, animation)); });
+    // Extras may be anything.
+    Json* const extras = member(json, "extras");
+    const Json* const frame =
+        extras && extras->is_object() ? member(*extras, "pliantFirstFrame") : nullptr;
+    if (frame && frame->is_number()) animation.first_frame = frame->get<double>();
+    return animation;
+  }
+
+  AnimationSampler read_sampler(Json& json) {
+    AnimationSampler sampler{required_index(json, "input", "accessors"),
+                             required_index(json, "output", "accessors")};
+    const std::string word = text(json, "interpolation").value_or("LINEAR");
+    if (word == "STEP") {
+      sampler.interpolation = KeyedInterpolation::Step;
+    } else if (word == "CUBICSPLINE") {
+      sampler.interpolation = KeyedInterpolation::CubicSpline;
+    } else if (word != "LINEAR") {
+      refuse("interpolation",
+             fmt::format("is {}, but must be STEP, LINEAR or CUBICSPLINE", in_quotes(word)));
+    }
+    return sampler;
+  }
+
+  AnimationChannel read_channel(Json& json, const Animation& animation) {
+    AnimationChannel channel;
+    const std::uint64_t sampler = required_whole(json, "sampler");
+    if (sampler >= animation.samplers.size()) {
+      refuse("sampler", fmt::format("is {}, but the animation has {} samplers", sampler,
+                                    animation.samplers.size()));
+    }
+    channel.sampler = static_cast<std::size_t>(sampler);
+    Json* const target = part(json, "target");
+    if (!target) {
+      refuse("target", "is missing");
+      return channel;
+    }
+    within("target", [&] {
+      channel.node = index(*target, "node", "nodes");
+      channel.path = text(*target, "path").value_or("");
+    });
+    return channel;
+  }
+
   Document document_;
-  std::vector<Step> place_;
-  std::optional<std::string> fault_;
 };
 
 }  // namespace
 
-Result<Document> read_document(std::string_view json) {
-  auto root = parse(json);
+Result<Document> read_document(std::string_view json, Subject subject) {
+  auto root = parse_json(json, "glTF");
   if (!root) return fail(root.error());
-  return DocumentReader(*root).read();
+  return DocumentReader(*root).read(subject);
 }
 
 }  // namespace pliant::gltf

@@ -16,9 +16,9 @@
 
 namespace pliant::gltf {
 
-// The parts of a glTF 2 file's JSON that describe meshes, as plain values. Every index into one of
-// the document's lists is in range. Sizes and offsets are as written; code that uses them to read
-// bytes must check them. Internal to mesh.
+// The parts of a glTF 2 file's JSON that describe meshes and animations, as plain values. Every
+// index into one of the document's lists is in range. Sizes and offsets are as written; code that
+// uses them to read bytes must check them. Internal to the library.
 
 struct Buffer {
   std::uint64_t size = 0;  ///< [bytes]
@@ -75,6 +75,28 @@ struct Node {
   std::vector<std::size_t> children = {};
 };
 
+/// How the values of an animation are found between its keys.
+enum class KeyedInterpolation { Step, Linear, CubicSpline };
+
+struct AnimationSampler {
+  std::size_t times = 0;   ///< an accessor
+  std::size_t values = 0;  ///< an accessor
+  KeyedInterpolation interpolation = KeyedInterpolation::Linear;
+};
+
+struct AnimationChannel {
+  std::size_t sampler = 0;
+  std::optional<std::size_t> node = {};  ///< nullopt: an extension says what it animates
+  std::string path = {};                 ///< translation, rotation, scale, weights, …
+};
+
+struct Animation {
+  std::string name;  ///< `animations[3]` if the file has no name
+  std::vector<AnimationSampler> samplers = {};
+  std::vector<AnimationChannel> channels = {};
+  std::optional<double> first_frame = {};  ///< extras.pliantFirstFrame
+};
+
 struct Document {
   std::vector<Buffer> buffers;
   std::vector<BufferView> views;
@@ -82,18 +104,19 @@ struct Document {
   std::vector<MeshEntry> meshes;
   std::vector<std::string> materials;  ///< their names, possibly empty
   std::vector<Node> nodes;
-  std::vector<std::size_t> roots;  ///< root nodes of the scene that the file displays
+  std::vector<std::size_t> roots;     ///< root nodes of the scene that the file displays
+  std::vector<Animation> animations;  ///< only if they were asked for
 };
 
-/// Limits of the JSON: nesting depth of its brackets, number of values (so that its size bounds the
-/// memory needed), and number of files it refers to.
-inline constexpr std::size_t deepest_json = 200;
-inline constexpr std::size_t most_json_values = 4'000'000;
+/// What is wanted of a file.
+enum class Subject { Meshes, Animations };
+
+/// Limit of the number of files that a glTF refers to; json_reader.hpp has those of its JSON.
 inline constexpr std::size_t most_buffers = 1000;
 
 /// Errors: invalid JSON, with the line, but without quoting the text, which may be of any file; not
 /// glTF 2; a required extension that is not supported, by name; a member of the wrong type or out
-/// of range, by its path.
-Result<Document> read_document(std::string_view json);
+/// of range, by its path. A file without a scene is one only if meshes are wanted.
+Result<Document> read_document(std::string_view json, Subject subject = Subject::Meshes);
 
 }  // namespace pliant::gltf

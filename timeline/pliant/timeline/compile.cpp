@@ -186,8 +186,8 @@ class Compiler {
     check_rate(k + 1, "in", in.slope, end_rate);
     segment.ends =
         value_cubics<D>(track().values[k], track().arrivals[k + 1], start_rate, end_rate);
-    add_handle(segment.start, track().values[k], out.length, start_rate);
-    add_handle(segment.end, track().arrivals[k + 1], -in.length, end_rate);
+    add_handle(segment.start, track().values[k], 1, out.length, start_rate);
+    add_handle(segment.end, track().arrivals[k + 1], -1, in.length, end_rate);
     // Thirds except for rounding: then time is linear in the parameter, and the curve a cubic in
     // time.
     const bool is_linear_in_time =
@@ -198,10 +198,11 @@ class Compiler {
     add_time(segment, out.frame_rate(exact_span), in.frame_rate(exact_span));
   }
 
-  /// `reach` is the length, negative for an `in`; `rate` is three times the rise over it.
-  void add_handle(double frame, const Value<D>& value, double reach, const Value<D>& rate) {
-    KeyHandle<D> handle{frame, value, frame + reach, value};
-    for (int c = 0; c < D; ++c) handle.value[c] += (reach < 0 ? -1 : 1) * rate[c] / 3;
+  /// `direction` is -1 for an `in`; `rate` is three times the rise over the length.
+  void add_handle(double frame, const Value<D>& value, double direction, double length,
+                  const Value<D>& rate) {
+    KeyHandle<D> handle{frame, value, frame + direction * length, value};
+    for (int c = 0; c < D; ++c) handle.value[c] += direction * rate[c] / 3;
     compiled_.handles.push_back(handle);
   }
 

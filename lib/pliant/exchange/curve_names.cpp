@@ -1,0 +1,32 @@
+#include "pliant/exchange/curve_names.hpp"
+
+#include <fmt/format.h>
+
+namespace pliant::exchange {
+
+std::string component_suffix(int component) {
+  return component < 0 ? "" : fmt::format(".{}", "xyz"[component]);
+}
+
+void name_curve(FileCurve& curve, CurveNames& names) {
+  const std::string group = curve.group;
+  for (int number = 2;; ++number) {
+    curve.name = curve.group + component_suffix(curve.component);
+    if (names.insert(curve.name).second) return;
+    curve.group = fmt::format("{}#{}", group, number);
+  }
+}
+
+bool jumps_at_seam(const CurveKeys<1>& keys) {
+  const bool repeats = keys.before.kind == Extrapolation<1>::Kind::Repeat ||
+                       keys.after.kind == Extrapolation<1>::Kind::Repeat;
+  return repeats && keys.keys.front().value != keys.keys.back().value;
+}
+
+std::pair<std::string, std::string> split_channel(const std::string& channel) {
+  const std::size_t dot = channel.find('.');
+  if (dot == std::string::npos) return {channel, {}};
+  return {channel.substr(0, dot), channel.substr(dot + 1)};
+}
+
+}  // namespace pliant::exchange

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "pliant/exchange/curve_file.hpp"
+
+namespace pliant::exchange {
+
+/// The names that curves of a file have so far.
+using CurveNames = std::set<std::string>;
+
+/// `.x` to `.z`, or nothing for -1.
+std::string component_suffix(int component);
+
+/// Gives a curve its name, made of its group and component. A group that has this component already
+/// gets a number: `Cube.location#2`.
+void name_curve(FileCurve& curve, CurveNames& names);
+
+/// Whether copies show a jump where they meet, on whose frame programs differ.
+bool jumps_at_seam(const CurveKeys<1>& keys);
+
+/// A channel split at its first dot: the thing and what of it.
+std::pair<std::string, std::string> split_channel(const std::string& channel);
+
+}  // namespace pliant::exchange

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "pliant/timeline/key.hpp"
+
+namespace pliant::exchange {
+
+/// A function of the frame that is smooth over an interval, with its one-sided slopes, which may be
+/// infinite.
+template <int D>
+struct SmoothFunction {
+  std::function<Value<D>(double frame)> value;
+  std::function<Value<D>(double frame)> slope_right;  ///< [unit/frame]
+  std::function<Value<D>(double frame)> slope_left;
+};
+
+/// A cubic in time over an interval, by values and slopes at its ends.
+template <int D>
+struct FittedCubic {
+  double start = 0;
+  double end = 0;
+  Value<D> from = {};
+  Value<D> to = {};
+  Value<D> from_slope = {};
+  Value<D> to_slope = {};
+
+  Value<D> at(double frame) const {
+    const double length = end - start;
+    const double q = (frame - start) / length;
+    const double p = 1 - q;
+    Value<D> value;
+    for (int c = 0; c < D; ++c) {
+      value[c] = p * p * (1 + 2 * q) * from[c] + q * q * (1 + 2 * p) * to[c] +
+                 length * p * q * (p * from_slope[c] - q * to_slope[c]);
+    }
+    return value;
+  }
+};
+
+template <int D>
+struct Fit {
+  std::vector<FittedCubic<D>> cubics;
+  double deviation = 0;     ///< the largest of any component, at many frames [unit]
+  bool is_complete = true;  ///< there are not more than `most_fitted`
+};
+
+/// The most cubics that one interval becomes.
+inline constexpr std::size_t most_fitted = 50'000;
+
+/// Replaces a smooth function by cubics that have its values and slopes at their ends, by halving
+/// an interval until the cubic deviates by at most `tolerance` or the interval is shorter than
+/// `shortest` frames. The deviation is measured at 32 frames of each cubic, and the tolerance there
+/// is 0.8 of the given one.
+template <int D>
+class Fitter {
+ public:
+  Fitter(const SmoothFunction<D>& function, double tolerance, double shortest)
+      : function_(function), tolerance_(tolerance), shortest_(shortest) {}
+
+  Fit<D> fit(double start, double end) {
+    halve(start, end, function_.value(start), function_.value(end));
+    return std::move(fit_);
+  }
+
+ private:
+  void halve(double start, double end, const Value<D>& from, const Value<D>& to) {
+    FittedCubic<D> cubic{
+        start, end, from, to, function_.slope_right(start), function_.slope_left(end)};
+    for (int c = 0; c < D; ++c) {
+      // No cubic is vertical: the straight line instead.
+      const double secant = (to[c] - from[c]) / (end - start);
+      if (!(std::fabs(cubic.from_slope[c]) < steepest)) cubic.from_slope[c] = secant;
+      if (!(std::fabs(cubic.to_slope[c]) < steepest)) cubic.to_slope[c] = secant;
+    }
+    if (fit_.cubics.size() == most_fitted) {
+      fit_.is_complete = false;
+      return;
+    }
+    const double deviation = deviation_of(cubic);
+    const double middle = start + (end - start) / 2;
+    if (deviation <= 0.8 * tolerance_ || end - start < 2 * shortest_ || middle <= start ||
+        middle >= end) {
+      fit_.deviation = std::max(fit_.deviation, deviation);
+      fit_.cubics.push_back(cubic);
+      return;
+    }
+    const Value<D> between = function_.value(middle);
+    halve(start, middle, from, between);
+    halve(middle, end, between, to);
+  }
+
+  double deviation_of(const FittedCubic<D>& cubic) const {
+    constexpr int parts = 33;
+    double largest = 0;
+    for (int k = 1; k < parts; ++k) {
+      const double frame = cubic.start + (cubic.end - cubic.start) * k / parts;
+      const Value<D> exact = function_.value(frame);
+      const Value<D> fitted = cubic.at(frame);
+      for (int c = 0; c < D; ++c) largest = std::max(largest, std::fabs(exact[c] - fitted[c]));
+    }
+    return largest;
+  }
+
+  static constexpr double steepest = 1e100;
+
+  const SmoothFunction<D>& function_;
+  double tolerance_;
+  double shortest_;
+  Fit<D> fit_;
+};
+
+}  // namespace pliant::exchange

@@ -1,0 +1,388 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/exchange/curve_names.hpp"
+#include "pliant/exchange/euler.hpp"
+#include "pliant/exchange/fit.hpp"
+#include "pliant/exchange/gltf_animation.hpp"
+#include "pliant/exchange/held_channel.hpp"
+#include "pliant/exchange/rotation_track.hpp"
+#include "pliant/exchange/single.hpp"
+#include "pliant/output/gltf_buffer.hpp"
+
+namespace pliant::exchange {
+namespace {
+
+using GltfJson = GltfBuffer::Json;
+
+/// A row of keys as a sampler has it. `in` and `out` only if it is a CUBICSPLINE [unit/frame].
+struct SampledKey {
+  double frame = 0;
+  std::array<double, 4> value = {};
+  std::array<double, 4> in = {};
+  std::array<double, 4> out = {};
+};
+
+struct SampledKeys {
+  std::string_view interpolation = "LINEAR";
+  int width = 3;
+  std::vector<SampledKey> keys = {};
+};
+
+bool steps_only(const Pieces& pieces) {
+  for (std::size_t k = 0; k < pieces.pieces.size(); ++k) {
+    const Piece& piece = pieces.pieces[k];
+    if (piece.kind != Piece::Kind::Constant || piece.from != pieces.values[k]) return false;
+  }
+  return true;
+}
+
+/// A cursor through the pieces of a component; beyond them it is constant.
+class ComponentParts {
+ public:
+  explicit ComponentParts(Pieces pieces) : pieces_(std::move(pieces)) {}
+
+  /// The part over an interval, which contains no key of the pieces. Requires: later than those
+  /// before.
+  Piece part(double start, double end) {
+    const auto& pieces = pieces_.pieces;
+    while (next_ < pieces.size() && pieces[next_].end <= start) ++next_;
+    if (next_ == pieces.size() || end <= pieces[next_].start) {
+      const double value = next_ == pieces.size() ? pieces_.values.back() : pieces_.values.front();
+      return {.start = start, .end = end, .from = value, .to = value};
+    }
+    Piece piece = pieces[next_];
+    if (piece.start < start) piece = cut(piece, start).right;
+    if (end < piece.end) piece = cut(piece, end).left;
+    return piece;
+  }
+
+ private:
+  Pieces pieces_;
+  std::size_t next_ = 0;
+};
+
+std::vector<double> frames_of_all(const HeldChannel& channel) {
+  std::vector<double> frames;
+  for (const HeldComponent& part : channel.components)
+    frames.insert(frames.end(), part.pieces.frames.begin(), part.pieces.frames.end());
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+double value_at_or_before(const Pieces& pieces, double frame) {
+  const auto after = std::upper_bound(pieces.frames.begin(), pieces.frames.end(), frame);
+  if (after == pieces.frames.begin()) return pieces.values.front();
+  return pieces.values[static_cast<std::size_t>(after - pieces.frames.begin()) - 1];
+}
+
+/// Steps, whose frames may differ between the components.
+SampledKeys sampled_steps(const HeldChannel& channel) {
+  SampledKeys result{.interpolation = "STEP"};
+  for (const double frame : frames_of_all(channel)) {
+    SampledKey key{.frame = frame};
+    for (std::size_t c = 0; c < channel.components.size(); ++c)
+      key.value[c] = value_at_or_before(channel.components[c].pieces, frame);
+    result.keys.push_back(key);
+  }
+  return result;
+}
+
+SampledKeys sampled_pieces(const HeldChannel& channel) {
+  SampledKeys result;
+  const std::vector<double> frames = frames_of_all(channel);
+  for (const double frame : frames) result.keys.push_back({.frame = frame});
+  bool are_lines = true;
+  for (std::size_t c = 0; c < channel.components.size(); ++c) {
+    const Pieces& pieces = channel.components[c].pieces;
+    ComponentParts parts(pieces);
+    for (const Piece& piece : pieces.pieces)
+      are_lines = are_lines && piece.kind != Piece::Kind::Bezier;
+    for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
+      const Piece part = parts.part(frames[k], frames[k + 1]);
+      result.keys[k].value[c] = part.from;
+      result.keys[k + 1].value[c] = part.to;
+      result.keys[k].out[c] = slope_at_start(part);
+      result.keys[k + 1].in[c] = slope_at_end(part);
+    }
+  }
+  result.interpolation = are_lines ? "LINEAR" : "CUBICSPLINE";
+  return result;
+}
+
+bool all_step(const HeldChannel& channel) {
+  return std::all_of(channel.components.begin(), channel.components.end(),
+                     [](const HeldComponent& part) { return steps_only(part.pieces); });
+}
+
+Abilities gltf_abilities(bool has_steps) {
+  return {.has_steps = has_steps, .has_long_arms = false, .has_lines = false, .has_copies = false};
+}
+
+class GltfCurveWriter {
+ public:
+  explicit GltfCurveWriter(const CurveWriting& writing)
+      : writing_(writing), buffer_([this](std::string_view bytes) -> Result<void> {
+          bytes_ += bytes;
+          return {};
+        }) {}
+
+  Result<CurveText> write(const std::vector<ChannelCurve>& curves) {
+    std::vector<std::pair<const ChannelCurve*, SampledKeys>> sampled;
+    for (const ChannelCurve& curve : curves) {
+      auto keys = sample(curve);
+      if (!keys) return fail(keys.error());
+      sampled.emplace_back(&curve, *std::move(keys));
+    }
+    // Seconds must not be negative.
+    frame_at_zero_ = writing_.first;
+    for (const auto& [curve, keys] : sampled)
+      frame_at_zero_ = std::min(frame_at_zero_, std::floor(keys.keys.front().frame));
+    if (frame_at_zero_ < writing_.first) {
+      result_.losses.push_back(
+          {"time", fmt::format("second 0 is frame {}, where the first key is", frame_at_zero_),
+           true});
+    }
+    for (const auto& [curve, keys] : sampled) {
+      if (auto added = add(*curve, keys); !added) return fail(added.error());
+    }
+    const std::string json = document();
+    result_.bytes = writing_.is_binary ? as_glb(json) : json;
+    return std::move(result_);
+  }
+
+ private:
+  Result<SampledKeys> sample(const ChannelCurve& curve) {
+    // As steps first: nothing is lost if there are no others.
+    std::vector<CurveLoss> losses;
+    auto channel = held_channel(curve, gltf_abilities(true), writing_, losses);
+    if (!channel) return fail(channel.error());
+    const bool is_rotation = path_of_attribute(channel->attribute) == "rotation";
+    const bool are_steps = all_step(*channel);
+    if (!are_steps) {
+      losses.clear();
+      channel = held_channel(curve, gltf_abilities(false), writing_, losses);
+      if (!channel) return fail(channel.error());
+    }
+    for (CurveLoss& loss : losses) result_.losses.push_back(std::move(loss));
+    if (is_rotation) return sampled_rotation(curve, *channel, are_steps);
+    return are_steps ? sampled_steps(*channel) : sampled_pieces(*channel);
+  }
+
+  Result<SampledKeys> sampled_rotation(const ChannelCurve& curve, const HeldChannel& channel,
+                                       bool are_steps) {
+    const auto turn = [&](const Value<3>& degrees, const Quaternion& beside) {
+      return quaternion_near(degrees, curve.rotate_order, beside);
+    };
+    SampledKeys result = are_steps ? sampled_steps(channel) : SampledKeys{};
+    Quaternion beside{0, 0, 0, 1};
+    result.width = 4;
+    if (are_steps) {
+      for (SampledKey& key : result.keys) {
+        beside = turn({key.value[0], key.value[1], key.value[2]}, beside);
+        key.value = beside;
+      }
+      return result;
+    }
+    return fitted_rotation(curve, channel, turn);
+  }
+
+  template <class Turn>
+  Result<SampledKeys> fitted_rotation(const ChannelCurve& curve, const HeldChannel& channel,
+                                      const Turn& turn) {
+    SampledKeys result{.interpolation = "CUBICSPLINE", .width = 4};
+    std::vector<Curve<1>> parts;
+    double tolerance = 0, fastest = 0;
+    for (const HeldComponent& part : channel.components) {
+      auto made = Curve<1>::make(exchange::keys_of(part.pieces));
+      PLIANT_EXPECTS(made.has_value());  // pieces of a curve
+      tolerance = std::max(tolerance, tolerance_of(*made, writing_));
+      const ValueRange<1> range =
+          made->range(part.pieces.frames.front(), part.pieces.frames.back());
+      fastest = std::max(fastest, range.high[0] - range.low[0]);
+      parts.push_back(*std::move(made));
+    }
+    if (fastest > 360 * 1000) {
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("{}: turns by {} degrees; at most 1000 turns become quaternions",
+                              curve.channel, fastest));
+    }
+    const auto at = [&](double frame, const Quaternion& beside) {
+      return turn({parts[0].value(frame)[0], parts[1].value(frame)[0], parts[2].value(frame)[0]},
+                  beside);
+    };
+    // A quaternion of unit length that is off by d turns by up to 2·d radians.
+    constexpr double degrees_per_unit = 2 * 180 / 3.14159265358979323846;
+    Quaternion beside = at(channel.components[0].pieces.frames.front(), {0, 0, 0, 1});
+    double deviation = 0;
+    const std::vector<double> frames = frames_of_all(channel);
+    const int steps = 64 + static_cast<int>(fastest / 10);
+    for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
+      const RotationTrack<4> track(at, frames[k], frames[k + 1], beside, steps);
+      beside = track.last();
+      const SmoothFunction<4> function = track.function();
+      const Fit<4> fit = Fitter<4>(function, tolerance / degrees_per_unit / 2, 1.0 / 1024)
+                             .fit(frames[k], frames[k + 1]);
+      if (!fit.is_complete || result.keys.size() + fit.cubics.size() > most_fitted) {
+        return fail(ErrorCode::InvalidInput,
+                    fmt::format("{}: would become more than {} keys", curve.channel, most_fitted));
+      }
+      deviation = std::max(deviation, fit.deviation);
+      for (const FittedCubic<4>& cubic : fit.cubics) {
+        if (result.keys.empty()) result.keys.push_back({.frame = cubic.start, .value = cubic.from});
+        result.keys.back().out = cubic.from_slope;
+        result.keys.push_back({.frame = cubic.end, .value = cubic.to, .in = cubic.to_slope});
+      }
+    }
+    if (frames.size() == 1) {
+      result.keys.push_back({.frame = frames[0], .value = beside});
+      return result;
+    }
+    result_.losses.push_back(
+        {curve.channel, fmt::format("its angles became quaternions: {} keys, within {:.2g} degrees",
+                                    result.keys.size(), degrees_per_unit * deviation)});
+    return result;
+  }
+
+  /// The node of a thing, or of one of its channels.
+  std::size_t node_of(const std::string& name, std::optional<std::size_t> parent) {
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      if (nodes_[k]["name"] == name) return k;
+    nodes_.push_back({{"name", name}});
+    const std::size_t node = nodes_.size() - 1;
+    (parent ? nodes_[*parent]["children"] : roots_).push_back(node);
+    return node;
+  }
+
+  Result<void> add(const ChannelCurve& curve, const SampledKeys& sampled) {
+    const auto [thing, attribute] = split_channel(curve.channel);
+    const std::size_t parent = node_of(thing, {});
+    const std::string_view path = path_of_attribute(attribute);
+    const std::size_t node = path.empty() ? node_of(curve.channel, parent) : parent;
+    const std::size_t width = static_cast<std::size_t>(sampled.width);
+    // One key is the same in each, and a CUBICSPLINE needs two.
+    const bool is_single = sampled.keys.size() == 1;
+    const bool is_cubic = !is_single && sampled.interpolation == "CUBICSPLINE";
+    std::vector<float> times, numbers;
+    for (const SampledKey& key : sampled.keys) {
+      times.push_back(seconds_of_frame(key.frame, writing_.fps, frame_at_zero_));
+      if (times.size() > 1 && !(times.back() > times[times.size() - 2])) {
+        return fail(
+            ErrorCode::InvalidInput,
+            fmt::format("{}: the keys at and before frame {} have one time in single precision",
+                        curve.channel, key.frame));
+      }
+      const auto put = [&](const std::array<double, 4>& row, double factor) {
+        for (std::size_t c = 0; c < width; ++c)
+          numbers.push_back(static_cast<float>(row[c] * factor));
+      };
+      if (is_cubic) put(key.in, writing_.fps);
+      put(key.value, 1);
+      if (is_cubic) put(key.out, writing_.fps);
+    }
+    for (const float number : numbers) {
+      if (!(std::fabs(number) <= std::numeric_limits<float>::max()))
+        return fail(ErrorCode::InvalidInput,
+                    fmt::format("{}: a number is beyond single precision", curve.channel));
+    }
+    const auto input = buffer_.add_keys(times, 1, GltfBuffer::Bounds::Written);
+    if (!input) return fail(input.error());
+    const auto output = buffer_.add_keys(numbers, sampled.width, GltfBuffer::Bounds::None);
+    if (!output) return fail(output.error());
+    channels_.push_back(
+        {{"sampler", samplers_.size()},
+         {"target", {{"node", node}, {"path", path.empty() ? "translation" : path}}}});
+    samplers_.push_back({{"input", *input},
+                         {"output", *output},
+                         {"interpolation", is_single ? "STEP" : sampled.interpolation}});
+    return {};
+  }
+
+  std::string document() {
+    GltfJson root = {{"asset", {{"version", "2.0"}, {"generator", "pliant"}}}, {"scene", 0}};
+    root["scenes"] =
+        GltfJson::array({roots_.empty() ? GltfJson::object() : GltfJson{{"nodes", roots_}}});
+    if (!nodes_.empty()) root["nodes"] = nodes_;
+    if (!channels_.empty()) {
+      root["animations"] = GltfJson::array({{{"name", "pliant"},
+                                             {"channels", channels_},
+                                             {"samplers", samplers_},
+                                             {"extras", {{"pliantFirstFrame", frame_at_zero_}}}}});
+      root["accessors"] = buffer_.accessors();
+      root["bufferViews"] = buffer_.views();
+      GltfJson buffer = {{"byteLength", bytes_.size()}};
+      if (!writing_.is_binary)
+        buffer["uri"] = "data:application/octet-stream;base64," + base64_of(bytes_);
+      root["buffers"] = GltfJson::array({std::move(buffer)});
+    }
+    return root.dump(writing_.is_binary ? -1 : 1, ' ', false, GltfJson::error_handler_t::replace);
+  }
+
+  std::string as_glb(const std::string& json) const {
+    std::string text = json, bytes = bytes_;
+    text.append((4 - text.size() % 4) % 4, ' ');
+    bytes.append((4 - bytes.size() % 4) % 4, '\0');
+    std::string result = "glTF";
+    const auto append = [&](std::size_t number) {
+      for (int k = 0; k < 4; ++k) result += static_cast<char>(number >> 8 * k & 0xff);
+    };
+    const std::size_t tail = bytes.empty() ? 0 : 8 + bytes.size();
+    append(2);
+    append(12 + 8 + text.size() + tail);
+    append(text.size());
+    result += "JSON" + text;
+    if (bytes.empty()) return result;
+    append(bytes.size());
+    result.append("BIN\0", 4);
+    return result + bytes;
+  }
+
+  static std::string base64_of(std::string_view bytes) {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+      const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
+      std::uint32_t bits = 0;
+      for (std::size_t n = 0; n < 3; ++n)
+        bits = bits << 8 | (n < count ? static_cast<unsigned char>(bytes[k + n]) : 0U);
+      for (std::size_t n = 0; n < 4; ++n)
+        text += n <= count ? digits[bits >> (18 - 6 * n) & 63U] : '=';
+    }
+    return text;
+  }
+
+  const CurveWriting& writing_;
+  std::string bytes_;
+  GltfBuffer buffer_;
+  double frame_at_zero_ = 0;
+  GltfJson nodes_ = GltfJson::array();
+  GltfJson roots_ = GltfJson::array();
+  GltfJson channels_ = GltfJson::array();
+  GltfJson samplers_ = GltfJson::array();
+  CurveText result_;
+};
+
+}  // namespace
+
+std::string_view path_of_attribute(std::string_view attribute) {
+  if (attribute == "translate" || attribute == "center") return "translation";
+  if (attribute == "rotate") return "rotation";
+  if (attribute == "scale") return "scale";
+  return {};
+}
+
+Result<CurveText> write_gltf_curves(const std::vector<ChannelCurve>& curves,
+                                    const CurveWriting& writing) {
+  return GltfCurveWriter(writing).write(curves);
+}
+
+}  // namespace pliant::exchange

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/exchange/curve_names.hpp"
+#include "pliant/exchange/held_channel.hpp"
+#include "pliant/exchange/maya.hpp"
+#include "pliant/exchange/maya_units.hpp"
+
+namespace pliant::exchange {
+namespace {
+
+// Maya before 2020 counts 6000 times in a second.
+constexpr double maya_gap = 1.0 / 128;
+constexpr double least_maya_arm = 1e-6;  // one of no length would be a step
+
+Abilities maya_abilities() {
+  return {.has_step_next = true, .least_arm = least_maya_arm, .gap = maya_gap};
+}
+
+/// One side of a key.
+struct MayaTangent {
+  std::string_view word = "flat";
+  double frames = 0;  // fixed: the handle, both >= 0 in time
+  double value = 0;
+};
+
+std::string_view infinity_word(const Beyond& side) {
+  switch (side.kind) {
+    case Beyond::Kind::Line:
+      return side.slope == 0 ? "constant" : "linear";
+    case Beyond::Kind::Repeat:
+      return "cycle";
+    case Beyond::Kind::RepeatOffset:
+      return "cycleRelative";
+    case Beyond::Kind::Mirror:
+      return "oscillate";
+  }
+  return "constant";
+}
+
+class MayaCurve {
+ public:
+  explicit MayaCurve(const Pieces& pieces) : pieces_(pieces) {
+    for (const Piece& piece : pieces.pieces)
+      is_weighted_ = is_weighted_ || (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time);
+  }
+
+  void append_to(std::string& text, std::string_view output) const {
+    fmt::format_to(std::back_inserter(text),
+                   "animData {{\n  input time;\n  output {};\n  weighted {};\n  preInfinity {};\n"
+                   "  postInfinity {};\n  keys {{\n",
+                   output, is_weighted_ ? 1 : 0, infinity_word(pieces_.before),
+                   infinity_word(pieces_.after));
+    for (std::size_t k = 0; k < pieces_.frames.size(); ++k) append_key(text, k);
+    text += "  }\n}\n";
+  }
+
+ private:
+  void append_key(std::string& text, std::size_t k) const {
+    const MayaTangent in = in_of(k), out = out_of(k);
+    // Locked tangents would turn together.
+    const bool are_locked = in.word != "fixed" && out.word != "fixed";
+    fmt::format_to(std::back_inserter(text), "    {} {} {} {} {} 0 0", pieces_.frames[k],
+                   pieces_.values[k], in.word, out.word, are_locked ? 1 : 0);
+    for (const MayaTangent& tangent : {in, out}) {
+      if (tangent.word != "fixed") continue;
+      const double angle = std::atan2(tangent.value, tangent.frames) * 180 / std::numbers::pi;
+      const double weight = is_weighted_ ? std::hypot(tangent.frames, tangent.value) : 1;
+      fmt::format_to(std::back_inserter(text), " {} {}", angle, weight);
+    }
+    text += ";\n";
+  }
+
+  MayaTangent in_of(std::size_t k) const {
+    if (k == 0) return outer_of(pieces_.before);
+    const Piece& piece = pieces_.pieces[k - 1];
+    if (piece.kind == Piece::Kind::Line) return {"linear"};
+    if (piece.kind != Piece::Kind::Bezier) return {};
+    return fixed(piece, {piece.in.frames, -piece.in.value});
+  }
+
+  MayaTangent out_of(std::size_t k) const {
+    if (k == pieces_.pieces.size()) return outer_of(pieces_.after);
+    const Piece& piece = pieces_.pieces[k];
+    switch (piece.kind) {
+      case Piece::Kind::Constant:
+        return {piece.from == pieces_.values[k] ? "step" : "stepnext"};
+      case Piece::Kind::Line:
+        return {"linear"};
+      default:
+        return fixed(piece, piece.out);
+    }
+  }
+
+  static MayaTangent fixed(const Piece& piece, const Arm& arm) {
+    if (piece.is_cubic_in_time && arm.value == 0) return {};  // flat, a third
+    return {"fixed", arm.frames, arm.value};
+  }
+
+  static MayaTangent outer_of(const Beyond& side) {
+    if (side.kind != Beyond::Kind::Line || side.slope == 0) return {};
+    return {"fixed", 1, side.slope};
+  }
+
+  const Pieces& pieces_;
+  bool is_weighted_ = false;
+};
+
+bool jumps_at_joints(const Pieces& pieces) {
+  const bool repeats =
+      pieces.before.kind == Beyond::Kind::Repeat || pieces.after.kind == Beyond::Kind::Repeat;
+  return repeats && pieces.values.front() != pieces.values.back();
+}
+
+std::string_view output_word(CurveUnit unit) {
+  if (unit == CurveUnit::Length) return "linear";
+  return unit == CurveUnit::Degrees ? "angular" : "unitless";
+}
+
+}  // namespace
+
+Result<CurveText> write_maya(const std::vector<ChannelCurve>& curves, const CurveWriting& writing) {
+  CurveText result;
+  auto unit = unit_of_rate(writing.fps);
+  if (!unit) {
+    result.losses.push_back(
+        {"timeUnit",
+         fmt::format("Maya has no rate of {} frames/s: the frames are those of film, 24",
+                     writing.fps),
+         true});
+    unit = "film";
+  }
+  std::string& text = result.bytes;
+  text = fmt::format(
+      "animVersion 1.1;\nmayaVersion 2022;\ntimeUnit {};\nlinearUnit cm;\nangularUnit deg;\n"
+      "startTime {};\nendTime {};\n",
+      *unit, writing.first, writing.last);
+  for (const ChannelCurve& curve : curves) {
+    const auto channel = held_channel(curve, maya_abilities(), writing, result.losses);
+    if (!channel) return fail(channel.error());
+    for (const HeldComponent& part : channel->components) {
+      const std::string& attribute = channel->attribute;
+      if (part.component < 0) {
+        fmt::format_to(std::back_inserter(text), "anim {} {} {} 0 0 0;\n", attribute, attribute,
+                       channel->thing);
+      } else {
+        const char letter = "XYZ"[part.component];
+        fmt::format_to(std::back_inserter(text), "anim {}.{}{} {}{} {} 0 0 {};\n", attribute,
+                       attribute, letter, attribute, letter, channel->thing, part.component);
+      }
+      if (jumps_at_joints(part.pieces)) {
+        result.losses.push_back({curve.channel + component_suffix(part.component),
+                                 "where its copies meet, pliant has the last value of the one "
+                                 "before, Maya the first of the next"});
+      }
+      MayaCurve(part.pieces).append_to(text, output_word(curve.unit));
+    }
+  }
+  return result;
+}
+
+}  // namespace pliant::exchange

@@ -1,0 +1,116 @@
+#include "pliant/exchange/hold.hpp"
+
+#include <cmath>
+
+#include "exchange/round_trips.hpp"
+
+namespace pliant::exchange {
+namespace {
+
+using namespace testing;
+
+constexpr WantedFrames wanted{-10, 50};
+
+Held held(const CurveKeys<1>& keys, const Abilities& abilities, double tolerance = 1e-3) {
+  return hold(pieces_of(make(keys)), abilities, tolerance, wanted).value();
+}
+
+TEST_CASE("a format with all abilities keeps everything", "[exchange][hold]") {
+  const Abilities all{.has_step_next = true,
+                      .has_left_values = true,
+                      .has_counted_copies = true,
+                      .has_easing = [](const Piece&) { return true; }};
+  CurveKeys<1> keys{.keys = {key(0, 1, of_ease(Ease::Elastic, EaseSide::Out)),
+                             with_left(key(6, 4, of_segment(SegmentKind::StepNext)), 2),
+                             key(12, -1)}};
+  keys.after.kind = OutsideKind::Repeat;
+  const Held result = held(keys, all);
+  CHECK(result.losses.empty());
+  CHECK(result.pieces.frames == std::vector<double>{0, 6, 12});
+}
+
+TEST_CASE("what a format cannot hold is told once, with the first key and the deviation",
+          "[exchange][hold]") {
+  const CurveKeys<1> keys{.keys = {key(0, 1, of_ease(Ease::Elastic, EaseSide::Out)),
+                                   key(12, 9, of_ease(Ease::Elastic, EaseSide::In)),
+                                   key(24, 0, of_ease(Ease::Sine, EaseSide::In)), key(36, 3)}};
+  const Held result = held(keys, {});
+  // An elastic jumps at its quiet end.
+  REQUIRE(result.losses.size() == 3);
+  CHECK_THAT(result.losses[0].message,
+             contains_text("2 elastic easings, the first of key 0, became ") &&
+                 contains_text(" keys, within 0.000"));
+  CHECK_THAT(result.losses[1].message, contains_text("the sine easing of key 24 became "));
+  CHECK_THAT(result.losses[2].message, contains_text("2 jumps, the first of key "));
+  CHECK_FALSE(result.losses[0].is_exact);
+}
+
+TEST_CASE("easings that are cubics become them exactly", "[exchange][hold]") {
+  const auto ease = GENERATE(Ease::Quad, Ease::Cubic, Ease::Back, Ease::Bounce);
+  const auto side = GENERATE(EaseSide::In, EaseSide::Out, EaseSide::InOut);
+  const CurveKeys<1> keys{.keys = {key(2, 1, of_ease(ease, side)), key(14, 9)}};
+  const Held result = held(keys, {.has_long_arms = false});
+  for (const Loss& loss : result.losses) CHECK(loss.is_exact);
+  const Curve<1> before = make(keys);
+  const Curve<1> after = make(keys_of(result.pieces));
+  CHECK(disagreement(before, after, 2, 14, {1e-13, 1e-13}) == 0);
+  if (side != EaseSide::InOut && ease != Ease::Bounce) CHECK(result.pieces.pieces.size() == 1);
+}
+
+TEST_CASE("a jump takes the gap of the format and no more", "[exchange][hold]") {
+  const CurveKeys<1> keys{.keys = {key(0, 0, of_segment(SegmentKind::Linear)),
+                                   with_left(key(10, 7, of_segment(SegmentKind::Linear)), 5),
+                                   key(20, 7)}};
+  const Held result = held(keys, {.gap = 0.25});
+  CHECK(result.pieces.frames == std::vector<double>{0, 9.75, 10, 20});
+  CHECK_THAT(result.pieces.values[1], WithinAbs(4.875, 1e-12));
+  CHECK(result.pieces.pieces[1].kind == Piece::Kind::Constant);
+  REQUIRE(result.losses.size() == 1);
+  CHECK(result.losses[0].message == "the jump of key 10 became a step of 0.25 frames");
+  // Without steps it is a ramp.
+  const Held ramp = held(keys, {.has_steps = false, .gap = 0.25});
+  CHECK(ramp.pieces.pieces[1].kind == Piece::Kind::Line);
+  CHECK(ramp.pieces.pieces[1].to == 7);
+}
+
+TEST_CASE("copies become keys, as far as frames are wanted", "[exchange][hold]") {
+  CurveKeys<1> keys{.keys = {key(0, 0), key(10, 2)}};
+  keys.after.kind = OutsideKind::RepeatOffset;
+  const Held endless = held(keys, {.has_copies = false});
+  CHECK(endless.pieces.frames == std::vector<double>{0, 10, 20, 30, 40, 50});
+  CHECK(endless.pieces.values.back() == 10);
+  REQUIRE(endless.losses.size() == 1);
+  CHECK(endless.losses[0].message == "the copies after the keys became 4 keys, up to frame 50");
+  CHECK_FALSE(endless.losses[0].is_exact);
+  keys.after.count = 2;
+  const Held counted = held(keys, {});
+  CHECK(counted.pieces.frames == std::vector<double>{0, 10, 20, 30});
+  REQUIRE(counted.losses.size() == 1);
+  CHECK(counted.losses[0].is_exact);
+}
+
+TEST_CASE("a line beyond the keys becomes a key at the wanted frame", "[exchange][hold]") {
+  CurveKeys<1> keys{.keys = {key(0, 1), key(10, 2)}};
+  keys.after = {.kind = OutsideKind::Slope, .slope = {0.5}};
+  const Held result = held(keys, {.has_lines = false});
+  CHECK(result.pieces.frames == std::vector<double>{0, 10, 50});
+  CHECK(result.pieces.values.back() == 22);
+}
+
+TEST_CASE("numbers that no program computes with are refused", "[exchange][hold]") {
+  const auto problem = [](const CurveKeys<1>& keys) {
+    const auto result = hold(pieces_of(make(keys)), {}, 1e-3, wanted);
+    return result ? "" : result.error().message;
+  };
+  CHECK_THAT(problem({.keys = {key(0, 0), key(1e8, 1)}}),
+             contains_text("key 100000000 is too far away"));
+  CHECK_THAT(problem({.keys = {key(0, 0), key(5, 1e40)}}), contains_text("value 1e+40 of key 5"));
+  CHECK_THAT(problem({.keys = {key(0, 0), key(1e-9, 1)}}), contains_text("too close"));
+  CurveKeys<1> fast{.keys = {key(0, 0, of_ease(Ease::Elastic, EaseSide::Out)), key(1e6, 1)}};
+  fast.keys[0].next.period = 1e-6;
+  fast.keys[0].next.amplitude = 50;
+  CHECK_THAT(problem(fast), contains_text("more than 50000 keys"));
+}
+
+}  // namespace
+}  // namespace pliant::exchange
