@@ -267,7 +267,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 6);
+  CHECK(examples == 8);
 }
 
 }  // namespace

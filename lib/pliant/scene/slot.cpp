@@ -340,7 +340,9 @@ AttributeFormat format_of(const Slot& slot) {
           .range = slot.range,
           .meaning = std::string(attribute.meaning),
           .need = attribute.need,
-          .is_keyable = is_channel(slot.place)};
+          .is_keyable = is_channel(slot.place),
+          .limits = attribute.range,
+          .words = attribute.words};
 }
 
 std::string not_supported(std::string_view instead) {
