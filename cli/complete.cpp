@@ -142,9 +142,11 @@ const Files* files_of(const CLI::App& command, const CLI::Option& option) {
                                                    {"--cache", {{}, true}},
                                                    {"--regions", {{".json"}}},
                                                    {"--root", {{}, true}},
+                                                   {"--mesh", {}},
                                                    {"--movie", {{".mp4", ".gif", ".webm"}}}};
   static const std::map<std::string, Files> outputs = {{"bake", {known_endings()}},
                                                        {"curves", {{".csv", ".svg"}}},
+                                                       {"new", {{".xml"}}},
                                                        {"record", {{".replay"}}},
                                                        {"view", {{".html"}}}};
   const std::string name = option.get_positional()       ? option.get_name(true)
