@@ -153,11 +153,13 @@ const Files* files_of(const CLI::App& command, const CLI::Option& option) {
                                                    {"--cache", {{}, true}},
                                                    {"--regions", {{".json"}}},
                                                    {"--root", {{}, true}},
+                                                   {"--mesh", {}},
                                                    {"--movie", {{".mp4", ".gif", ".webm"}}}};
   static const std::map<std::string, Files> outputs = {
       {"bake", {known_endings()}},
       {"curves", {{".csv", ".svg"}}},
       {"format", {{".xml"}}},
+      {"new", {{".xml"}}},
       {"record", {{".replay"}}},
       {"import curves", {{".xml"}}},
       {"export curves", {{".json", ".gltf", ".glb", ".anim"}}},

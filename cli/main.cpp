@@ -14,6 +14,7 @@
 #include "format.hpp"
 #include "info.hpp"
 #include "interrupt.hpp"
+#include "new.hpp"
 #include "replay.hpp"
 #include "report.hpp"
 #include "suggest.hpp"
@@ -54,6 +55,8 @@ int run(int count, char* arguments[]) {
   add_import(app, importing);
   CurveExchangeOptions exporting;
   add_export(app, exporting);
+  NewOptions create;  // behind view: "vew" is rather that than "new"
+  add_new(app, create);
   HelpOptions help;
   add_help(app, help);
 
@@ -71,6 +74,7 @@ int run(int count, char* arguments[]) {
     return report_usage(app, error);
   }
   if (app.got_subcommand("help")) return run_help(app, help);
+  if (app.got_subcommand("new")) return run_new(create);
   if (app.got_subcommand("curves")) return run_curves(curves);
   if (app.got_subcommand("validate")) return run_validate(validate);
   if (app.got_subcommand("info")) return run_info(info);

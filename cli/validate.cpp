@@ -11,6 +11,7 @@
 #include "interrupt.hpp"
 #include "json.hpp"
 #include "pliant/pliant.hpp"
+#include "problem_places.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
 
@@ -21,6 +22,7 @@ namespace {
 struct Findings {
   Json scenes = Json::array();
   Json problems = Json::array();
+  ProblemPlaces places = {};
 };
 
 std::string_view kind_of(ErrorCode code) {
@@ -43,9 +45,17 @@ std::string_view kind_of(ErrorCode code) {
 
 void add_problem(Findings& findings, const std::string& file, int line, std::string_view kind,
                  const std::string& message) {
+  const auto place = findings.places.find(file, line, message);
+  const auto of_place = [&](int ProblemPlace::*member) {
+    return place ? Json((*place).*member) : Json(nullptr);
+  };
   findings.problems.push_back({{"file", file},
                                {"line", line > 0 ? Json(line) : Json(nullptr)},
+                               {"column", of_place(&ProblemPlace::column)},
+                               {"endLine", of_place(&ProblemPlace::end_line)},
+                               {"endColumn", of_place(&ProblemPlace::end_column)},
                                {"kind", kind},
+                               {"severity", kind == "note" ? "information" : "error"},
                                {"message", message}});
 }
 

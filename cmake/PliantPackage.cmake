@@ -4,7 +4,9 @@
 # Documents, in the same folders as in the source, so that their links work.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.xml")
+        FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.xml" PATTERN "*.xsd")
+# The schema of scenes, where editors are told to look for it (docs/scene-format.md, "Schema").
+install(FILES docs/pliant-scene.xsd DESTINATION "${CMAKE_INSTALL_DATADIR}/pliant")
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj" PATTERN "*.pc2" PATTERN "*.png" PATTERN "*.[ch]pp" PATTERN "CMakeLists.txt")
 

@@ -39,6 +39,40 @@ class Validate(Command):
                           ("none.xml", None, "unreadable")])
         self.assertEqual(json.loads(self.run_pliant("validate", good, "--json").stdout)["problems"], [])
 
+    def test_json_tells_where_for_editors(self):
+        text = """<scene version="1" start="1" end="9">
+  <surface name="sheet"><grid columns="2" rows="11"/></surface>
+\t<!-- \u00fc \U0001f44b --><point nam="poke" forceRadius="1,5"/>
+  <surface name="s"/><wrong/>
+  <point name="q"><animate attribute="magnitude"><key frame="1"
+    value="0"/><key frame="1" value="3"/></animate></point>
+  <point name="r" magnitude="1" targets="shet"/>
+</scene>
+"""
+        def told(name, text):
+            result = self.run_pliant("validate", self.write(name, text), "--json", code=2)
+            return json.loads(result.stdout)["problems"]
+        def named(problem, lines):
+            self.assertEqual((problem["endLine"], problem["severity"]), (problem["line"], "error"))
+            line = lines[problem["line"] - 1].encode("utf-16-le")
+            return line[2 * (problem["column"] - 1):2 * (problem["endColumn"] - 1)].decode("utf-16-le")
+        problems = told("a.xml", text)
+        self.assertEqual([(problem["line"], named(problem, text.split("\n"))) for problem in problems],
+                         [(2, "2"), (3, "nam"), (3, "1,5"), (4, "surface"), (4, "wrong"), (6, 'frame="1"'), (7, "shet")])
+        problems = told("b.xml", "\ufeff<scene start='1' end='9'>\r\n  <point name='p'>\r\n</scene>\r\n")
+        self.assertEqual([(problem["line"], problem["column"], problem["endColumn"]) for problem in problems], [(3, 1, 9)])
+        # A line of a file that is no XML, and no file at all.
+        scene = SCENE.format(end=9)
+        self.write("m.obj", "v 0 0 0\nf 1 2 x\n")
+        for problem in told("c.xml", scene.replace(
+                '<grid columns="13" rows="11" width="12" depth="10"/>', '<mesh file="m.obj"/>')):
+            if problem["file"].endswith(".obj"):
+                self.assertEqual([problem[name] for name in ("column", "endLine", "endColumn")], [None] * 3)
+        noted = scene.replace(' magnitude="3000"/>', """><animate attribute="magnitude">
+      <key frame="1" value="0" out="1" outLength="-2"/><key frame="9" value="5"/></animate></point>""")
+        notes = json.loads(self.run_pliant("validate", self.write("n.xml", noted), "--json").stdout)["problems"]
+        self.assertEqual({note["severity"] for note in notes}, {"information"})
+
     def test_a_scene_without_a_surface_is_legal(self):
         scene = self.write("curves.xml", '<scene version="1" start="1" end="9"><point name="p"/></scene>')
         self.run_pliant("validate", scene)

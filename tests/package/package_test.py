@@ -64,11 +64,13 @@ share/doc/pliant/copyright
 share/doc/pliant/docs/README.md
 share/doc/pliant/docs/command.md
 share/doc/pliant/docs/images/viewer.png
+share/doc/pliant/docs/pliant-scene.xsd
 share/doc/pliant/docs/scene-format.md
 share/doc/pliant/examples/head.obj
 share/doc/pliant/examples/sheet.xml
 share/doc/pliant/examples/thesis/fig08-force.xml
 share/fish/vendor_completions.d/pliant.fish
+share/pliant/pliant-scene.xsd
 share/pliant/viewer.html
 """.split()
 ZSH = {"deb": "share/zsh/vendor-completions/_pliant", "tar.gz": "share/zsh/site-functions/_pliant"}

@@ -73,6 +73,15 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
   }
 }
 
+/// Whether an attribute of the root only tells editors and validators where the schema is.
+bool names_schema(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given) {
+  if (element.Parent() != element.GetDocument()) return false;
+  const std::string_view name = given.Name();
+  return name == "xsi:noNamespaceSchemaLocation" ||
+         (name == "xmlns:xsi" &&
+          given.Value() == std::string_view("http://www.w3.org/2001/XMLSchema-instance"));
+}
+
 }  // namespace
 
 void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
@@ -80,6 +89,7 @@ void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings
   std::vector<std::string_view> meant;  // attributes that a misspelt one probably stands for
   for (const auto* given = element.FirstAttribute(); given && !findings.is_full();
        given = given->Next()) {
+    if (names_schema(element, *given)) continue;
     if (Slot* row = find(table, given->Name())) {
       read_value(element, *given, *row, findings);
       continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,8 @@ struct AttributeFormat {
   std::string meaning = {};  ///< for people, in Markdown
   Need need = Need::Optional;
   bool is_keyable = false;
+  Range limits = {};                             ///< of its numbers
+  std::span<const std::string_view> words = {};  ///< of a word
 };
 
 /// The format of an element.

@@ -54,6 +54,12 @@ constexpr Word<typename Extrapolation<D>::Kind> extrapolations[] = {
     {"mirror", Extrapolation<D>::Kind::Mirror},
 };
 
+template <int D>
+constexpr bool repeats(typename Extrapolation<D>::Kind kind) {
+  using Kind = typename Extrapolation<D>::Kind;
+  return kind == Kind::Repeat || kind == Kind::RepeatOffset || kind == Kind::Mirror;
+}
+
 template <class Words>
 auto find_word(const Words& words, std::string_view text) {
   return std::find_if(std::begin(words), std::end(words),
@@ -73,11 +79,8 @@ bool looks_like_number(std::string_view text) {
 }
 
 std::string unknown_interpolation(std::string_view text) {
-  std::vector<std::string_view> candidates = texts_of(interpolations);
-  std::vector<std::string> easings;
-  for (const auto& ease : eases)
-    for (const auto& side : sides) easings.push_back(fmt::format("{}{}", ease.first, side.first));
-  candidates.insert(candidates.end(), easings.begin(), easings.end());
+  const std::vector<std::string> words = interpolation_words();
+  const std::vector<std::string_view> candidates(words.begin(), words.end());
   const auto near = nearest_word(text, candidates);
   return fmt::format("unknown word; {}allowed: {}, or one of {} followed by In, Out or InOut",
                      near ? fmt::format("did you mean \"{}\"? ", *near) : "",
@@ -121,8 +124,7 @@ Reading<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind k
   if (found == std::end(extrapolations<D>))
     return tl::unexpected("unknown word" + hint(word, texts_of(extrapolations<D>)));
   Extrapolation<D> result{.kind = found->second};
-  const bool is_loop = result.kind == Kind::Repeat || result.kind == Kind::RepeatOffset ||
-                       result.kind == Kind::Mirror;
+  const bool is_loop = repeats<D>(result.kind);
   if (kind == ValueKind::Boolean && result.kind != Kind::Hold && result.kind != Kind::Repeat &&
       result.kind != Kind::Mirror)
     return tl::unexpected(std::string("a boolean channel allows only hold, repeat and mirror"));
@@ -275,6 +277,28 @@ Slot interpolation_slot(const Attribute& attribute, std::optional<Interpolation>
 constexpr std::string_view overshoot_words[] = {"limit", "keepStart", "contain", "error"};
 
 }  // namespace
+
+std::vector<std::string> interpolation_words() {
+  std::vector<std::string> words;
+  for (const auto& word : interpolations) words.emplace_back(word.first);
+  for (const auto& ease : eases)
+    for (const auto& side : sides) words.push_back(fmt::format("{}{}", ease.first, side.first));
+  return words;
+}
+
+std::vector<std::string> tangent_words() {
+  const std::vector<std::string_view> words = texts_of(tangents<1>);
+  return {words.begin(), words.end()};
+}
+
+ExtrapolationWords extrapolation_words() {
+  ExtrapolationWords words;
+  for (const auto& [word, kind] : extrapolations<1>) {
+    const bool is_slope = kind == Extrapolation<1>::Kind::Slope;
+    (is_slope ? words.slopes : repeats<1>(kind) ? words.loops : words.plain).emplace_back(word);
+  }
+  return words;
+}
 
 template <int D>
 Reading<Value<D>> parse_value(std::string_view text, ValueKind kind) {

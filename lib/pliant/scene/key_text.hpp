@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pliant/scene/element.hpp"
 #include "pliant/timeline/key.hpp"
@@ -63,6 +64,16 @@ struct KeyText {
   std::optional<Handle<D>> out_handle = {};
   std::optional<Value<D>> left = {};
 };
+
+// The words of the values that keys have besides numbers.
+
+std::vector<std::string> interpolation_words();
+std::vector<std::string> tangent_words();
+/// Of an extrapolation. `slope` is followed by a slope, a loop perhaps by its count.
+struct ExtrapolationWords {
+  std::vector<std::string> plain, loops, slopes;
+};
+ExtrapolationWords extrapolation_words();
 
 /// The attributes of an <animate> or a <falloff>.
 template <int D>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -197,11 +198,11 @@ struct ReadValue {
     const std::vector<std::string_view> words = words_of(text);
     if (words.empty())
       return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
-    for (auto word = words.begin(); word != words.end(); ++word) {
-      if (!is_name(*word))
-        return complaint(in_quotes(*word) + " is not a name (names are separated by spaces)");
-      if (std::find(words.begin(), word, *word) != word)
-        return complaint(in_quotes(*word) + " is given twice");
+    std::set<std::string_view> seen;
+    for (const std::string_view word : words) {
+      if (!is_name(word))
+        return complaint(in_quotes(word) + " is not a name (names are separated by spaces)");
+      if (!seen.insert(word).second) return complaint(in_quotes(word) + " is given twice");
     }
     place->assign(words.begin(), words.end());
     return {};
@@ -339,7 +340,9 @@ AttributeFormat format_of(const Slot& slot) {
           .range = slot.range,
           .meaning = std::string(attribute.meaning),
           .need = attribute.need,
-          .is_keyable = is_channel(slot.place)};
+          .is_keyable = is_channel(slot.place),
+          .limits = attribute.range,
+          .words = attribute.words};
 }
 
 std::string not_supported(std::string_view instead) {

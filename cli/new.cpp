@@ -1,0 +1,238 @@
+#include "new.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "interrupt.hpp"
+#include "materials.hpp"
+#include "output_file.hpp"
+#include "own_mesh.hpp"
+#include "pliant/output/atomic_file.hpp"
+#include "pliant/pliant.hpp"
+#include "pliant/scene/schema.hpp"
+#include "report.hpp"
+#include "resources.hpp"
+#include "starters.hpp"
+
+namespace pliant::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* schema_name = "pliant-scene.xsd";
+
+// A file that the command writes.
+struct NewFile {
+  fs::path path;
+  std::string text;
+};
+
+template <class Items>
+std::vector<std::string> names_of(const Items& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.emplace_back(item.name);
+  return names;
+}
+
+template <class Items>
+const auto& find(const Items& items, const std::string& name) {
+  return *std::ranges::find_if(items, [&](const auto& item) { return item.name == name; });
+}
+
+int list_starters() {
+  std::string text = "starters: pliant new NAME -o SCENE\n";
+  for (const Starter& starter : starters()) {
+    text += fmt::format("  {:<11} {}\n", starter.name, summary_of(starter));
+  }
+  text += "materials: --material MATERIAL\n";
+  for (const Look& look : looks()) text += fmt::format("  {:<11} {}\n", look.name, look.summary);
+  print(stdout, text);
+  return exit_done;
+}
+
+tl::unexpected<Error> refuse(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+// The rules between options, ahead of any work.
+Result<void> check(const NewOptions& options, const Starter& starter) {
+  if (options.mesh && starter.mesh.empty()) {
+    std::string with_mesh;
+    for (const Starter& each : starters()) {
+      if (each.mesh.empty()) continue;
+      with_mesh += (with_mesh.empty() ? "" : ", ") + std::string(each.name);
+    }
+    return refuse(fmt::format("--mesh: {} makes its own surface; the starters with a mesh are {}",
+                              starter.name, with_mesh));
+  }
+  if (options.out) {
+    if (auto there = check_output_file("-o", *options.out); !there) return there;
+    if (fs::path(*options.out).extension() != ".xml") {
+      return refuse(
+          fmt::format("-o {}: the name of a scene must end in .xml", printable(*options.out)));
+    }
+    return {};
+  }
+  if (!starter.mesh.empty() && !options.mesh) {
+    return refuse(
+        fmt::format("{} needs -o SCENE, because its mesh is written beside the scene, or "
+                    "--mesh with a mesh of your own",
+                    starter.name));
+  }
+  if (options.has_schema) return refuse("--schema needs -o SCENE: it is written beside the scene");
+  return {};
+}
+
+// The mesh as the scene names it, from the scene's folder.
+std::string name_from(const fs::path& folder, const std::string& file) {
+  std::error_code unknown;
+  const fs::path name = fs::proximate(file, folder.empty() ? "." : folder, unknown);
+  return (unknown ? fs::path(file) : name).generic_string();
+}
+
+// Writes an attribute's value.
+std::string escaped(const std::string& value) {
+  std::string text;
+  for (const char c : value) {
+    if (c == '&') {
+      text += "&amp;";
+    } else if (c == '<') {
+      text += "&lt;";
+    } else if (c == '"') {
+      text += "&quot;";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+// The text of the scene, fitted to the mesh and the material.
+Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
+                               const fs::path& out) {
+  SceneText text{std::string(starter.scene)};
+  StarterSource source{.name = std::string(starter.name),
+                       .folder = out.parent_path().string(),
+                       .obj = starter.mesh,
+                       .options = simulation_options({})};
+  if (options.mesh || options.material) {
+    auto facts = look_at(text.text(), source);
+    if (!facts) return fail(facts.error());
+    if (options.mesh) {
+      source.obj = {};
+      source.name = *options.mesh;
+      const std::string name = escaped(name_from(out.parent_path(), *options.mesh));
+      facts = use_own_mesh(text, name, *facts, source);
+      if (!facts) return fail(facts.error());
+    }
+    if (options.material) {
+      const auto applied = apply_look(text, find(looks(), *options.material), *facts, source);
+      if (!applied) return fail(applied.error());
+    }
+  }
+  if (!starter.mesh.empty() && !options.mesh) {
+    text.set(*text.find("mesh"), "file", escaped(out.stem().string() + ".obj"));
+  }
+  std::string scene = text.text();
+  if (options.has_schema) {
+    scene.insert(scene.find('\n') + 1, fmt::format("<?xml-model href=\"{}\"?>\n", schema_name));
+  }
+  return scene;
+}
+
+// Whether a file may be written. An older one with the same content may stay.
+Result<void> check_place(const NewFile& file, bool is_forced) {
+  if (auto place = check_output_file("-o", file.path.string()); !place) return place;
+  std::error_code unknown;
+  if (is_forced || !fs::exists(file.path, unknown)) return {};
+  return refuse(
+      fmt::format("{}: the file exists; --force replaces it", printable(file.path.string())));
+}
+
+Result<void> write(const std::vector<NewFile>& files) {
+  std::vector<AtomicFile> open;
+  for (const NewFile& file : files) {
+    auto created = AtomicFile::create(file.path);
+    if (!created) return fail(created.error());
+    if (auto written = created->write(file.text); !written) return written;
+    open.push_back(*std::move(created));
+  }
+  for (AtomicFile& file : open) {
+    if (auto committed = file.commit(); !committed) return committed;
+  }
+  return {};
+}
+
+// The files to write, the scene last: whoever sees it finds the others.
+Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& starter) {
+  const fs::path out = options.out.value_or("");
+  std::vector<NewFile> files;
+  if (!starter.mesh.empty() && !options.mesh) {
+    files.push_back({fs::path(out).replace_extension(".obj"), std::string(starter.mesh)});
+  }
+  if (options.has_schema) files.push_back({out.parent_path() / schema_name, scene_schema()});
+  files.push_back({out, {}});
+  if (options.out) {
+    for (const NewFile& file : files) {
+      const bool may_replace = options.is_forced || file.path.filename() == schema_name;
+      if (auto free = check_place(file, may_replace); !free) return fail(free.error());
+    }
+  }
+  auto text = scene_text(options, starter, out);
+  if (!text) return fail(text.error());
+  files.back().text = *std::move(text);
+  return files;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, NewOptions& options) {
+  CLI::App* create = app.add_subcommand("new", "Write a commented scene to begin with");
+  create->add_option("NAME", options.name, "The starter; lists all by default")
+      ->check(CLI::IsMember(names_of(starters())));
+  create->add_option("-o,--out", options.out,
+                     "The scene to write, .xml; to the standard output by default");
+  create
+      ->add_option("--material", options.material,
+                   "A material by its look, fitted to the starter's size")
+      ->check(CLI::IsMember(names_of(looks())));
+  create->add_option("--mesh", options.mesh,
+                     "A mesh of your own for starters that have one, fitted to its size");
+  create->add_flag("--schema", options.has_schema,
+                   "Also write pliant-scene.xsd beside the scene, so that editors complete it");
+  create->add_flag("--force", options.is_forced, "Replace files that exist");
+}
+
+int run_new(const NewOptions& options) {
+  if (!options.name) {
+    if (options.out || options.material || options.mesh || options.has_schema) {
+      return report(
+          {ErrorCode::InvalidInput, "new needs the NAME of a starter with these options"});
+    }
+    return list_starters();
+  }
+  catch_interrupts();
+  const Starter& starter = find(starters(), *options.name);
+  if (auto allowed = check(options, starter); !allowed) return report(allowed.error());
+  const auto files = files_of(options, starter);
+  if (!files) return report(files.error());
+  if (!options.out) {
+    print(stdout, files->back().text);
+    return exit_done;
+  }
+  if (auto written = write(*files); !written) return report(written.error());
+  std::string names;
+  for (const NewFile& file : *files)
+    names += (names.empty() ? "" : ", ") + printable(file.path.string());
+  print(stdout,
+        fmt::format("{}: written; next: pliant view {} --serve\n", names, printable(*options.out)));
+  return exit_done;
+}
+
+}  // namespace pliant::cli

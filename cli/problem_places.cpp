@@ -1,0 +1,156 @@
+#include "problem_places.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/scene/markup.hpp"
+
+namespace pliant::cli {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n";
+
+// The bytes of a text from `begin` up to `end`.
+struct Stretch {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+Stretch stretch_of(const xml::TextRange& range) { return {range.begin, range.end}; }
+
+std::size_t utf16_units(std::string_view text) {
+  std::size_t units = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte & 0xC0U) != 0x80U) units += byte >= 0xF0U ? 2 : 1;
+  }
+  return units;
+}
+
+bool has(std::string_view text, const std::string& part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+}  // namespace
+
+struct ProblemPlaces::Text {
+  explicit Text(std::string given) : text(std::move(given)) {
+    line_starts.push_back(0);
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
+      line_starts.push_back(at + 1);
+    }
+    xml::Findings ignored("");
+    if (auto scanned = xml::scan_markup(text, ignored)) markup = *std::move(scanned);
+  }
+
+  Stretch line(int number) const {
+    const auto k = static_cast<std::size_t>(number - 1);
+    const std::size_t end = k + 1 < line_starts.size() ? line_starts[k + 1] : text.size();
+    return {line_starts[k], end};
+  }
+
+  int line_of(std::size_t at) const {
+    const auto next = std::upper_bound(line_starts.begin(), line_starts.end(), at);
+    return static_cast<int>(next - line_starts.begin());
+  }
+
+  int column_of(std::size_t at) const {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    std::size_t begin = line(line_of(at)).begin;
+    if (begin == 0 && text.starts_with(byte_order_mark)) begin = byte_order_mark.size();
+    const std::string_view before = std::string_view(text).substr(begin, at - std::min(at, begin));
+    return static_cast<int>(utf16_units(before)) + 1;
+  }
+
+  std::optional<Stretch> attribute(const Stretch& in, std::string_view message) const;
+  std::optional<Stretch> element(const Stretch& in, std::string_view message) const;
+  Stretch without_blanks(const Stretch& in) const;
+
+  std::string text;
+  std::vector<std::size_t> line_starts;
+  xml::Markup markup;
+};
+
+// The attribute that the message names, in the ways in which the reader names one.
+std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
+                                                      std::string_view message) const {
+  const auto first = std::lower_bound(
+      markup.attributes.begin(), markup.attributes.end(), in.begin,
+      [](const xml::AttributePlace& place, std::size_t at) { return place.name.begin < at; });
+  std::optional<Stretch> best;
+  std::size_t best_way = 5;
+  for (auto each = first; each != markup.attributes.end() && each->name.begin < in.end; ++each) {
+    const std::string_view name = each->name.of(text);
+    const Stretch value = stretch_of(each->value), whole = stretch_of(each->whole());
+    const std::array<std::pair<std::string, Stretch>, 5> ways = {
+        {{fmt::format(" {}=\"", name), value},
+         {fmt::format("\"{}\"", name), stretch_of(each->name)},
+         {fmt::format(".{}:", name), value},
+         {fmt::format(".{} ", name), value},
+         {fmt::format("> {}", name), whole}}};
+    for (std::size_t way = 0; way < best_way; ++way) {
+      if (!has(message, ways[way].first)) continue;
+      best = ways[way].second;
+      best_way = way;
+    }
+  }
+  return best;
+}
+
+// The name of the first element of the line that the message names, or else of the first one.
+std::optional<Stretch> ProblemPlaces::Text::element(const Stretch& in,
+                                                    std::string_view message) const {
+  const auto first = std::lower_bound(
+      markup.elements.begin(), markup.elements.end(), in.begin,
+      [](const xml::ElementPlace& place, std::size_t at) { return place.name.begin < at; });
+  std::optional<Stretch> best;
+  for (auto each = first; each != markup.elements.end() && each->name.begin < in.end; ++each) {
+    const std::string name(each->name.of(text));
+    if (has(message, "has no element \"" + name + '"') || has(message, '<' + name + '>')) {
+      return stretch_of(each->name);
+    }
+    if (!best) best = stretch_of(each->name);
+  }
+  return best;
+}
+
+Stretch ProblemPlaces::Text::without_blanks(const Stretch& in) const {
+  const std::string_view whole = std::string_view(text).substr(in.begin, in.end - in.begin);
+  const std::string_view inner = trim(whole, blanks);
+  if (inner.empty()) return {in.begin, in.begin};
+  const std::size_t begin = in.begin + static_cast<std::size_t>(inner.data() - whole.data());
+  return {begin, begin + inner.size()};
+}
+
+ProblemPlaces::ProblemPlaces() = default;
+ProblemPlaces::~ProblemPlaces() = default;
+
+std::optional<ProblemPlace> ProblemPlaces::find(const std::string& file, int line,
+                                                std::string_view message) {
+  const auto [found, is_new] = texts_.try_emplace(file);
+  if (is_new) {
+    constexpr std::size_t largest = std::size_t{256} << 20U;
+    if (auto text = read_file(file, largest)) {
+      const std::size_t first = text->find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+      const bool is_xml = first != std::string::npos && (*text)[first] == '<';
+      if (is_xml) found->second = std::make_unique<Text>(*std::move(text));
+    }
+  }
+  const Text* const text = found->second.get();
+  if (!text || line < 1 || static_cast<std::size_t>(line) > text->line_starts.size()) return {};
+  const Stretch in = text->line(line);
+  std::optional<Stretch> place = text->attribute(in, message);
+  if (!place) place = text->element(in, message);
+  if (!place) place = text->without_blanks(in);
+  return ProblemPlace{text->line_of(place->begin), text->column_of(place->begin),
+                      text->line_of(place->end), text->column_of(place->end)};
+}
+
+}  // namespace pliant::cli
