@@ -130,7 +130,7 @@ std::string comment_of(const Look& look, const Numbers& numbers, bool is_by_iner
 }
 
 // The yield with which the peak is as much larger than the elastic one as the look wants.
-Result<double> find_yield(const SceneText& text, const Look& look, const Numbers& numbers,
+Result<double> find_yield(const EditedText& text, const Look& look, const Numbers& numbers,
                           double elastic_peak, const StarterSource& source) {
   // The bend at the peak is some times `numbers.yield`: from half of that, where all flows, to
   // where nothing does. Halving the range six times leaves 5 %.
@@ -138,7 +138,7 @@ Result<double> find_yield(const SceneText& text, const Look& look, const Numbers
   for (int k = 0; k < 6; ++k) {
     Numbers trial = numbers;
     trial.yield = std::sqrt(low * high);
-    SceneText yielding = text;
+    EditedText yielding = text;
     yielding.replace_with_comment(*yielding.find("material"), element_of(look, trial));
     const auto peak = played_peak(yielding.text(), source);
     if (!peak && peak.error().code != ErrorCode::SolverFailed &&
@@ -155,14 +155,14 @@ Result<double> find_yield(const SceneText& text, const Look& look, const Numbers
 
 std::span<const Look> looks() { return all_looks; }
 
-Result<void> apply_look(SceneText& text, const Look& look, const StarterFacts& own,
+Result<void> apply_look(EditedText& text, const Look& look, const StarterFacts& own,
                         const StarterSource& source) {
   const auto surface = text.find("surface");
   const auto material = text.find("material");
   if (!surface || !material) return invalid("the starter has no <material>");
   // A density and a stiffness of 1 show what others make: frequency² and peak are proportional to
   // 1/density and 1/stiffness, as long as nothing yields.
-  SceneText trial = text;
+  EditedText trial = text;
   Numbers numbers{.density = 1, .stiffness = 1};
   trial.replace_with_comment(*trial.find("material"), element_of(look, numbers));
   auto facts = look_at(trial.text(), source);

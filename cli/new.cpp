@@ -106,6 +106,8 @@ std::string escaped(const std::string& value) {
       text += "&lt;";
     } else if (c == '"') {
       text += "&quot;";
+    } else if (c == '$') {
+      text += "$$";
     } else {
       text += c;
     }
@@ -116,7 +118,7 @@ std::string escaped(const std::string& value) {
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
-  SceneText text{std::string(starter.scene)};
+  EditedText text{std::string(starter.scene)};
   StarterSource source{.name = std::string(starter.name),
                        .folder = out.parent_path().string(),
                        .obj = starter.mesh,

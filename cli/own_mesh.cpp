@@ -41,7 +41,7 @@ std::string place_text(const Vector3d& at, double size) {
 }
 
 // Multiplies the numbers of an attribute, if the element has it.
-void scale(SceneText& text, std::size_t element, std::string_view attribute, double factor) {
+void scale(EditedText& text, std::size_t element, std::string_view attribute, double factor) {
   const auto value = text.attribute(element, attribute);
   if (!value) return;
   std::vector<double> numbers = numbers_of(*value);
@@ -50,7 +50,7 @@ void scale(SceneText& text, std::size_t element, std::string_view attribute, dou
 }
 
 // Multiplies the values of the keys of a channel.
-void scale_keys(SceneText& text, std::string_view channel, double factor) {
+void scale_keys(EditedText& text, std::string_view channel, double factor) {
   for (auto animate = text.find("animate"); animate; animate = text.find("animate", *animate + 1)) {
     if (text.attribute(*animate, "attribute") != channel) continue;
     for (auto key = text.find("key", *animate); key && text.is_inside(*key, *animate);
@@ -70,7 +70,7 @@ Vector3d same_place(const Vector3d& point, const StarterFacts& own, const Starte
 }
 
 // Scales lengths, and moves each point force to the same place, with its direction inwards.
-void place(SceneText& text, const StarterFacts& own, const StarterFacts& mesh) {
+void place(EditedText& text, const StarterFacts& own, const StarterFacts& mesh) {
   const double size = mesh.diagonal() / own.diagonal();
   scale_keys(text, "translate", size);
   const auto force = text.find("point");
@@ -86,8 +86,8 @@ void place(SceneText& text, const StarterFacts& own, const StarterFacts& mesh) {
 
 }  // namespace
 
-Result<StarterFacts> use_own_mesh(SceneText& text, const std::string& file, const StarterFacts& own,
-                                  const StarterSource& source) {
+Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
+                                  const StarterFacts& own, const StarterSource& source) {
   const std::size_t shape = *text.find("mesh");
   text.set(shape, "file", file);
   text.set(shape, "uv", "auto");

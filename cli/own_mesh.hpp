@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "scene_text.hpp"
+#include "edited_text.hpp"
 #include "starter_facts.hpp"
 
 namespace pliant::cli {
@@ -12,7 +12,7 @@ namespace pliant::cli {
 /// motion is as fast and, for its size, as large as the starter's. `own` are the facts of the
 /// starter. Returns the facts of the result. Errors: those of `look_at`; InvalidInput if nothing
 /// holds the mesh.
-Result<StarterFacts> use_own_mesh(SceneText& text, const std::string& file, const StarterFacts& own,
-                                  const StarterSource& source);
+Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
+                                  const StarterFacts& own, const StarterSource& source);
 
 }  // namespace pliant::cli

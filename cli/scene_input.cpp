@@ -75,12 +75,13 @@ void add_changes(CLI::App& command, Changes& changes) {
       ->allow_extra_args(false);
 }
 
-Result<SceneText> read_scene_text(const std::string& scene) {
+Result<SceneSource> read_scene_text(const std::string& scene) {
   if (!is_standard_input(scene)) {
     auto text = read_file(scene, largest_scene_file);
     if (!text && was_interrupted()) return interruption();  // while waiting for a pipe
     if (!text) return fail(text.error());
-    return SceneText{*std::move(text), scene, std::filesystem::path(scene).parent_path().string()};
+    return SceneSource{*std::move(text), scene,
+                       std::filesystem::path(scene).parent_path().string()};
   }
   if (isatty(STDIN_FILENO) != 0) {
     return fail(
@@ -89,10 +90,10 @@ Result<SceneText> read_scene_text(const std::string& scene) {
   }
   auto text = read_standard_input();
   if (!text) return fail(text.error());
-  return SceneText{*std::move(text), name, {}};
+  return SceneSource{*std::move(text), name, {}};
 }
 
-Result<Scene> parse_source(const SceneText& source, const Root& root) {
+Result<Scene> parse_source(const SceneSource& source, const Root& root) {
   const auto folder = folder_of(root);
   if (!folder) return fail(folder.error());
   return parse_scene(source.text, source.name, source.folder, *folder);

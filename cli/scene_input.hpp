@@ -29,17 +29,17 @@ Result<std::filesystem::path> folder_of(const Root& root);
 bool is_standard_input(std::string_view scene);
 
 /// The text of a scene.
-struct SceneText {
+struct SceneSource {
   std::string text;
   std::string name;    ///< of its file, in messages
   std::string folder;  ///< of the files that it names
 };
 
 /// Reads the text of a scene file, or for "-" of the standard input. Errors: as `read_scene`.
-Result<SceneText> read_scene_text(const std::string& scene);
+Result<SceneSource> read_scene_text(const std::string& scene);
 
 /// Reads a scene from its text. Errors: as `read_scene`.
-Result<Scene> parse_source(const SceneText& source, const Root& root);
+Result<Scene> parse_source(const SceneSource& source, const Root& root);
 
 /// `load_scene`, or for "-" the same from the standard input: its mesh paths are relative to the
 /// current folder. Errors: those of `load_scene` and `folder_of`; InvalidInput if the standard

@@ -12,10 +12,9 @@ namespace pliant::testing {
 namespace {
 
 using Catch::Matchers::WithinAbs;
-using Kind = Adjustment::Kind;
 
 Adjustment random_adjustment(Whim& whim) {
-  return {static_cast<Kind>(whim.upto(3)), whim.between(-3, 3)};
+  return {static_cast<Adjustment::Kind>(whim.upto(3)), whim.between(-3, 3)};
 }
 
 TEST_CASE("an adjusted curve has the curve's values, adjusted by one rounding",
@@ -38,10 +37,10 @@ TEST_CASE("an adjusted curve has the curve's values, adjusted by one rounding",
               ? plain.keys().keys[whim.upto(static_cast<int>(plain.keys().keys.size() - 1))].frame
               : whim.between(from, to);
       const double value = plain.value(t)[0], slope = plain.velocity(t)[0];
-      const double wanted = one.kind == Kind::Set     ? one.number
-                            : one.kind == Kind::Times ? one.number * value
-                            : one.kind == Kind::Plus  ? value + one.number
-                                                      : value;
+      const double wanted = one.kind == Adjustment::Kind::Set     ? one.number
+                            : one.kind == Adjustment::Kind::Times ? one.number * value
+                            : one.kind == Adjustment::Kind::Plus  ? value + one.number
+                                                                  : value;
       CAPTURE(round, t, static_cast<int>(one.kind), one.number);
       REQUIRE(curve.value(t)[0] == wanted);
       REQUIRE(curve.left_value(t)[0] == one.of_value(plain.left_value(t)[0]));
@@ -100,8 +99,8 @@ TEST_CASE("the components of a channel are adjusted apart", "[timeline][adjustme
   CurveKeys<3> keys;
   keys.keys = {{.frame = 0, .value = {1, 2, 3}}, {.frame = 8, .value = {4, -5, 6}}};
   const Curve<3> plain = Curve<3>::make(keys).value();
-  const Adjustments<3> adjustments = {Adjustment{Kind::Times, 2}, Adjustment{Kind::Set, 7},
-                                      Adjustment{}};
+  const Adjustments<3> adjustments = {Adjustment{Adjustment::Kind::Times, 2},
+                                      Adjustment{Adjustment::Kind::Set, 7}, Adjustment{}};
   Channel<3> channel = plain;
   PositionChannel position = plain;
   channel.adjust(adjustments);
@@ -122,8 +121,8 @@ TEST_CASE("the components of a channel are adjusted apart", "[timeline][adjustme
 
 TEST_CASE("a constant that is adjusted is a constant", "[timeline][adjustment]") {
   Channel<1> channel = 3.0;
-  channel.adjust({Adjustment{Kind::Plus, 0.5}});
-  channel.adjust({Adjustment{Kind::Times, 2}});
+  channel.adjust({Adjustment{Adjustment::Kind::Plus, 0.5}});
+  channel.adjust({Adjustment{Adjustment::Kind::Times, 2}});
   CHECK(!channel.is_animated());
   CHECK(channel.adjustments() == nullptr);
   CHECK(channel.at(0)[0] == 7);
@@ -133,7 +132,8 @@ TEST_CASE("a position on a path is adjusted where it is", "[timeline][adjustment
   const Path path = Path::make({{{0, 0, 0}, {4, 0, 0}, {4, 2, 1}}}, false).value();
   PositionChannel position = PathMotion{path, make({key(0, 0), key(10, 1)})};
   const PositionChannel plain = position;
-  position.adjust({Adjustment{}, Adjustment{Kind::Plus, 5}, Adjustment{Kind::Times, -1}});
+  position.adjust({Adjustment{}, Adjustment{Adjustment::Kind::Plus, 5},
+                   Adjustment{Adjustment::Kind::Times, -1}});
   for (const double t : {0.0, 2.5, 7.0, 10.0}) {
     const Value<3> at = plain.at(t);
     CHECK(position.at(t) == Value<3>{at[0], at[1] + 5, at[2] * -1});

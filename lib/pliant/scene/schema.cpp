@@ -63,31 +63,6 @@ std::string_view meaning_of(std::string_view element) {
   return found == std::end(meanings) ? std::string_view() : found->second;
 }
 
-/// The format, with the elements that are replaced before a scene is read.
-std::vector<ElementFormat> whole_format() {
-  std::vector<ElementFormat> formats = scene_format();
-  const auto knows = [&](std::string_view name) {
-    return std::ranges::find(formats, name, &ElementFormat::name) != formats.end();
-  };
-  if (knows("include")) return formats;
-  Names parents = {"scene", "surface", "material", "group"};
-  for (const ElementFormat& format : formats) {
-    const bool is_force = std::ranges::find(format.parents, "group") != format.parents.end() &&
-                          std::ranges::find(format.parents, "scene") != format.parents.end();
-    if (is_force) parents.push_back(format.name);
-  }
-  AttributeFormat file{.name = "file", .type = "path", .need = Need::Required};
-  file.meaning = "the file whose content takes the place of the element";
-  AttributeFormat name{.name = "name", .type = "text", .need = Need::Required};
-  name.meaning = "the name: a letter or _, then letters, digits and _";
-  AttributeFormat value{.name = "value", .type = "text", .need = Need::Required};
-  value.meaning = "what `$name` stands for from here on";
-  formats.push_back({.name = "include", .parents = parents, .attributes = {file}});
-  parents.emplace_back("include");
-  formats.push_back({.name = "define", .parents = parents, .attributes = {name, value}});
-  return formats;
-}
-
 /// An element where it stands: some have another type there than elsewhere.
 struct Context {
   std::string_view element;
@@ -139,7 +114,7 @@ class SchemaWriter {
   }
   void line(std::string_view text) { body_ += std::string(depth_, ' ') + std::string(text) + '\n'; }
 
-  std::vector<ElementFormat> formats_ = whole_format();
+  std::vector<ElementFormat> formats_ = scene_format();
   SchemaTypes types_;
   std::string body_;
   std::size_t depth_ = 2;

@@ -10,10 +10,10 @@
 namespace pliant::cli {
 
 /// The text of a scene whose attributes can be changed: all else stays as it is.
-class SceneText {
+class EditedText {
  public:
   /// Requires: well-formed XML.
-  explicit SceneText(std::string text);
+  explicit EditedText(std::string text);
 
   const std::string& text() const { return text_; }
 
