@@ -122,6 +122,14 @@ Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeS
   return advance_in_steps(*this, problem, steps, std::move(state));
 }
 
+Result<void> PlateSolver::solve_for(const std::vector<int>&, const Field& right_hand_sides,
+                                    Field& solution) {
+  auto solved = solve(right_hand_sides);
+  if (!solved) return fail(solved.error());
+  solution = *std::move(solved);
+  return {};
+}
+
 StepTerms PlateSolver::terms(const PlateProblem& problem, double dt, const Field& displacement) {
   Field load = problem.load;
   subtract_rim(problem.outline, problem.stiffness, problem.tangents, displacement, load);

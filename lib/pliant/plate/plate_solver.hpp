@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
@@ -39,6 +40,11 @@ class PlateSolver {
   /// Solves for three right-hand sides (#unknowns x 3). Requires: `prepare` succeeded, and
   /// `advance` was not called since. Errors: OutOfMemory; Interrupted.
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
+
+  /// Likewise for some of x, y and z; the other right-hand sides are 0. Reuses the solution, which
+  /// is as large, and may leave the others of its columns.
+  virtual Result<void> solve_for(const std::vector<int>& components, const Field& right_hand_sides,
+                                 Field& solution);
 
   /// Advances a plate over an interval as `advance_in_steps` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.

@@ -1,11 +1,13 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 
 #include "pliant/plate/energy/plate_energy.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
@@ -298,6 +300,33 @@ TEST_CASE("what a step learns ends with its frame", "[plate][plastic]") {
       CHECK(state.displacement == other.displacement);
       CHECK(state.velocity == other.velocity);
       CHECK(state.plastic == other.plastic);
+    }
+  }
+}
+
+TEST_CASE("a plate that flows has the same bits with vectors of every width", "[plate][plastic]") {
+  for (const Case& one : cases()) {
+    for (const int components : {1, 2, 3}) {
+      CAPTURE(one.name, components);
+      PlateProblem problem = problem_of(one, {0.15, 0.1});
+      problem.tangents = {};
+      for (int k = 2; k >= components; --k) problem.load.col(k == 2 ? 0 : 2).setZero();
+      const auto run = [&](int lanes) {
+        const auto solver = make_plate_solver(one.choice, {.most_lanes = lanes});
+        PlateState state = at_rest(problem);
+        for (int frame = 0; frame < 2; ++frame)
+          state = *solver->advance(problem, {3, 0.01}, std::move(state));
+        return state;
+      };
+      const PlateState widest = run(widest_lanes);
+      CHECK(widest.plastic.cwiseAbs().maxCoeff() > 0.01);
+      for (int which = 0; runnable_kernels(which); ++which) {
+        const PlateState state = run(runnable_kernels(which)->lanes);
+        CAPTURE(runnable_kernels(which)->name);
+        CHECK(state.displacement == widest.displacement);
+        CHECK(state.velocity == widest.velocity);
+        CHECK(state.plastic == widest.plastic);
+      }
     }
   }
 }

@@ -88,7 +88,10 @@ class FlowingGrid final : public FlowingPlate {
         numbers_(numbers_of_unknowns(outline)),
         nodes_(held) {}
 
-  Result<Field> solve(const Field& forces) override { return solver_.solve(forces); }
+  Result<void> solve(const std::vector<int>& components, const Field& forces,
+                     Field& solution) override {
+    return solver_.solve_for(components, forces, solution);
+  }
 
   Field forces_of(const PlasticField& plastic) override {
     Field forces = Field::Zero(plastic.rows(), 3);

@@ -38,8 +38,9 @@ class FlowingPlate {
  public:
   virtual ~FlowingPlate() = default;
 
-  /// A^-1 forces. A component of the forces that is 0 is 0 in the solution.
-  virtual Result<Field> solve(const Field& forces) = 0;
+  /// A^-1 forces of these components; other forces are 0. The others of the solution are left.
+  virtual Result<void> solve(const std::vector<int>& components, const Field& forces,
+                             Field& solution) = 0;
 
   /// The forces of plastic curvatures, sum of omega B^T C k_p.
   virtual Field forces_of(const PlasticField& plastic) = 0;

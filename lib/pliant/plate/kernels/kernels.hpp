@@ -203,6 +203,49 @@ struct SupernodesView {
   const double* pivots = nullptr;  ///< D
 };
 
+/// What a curvature of the first place of a run has of an unknown; the next place has as much of
+/// the next unknown.
+struct FlowTerm {
+  double weight = 0;
+  long unknown = 0;
+};
+
+/// Places side by side, of one material, whose unknowns are side by side too.
+struct FlowRun {
+  int first = 0, count = 0;
+  int law = 0;
+  int terms[4] = {};  ///< where those of uu, vv and uv begin, and where they end
+};
+
+/// The form C, yield stress, 1/(1 + H) and area of places.
+struct FlowLaw {
+  double uu = 0, coupling = 0, vv = 0, uv = 0;
+  double yield = 0, share = 0, area = 0;
+};
+
+/// Places that may flow, in one to three components. Numbers on places are uu of each component,
+/// then vv, then uv, `places` apart; on unknowns one component after the other, `unknowns` apart.
+/// Behind the last number of each there is room for seven more.
+struct FlowView {
+  int components = 1;
+  long places = 0, unknowns = 0;
+  int run_count = 0;
+  const FlowRun* runs = nullptr;  ///< with ascending places
+  const FlowTerm* terms = nullptr;
+  const FlowLaw* laws = nullptr;
+};
+
+/// The return mapping of places at xi + part change, eq. (8j): k_p grows by whole xi.
+struct FlowStep {
+  const double* xi = nullptr;
+  const double* change = nullptr;
+  double part = 0;
+  double* there = nullptr;    ///< xi + part change
+  double* tangent = nullptr;  ///< as k changes by dk, k_p does by whole dk + along xi (xi . C dk)
+  double* work = nullptr;     ///< as many as on places
+  double* forces = nullptr;   ///< to which those of the growth are added
+};
+
 /// The kernels for one width of vectors.
 struct PlateKernels {
   const char* name;
@@ -226,6 +269,9 @@ struct PlateKernels {
   /// pending.
   void (*start)(const ParityView& parity, const ComponentView& component, double shift,
                 double inertia);
+  /// Likewise for w = v = 0, which are not read, and the end: leaves the solution in
+  /// `displacement`.
+  void (*solve)(const ParityView& parity, const ComponentView& component);
   /// Solves for the edge and computes one step of one component.
   void (*step)(const ParityView& parity, const ComponentView& component, StepFactors factors);
   /// The last step; leaves the velocity, (w' - w) times `rate`, in `pending`.
@@ -254,6 +300,23 @@ struct PlateKernels {
                      const ExactView& view);
   /// The sum of the squares over the nodes of a field given by its coefficients, but for a factor.
   double (*exact_size)(const ParityView& parity, const double* numbers);
+
+  /// The curvatures of places for displacements `x`, added to `base`.
+  void (*flow_curvatures)(const FlowView& view, const double* x, const double* base,
+                          double* curvatures);
+  /// Returns how many places flow.
+  long (*flow)(const FlowView& view, const FlowStep& step);
+  /// The change of curvatures along a way on the unknowns. Returns how the forces of a flow that is
+  /// now at `xi` change along it, times the way.
+  double (*flow_along)(const FlowView& view, const double* way, const double* xi,
+                       const double* tangent, double* change);
+
+  /// a . b, b <- part_a a + part_b b, and to += part of, of so many numbers, a multiple of 8.
+  double (*dot_product)(long count, const double* a, const double* b);
+  void (*combine)(long count, double part_a, const double* a, double part_b, double* b);
+  void (*add_scaled)(long count, double* to, double part, const double* of);
+  /// The largest absolute value of so many numbers; leaves out those that are none.
+  double (*longest)(long count, const double* numbers);
 
   /// Solves with a factor for three right-hand sides. `x`: #rows x `row_numbers`, the
   /// right-hand sides and zeros, then the solutions.

@@ -7,5 +7,6 @@
 #include "pliant/plate/kernels/spectral_fields_lanes.hpp"
 #include "pliant/plate/kernels/spectral_steps_lanes.hpp"
 #include "pliant/plate/kernels/step_exactly_lanes.hpp"
+#include "pliant/plate/kernels/step_plastic_lanes.hpp"
 #include "pliant/plate/kernels/supernode_lanes.hpp"
 #include "pliant/plate/kernels/table_lanes.hpp"

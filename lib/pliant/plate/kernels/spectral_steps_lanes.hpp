@@ -82,9 +82,13 @@ PLIANT_INLINE void gather(const ParityView& parity, const ComponentView& compone
   }
 }
 
-template <int Rows, bool is_reflected>
+// What `pending` of the first step is made of.
+enum class From { Motion, ReflectedMotion, Rest };
+
+template <int Rows, From from>
 PLIANT_INLINE void start_rows(const ParityView& parity, const ComponentView& component,
                               double shift, double inertia, int k) {
+  constexpr bool is_reflected = from == From::ReflectedMotion;
   Eight sums[Rows] = {};
   const long begin = static_cast<long>(k) * parity.pitch;
   for (int l = 0; l < parity.columns; l += 8) {
@@ -94,11 +98,16 @@ PLIANT_INLINE void start_rows(const ParityView& parity, const ComponentView& com
       const long at = begin + static_cast<long>(r) * parity.pitch + l;
       const Eight reciprocal = load8(parity.reciprocal + at);
       const Eight load = load8(component.load + at) * reciprocal;
-      const Eight held =
-          load8(component.displacement + at) * shift + load8(component.pending + at) * inertia;
-      const Eight pending = load + held * reciprocal;
-      store8(component.load + at, load);
-      store8(component.pending + at, is_reflected ? held * reciprocal : pending);
+      Eight pending = load;
+      if constexpr (from == From::Rest) {
+        store8(component.pending + at, pending);
+      } else {
+        const Eight held =
+            load8(component.displacement + at) * shift + load8(component.pending + at) * inertia;
+        pending = load + held * reciprocal;
+        store8(component.load + at, load);
+        store8(component.pending + at, is_reflected ? held * reciprocal : pending);
+      }
       sums[r] = sums[r] + weight * pending;
     }
   }
@@ -109,24 +118,24 @@ PLIANT_INLINE void clear(double* numbers, int count) {
   for (int l = 0; l < count; l += 8) store8(numbers + l, Eight{});
 }
 
-template <bool is_reflected>
+template <From from>
 PLIANT_INLINE void start_steps(const ParityView& parity, const ComponentView& component,
                                double shift, double inertia) {
   clear(component.column_sums, parity.columns);
   int k = 0;
   for (; k + rows_at_once <= parity.rows; k += rows_at_once) {
-    start_rows<rows_at_once, is_reflected>(parity, component, shift, inertia, k);
+    start_rows<rows_at_once, from>(parity, component, shift, inertia, k);
   }
-  for (; k < parity.rows; ++k) start_rows<1, is_reflected>(parity, component, shift, inertia, k);
+  for (; k < parity.rows; ++k) start_rows<1, from>(parity, component, shift, inertia, k);
 }
 
 void start(const ParityView& parity, const ComponentView& component, double shift, double inertia) {
-  start_steps<false>(parity, component, shift, inertia);
+  start_steps<From::Motion>(parity, component, shift, inertia);
 }
 
 void reflected_start(const ParityView& parity, const ComponentView& component, double shift,
                      double inertia) {
-  start_steps<true>(parity, component, shift, inertia);
+  start_steps<From::ReflectedMotion>(parity, component, shift, inertia);
 }
 
 // Eq. (26): y = C^-1 q sums; xi = y/q. Resets the sums to 0.
@@ -250,6 +259,13 @@ void last_step(const ParityView& parity, const ComponentView& component, double 
   end_steps<false>(parity, component, [&](long at, const Eight& next) PLIANT_INLINED {
     store8(component.pending + at, (next - load8(component.displacement + at)) * rate);
     store8(component.displacement + at, next);
+  });
+}
+
+void solve_at_rest(const ParityView& parity, const ComponentView& component) {
+  start_steps<From::Rest>(parity, component, 0, 0);
+  end_steps<false>(parity, component, [&](long at, const Eight& solution) PLIANT_INLINED {
+    store8(component.displacement + at, solution);
   });
 }
 

@@ -5,10 +5,32 @@ namespace pliant {
 #define PLIANT_JOIN_(a, b) a##b
 #define PLIANT_JOIN(a, b) PLIANT_JOIN_(a, b)
 
-const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {
-    PLIANT_KERNELS_NAME, lanes,       sine_transform, in_across, in_along,        out_along,
-    out_across,          start,       step,           last_step, reflected_start, reflected_step,
-    last_reflected_step, invert_edge, prepare_shift,  find_lack, exact_step,      exact_size,
-    solve_supernodes};
+const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {PLIANT_KERNELS_NAME,
+                                                            lanes,
+                                                            sine_transform,
+                                                            in_across,
+                                                            in_along,
+                                                            out_along,
+                                                            out_across,
+                                                            start,
+                                                            solve_at_rest,
+                                                            step,
+                                                            last_step,
+                                                            reflected_start,
+                                                            reflected_step,
+                                                            last_reflected_step,
+                                                            invert_edge,
+                                                            prepare_shift,
+                                                            find_lack,
+                                                            exact_step,
+                                                            exact_size,
+                                                            flow_curvatures,
+                                                            flow,
+                                                            flow_along,
+                                                            dot_product,
+                                                            combine,
+                                                            add_scaled,
+                                                            longest,
+                                                            solve_supernodes};
 
 }  // namespace pliant

@@ -426,6 +426,21 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
   from_sines(&Parity::displacement, solution);
 }
 
+void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNodesView& load,
+                              const NodesView& solution) {
+  PLIANT_EXPECTS(prepared_.has_value());
+  ++counts_.solves;
+  std::fill_n(is_still_, 3, true);
+  for (const int component : components) is_still_[component] = false;
+  to_sines(load, &Parity::load);
+  const Parts parts = moving_parts();
+  for_each(parts.count, [&](std::size_t task) {
+    const auto [k, index] = parts.part[task];
+    kernels_.solve(view_of(k), component_of(k, index));
+  });
+  from_sines(&Parity::displacement, solution);
+}
+
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,
                             const NodesView& displacement, const NodesView& velocity,
                             const std::function<bool()>& watch) {

@@ -45,6 +45,10 @@ class SpectralPlate {
   /// Solves for three right-hand sides on the interior nodes. Requires: prepared.
   void solve(const ConstNodesView& load, const NodesView& solution);
 
+  /// Likewise for some components only; the others are neither read nor written.
+  void solve_for(const std::vector<int>& components, const ConstNodesView& load,
+                 const NodesView& solution);
+
   /// Steps on the interior nodes with the prepared shift; the load excludes the rim's part.
   /// Requires: prepared; shift and inertia are those of steps.solved_length(). Returns false if the
   /// context's stop request returns true; displacement and velocity are then unchanged. `watch` is

@@ -110,6 +110,17 @@ class SpectralSolver final : public PlateSolver {
     return solution;
   }
 
+  Result<void> solve_for(const std::vector<int>& components, const Field& right_hand_sides,
+                         Field& solution) override {
+    if (Mirror(outline_).doubles()) {
+      return PlateSolver::solve_for(components, right_hand_sides, solution);
+    }
+    const long width = outline_.grid().columns - 2;
+    plate_.solve_for(components, {right_hand_sides.data(), width, right_hand_sides.rows()},
+                     {solution.data(), width, solution.rows()});
+    return {};
+  }
+
   // Keeps the state in sine space for all steps.
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                              PlateState state) override try {

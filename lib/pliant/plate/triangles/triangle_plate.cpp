@@ -340,12 +340,13 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
   explicit FlowingTriangles(TrianglePlate& plate)
       : plate_(plate), triangles_(plate.plasticity_->triangles) {}
 
-  Result<Field> solve(const Field& forces) override {
+  Result<void> solve(const std::vector<int>&, const Field& forces, Field& solution) override {
     Field eliminated = forces;
     const InnerUnknowns& inner = plate_.plasticity_->inner;
     auto left = plate_.factor_.solve(inner.eliminate(eliminated));
-    if (!left) return left;
-    return inner.recovered(*left, eliminated);
+    if (!left) return fail(left.error());
+    solution = inner.recovered(*left, eliminated);
+    return {};
   }
 
   Field forces_of(const PlasticField& plastic) override {
