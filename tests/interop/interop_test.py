@@ -22,6 +22,8 @@ import unittest
 
 import numpy as np
 
+import keys
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 PLIANT = None
 PICTURES = None
@@ -420,13 +422,40 @@ class FromBlender(unittest.TestCase):
                 self.assertLess(np.abs(way[:, [0, 2]]).max(), 1e-9 * size)
 
 
+
+class Keys(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="pliant-interop-")
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.keys = keys.Keys(PLIANT, cls.scratch.name)
+
+    def test_blender_shows_the_keys_of_a_scene(self):
+        told = self.keys.told
+        seen = self.keys.load("seen.json")
+        self.assertEqual(len(seen), keys.COUNT)
+        wrong = self.keys.disagreements("ours.xml", seen, lambda number: f"note: f{number}.magnitude:" in told,
+                                        1.1 / 1024, (1, 60))
+        self.assertEqual(wrong, [], told)
+
+    def test_a_scene_shows_the_keys_of_blender(self):
+        told = self.keys.read_told
+        seen = self.keys.load("made.json")
+        self.assertEqual(len(seen), keys.COUNT)
+        # Copies that are counted on one side and endless on the other end otherwise.
+        wrong = self.keys.disagreements(
+            "theirs.xml", seen, lambda number: f'note: Ball.["p{number}"]:' in told, 0)
+        wrong = [each for each in wrong if f'Ball.["p{each[0]}"]: its copies end otherwise' not in told]
+        self.assertEqual(wrong, [], told)
+
+
 def main():
     global PLIANT, PICTURES
     PLIANT = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as pictures:
         PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else pictures
         os.makedirs(PICTURES, exist_ok=True)
-        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender)))
+        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender, Keys)))
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     failed = len(result.failures) + len(result.errors)
     # A failure in the shared setup counts once; then no test has run.
