@@ -283,7 +283,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 9);
+  CHECK(examples == 11);
 }
 
 }  // namespace
