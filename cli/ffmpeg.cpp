@@ -26,7 +26,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr const char* program = "ffmpeg";
-constexpr auto pause = 20ms;
+constexpr auto poll_pause = 20ms;
 
 tl::unexpected<Error> missing(const std::string& reason) {
   return fail(
@@ -137,7 +137,7 @@ Result<void> Ffmpeg::finish() {
       return failure();
     }
     if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
-    std::this_thread::sleep_for(pause);
+    std::this_thread::sleep_for(poll_pause);
   }
 }
 

@@ -49,11 +49,12 @@ Result<void> Editor::operator()(const Add& addition) {
     std::vector<std::string> parts = {"surface",  addition.shape, "transform",
                                       "material", "tangents",     "solver"};
     element.children.push_back({.name = addition.shape});
-    for (const auto& [name, value] : addition.attributes) {
-      const auto part = std::ranges::find_if(
-          parts, [&](const std::string& one) { return find_attribute(one, name) != nullptr; });
+    for (const Given& given : addition.attributes) {
+      const auto part = std::ranges::find_if(parts, [&](const std::string& one) {
+        return find_attribute(one, given.first) != nullptr;
+      });
       if (part == parts.begin() || part == parts.end()) {
-        element.attributes.emplace_back(name, value);  // an unknown one is found when it is read
+        element.attributes.push_back(given);  // an unknown one is found when it is read
         continue;
       }
       auto own = std::ranges::find(element.children, *part, &xml::ElementText::name);
@@ -64,7 +65,7 @@ Result<void> Editor::operator()(const Add& addition) {
         own = element.children.insert(std::ranges::partition_point(element.children, rank),
                                       {.name = *part});
       }
-      own->attributes.emplace_back(name, value);
+      own->attributes.push_back(given);
     }
   } else {
     element.attributes.insert(element.attributes.end(), addition.attributes.begin(),
