@@ -94,7 +94,7 @@ Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
   const auto size = measure(text.text(), source);
   if (!size) return fail(size.error());
   place(text, own, *size);
-  const auto trial = look_at(text.text(), source);
+  auto trial = look_at(text.text(), source);
   if (!trial) return trial;
   if (!trial->is_held) {
     return invalid(
@@ -104,7 +104,7 @@ Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
   const std::size_t material = *text.find("material");
   scale(text, material, "density", std::pow(trial->frequency / own.frequency, 2));
   const double wanted = own.peak * trial->diagonal() / own.diagonal();
-  const auto moved = look_at(text.text(), source);
+  auto moved = look_at(text.text(), source);
   if (!moved || moved->is_by_inertia || !(moved->peak > 0)) return moved;
   scale_keys(text, "magnitude", wanted / moved->peak);
   StarterFacts facts = *moved;

@@ -23,7 +23,7 @@ Result<void> Editor::for_each_curve(const std::vector<std::string>& channels,
 template <class Change>
 Result<void> Editor::for_each_keys(const std::vector<KeysOf>& keys, const Change& change) {
   for (const KeysOf& some : keys) {
-    const auto found =
+    auto found =
         for_each_curve({some.channel}, [&]<int D>(const KeyedCurve<D>& curve) -> Result<void> {
           std::vector<std::size_t> indices;
           for (const double frame : some.frames) {

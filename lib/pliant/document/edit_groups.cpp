@@ -46,7 +46,7 @@ Result<void> Editor::operator()(const Group& group) {
                     in_quotes(group.name)));
   parts_.insert(group.name);
   for (const std::string& name : forces) {
-    const auto reset = (*this)(Reset{fmt::format("{}.{}", name, radius)});
+    auto reset = (*this)(Reset{fmt::format("{}.{}", name, radius)});
     if (!reset) return reset;
     if (auto done = draft_.commit(); !done) return done;
   }

@@ -75,7 +75,7 @@ bool Editor::is_force(Element element) const {
 }
 
 Result<Element> Editor::force(std::string_view name) const {
-  const auto element = object(name);
+  auto element = object(name);
   if (!element || (*element != Draft::root && is_force(*element))) return element;
   return draft_.refuse(fmt::format("{} is a <{}>, not a force",
                                    in_quotes(name.empty() ? "scene" : name),

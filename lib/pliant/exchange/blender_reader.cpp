@@ -137,7 +137,7 @@ class BlenderReader : private JsonReader {
                                   const std::string_view (&words)[N]) {
     const auto given = text(parent, key);
     if (!given) return {};
-    const auto index = index_of(words, *given);
+    auto index = index_of(words, *given);
     if (!index) {
       refuse(key, fmt::format("is {}, but must be one of {}", in_quotes(*given),
                               fmt::join(words, ", ")));

@@ -143,13 +143,12 @@ class MayaReader {
         if (!seconds_of(time_unit_))
           return unknown("timeUnit", time_unit_, "such as film, pal, ntsc, 120fps or sec");
         file_.fps = rate_of(time_unit_);
-      } else if (word == "linearUnit") {
-        skip_statement();  // numbers stay as they are
       } else if (word == "angularUnit") {
         angular_unit_ = std::string(words_.next());
         if (!radians_of(angular_unit_))
           return unknown("angularUnit", angular_unit_, "deg, rad, min or sec");
-      } else if (word == "startTime" || word == "endTime" || word == "startUnitless" ||
+      } else if (word == "linearUnit" ||  // numbers stay as they are
+                 word == "startTime" || word == "endTime" || word == "startUnitless" ||
                  word == "endUnitless") {
         skip_statement();
       } else if (word == "anim") {

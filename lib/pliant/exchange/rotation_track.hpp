@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <utility>
@@ -37,7 +38,7 @@ class RotationTrack {
     const double share = (frame - start_) / (end_ - start_);
     const auto steps = samples_.size() - 1;
     const double place = std::clamp(share, 0.0, 1.0) * static_cast<double>(steps);
-    return at_(frame, samples_[std::min(static_cast<std::size_t>(place + 0.5), steps)]);
+    return at_(frame, samples_[std::min(static_cast<std::size_t>(std::lround(place)), steps)]);
   }
 
   void add_bounds(Value<D>& low, Value<D>& high) const {

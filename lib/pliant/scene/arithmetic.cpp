@@ -156,7 +156,7 @@ class Evaluator {
     Numbers left = product(depth);
     while (left && stands('+', '-') && !begins_component()) {
       const char kind = tokens_[at_++].kind;
-      const Numbers right = product(depth);
+      Numbers right = product(depth);
       if (!right) return right;
       left = kind == '+' ? joined(*left, *right, "added", std::plus<>())
                          : joined(*left, *right, "subtracted", std::minus<>());
@@ -168,7 +168,7 @@ class Evaluator {
     Numbers left = factor(depth);
     while (left && stands('*', '/')) {
       const char kind = tokens_[at_++].kind;
-      const Numbers right = factor(depth);
+      Numbers right = factor(depth);
       if (!right) return right;
       left = kind == '*' ? multiplied(*left, *right) : divided(*left, *right);
     }

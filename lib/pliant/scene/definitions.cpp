@@ -29,9 +29,7 @@ std::string_view leading_name(std::string_view text) {
   return text.substr(0, static_cast<std::size_t>(end - text.begin()));
 }
 
-tl::unexpected<std::string> complaint(std::string words) {
-  return tl::unexpected(std::move(words));
-}
+tl::unexpected<std::string> refusal(std::string words) { return tl::unexpected(std::move(words)); }
 
 /// `; did you mean "width"?`, or where the name is defined later.
 std::string hint_of_undefined(std::string_view name, const Scope& scope) {
@@ -89,14 +87,14 @@ class ValueReader {
     if (has_braces) take(1);
     const std::string_view name = take(leading_name(rest_).size());
     if (has_braces && (name.empty() || !rest_.starts_with('}')))
-      return complaint("\"${\" must be followed by a name and \"}\"; write $$ for a $");
-    if (name.empty()) return complaint("\"$\" must be followed by a name; write $$ for a $");
+      return refusal("\"${\" must be followed by a name and \"}\"; write $$ for a $");
+    if (name.empty()) return refusal("\"$\" must be followed by a name; write $$ for a $");
     if (has_braces) take(1);
     const Definition* const definition = scope_.find(name);
     if (!definition)
-      return complaint(fmt::format("no definition of {} comes before it{}", in_quotes(name),
-                                   hint_of_undefined(name, scope_)));
-    if (!definition->is_sound) return complaint({});
+      return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
+                                 hint_of_undefined(name, scope_)));
+    if (!definition->is_sound) return refusal({});
     return ValuePart{.text = definition->text,
                      .is_definition = true,
                      .numbers = definition->numbers ? &*definition->numbers : nullptr,
@@ -158,7 +156,7 @@ tl::expected<std::string, std::string> expand_value(std::string_view value, cons
   if (computed && computed->has_value()) {
     text = **computed;
   } else if (computed && !(use == Use::Definition && computed->error().is_syntax)) {
-    return complaint(computed->error().complaint);
+    return refusal(computed->error().complaint);
   } else {
     for (const ValuePart& part : *parts) {
       text += part.text;
@@ -166,8 +164,7 @@ tl::expected<std::string, std::string> expand_value(std::string_view value, cons
     }
   }
   if (is_defined && text.size() > longest_value)
-    return complaint(
-        fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
+    return refusal(fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
   return text;
 }
 
