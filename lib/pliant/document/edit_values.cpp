@@ -85,7 +85,7 @@ Result<void> Editor::set_constant(const Spot& spot, const std::string& value) {
 }
 
 /// Inserts a part that a surface lacks, in the order of the format.
-void Editor::insert_part(const Spot& spot, xml::ElementText part) {
+void Editor::insert_part(const Spot& spot, const xml::ElementText& part) {
   constexpr std::string_view order[] = {"grid",      "mesh",     "nurbs",    "subdivision",
                                         "transform", "material", "tangents", "solver"};
   Draft::Place place{.parent = spot.object};

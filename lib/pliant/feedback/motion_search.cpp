@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -74,7 +73,7 @@ SettlingFound nearest_of(std::span<const Sample> samples, double wanted,
     if (k == 0 || (samples[k - 1].settling > wanted) == (samples[k].settling > wanted)) continue;
     SettlingFound found = between(samples[k - 1], samples[k], wanted, settling_at);
     if (!found.other) return found;
-    if (!jump || miss(found.nearest) < miss(jump->nearest)) jump = std::move(found);
+    if (!jump || miss(found.nearest) < miss(jump->nearest)) jump = found;
   }
   return jump ? *jump : best;
 }
