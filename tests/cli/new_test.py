@@ -4,14 +4,17 @@ import json
 import os
 import re
 import subprocess
+import unittest
 
 import numpy as np
 
-from command import Command, SOURCE, main
+from command import SANITIZED, SOURCE, Command, main
 
 STARTERS = ("sheet", "mesh", "trampoline", "ripple", "jiggle", "dent", "flag", "travelling")
 MATERIALS = ("rubber", "jelly", "metal", "cloth", "paper", "skin")
 WITH_MESH = ("mesh", "jiggle")
+# Whole bakes, by code that other tests run under sanitizers.
+long = unittest.skipIf(SANITIZED, "bakes for many minutes")
 
 
 class New(Command):
@@ -54,12 +57,14 @@ class New(Command):
         subprocess.run(["python3", os.path.join(SOURCE, "cli/starters/make_pudding.py"), self.path("p.obj")], check=True)
         self.assertEqual(self.read("p.obj").decode(), self.starter("pudding.obj"))
 
+    @long
     def test_starters_have_no_notes_and_no_warnings(self):
         for name in STARTERS:
             self.run_pliant("new", name, "-o", f"{name}.xml")
             self.assertEqual(self.run_pliant("validate", f"{name}.xml").stderr, "")
             self.assertEqual(self.run_pliant("bake", f"{name}.xml", "-o", "a.npy").stderr, "")
 
+    @long
     def test_starters_move_within_their_size_and_calm_down(self):
         for name in STARTERS:
             self.run_pliant("new", name, "-o", f"{name}.xml")
@@ -70,6 +75,7 @@ class New(Command):
             self.assertTrue(0.03 * size < moved.max() < 0.45 * size, (name, moved.max(), size))
             self.assertLess(moved[-5:].max(), 0.75 * moved.max(), name)
 
+    @long
     def test_starters_replay_with_the_same_bits(self):
         for name in STARTERS:
             self.run_pliant("new", name, "-o", f"{name}.xml")
@@ -128,6 +134,7 @@ class New(Command):
         self.run_pliant("validate", "a.xml")
         self.run_pliant("new", "dent", "-o", "b.xml", "--schema")  # the same schema again is no harm
 
+    @long
     def test_a_material_swings_as_its_comment_says(self):
         for starter in ("sheet", "jiggle"):
             for material in MATERIALS:
@@ -142,6 +149,7 @@ class New(Command):
                 self.assertLessEqual(max(map(len, text.splitlines())), 110)
                 self.assertEqual(self.run_pliant("validate", out).stderr, "")
 
+    @long
     def test_materials_look_like_their_names(self):
         peak, after = {}, {}
         for material in (None,) + MATERIALS:
@@ -169,6 +177,7 @@ class New(Command):
         self.assertTrue(0.05 < after["rubber"] < after["jelly"])
         self.assertLess(max(after["cloth"], after["skin"]), 0.1)
 
+    @long
     def test_every_starter_takes_every_material(self):
         for starter in ("mesh", "trampoline", "dent"):
             for material in MATERIALS:
@@ -195,6 +204,7 @@ class New(Command):
                 faces.append(f"f {a} {a + 24} {b + 24} {b}")
         return self.write(name, "\n".join(vertices + faces) + "\n")
 
+    @long
     def test_a_mesh_of_ones_own_at_any_size(self):
         os.mkdir(self.path("shots"))
         peaks = {}

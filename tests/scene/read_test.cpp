@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "scene/scene_text.hpp"
+#include "support/scratch_folder.hpp"
 
 namespace pliant::testing {
 namespace {
@@ -239,28 +240,8 @@ TEST_CASE("a long value does not make a long message", "[scene][read]") {
     }
 }
 
-/// A temporary folder, removed after the test.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / "pliant-scene-read-test") {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path write(const std::string& name, std::string_view text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 TEST_CASE("a scene file is read, with its meshes beside it", "[scene][read]") {
-  const Folder folder;
+  const ScratchFolder folder;
   const std::filesystem::path file = folder.write("rich.xml", rich_scene);
   const Result<Scene> scene = load_scene(file);
   REQUIRE(scene);
@@ -269,7 +250,7 @@ TEST_CASE("a scene file is read, with its meshes beside it", "[scene][read]") {
 }
 
 TEST_CASE("a file that cannot be read is one clear line", "[scene][read]") {
-  const Folder folder;
+  const ScratchFolder folder;
   const auto refused = [](const std::filesystem::path& file) {
     const Result<Scene> scene = load_scene(file);
     REQUIRE_FALSE(scene);
