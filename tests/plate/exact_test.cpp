@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +55,11 @@ PlateProblem changing(const Outline& outline, const Stiffness& stiffness, const 
 }
 
 TimeSteps exactly(double length) { return {1, length, Integrator::Exact}; }
+
+bool have_the_same_bits(const Field& a, const Field& b) {
+  return a.rows() == b.rows() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
 
 double apart(const Field& a, const Eigen::MatrixXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
@@ -230,6 +236,33 @@ TEST_CASE("no bit of exact steps depends on threads, vectors or what was solved 
   REQUIRE(plain->advance(changing(small, {}, {1, 0}, nothing, nothing), exactly(1),
                          {nothing, nothing}));
   check(*plain);
+}
+
+TEST_CASE("exact frames one after another have the bits of each alone", "[plate][exact]") {
+  const Outline outline = GENERATE(Outline(unit_grid(40, 23)), corner_shape(14, 12));
+  const int nodes = outline.grid().node_count();
+  const Field push = 1e3 * Field::Random(nodes, 3), other = 1e3 * Field::Random(nodes, 3);
+  const Field nothing = Field::Zero(nodes, 3);
+  Field minus = push;  // what is equal to another load, with other bits
+  minus.col(0).setConstant(-0.0);
+  Field plus = push;
+  plus.col(0).setZero();
+  // Keyed, kept, gone, with a jump, and a component that rests in between.
+  const std::vector<Field> loads = {nothing, push,  other,   other, nothing, nothing, push,
+                                    minus,   plus, nothing, plus,  minus,   other,   push};
+  const auto solver = make_plate_solver();
+  PlateState state{nothing, nothing};
+  for (std::size_t k = 1; k < loads.size(); ++k) {
+    CAPTURE(k);
+    const Field& first = k == 9 ? push : loads[k - 1];
+    const PlateProblem problem = changing(outline, {1.5, 1, 2}, {40, 20}, first, loads[k]);
+    PlateState next = solver->advance(problem, exactly(1e-3), state).value();
+    const PlateState alone = make_plate_solver()->advance(problem, exactly(1e-3), state).value();
+    CHECK(have_the_same_bits(next.displacement, alone.displacement));
+    CHECK(have_the_same_bits(next.velocity, alone.velocity));
+    state = std::move(next);
+    if (k == 8) state.displacement.col(0) = state.velocity.col(0) = nothing.col(0);
+  }
 }
 
 TEST_CASE("exact steps keep within the memory they may have, and stop", "[plate][exact]") {

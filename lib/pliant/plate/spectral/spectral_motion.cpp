@@ -1,8 +1,10 @@
 #include "pliant/plate/spectral/spectral_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "pliant/plate/solver_errors.hpp"
@@ -40,6 +42,9 @@ class BlockParts {
 // Lays out the workspace; with a null block it only counts.
 std::size_t SpectralMotion::carve(double* block) {
   BlockParts parts(block);
+  for (KeptLoad& kept : kept_) {
+    kept.nodes = parts.take(long{plate_.rows_ - 2} * (plate_.columns_ - 2));
+  }
   for (int k = 0; k < 4; ++k) {
     SpectralPlate::Parity& parity = plate_.parities_[k];
     const long size = long{parity.rows} * parity.pitch;
@@ -47,9 +52,8 @@ std::size_t SpectralMotion::carve(double* block) {
     for (int component = 0; component < 3; ++component) {
       PartWork& work = work_[k][component];
       ExactView& view = work.view;
-      parity.growth[component] = parts.take(size);
-      view.load = parity.load[component];
-      view.growth = parity.growth[component];
+      for (double*& sines : kept_[component].sines[k]) sines = parts.take(size);
+      work.growth = parts.take(size);
       work.w[0] = parity.displacement[component];
       work.v[0] = parity.pending[component];
       work.w[1] = parts.take(size);
@@ -84,6 +88,7 @@ Result<void> SpectralMotion::take(const PlateSystem& system) {
     return fail(no_memory_to_solve(unknown_count(grid), memory_.complaint(bytes)));
   }
   if (count != numbers_.count()) numbers_ = NumberBlock(count);
+  for (KeptLoad& kept : kept_) kept.is_kept = false;
   std::fill_n(numbers_.begin(), count, 0.0);
   carve(numbers_.begin());
 
@@ -193,6 +198,61 @@ void SpectralMotion::step(std::size_t part, int number, const SubStep& step, con
   plate_.kernels_.exact_step(parity, shifts, factors, view);
 }
 
+bool SpectralMotion::is_kept(const ConstNodesView& load, int component) const {
+  const KeptLoad& kept = kept_[component];
+  if (!kept.is_kept) return false;
+  const int columns = plate_.columns_ - 2;
+  for (int j = 0; j < plate_.rows_ - 2; ++j) {
+    const double* const row = load.first + component * load.component_stride + j * load.row_stride;
+    // By bits: -0 has other ones than 0.
+    if (std::memcmp(kept.nodes + long{j} * columns, row, columns * sizeof(double)) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Transforms the loads of the components that move: the first into `load` of the work, the last
+// into the plate's `growth`. Whether they differ.
+bool SpectralMotion::take_loads(const ConstNodesView& first_load, const ConstNodesView& last_load) {
+  const auto transform = [&](const ConstNodesView& load, int next) {
+    for (int k = 0; k < 4; ++k) {
+      for (int component = 0; component < 3; ++component) {
+        const KeptLoad& kept = kept_[component];
+        plate_.parities_[k].growth[component] = kept.sines[k][(kept.place + next) % 2];
+      }
+    }
+    plate_.to_sines(load, &SpectralPlate::Parity::growth);
+  };
+  const std::array<bool, 3> is_still = {plate_.is_still_[0], plate_.is_still_[1],
+                                        plate_.is_still_[2]};
+  for (int component = 0; component < 3; ++component) {
+    plate_.is_still_[component] = is_still[component] || is_kept(first_load, component);
+  }
+  transform(first_load, 0);
+  std::copy(is_still.begin(), is_still.end(), plate_.is_still_);
+  const bool grows = !plate_.are_equal(first_load, last_load);
+  if (grows) transform(last_load, 1);
+  const ConstNodesView& load = grows ? last_load : first_load;
+  for (int component = 0; component < 3; ++component) {
+    if (is_still[component]) continue;
+    KeptLoad& kept = kept_[component];
+    for (int k = 0; k < 4; ++k) {
+      ExactView& view = work_[k][component].view;
+      view.load = kept.sines[k][kept.place];
+      view.growth = grows ? work_[k][component].growth : nullptr;
+    }
+    if (grows) kept.place = 1 - kept.place;
+    kept.is_kept = true;
+    const int columns = plate_.columns_ - 2;
+    for (int j = 0; j < plate_.rows_ - 2; ++j) {
+      std::copy_n(load.first + component * load.component_stride + j * load.row_stride, columns,
+                  kept.nodes + long{j} * columns);
+    }
+  }
+  return grows;
+}
+
 Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& dynamics,
                                      const TimeSteps& steps, const ConstNodesView& first_load,
                                      const ConstNodesView& last_load, const NodesView& displacement,
@@ -210,23 +270,22 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     plate_.is_still_[component] =
         plate_.is_still_[component] && plate_.is_zero(first_load, component);
   }
-  plate_.to_sines(first_load, &SpectralPlate::Parity::load);
-  const bool grows = !plate_.are_equal(first_load, last_load);
-  if (grows) plate_.to_sines(last_load, &SpectralPlate::Parity::growth);
   plate_.to_sines(view(displacement), &SpectralPlate::Parity::displacement);
   plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
   carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
+  const bool grows = take_loads(first_load, last_load);
   parts_ = plate_.moving_parts();
   if (parts_.count == 0) return {};
-  plate_.for_each(parts_.count, [&](std::size_t part) {
-    const auto [k, component] = parts_.part[part];
-    const SpectralPlate::Parity& parity = plate_.parities_[k];
-    const long size = long{parity.rows} * parity.pitch;
-    double* const growth = parity.growth[component];
-    const double* const load = parity.load[component];
-    work_[k][component].view.growth = grows ? growth : nullptr;
-    for (long n = 0; grows && n < size; ++n) growth[n] = (growth[n] - load[n]) / steps.length;
-  });
+  if (grows) {
+    plate_.for_each(parts_.count, [&](std::size_t part) {
+      const auto [k, component] = parts_.part[part];
+      const SpectralPlate::Parity& parity = plate_.parities_[k];
+      const long size = long{parity.rows} * parity.pitch;
+      PartWork& work = work_[k][component];
+      const double* const last = parity.growth[component];
+      for (long n = 0; n < size; ++n) work.growth[n] = (last[n] - work.view.load[n]) / steps.length;
+    });
+  }
 
   StepChoice choice(steps);
   bool is_accepted = false;
@@ -274,17 +333,21 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
       }
       step(part, number, length, **tables, false);
     }
-    const SpectralPlate::Parity& parity = plate_.parities_[k];
-    const long size = long{parity.rows} * parity.pitch;
-    if (work.w[0] != parity.displacement[component]) {
-      std::copy_n(work.w[0], size, parity.displacement[component]);
-      std::copy_n(work.v[0], size, parity.pending[component]);
-    }
   });
   if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
   counts_.solves += 2L * pole_count * (choice.count() - 1);
+  // Read where the last step put them.
+  const auto exchange_places = [&] {
+    for (std::size_t part = 0; part < parts_.count; ++part) {
+      const auto [k, component] = parts_.part[part];
+      std::swap(plate_.parities_[k].displacement[component], work_[k][component].w[0]);
+      std::swap(plate_.parities_[k].pending[component], work_[k][component].v[0]);
+    }
+  };
+  exchange_places();
   plate_.from_sines(&SpectralPlate::Parity::displacement, displacement);
   plate_.from_sines(&SpectralPlate::Parity::pending, velocity);
+  exchange_places();
   return {};
 }
 

@@ -38,12 +38,24 @@ class SpectralMotion {
     ExactView view;
     double* w[2] = {};  // now and next, in turn
     double* v[2] = {};
+    double* growth = nullptr;
     double* doubt = nullptr;
     double* lack = nullptr;
     double sizes[5] = {};  // of the doubt, w, next w, v, next v
   };
 
+  // One component of a load and its transform, which the next interval begins with if the load is
+  // keyed.
+  struct KeptLoad {
+    bool is_kept = false;
+    double* nodes = nullptr;   // row by row
+    double* sines[4][2] = {};  // by parity: the transform and room for the next one, in turn
+    int place = 0;             // that of the transform
+  };
+
   Result<void> take(const PlateSystem& system);
+  bool is_kept(const ConstNodesView& load, int component) const;
+  bool take_loads(const ConstNodesView& first_load, const ConstNodesView& last_load);
   Result<Tables*> tables_for(double length);
   std::size_t carve(double* block);
   void step(std::size_t part, int number, const SubStep& step, const Tables& tables,
@@ -61,6 +73,7 @@ class SpectralMotion {
   double beta_ = 0, delta_ = 0;
   std::size_t table_size_ = 0;  // numbers
   PartWork work_[4][3];
+  KeptLoad kept_[3];
   SpectralPlate::Parts parts_;
   std::list<Tables> tables_;  // the last used first
 };
