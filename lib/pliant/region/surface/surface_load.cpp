@@ -42,7 +42,7 @@ bool SurfaceLoads::compute(const SampledForce& force) {
     reaches = std::any_of(at_nodes_.begin(), at_nodes_.end(), [](double at) { return at > 0; });
   }
   if (reaches) at_centres_ = means_at_centres(level_set_, at_nodes_, std::move(at_centres_));
-  bool is_any = false;
+  bool acts = false;
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
     const SurfacePiece& piece = pieces_[k];
     loads_[k] = Field::Zero(piece.free_nodes, 3);
@@ -52,10 +52,10 @@ bool SurfaceLoads::compute(const SampledForce& force) {
       if (areas[n] == 0) continue;
       const int node = level_set_.nodes[piece.points[n]];
       loads_[k].row(n) = (areas[n] * measured_.load_on(node, force)).transpose();
-      is_any = is_any || !loads_[k].row(n).isZero(0);
+      acts = true;
     }
   }
-  return is_any;
+  return acts;
 }
 
 // The area on which the force acts, shared out to the free nodes.

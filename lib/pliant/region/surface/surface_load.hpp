@@ -21,7 +21,8 @@ class SurfaceLoads {
                const PlacedNodes& measured)
       : level_set_(level_set), pieces_(pieces), measured_(measured) {}
 
-  /// Computes the loads of a force: then `loads` are valid. Whether any is not 0.
+  /// Computes the loads of a force: then `loads` are valid. Whether it acts on a free
+  /// node's area, be its push 0 or not.
   bool compute(const SampledForce& force);
 
   /// Of the last force on the free nodes of a piece (#free_nodes x 3, world space): its force times
