@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <variant>
+
+#include "fuzz.hpp"
+#include "pliant/pliant.hpp"
+
+namespace pliant::fuzzing {
+
+inline constexpr auto any_number = std::numeric_limits<std::size_t>::max();
+inline constexpr int most_frames = 100;    // that are checked
+inline constexpr int most_vertices = 400;  // that are played
+inline constexpr int most_levels = 2;
+
+inline bool is_tiny(const Surface& surface) {
+  if (surface.subdivision && surface.subdivision->levels > most_levels) return false;
+  if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape))
+    return std::int64_t{sheet->columns} * sheet->rows <= most_vertices;
+  if (const auto* const net = std::get_if<NurbsNet>(&surface.shape))
+    return std::int64_t{samples_of(net->u)} * samples_of(net->v) <= most_vertices;
+  return true;  // the meshes there are tiny
+}
+
+/// Whether it can be played at once.
+inline bool is_tiny(const Scene& scene) {
+  return scene.surfaces.size() <= 4 && scene.forces.size() <= 8 &&
+         std::ranges::all_of(scene.surfaces, [](const Surface& one) { return is_tiny(one); });
+}
+
+/// Whether its channels can be checked at once.
+inline bool is_short(const Scene& scene) {
+  const FrameSpan frames = sampled_frames(scene);
+  return frames.last - std::int64_t{frames.first} < most_frames;
+}
+
+/// For a run that ends soon whatever the scene asks for: a frame may have 10^5 steps. `steps`
+/// counts.
+inline SimulationOptions bounded(int& steps) {
+  SimulationOptions options;
+  options.max_memory = std::size_t{100} << 20;
+  options.should_stop = [&steps] { return ++steps > 200; };
+  return options;
+}
+
+}  // namespace pliant::fuzzing
