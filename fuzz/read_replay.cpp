@@ -18,24 +18,8 @@ using namespace pliant::fuzzing;
 
 namespace {
 
-constexpr const char* tiny_scene = R"(<scene version="1" fps="24" start="1" end="3">
-  <surface name="sheet">
-    <grid columns="4" rows="3" width="1" depth="1"/>
-  </surface>
-  <point name="poke" center="0 0 0" direction="0 1 0" magnitude="1" deformationRadius="2"/>
-</scene>
-)";
-
-Simulation tiny_simulation() {
-  auto scene = parse_scene(tiny_scene, "tiny.xml", "");
-  require(scene.has_value());
-  auto simulation = Simulation::make(*std::move(scene));
-  require(simulation.has_value());
-  return *std::move(simulation);
-}
-
 std::string tiny_log() {
-  Simulation simulation = tiny_simulation();
+  Simulation simulation = tiny_simulation().value();
   ReplayOptions options;
   options.states_every = 1;
   const std::string file =
@@ -126,7 +110,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const MemoryFile other(recorded);
   check_verdict(compare_replays(file.path(), other.path(), options));
   check_verdict(compare_replays(other.path(), file.path(), options));
-  static Simulation simulation = tiny_simulation();
+  static Simulation simulation = tiny_simulation().value();
   check_verdict(verify_replay(file.path(), simulation, options));
   check_own_run(file.path(), header, options);
   return 0;

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
 #include <variant>
 
 #include "fuzz.hpp"
@@ -27,6 +29,19 @@ inline bool is_tiny(const Surface& surface) {
 inline bool is_tiny(const Scene& scene) {
   return scene.surfaces.size() <= 4 && scene.forces.size() <= 8 &&
          std::ranges::all_of(scene.surfaces, [](const Surface& one) { return is_tiny(one); });
+}
+
+/// A sheet of 9 nodes that is pushed for 3 frames. `solver`: attributes of its <solver>.
+inline Result<Simulation> tiny_simulation(const std::string& solver = "", bool yields = false) {
+  const std::string material = yields ? R"(<material yield="0.1"/>)" : "";
+  auto scene = parse_scene(R"(<scene version="1" fps="24" start="1" end="3"><surface name="sheet">
+    <grid columns="3" rows="3" width="1" depth="1"/>)" +
+                               material + "<solver" + solver + R"(/></surface>
+  <point name="poke" center="0 0 0" direction="0 1 0" magnitude="1" deformationRadius="2"/>
+</scene>)",
+                           "tiny.xml", "");
+  if (!scene) return fail(scene.error());
+  return Simulation::make(*std::move(scene));
 }
 
 /// Whether its channels can be checked at once.
