@@ -175,6 +175,19 @@ void check_edits(const Curve<D>& curve, Input& input) {
   scaling.frame = number;
   scaling.value = any_value<D>(input);
   check_edit(scale(curve, scaling));
+  const double first = curve.keys().keys.front().frame, last = curve.keys().keys.back().frame;
+  const double most = std::fabs(number);
+  if (const auto simple = simplify(curve, first, last, most)) {
+    require(simple->error <= most && Curve<D>::make(simple->keys).has_value());
+  } else {
+    check_line(simple.error().message);
+  }
+  const double step = (last - first) / input.ConsumeIntegralInRange(1, 20);
+  if (const auto baked = bake_keys(curve, first, last, step)) {
+    require(Curve<D>::make(*baked).has_value());
+  } else {
+    check_line(baked.error().message);
+  }
 }
 
 /// A curve as its sampler plays it, and the limits at its keys.
