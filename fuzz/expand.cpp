@@ -20,13 +20,11 @@ namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>;
 
 Files files_of(std::string_view input) {
-  constexpr std::string_view between = "\n%%\n";
   Files files;
-  for (char name = 'a'; name <= 'z'; ++name) {
-    const std::size_t end = input.find(between);
-    files[std::string(1, name) + ".xml"] = input.substr(0, end);
-    if (end == std::string_view::npos) break;
-    input.remove_prefix(end + between.size());
+  char name = 'a';
+  for (const std::string_view part : parts_between(input, "\n%%\n")) {
+    files[std::string(1, name) + ".xml"] = part;
+    if (name++ == 'z') break;
   }
   return files;
 }
@@ -45,20 +43,10 @@ TextFiles in_memory(const Files& files) {
           }};
 }
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  for (std::size_t end; (end = text.find('\n')) != std::string_view::npos;) {
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(end + 1);
-  }
-  lines.push_back(text);
-  return lines;
-}
-
 /// Each element and attribute is on the line of the file that the map says.
 void check_lines(const Expansion& expansion, const Markup& markup, const Files& files) {
   std::map<std::string, std::vector<std::string_view>> lines;
-  for (const auto& [name, text] : files) lines[name] = lines_of(text);
+  for (const auto& [name, text] : files) lines[name] = parts_between(text, "\n");
   LineCounter counter(expansion.text);
   const auto check = [&](std::uint32_t offset, std::string_view name) {
     const ScenePlace place = expansion.files.place_of(counter.line_of(offset));

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "pliant/core/result.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
@@ -16,14 +21,49 @@
 
 namespace pliant::fuzzing {
 
-/// Ends the program if it is not so; libFuzzer then keeps the input.
-inline void require(bool is_so) {
-  if (!is_so) std::abort();
+/// Ends the program if it is not so, and says where; libFuzzer then keeps the input.
+inline void require(bool is_so, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (is_so) return;
+  std::fprintf(stderr, "%s:%d: this is not so\n", file, line);
+  std::abort();
 }
 
 inline std::string_view text_of(const std::uint8_t* bytes, std::size_t size) {
   return {reinterpret_cast<const char*>(bytes), size};
 }
+
+/// The parts of a text with `between` between them; at least one.
+inline std::vector<std::string_view> parts_between(std::string_view text,
+                                                   std::string_view between) {
+  std::vector<std::string_view> parts;
+  for (std::size_t end; (end = text.find(between)) != std::string_view::npos;) {
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(end + between.size());
+  }
+  parts.push_back(text);
+  return parts;
+}
+
+/// A file with these bytes that is on no disk.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view bytes) : file_(memfd_create("fuzz", MFD_CLOEXEC)) {
+    require(file_ >= 0);
+    while (!bytes.empty()) {
+      const auto written = write(file_, bytes.data(), bytes.size());
+      require(written > 0);
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { close(file_); }
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
 
 /// At most `most` problems, each a line that says something.
 inline void check_error(const Error& error, std::size_t most = 1) {

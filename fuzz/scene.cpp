@@ -1,36 +1,16 @@
 // Arbitrary text as a scene, checked as by `pliant validate`; a tiny one is played for some frames.
 // Its meshes and caches are those of the folder meshes/.
 
-#include <limits>
 #include <utility>
 
-#include "fuzz.hpp"
-#include "pliant/pliant.hpp"
+#include "tiny_scene.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;
 
 namespace {
 
-constexpr auto any_number = std::numeric_limits<std::size_t>::max();
-constexpr int most_frames = 100;    // that are checked
-constexpr int most_vertices = 400;  // that are played
-constexpr int most_levels = 2;
 constexpr int frames_played = 3;
-
-bool is_tiny(const Surface& surface) {
-  if (surface.subdivision && surface.subdivision->levels > most_levels) return false;
-  if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape))
-    return std::int64_t{sheet->columns} * sheet->rows <= most_vertices;
-  if (const auto* const net = std::get_if<NurbsNet>(&surface.shape))
-    return std::int64_t{samples_of(net->u)} * samples_of(net->v) <= most_vertices;
-  return true;  // the meshes there are tiny
-}
-
-bool is_tiny(const Scene& scene) {
-  return scene.surfaces.size() <= 4 && scene.forces.size() <= 8 &&
-         std::ranges::all_of(scene.surfaces, [](const Surface& one) { return is_tiny(one); });
-}
 
 // As a file it is the same scene.
 void check_written(const Scene& scene) {
@@ -74,13 +54,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   }
   for (const SceneNote& note : scene->notes) require(!note.message.empty());
   check_written(*scene);
-  const FrameSpan frames = sampled_frames(*scene);
-  if (frames.last - std::int64_t{frames.first} >= most_frames) return 0;
-  // A frame may have 10^5 steps.
+  if (!is_short(*scene)) return 0;
   int steps = 0;
-  SimulationOptions options;
-  options.max_memory = std::size_t{100} << 20;
-  options.should_stop = [&steps] { return ++steps > 200; };
+  const SimulationOptions options = bounded(steps);
   if (const auto checked = Simulation::check(*scene, options); !checked) {
     check_error(checked.error(), any_number);
   } else if (is_tiny(*scene) && !scene->surfaces.empty()) {

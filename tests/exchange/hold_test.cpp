@@ -1,8 +1,12 @@
 #include "pliant/exchange/hold.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "exchange/round_trips.hpp"
+#include "pliant/exchange/fit.hpp"
 
 namespace pliant::exchange {
 namespace {
@@ -106,10 +110,48 @@ TEST_CASE("numbers that no program computes with are refused", "[exchange][hold]
              contains_text("key 100000000 is too far away"));
   CHECK_THAT(problem({.keys = {key(0, 0), key(5, 1e40)}}), contains_text("value 1e+40 of key 5"));
   CHECK_THAT(problem({.keys = {key(0, 0), key(1e-9, 1)}}), contains_text("too close"));
-  CurveKeys<1> fast{.keys = {key(0, 0, of_ease(Ease::Elastic, EaseSide::Out)), key(1e6, 1)}};
-  fast.keys[0].next.period = 1e-6;
-  fast.keys[0].next.amplitude = 50;
-  CHECK_THAT(problem(fast), contains_text("more than 50000 keys"));
+}
+
+TEST_CASE("a segment that changes too fast for keys becomes few, and tells what is lost",
+          "[exchange][hold]") {
+  const double length = GENERATE(0.5, 48.0, 1000.0, 1e6);
+  CAPTURE(length);
+  CurveKeys<1> keys{.keys = {key(0, 0, of_ease(Ease::Elastic, EaseSide::Out)), key(length, 1)}};
+  keys.keys[0].next.period = 1e-7;
+  keys.keys[0].next.amplitude = 50;
+  const Held result = held(keys, {});
+  const std::size_t most = length < 64 ? 1024 : length < 2000 ? 16'000 : 50'000;
+  REQUIRE(!result.losses.empty());
+  CHECK_THAT(
+      result.losses[0].message,
+      contains_text(fmt::format(
+          "the elastic easing of key 0 changed too fast and became {} keys, within ", most)));
+  CHECK_FALSE(result.losses[0].is_exact);
+  CHECK(result.pieces.pieces.size() <= most + 2);  // jumps at its ends
+  CHECK(make(keys_of(result.pieces)).keys().keys.size() == result.pieces.frames.size());
+}
+
+TEST_CASE("cubics that deviate most are halved first", "[exchange][fit]") {
+  // A quarter circle is steep at one end only.
+  const auto root = [](double frame) { return Value<1>{std::sqrt(1 - frame * frame)}; };
+  const auto slope = [](double frame) {
+    return Value<1>{-frame / std::sqrt(std::max(0.0, 1 - frame * frame))};
+  };
+  const SmoothFunction<1> function{root, slope, slope};
+  const Fit<1> all = Fitter<1>(function, 1e-4, 1e-12).fit(0, 1);
+  REQUIRE(all.is_complete);
+  double last = all.deviation;
+  CHECK(last <= 1e-4);
+  for (std::size_t most = all.cubics.size() - 1; most > 0; --most) {
+    const Fit<1> few = Fitter<1>(function, 1e-4, 1e-12, most).fit(0, 1);
+    CHECK_FALSE(few.is_complete);
+    REQUIRE(few.cubics.size() == most);
+    CHECK(few.cubics.front().start == 0);
+    CHECK(few.cubics.back().end == 1);
+    for (std::size_t k = 1; k < most; ++k) CHECK(few.cubics[k].start == few.cubics[k - 1].end);
+    CHECK(few.deviation >= last);
+    last = few.deviation;
+  }
 }
 
 }  // namespace

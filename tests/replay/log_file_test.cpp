@@ -209,6 +209,18 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
   ReplayHeader backwards = small_header();
   std::swap(backwards.start, backwards.end);
   CHECK(trouble_in(folder, resealed(replay::to_json(backwards), ""))->line == 1);
+  // 2^64 - 1 is not -1, and a grid has columns.
+  for (const auto& [from, to] : {std::pair{R"("start":-1)", R"("start":18446744073709551615)"},
+                                 std::pair{R"("columns":2)", R"("columns":0)"}}) {
+    std::string header = replay::to_json(small_header());
+    REQUIRE(header.find(from) != std::string::npos);
+    header.replace(header.find(from), std::string_view(from).size(), to);
+    CAPTURE(header);
+    const auto trouble = trouble_in(folder, resealed(header, ""));
+    REQUIRE(trouble);
+    CHECK(trouble->line == 1);
+    CHECK_THAT(trouble->message, Contains("first line"));
+  }
 
   const std::string hash = to_text(hash_of(""));
   const std::string digest = R"({"positions":")" + hash + R"(","velocities":")" + hash +
@@ -222,6 +234,7 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
       R"({"frame":-1,"surfaces":[]})",
       R"({"frame":1e999,"surfaces":[]})",
       R"({"frame":0,"surfaces":[)" + digest + "}," + digest + "}]}",
+      R"({"frame":18446744073709551615,"surfaces":[)" + digest + "}," + digest + "}]}",
       R"({"frame":-1,"surfaces":[)" + digest + "}]}",
       R"({"frame":-1,"surfaces":[)" + digest + R"(,"state":{}},)" + digest + "}]}",
       R"({"frame":-1,"surfaces":[)" + digest +

@@ -47,29 +47,61 @@ template <int D>
 struct Fit {
   std::vector<FittedCubic<D>> cubics;
   double deviation = 0;     ///< the largest of any component, at many frames [unit]
-  bool is_complete = true;  ///< there are not more than `most_fitted`
+  bool is_complete = true;  ///< no more cubics were needed than are allowed
 };
 
 /// The most cubics that one interval becomes.
 inline constexpr std::size_t most_fitted = 50'000;
 
 /// Replaces a smooth function by cubics that have its values and slopes at their ends, by halving
-/// an interval until the cubic deviates by at most `tolerance` or the interval is shorter than
-/// `shortest` frames. The deviation is measured at 32 frames of each cubic, and the tolerance there
-/// is 0.8 of the given one.
+/// an interval until each cubic deviates by at most `tolerance` or is shorter than two times
+/// `shortest` frames. If `most` cubics do not suffice, those that deviate most are the ones that
+/// were halved. The deviation is measured at 32 frames of each cubic, and the tolerance there is
+/// 0.8 of the given one.
 template <int D>
 class Fitter {
  public:
-  Fitter(const SmoothFunction<D>& function, double tolerance, double shortest)
-      : function_(function), tolerance_(tolerance), shortest_(shortest) {}
+  Fitter(const SmoothFunction<D>& function, double tolerance, double shortest,
+         std::size_t most = most_fitted)
+      : function_(function), tolerance_(tolerance), shortest_(shortest), most_(most) {}
 
   Fit<D> fit(double start, double end) {
-    halve(start, end, function_.value(start), function_.value(end));
+    add(start, end, function_.value(start), function_.value(end));
+    while (!coarse_.empty() && coarse_.size() + fit_.cubics.size() < most_) {
+      std::pop_heap(coarse_.begin(), coarse_.end());
+      const FittedCubic<D> whole = coarse_.back().cubic;
+      coarse_.pop_back();
+      const double middle = middle_of(whole);
+      const Value<D> between = function_.value(middle);
+      add(whole.start, middle, whole.from, between);
+      add(middle, whole.end, between, whole.to);
+    }
+    fit_.is_complete = coarse_.empty();
+    for (const Coarse& each : coarse_) keep(each.cubic, each.deviation);
+    std::sort(fit_.cubics.begin(), fit_.cubics.end(),
+              [](const auto& a, const auto& b) { return a.start < b.start; });
     return std::move(fit_);
   }
 
  private:
-  void halve(double start, double end, const Value<D>& from, const Value<D>& to) {
+  /// A cubic that deviates too much and can be halved.
+  struct Coarse {
+    FittedCubic<D> cubic;
+    double deviation = 0;
+
+    friend bool operator<(const Coarse& a, const Coarse& b) { return a.deviation < b.deviation; }
+  };
+
+  static double middle_of(const FittedCubic<D>& cubic) {
+    return cubic.start + (cubic.end - cubic.start) / 2;
+  }
+
+  void keep(const FittedCubic<D>& cubic, double deviation) {
+    fit_.deviation = std::max(fit_.deviation, deviation);
+    fit_.cubics.push_back(cubic);
+  }
+
+  void add(double start, double end, const Value<D>& from, const Value<D>& to) {
     FittedCubic<D> cubic{
         start, end, from, to, function_.slope_right(start), function_.slope_left(end)};
     for (int c = 0; c < D; ++c) {
@@ -78,21 +110,14 @@ class Fitter {
       if (!(std::fabs(cubic.from_slope[c]) < steepest)) cubic.from_slope[c] = secant;
       if (!(std::fabs(cubic.to_slope[c]) < steepest)) cubic.to_slope[c] = secant;
     }
-    if (fit_.cubics.size() == most_fitted) {
-      fit_.is_complete = false;
-      return;
-    }
     const double deviation = deviation_of(cubic);
-    const double middle = start + (end - start) / 2;
+    const double middle = middle_of(cubic);
     if (deviation <= 0.8 * tolerance_ || end - start < 2 * shortest_ || middle <= start ||
         middle >= end) {
-      fit_.deviation = std::max(fit_.deviation, deviation);
-      fit_.cubics.push_back(cubic);
-      return;
+      return keep(cubic, deviation);
     }
-    const Value<D> between = function_.value(middle);
-    halve(start, middle, from, between);
-    halve(middle, end, between, to);
+    coarse_.push_back({cubic, deviation});
+    std::push_heap(coarse_.begin(), coarse_.end());
   }
 
   double deviation_of(const FittedCubic<D>& cubic) const {
@@ -112,6 +137,8 @@ class Fitter {
   const SmoothFunction<D>& function_;
   double tolerance_;
   double shortest_;
+  std::size_t most_;
+  std::vector<Coarse> coarse_;  // a heap; the first deviates most
   Fit<D> fit_;
 };
 

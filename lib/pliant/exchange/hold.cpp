@@ -82,6 +82,15 @@ class LossLog {
   std::vector<Loss> sides_;
 };
 
+/// How many cubics a segment becomes at most. More keys a frame than these are of no use to anyone
+/// who looks at it, such as those of an elastic with many periods in each frame.
+std::size_t most_cubics(double length) {
+  constexpr double per_frame = 16;
+  constexpr double for_short_ones = 1024;
+  return static_cast<std::size_t>(
+      std::clamp(per_frame * length, for_short_ones, static_cast<double>(most_fitted)));
+}
+
 std::optional<Error> beyond_bounds(const Pieces& pieces) {
   const auto error = [](std::string message) {
     return Error{ErrorCode::InvalidInput, std::move(message)};
@@ -125,7 +134,6 @@ class Holder {
     hold_shapes();
     hold_jumps();
     hold_arms();
-    if (fault_) return invalid(*std::move(fault_));
     if (pieces_.pieces.size() > most_pieces) {
       return invalid(fmt::format("would become {} keys; at most {} are allowed",
                                  pieces_.frames.size(), most_pieces));
@@ -312,7 +320,7 @@ class Holder {
     result.after = pieces_.after;
     result.frames.push_back(pieces_.frames[0]);
     result.values.push_back(pieces_.values[0]);
-    for (std::size_t k = 0; k < pieces_.pieces.size() && !fault_; ++k) {
+    for (std::size_t k = 0; k < pieces_.pieces.size(); ++k) {
       for (const Piece& part : parts_of(pieces_.pieces[k])) {
         result.pieces.push_back(part);
         result.frames.push_back(part.end);
@@ -507,18 +515,16 @@ class Holder {
                                      [&](double frame) { return curve.velocity(frame); },
                                      [&](double frame) { return curve.left_velocity(frame); }};
     const double shortest = std::min(1.0 / 1024, piece.length() / 1024);
-    const Fit<1> fit = Fitter<1>(function, tolerance_, shortest).fit(piece.start, piece.end);
+    const Fit<1> fit = Fitter<1>(function, tolerance_, shortest, most_cubics(piece.length()))
+                           .fit(piece.start, piece.end);
     std::vector<Piece> parts;
     for (const FittedCubic<1>& cubic : fit.cubics) {
       parts.push_back(cubic_piece(cubic.start, cubic.end, cubic.from[0], cubic.to[0],
                                   cubic.from_slope[0], cubic.to_slope[0]));
       parts.back().key = piece.key;
     }
-    if (!fit.is_complete && !fault_) {
-      fault_ = fmt::format("the {} of key {} would become more than {} keys", name, frame_of(piece),
-                           most_fitted);
-    }
-    losses_.add(name, "became", frame_of(piece), parts.size(), fit.deviation, false);
+    losses_.add(name, fit.deviation <= tolerance_ ? "became" : "changed too fast and became",
+                frame_of(piece), parts.size(), fit.deviation, false);
     return parts;
   }
 
@@ -542,7 +548,6 @@ class Holder {
   WantedFrames wanted_;
   std::vector<double> author_frames_;
   LossLog losses_;
-  std::optional<std::string> fault_;
 };
 
 }  // namespace

@@ -44,7 +44,8 @@ struct WantedFrames {
 };
 
 /// Changes pieces into those that a format can hold. Where it cannot hold the shape of one, cubics
-/// in time replace it, which deviate by at most `tolerance` [unit]; jumps take `gap` frames; copies
+/// in time replace it, which deviate by at most `tolerance` [unit], or by what is told if a segment
+/// changes too fast for 1024 of them and for 16 a frame; jumps take `gap` frames; copies
 /// become keys, endless ones as far as frames are wanted. Errors: numbers that no other program
 /// computes with: frames beyond 1e7, keys closer than 1e-6 frames, values beyond 1e30; more than
 /// `most_pieces`.

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -46,14 +45,14 @@ bool read(const Json* json, std::string& text) {
   return true;
 }
 
-bool read(const Json* json, int& number) {
+template <class Integer>
+bool read(const Json* json, Integer& number) {
   if (!json || !json->is_number_integer()) return false;
-  const auto wide = json->get<std::int64_t>();
-  if (wide < std::numeric_limits<int>::min() || wide > std::numeric_limits<int>::max()) {
-    return false;
-  }
-  number = static_cast<int>(wide);
-  return true;
+  // What is larger than an std::int64_t would wrap round.
+  const bool fits = json->is_number_unsigned() ? std::in_range<Integer>(json->get<std::uint64_t>())
+                                               : std::in_range<Integer>(json->get<std::int64_t>());
+  if (fits) number = json->get<Integer>();
+  return fits;
 }
 
 bool read(const Json* json, double& number) {
@@ -187,7 +186,7 @@ std::optional<ReplayHeader> read_header(std::string_view line) {
       return read(member(element, "nodes"), surface.nodes) && surface.nodes >= 0;
     }
     return read(member(element, "columns"), surface.columns) &&
-           read(member(element, "rows"), surface.rows) && surface.columns >= 0 && surface.rows >= 0;
+           read(member(element, "rows"), surface.rows) && surface.columns > 0 && surface.rows > 0;
   };
   const auto read_change = [](const Json& element, std::string& change) {
     return read(&element, change);
@@ -234,9 +233,9 @@ std::optional<ReplayFrame> read_frame(std::string_view line, const ReplayHeader&
 std::optional<long> read_end(std::string_view line) {
   if (!line.starts_with(end_member)) return {};
   const Json json = parsed(line);
-  const Json* const count = member(json, "frames");
-  if (!count || !count->is_number_integer()) return {};
-  return count->get<long>();
+  long count = 0;
+  if (!read(member(json, "frames"), count)) return {};
+  return count;
 }
 
 }  // namespace pliant::replay

@@ -512,6 +512,11 @@ TEST_CASE("edits that cannot be are refused with the reason", "[timeline][edit]"
   check_error(move_keys(curve, nan, {0}), "finite");
   check_error(move_keys(curve, 0, {nan}), "finite");
   check_error(move_keys(curve, 1e100, {0}), "frames must strictly increase");
+  // So far away that the loop has no length.
+  CurveKeys<1> short_loop{.keys = {key(0, 0), key(64, 1)}};
+  short_loop.loop = Loop<1>{0, 0.5, 0, 1, {0}};
+  check_error(move_keys(make(short_loop), 1e16, {0}), "frames must strictly increase");
+  check_error(reverse(make(short_loop), 1e16), "frames must strictly increase");
 
   check_error(scale(curve, {0, 0, {0}, {1}}), "time factor is 0");
   check_error(scale(curve, {0, 1, {0}, {0}}), "value factor is 0");
