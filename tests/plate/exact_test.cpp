@@ -248,7 +248,7 @@ TEST_CASE("exact frames one after another have the bits of each alone", "[plate]
   Field plus = push;
   plus.col(0).setZero();
   // Keyed, kept, gone, with a jump, and a component that rests in between.
-  const std::vector<Field> loads = {nothing, push,  other,   other, nothing, nothing, push,
+  const std::vector<Field> loads = {nothing, push, other,   other, nothing, nothing, push,
                                     minus,   plus, nothing, plus,  minus,   other,   push};
   const auto solver = make_plate_solver();
   PlateState state{nothing, nothing};
