@@ -212,26 +212,7 @@ class RandomOperation {
     if (chance_.once_in(2)) set.comment = chance_.pick({"soft", "two\nlines", "a -- b", "ends-"});
     return set;
   }
-  /// The curve of a channel, with some of its keys, others and all that a curve may have.
-  Operation set_curve() {
-    const auto channels = channels_of(scene_);
-    const std::string path = chance_.of(chance_.once_in(3) ? channels_ : animated_);
-    const auto found = std::ranges::find(channels, path, &NamedChannel::path);
-    return std::visit(
-        [&]<class One>(const One* one) -> Operation {
-          if constexpr (std::is_same_v<One, Switch>) {
-            return edit::SetCurve{
-                path, changed(one->is_animated() ? one->channel().curve().keys() : CurveKeys<1>{})};
-          } else if constexpr (std::is_same_v<One, Channel<1>>) {
-            return edit::SetCurve{
-                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<1>{})};
-          } else {
-            return edit::SetCurve{
-                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<3>{})};
-          }
-        },
-        found->channel);
-  }
+  /// Some of the keys of a curve and others, with all that a curve may have.
   template <int D>
   CurveKeys<D> changed(CurveKeys<D> curve) {
     for (int k = chance_.between(0, 3); k > 0; --k) {
@@ -257,6 +238,26 @@ class RandomOperation {
     if (chance_.once_in(4)) curve.loop.reset();
     if (chance_.once_in(4)) curve.overshoot = Overshoot::Contain;
     return curve;
+  }
+  /// A curve for a channel.
+  Operation set_curve() {
+    const auto channels = channels_of(scene_);
+    const std::string path = chance_.of(chance_.once_in(3) ? channels_ : animated_);
+    const auto found = std::ranges::find(channels, path, &NamedChannel::path);
+    return std::visit(
+        [&]<class One>(const One* one) -> Operation {
+          if constexpr (std::is_same_v<One, Switch>) {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->channel().curve().keys() : CurveKeys<1>{})};
+          } else if constexpr (std::is_same_v<One, Channel<1>>) {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<1>{})};
+          } else {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<3>{})};
+          }
+        },
+        found->channel);
   }
   Operation addition() {
     edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "blob"}), new_name()};
@@ -413,15 +414,6 @@ struct ReadBack {
         return &(*of)->channel().curve().keys();
     return nullptr;
   }
-  std::string operator()(const edit::SetCurve& set) {
-    return std::visit(
-        [&]<int D>(const CurveKeys<D>& keys) -> std::string {
-          const CurveKeys<D>* const now = keys_of<D>(set.channel);
-          if (!now) return "no such curve";
-          return has_same_shape(Curve<D>::make(*now).value(), Curve<D>::make(keys).value());
-        },
-        set.keys);
-  }
   template <int D>
   static std::string has_same_shape(const Curve<D>& now, const Curve<D>& wanted,
                                     double factor = 1) {
@@ -438,6 +430,15 @@ struct ReadBack {
           return fmt::format("{} in place of {} at frame {}", a[c], factor * b[c], frame);
     }
     return "";
+  }
+  std::string operator()(const edit::SetCurve& set) {
+    return std::visit(
+        [&]<int D>(const CurveKeys<D>& keys) -> std::string {
+          const CurveKeys<D>* const now = keys_of<D>(set.channel);
+          if (!now) return "no such curve";
+          return has_same_shape(Curve<D>::make(*now).value(), Curve<D>::make(keys).value());
+        },
+        set.keys);
   }
   std::string operator()(const edit::Scale& scale) {
     const std::string& path = scale.channels[0];
