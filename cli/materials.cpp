@@ -76,7 +76,7 @@ constexpr Look all_looks[] = {
      .shape = "softer than the starter; poisson 0.45, nearly that of water"},
 };
 
-// Lines of a comment at a depth of four blanks, at most 100 bytes long.
+// Lines of a comment, which at a depth of four blanks are at most 100 bytes long.
 std::string wrapped(std::string_view text) {
   constexpr std::size_t width = 91;
   std::string lines;
@@ -85,7 +85,7 @@ std::string wrapped(std::string_view text) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(word.size() + 1, text.size()));
     if (column > 0 && column + 1 + word.size() > width) {
-      lines += "\n         ";
+      lines += '\n';
       column = 0;
     } else if (column > 0) {
       lines += ' ';
@@ -101,21 +101,35 @@ struct Numbers {
   double density, stiffness, yield = 0;
 };
 
-std::string element_of(const Look& look, const Numbers& numbers) {
-  std::string element = fmt::format(
-      "<material density=\"{}\" dampingRatio=\"{}\" b=\"{}\" c=\"{}\" d=\"{}\" poisson=\"{}\"",
-      rounded(numbers.density), look.damping_ratio, rounded(numbers.stiffness),
-      rounded(look.c * numbers.stiffness), rounded(look.d * numbers.stiffness), look.poisson);
+// The <material>, with a comment if that is not empty.
+edit::SetPart part_of(const SceneDocument& scene, const Look& look, const Numbers& numbers,
+                      std::string comment = {}) {
+  edit::SetPart part{.surface = scene.scene().surfaces.front().name,
+                     .part = "material",
+                     .attributes = {{"density", rounded(numbers.density)},
+                                    {"dampingRatio", edit::to_text(look.damping_ratio)},
+                                    {"b", rounded(numbers.stiffness)},
+                                    {"c", rounded(look.c * numbers.stiffness)},
+                                    {"d", rounded(look.d * numbers.stiffness)},
+                                    {"poisson", edit::to_text(look.poisson)}},
+                     .comment = std::move(comment)};
   if (numbers.yield > 0) {
-    element += fmt::format("\n              yield=\"{}\" hardening=\"{}\"", rounded(numbers.yield),
-                           look.hardening);
+    part.attributes.emplace_back("yield", rounded(numbers.yield));
+    part.attributes.emplace_back("hardening", edit::to_text(look.hardening));
   }
-  return element + "/>";
+  return part;
+}
+
+// The text of the scene with this material instead.
+Result<std::string> text_with(SceneDocument scene, const Look& look, const Numbers& numbers) {
+  auto changed = scene.apply({part_of(scene, look, numbers)});
+  if (!changed) return fail(changed.error());
+  return scene.text();
 }
 
 std::string comment_of(const Look& look, const Numbers& numbers, bool is_by_inertia) {
-  const auto line = [](const std::string& text) { return "\n         " + wrapped(text); };
-  std::string comment = fmt::format("<!-- {}: {}.", look.name, look.summary);
+  const auto line = [](const std::string& text) { return '\n' + wrapped(text); };
+  std::string comment = fmt::format("{}: {}.", look.name, look.summary);
   comment += line(fmt::format(
       "density, dampingRatio: {}. What moves here swings {} times a second; for f times a second "
       "the density is {} / f².",
@@ -126,11 +140,11 @@ std::string comment_of(const Look& look, const Numbers& numbers, bool is_by_iner
                                             : "All of them and the density times 2: half the "
                                               "peak, the same frequency."));
   if (numbers.yield > 0) comment += line(fmt::format("yield, hardening: {}.", look.memory));
-  return comment + " -->";
+  return comment;
 }
 
 // The yield with which the peak is as much larger than the elastic one as the look wants.
-Result<double> find_yield(const EditedText& text, const Look& look, const Numbers& numbers,
+Result<double> find_yield(const SceneDocument& scene, const Look& look, const Numbers& numbers,
                           double elastic_peak, const StarterSource& source) {
   // The bend at the peak is some times `numbers.yield`: from half of that, where all flows, to
   // where nothing does. Halving the range six times leaves 5 %.
@@ -138,9 +152,9 @@ Result<double> find_yield(const EditedText& text, const Look& look, const Number
   for (int k = 0; k < 6; ++k) {
     Numbers trial = numbers;
     trial.yield = std::sqrt(low * high);
-    EditedText yielding = text;
-    yielding.replace_with_comment(*yielding.find("material"), element_of(look, trial));
-    const auto peak = played_peak(yielding.text(), source);
+    const auto text = text_with(scene, look, trial);
+    if (!text) return fail(text.error());
+    const auto peak = played_peak(*text, source);
     if (!peak && peak.error().code != ErrorCode::SolverFailed &&
         peak.error().code != ErrorCode::NotFinite) {
       return fail(peak.error());
@@ -155,22 +169,20 @@ Result<double> find_yield(const EditedText& text, const Look& look, const Number
 
 std::span<const Look> looks() { return all_looks; }
 
-Result<void> apply_look(EditedText& text, const Look& look, const StarterFacts& own,
+Result<void> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,
                         const StarterSource& source) {
-  const auto surface = text.find("surface");
-  const auto material = text.find("material");
-  if (!surface || !material) return invalid("the starter has no <material>");
   // A density and a stiffness of 1 show what others make: frequency² and peak are proportional to
   // 1/density and 1/stiffness, as long as nothing yields.
-  EditedText trial = text;
   Numbers numbers{.density = 1, .stiffness = 1};
-  trial.replace_with_comment(*trial.find("material"), element_of(look, numbers));
-  auto facts = look_at(trial.text(), source);
+  const auto look_with = [&]() -> Result<StarterFacts> {
+    const auto text = text_with(scene, look, numbers);
+    if (!text) return fail(text.error());
+    return look_at(*text, source);
+  };
+  auto facts = look_with();
   if (!facts) return fail(facts.error());
   numbers.density = std::pow(facts->frequency / look.frequency, 2);
-  trial = text;
-  trial.replace_with_comment(*trial.find("material"), element_of(look, numbers));
-  facts = look_at(trial.text(), source);
+  facts = look_with();
   if (!facts) return fail(facts.error());
   if (!facts->is_by_inertia) {
     numbers.stiffness = facts->peak / (look.softness * own.peak);
@@ -180,13 +192,13 @@ Result<void> apply_look(EditedText& text, const Look& look, const StarterFacts& 
   if (look.give > 0) {
     // The stress is the curvature times √b.
     numbers.yield = facts->bend() * std::sqrt(numbers.stiffness);
-    auto found = find_yield(text, look, numbers, facts->peak, source);
+    auto found = find_yield(scene, look, numbers, facts->peak, source);
     if (!found) return fail(found.error());
     numbers.yield = *found;
   }
-  text.replace_with_comment(
-      *material, fmt::format("{}\n    {}", comment_of(look, numbers, facts->is_by_inertia),
-                             element_of(look, numbers)));
+  const auto changed =
+      scene.apply({part_of(scene, look, numbers, comment_of(look, numbers, facts->is_by_inertia))});
+  if (!changed) return fail(changed.error());
   return {};
 }
 

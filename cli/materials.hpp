@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "edited_text.hpp"
+#include "pliant/document/document.hpp"
 #include "starter_facts.hpp"
 
 namespace pliant::cli {
@@ -32,7 +32,7 @@ std::span<const Look> looks();
 /// Gives the first surface of a scene the look, in place of its <material>: finds the numbers that
 /// the look has at the size of the surface and its forces. `own` are the facts of the scene as it
 /// is. Errors: those of `look_at`.
-Result<void> apply_look(EditedText& text, const Look& look, const StarterFacts& own,
+Result<void> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,
                         const StarterSource& source);
 
 }  // namespace pliant::cli

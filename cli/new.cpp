@@ -96,52 +96,38 @@ std::string name_from(const fs::path& folder, const std::string& file) {
   return (unknown ? fs::path(file) : name).generic_string();
 }
 
-// Writes an attribute's value.
-std::string escaped(const std::string& value) {
-  std::string text;
-  for (const char c : value) {
-    if (c == '&') {
-      text += "&amp;";
-    } else if (c == '<') {
-      text += "&lt;";
-    } else if (c == '"') {
-      text += "&quot;";
-    } else if (c == '$') {
-      text += "$$";
-    } else {
-      text += c;
-    }
-  }
-  return text;
-}
-
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
-  EditedText text{std::string(starter.scene)};
+  auto document = SceneDocument::from_text(std::string(starter.scene), std::string(starter.name),
+                                           out.parent_path().string());
+  if (!document) return fail(document.error());
   StarterSource source{.name = std::string(starter.name),
                        .folder = out.parent_path().string(),
                        .obj = starter.mesh,
                        .options = simulation_options({})};
   if (options.mesh || options.material) {
-    auto facts = look_at(text.text(), source);
+    auto facts = look_at(document->text(), source);
     if (!facts) return fail(facts.error());
     if (options.mesh) {
       source.obj = {};
       source.name = *options.mesh;
-      const std::string name = escaped(name_from(out.parent_path(), *options.mesh));
-      facts = use_own_mesh(text, name, *facts, source);
+      const std::string name = name_from(out.parent_path(), *options.mesh);
+      facts = use_own_mesh(*document, name, *facts, source);
       if (!facts) return fail(facts.error());
     }
     if (options.material) {
-      const auto applied = apply_look(text, find(looks(), *options.material), *facts, source);
+      const auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);
       if (!applied) return fail(applied.error());
     }
   }
   if (!starter.mesh.empty() && !options.mesh) {
-    text.set(*text.find("mesh"), "file", escaped(out.stem().string() + ".obj"));
+    const std::string path = document->scene().surfaces.front().name + ".file";
+    const auto changed =
+        document->apply({edit::Set{path, edit::literal_text(out.stem().string() + ".obj")}});
+    if (!changed) return fail(changed.error());
   }
-  std::string scene = text.text();
+  std::string scene = document->text();
   if (options.has_schema) {
     scene.insert(scene.find('\n') + 1, fmt::format("<?xml-model href=\"{}\"?>\n", schema_name));
   }

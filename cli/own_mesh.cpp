@@ -3,30 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/scene/channels.hpp"
 #include "rounded.hpp"
 
 namespace pliant::cli {
 namespace {
 
-std::vector<double> numbers_of(const std::string& text) {
-  std::vector<double> numbers;
-  const char* at = text.c_str();
-  for (char* end = nullptr;; at = end) {
-    const double number = std::strtod(at, &end);
-    if (end == at) return numbers;
-    numbers.push_back(number);
-  }
-}
-
-std::string text_of(const std::vector<double>& numbers) {
-  std::vector<std::string> words;
-  for (const double number : numbers) words.push_back(rounded(number));
-  return fmt::format("{}", fmt::join(words, " "));
+std::string direction_text(const Vector3d& direction) {
+  return fmt::format("{} {} {}", rounded(direction.x()), rounded(direction.y()),
+                     rounded(direction.z()));
 }
 
 // A place, to a thousandth of the mesh's size.
@@ -40,24 +32,18 @@ std::string place_text(const Vector3d& at, double size) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-// Multiplies the numbers of an attribute, if the element has it.
-void scale(EditedText& text, std::size_t element, std::string_view attribute, double factor) {
-  const auto value = text.attribute(element, attribute);
-  if (!value) return;
-  std::vector<double> numbers = numbers_of(*value);
-  for (double& number : numbers) number *= factor;
-  text.set(element, attribute, text_of(numbers));
+// Multiplies channels by a factor, with the digits that a person would write.
+edit::Scale scaling_of(std::vector<std::string> channels, double factor) {
+  return {.channels = std::move(channels), .factor = factor, .digits = 3};
 }
 
-// Multiplies the values of the keys of a channel.
-void scale_keys(EditedText& text, std::string_view channel, double factor) {
-  for (auto animate = text.find("animate"); animate; animate = text.find("animate", *animate + 1)) {
-    if (text.attribute(*animate, "attribute") != channel) continue;
-    for (auto key = text.find("key", *animate); key && text.is_inside(*key, *animate);
-         key = text.find("key", *key + 1)) {
-      scale(text, *key, "value", factor);
-    }
+// The animated channels of one attribute.
+std::vector<std::string> animated(const Scene& scene, std::string_view attribute) {
+  std::vector<std::string> paths;
+  for (const NamedChannel& each : channels_of(scene)) {
+    if (each.is_animated() && each.path.ends_with(attribute)) paths.push_back(each.path);
   }
+  return paths;
 }
 
 // The vertex of the mesh that is nearest to the place that `point` has in the starter's box.
@@ -70,43 +56,51 @@ Vector3d same_place(const Vector3d& point, const StarterFacts& own, const Starte
 }
 
 // Scales lengths, and moves each point force to the same place, with its direction inwards.
-void place(EditedText& text, const StarterFacts& own, const StarterFacts& mesh) {
+std::vector<Operation> placing(const Scene& scene, const StarterFacts& own,
+                               const StarterFacts& mesh) {
   const double size = mesh.diagonal() / own.diagonal();
-  scale_keys(text, "translate", size);
-  const auto force = text.find("point");
-  if (!force) return;
-  scale(text, *force, "deformationRadius", size);
-  scale(text, *force, "forceRadius", size);
-  const std::vector<double> center = numbers_of(text.attribute(*force, "center").value_or("0 0 0"));
-  const Vector3d at = same_place({center[0], center[1], center[2]}, own, mesh);
-  const Vector3d inwards = ((mesh.low + mesh.high) / 2 - at).normalized();
-  text.set(*force, "center", place_text(at, mesh.diagonal()));
-  text.set(*force, "direction", text_of({inwards.x(), inwards.y(), inwards.z()}));
+  std::vector<Operation> operations{scaling_of(animated(scene, ".translate"), size)};
+  for (const Force& force : scene.forces) {
+    const auto* const point = std::get_if<PointChannels>(&force.kind);
+    if (!point) continue;
+    operations.emplace_back(
+        scaling_of({force.name + ".deformationRadius", force.name + ".forceRadius"}, size));
+    const Value<3> center = point->center.at(scene.start);
+    const Vector3d at = same_place({center[0], center[1], center[2]}, own, mesh);
+    const Vector3d inwards = ((mesh.low + mesh.high) / 2 - at).normalized();
+    operations.emplace_back(edit::Set{force.name + ".center", place_text(at, mesh.diagonal())});
+    operations.emplace_back(edit::Set{force.name + ".direction", direction_text(inwards)});
+  }
+  return operations;
 }
 
 }  // namespace
 
-Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
+Result<StarterFacts> use_own_mesh(SceneDocument& scene, const std::string& file,
                                   const StarterFacts& own, const StarterSource& source) {
-  const std::size_t shape = *text.find("mesh");
-  text.set(shape, "file", file);
-  text.set(shape, "uv", "auto");
-  const auto size = measure(text.text(), source);
+  const std::string surface = scene.scene().surfaces.front().name;
+  auto changed = scene.apply(
+      {edit::Set{surface + ".file", edit::literal_text(file)}, edit::Set{surface + ".uv", "auto"}});
+  if (!changed) return fail(changed.error());
+  const auto size = measure(scene.text(), source);
   if (!size) return fail(size.error());
-  place(text, own, *size);
-  auto trial = look_at(text.text(), source);
+  changed = scene.apply(placing(scene.scene(), own, *size));
+  if (!changed) return fail(changed.error());
+  auto trial = look_at(scene.text(), source);
   if (!trial) return trial;
   if (!trial->is_held) {
     return invalid(
         "nothing holds the mesh: it has no border; this starter needs one, such as the rim of a "
         "bowl");
   }
-  const std::size_t material = *text.find("material");
-  scale(text, material, "density", std::pow(trial->frequency / own.frequency, 2));
+  changed = scene.apply(
+      {scaling_of({surface + ".density"}, std::pow(trial->frequency / own.frequency, 2))});
+  if (!changed) return fail(changed.error());
   const double wanted = own.peak * trial->diagonal() / own.diagonal();
-  auto moved = look_at(text.text(), source);
+  auto moved = look_at(scene.text(), source);
   if (!moved || moved->is_by_inertia || !(moved->peak > 0)) return moved;
-  scale_keys(text, "magnitude", wanted / moved->peak);
+  changed = scene.apply({scaling_of(animated(scene.scene(), ".magnitude"), wanted / moved->peak)});
+  if (!changed) return fail(changed.error());
   StarterFacts facts = *moved;
   facts.peak = wanted;
   return facts;

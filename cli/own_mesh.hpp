@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "edited_text.hpp"
+#include "pliant/document/document.hpp"
 #include "starter_facts.hpp"
 
 namespace pliant::cli {
@@ -11,8 +11,8 @@ namespace pliant::cli {
 /// forces to the same place of the mesh, and finds the density and the magnitudes with which the
 /// motion is as fast and, for its size, as large as the starter's. `own` are the facts of the
 /// starter. Returns the facts of the result. Errors: those of `look_at`; InvalidInput if nothing
-/// holds the mesh.
-Result<StarterFacts> use_own_mesh(EditedText& text, const std::string& file,
+/// holds the mesh. `file` is the mesh as the scene names it.
+Result<StarterFacts> use_own_mesh(SceneDocument& scene, const std::string& file,
                                   const StarterFacts& own, const StarterSource& source);
 
 }  // namespace pliant::cli

@@ -1,13 +1,11 @@
 #include "rounded.hpp"
 
-#include <cstdlib>
-
 #include <fmt/format.h>
+
+#include "pliant/core/text.hpp"
 
 namespace pliant::cli {
 
-std::string rounded(double value) {
-  return fmt::format("{}", std::strtod(fmt::format("{:.2e}", value + 0.0).c_str(), nullptr));
-}
+std::string rounded(double value) { return fmt::format("{}", with_digits(value + 0.0, 3)); }
 
 }  // namespace pliant::cli

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "interrupt.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/output/atomic_file.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
@@ -42,49 +40,59 @@ CLI::Validator accepted_by(const Parse& parse, const std::string& type, const st
       type);
 }
 
-// The text of the scene as it is in its file.
-struct SceneText {
-  std::string text;
-  Scene scene;
-};
-
-Result<SceneText> read_text(const SuggestOptions& options) {
+// The scene's file, which will be changed.
+Result<SceneDocument> open_document(const SuggestOptions& options) {
   if (auto is_file = check_scene_is_file(options.scene, "--write changes the scene"); !is_file)
     return fail(is_file.error());
   const auto folder = folder_of(options.root);
   if (!folder) return fail(folder.error());
   if (auto place = check_output_place(options.scene); !place) return fail(place.error());
-  auto text = read_file(options.scene);
-  if (!text) return fail(text.error());
-  auto scene = parse_scene(*text, options.scene,
-                           std::filesystem::path(options.scene).parent_path().string(), *folder);
-  if (!scene) return fail(scene.error());
-  return SceneText{*std::move(text), *std::move(scene)};
+  return SceneDocument::open(options.scene, {.root = folder->string()});
+}
+
+// A number of a scene; null: it has no such channel.
+const Channel<1>* find_number(const Scene& scene, const std::string& path) {
+  const std::vector<NamedChannel> channels = channels_of(scene);
+  const auto found = std::ranges::find(channels, path, &NamedChannel::path);
+  if (found == channels.end()) return nullptr;
+  const auto* const number = std::get_if<const Channel<1>*>(&found->channel);
+  return number ? *number : nullptr;
+}
+
+bool are_equal(const Channel<1>& a, const Channel<1>& b) {
+  if (a.is_animated() != b.is_animated()) return false;
+  return a.is_animated() ? a.curve().keys() == b.curve().keys() : a.at(0) == b.at(0);
+}
+
+// What makes the suggested values of those that differ.
+std::vector<Operation> operations_for(const Suggestion& suggestion, const Scene& scene) {
+  std::vector<Operation> operations;
+  for (const SuggestedValue& value : suggestion.values) {
+    const Channel<1>* const wanted = find_number(suggestion.scene, value.path);
+    const Channel<1>* const present = find_number(scene, value.path);
+    if (!wanted || (present && are_equal(*wanted, *present))) continue;
+    if (wanted->is_animated()) {
+      operations.emplace_back(edit::SetCurve{value.path, wanted->curve().keys()});
+    } else {
+      operations.emplace_back(edit::Set{value.path, edit::to_text(wanted->at(0)[0])});
+    }
+  }
+  return operations;
 }
 
 // Writes the suggested values into the scene's file. Returns whether that changes it.
-Result<bool> write(const SuggestOptions& options, const std::string& text,
-                   const Suggestion& suggestion) {
-  std::vector<std::string> paths;
-  for (const SuggestedValue& value : suggestion.values) paths.push_back(value.path);
-  const auto folder = folder_of(options.root);
-  if (!folder) return fail(folder.error());
-  auto changed = changed_text(text, suggestion.scene, paths, options.scene,
-                              std::filesystem::path(options.scene).parent_path().string(), *folder);
+Result<bool> write(SceneDocument& document, const Suggestion& suggestion) {
+  const auto changed = document.apply(operations_for(suggestion, document.scene()), "suggest");
   if (!changed) return fail(changed.error());
-  if (*changed == text) return false;
-  const auto present = read_file(options.scene);
-  if (!present) return fail(present.error());
-  if (*present != text) {
+  if (document.is_saved()) return false;
+  const auto is_other = document.has_file_changed();
+  if (!is_other) return fail(is_other.error());
+  if (*is_other) {
     return fail(ErrorCode::Unwritable,
                 "the file was changed meanwhile by another program; nothing is written",
-                options.scene);
+                document.file());
   }
-  auto file = AtomicFile::create(options.scene);
-  if (!file) return fail(file.error());
-  if (auto kept = file->keep_permissions(); !kept) return fail(kept.error());
-  if (auto written = file->write(*changed); !written) return fail(written.error());
-  if (auto committed = file->commit(); !committed) return fail(committed.error());
+  if (auto saved = document.save(); !saved) return fail(saved.error());
   return true;
 }
 
@@ -96,7 +104,8 @@ MotionGoals goals_of(const SuggestOptions& options, double fps) {
   return goals;
 }
 
-int suggest(const SuggestOptions& options, Scene scene, const std::string& text) {
+// Without a document nothing is written.
+int suggest(const SuggestOptions& options, Scene scene, SceneDocument* document) {
   print_notes(scene);
   const std::size_t note_count = scene.notes.size();
   const SimulationOptions run = simulation_options(options.resources);
@@ -111,8 +120,8 @@ int suggest(const SuggestOptions& options, Scene scene, const std::string& text)
                      .force = options.force,
                      .fps = fps,
                      .suggestion = *std::move(suggestion)};
-  if (options.writes) {
-    const auto written = write(options, text, facts.suggestion);
+  if (document) {
+    const auto written = write(*document, facts.suggestion);
     if (!written) return report(written.error());
     facts.is_written = *written;
   }
@@ -180,10 +189,10 @@ int run_suggest(const SuggestOptions& options) {
   }
   if (!options.writes) {
     auto scene = read_scene(options.scene, options.root);
-    return scene ? suggest(options, *std::move(scene), "") : report(scene.error());
+    return scene ? suggest(options, *std::move(scene), nullptr) : report(scene.error());
   }
-  auto read = read_text(options);
-  return read ? suggest(options, std::move(read->scene), read->text) : report(read.error());
+  auto document = open_document(options);
+  return document ? suggest(options, document->scene(), &*document) : report(document.error());
 }
 
 }  // namespace pliant::cli

@@ -8,7 +8,6 @@
 #include "pliant/output/writer.hpp"
 #include "pliant/replay/replay.hpp"
 #include "pliant/scene/change.hpp"
-#include "pliant/scene/changed_text.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/scene.hpp"

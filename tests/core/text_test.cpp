@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -27,6 +28,18 @@ TEST_CASE("what is no finite decimal number is none", "[core][number]") {
                                     "-", ".", "e5", "1e", " 1", "1 ", "--1", "1.2.3");
   CAPTURE(text);
   CHECK_FALSE(to_number(text));
+}
+
+TEST_CASE("a number is rounded to significant digits", "[core][number]") {
+  CHECK(with_digits(1234.5678, 3) == 1230);
+  CHECK(with_digits(-0.0012345, 2) == -0.0012);
+  CHECK(with_digits(9.99e200, 1) == 1e201);
+  CHECK(with_digits(1.0 / 3, 0) == 1.0 / 3);
+  CHECK(with_digits(1.0 / 3, 17) == 1.0 / 3);
+  CHECK(with_digits(1.0 / 3, 99) == 1.0 / 3);
+  CHECK(with_digits(0, 3) == 0);
+  CHECK(std::isinf(with_digits(std::numeric_limits<double>::infinity(), 3)));
+  CHECK(with_digits(1.79e308, 1) == 1.79e308);  // 2e308 is none
 }
 
 TEST_CASE("usual spellings of numbers are read", "[core][number]") {

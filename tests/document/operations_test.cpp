@@ -1,6 +1,8 @@
 // What each operation does to the text, byte by byte.
 
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pliant/document/document.hpp"
@@ -82,6 +84,9 @@ TEST_CASE("a value is set at its place", "[document]") {
         with(shot, "columns=\"5\"", "columns=\"9\""));
   // One component: the others and the blanks between them stay.
   CHECK(after(shot, {edit::Set{"bulge.center.y", "7.5"}}) == with(shot, "1 2  3", "1 7.5  3"));
+  // Blanks around a number stay.
+  const std::string blank = with(shot, "magnitude=\"10\"", "magnitude=\" 10  \"");
+  CHECK(after(blank, {edit::Set{"poke.magnitude", "7"}}) == with(blank, " 10  ", " 7  "));
   // The same value changes nothing.
   SceneDocument document = document_of(shot);
   CHECK(document.apply({edit::Set{"poke.magnitude", "10"}}).value().edits.empty());
@@ -312,6 +317,180 @@ TEST_CASE("every byte of a value comes back", "[document]") {
     REQUIRE(document.apply({edit::Set{"sheet.object", value}}));
     CHECK(std::get<MeshFile>(document.scene().surfaces[0].shape).object == value);
   }
+}
+
+/// A curve with a number of every sort, each in its own attribute.
+const std::string every_number =
+    "<scene start=\"1\" end=\"9\"><surface name=\"s\"><grid columns=\"5\" rows=\"5\"/></surface>"
+    "<point name=\"f\"><animate attribute=\"magnitude\" tangent=\"3\" before=\"slope 2\" "
+    "after=\" slope  -4 \"><key frame=\"1\" value=\"10\" out=\"5\"/><key frame=\"3\" "
+    "value=\"20\" left=\"15\" in=\"6\" outHandle=\"0.5  7\"/><key frame=\"5\" value=\"30\" "
+    "tangent=\"8\"/><key frame=\"7\" value=\"40\" interpolation=\"elasticIn\" amplitude=\"50\" "
+    "period=\"1\"/><key frame=\"8\" value=\"60\"/><key frame=\"20\" value=\"0.00\" "
+    "tangent=\"flat\"/>"
+    "<loop from=\"3\" to=\"8\" after=\"1\" offset=\"9\"/></animate></point></scene>";
+
+TEST_CASE("a curve is scaled in every number, and nowhere else", "[document]") {
+  std::string wanted = every_number;
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"tangent=\"3\"", "tangent=\"9\""},
+                                                        {"\"slope 2\"", "\"slope 6\""},
+                                                        {"\" slope  -4 \"", "\" slope  -12 \""},
+                                                        {"value=\"10\"", "value=\"30!\""},
+                                                        {"out=\"5\"", "out=\"15\""},
+                                                        {"value=\"20\"", "value=\"60!\""},
+                                                        {"left=\"15\"", "left=\"45\""},
+                                                        {"in=\"6\"", "in=\"18\""},
+                                                        {"0.5  7", "0.5  21"},
+                                                        {"value=\"30\"", "value=\"90!\""},
+                                                        {"tangent=\"8\"", "tangent=\"24\""},
+                                                        {"value=\"40\"", "value=\"120!\""},
+                                                        {"amplitude=\"50\"", "amplitude=\"150\""},
+                                                        {"value=\"60\"", "value=\"180!\""},
+                                                        {"offset=\"9\"", "offset=\"27\""}}) {
+    wanted = with(wanted, from, to);
+  }
+  std::erase(wanted, '!');
+  SceneDocument document = document_of(every_number);
+  const Curve<1> before = document.scene().forces[0].magnitude.curve();
+  REQUIRE(document.apply({edit::Scale{{"f.magnitude"}, 3}}));
+  CHECK(document.text() == wanted);
+  const Curve<1>& scaled = document.scene().forces[0].magnitude.curve();
+  for (double frame = -5; frame < 30; frame += 0.125)
+    CHECK_THAT(scaled.value(frame)[0], WithinAbs(3 * before.value(frame)[0], 1e-9));
+  REQUIRE(document.undo());
+  CHECK(document.text() == every_number);
+  // What does not change is no step.
+  REQUIRE(document.apply({edit::Scale{{"f.magnitude"}, 1}}));
+  CHECK_FALSE(document.can_undo());
+}
+
+TEST_CASE("constants are scaled, and numbers rounded to digits", "[document]") {
+  CHECK(after(shot, {edit::Scale{{"poke.magnitude", "bulge.center"}, 2}}) ==
+        with(with(shot, "magnitude=\"10\"", "magnitude=\"20\""), "1 2  3", "2 4  6"));
+  CHECK(after(shot, {edit::Scale{{"bulge.center.y"}, -0.5}}) == with(shot, "1 2  3", "1 -1  3"));
+  CHECK(after(shot, {edit::Scale{{"poke.magnitude"}, 1.0 / 3, 3}}) ==
+        with(shot, "magnitude=\"10\"", "magnitude=\"3.33\""));
+  const std::string keys = after(shot, {edit::Scale{{"poke.forceRadius"}, 1.0 / 3, 2}});
+  CHECK_THAT(keys, contains_text("frame=\"12\" value=\"0.83\" tangent"));
+  CHECK_THAT(keys, contains_text("frame=\"36\" value=\"1\""));
+  CHECK_THAT(refusal(shot, {edit::Scale{{"sheet.columns"}, 2}}), contains_text("no multiples"));
+  CHECK_THAT(refusal(shot, {edit::Scale{{"poke.enabled"}, 2}}), contains_text("no multiples"));
+  CHECK_THAT(refusal(shot, {edit::Scale{{"poke.magnitude"}, std::nan("")}}),
+             contains_text("the factor must be finite"));
+}
+
+template <int D>
+CurveKeys<D> curve_of(const std::vector<std::pair<double, double>>& points) {
+  CurveKeys<D> curve;
+  for (const auto& [frame, value] : points) {
+    Key<D> key;
+    key.frame = frame;
+    key.value.fill(value);
+    curve.keys.push_back(key);
+  }
+  return curve;
+}
+
+TEST_CASE("a whole curve is given", "[document]") {
+  // Keys at old frames keep their bytes and comments.
+  CurveKeys<1> curve = curve_of<1>({{1, 1}, {12, 4}, {30, 2}});
+  curve.keys[1].in = curve.keys[1].out = {.kind = Tangent<1>::Kind::Flat};
+  const std::string text = after(shot, {edit::SetCurve{"poke.forceRadius", curve}});
+  const std::string keys =
+      shot.substr(shot.find("\n\n      <key frame=\"24\""),
+                  shot.find("\n    </animate>") - shot.find("\n\n      <key frame=\"24\""));
+  CHECK(text == with(with(shot, keys, "\n      <key frame=\"30\" value=\"2\"/>"),
+                     "frame=\"12\" value=\"2.50\"", "frame=\"12\" value=\"4\""));
+  CHECK(document_of(text).scene().forces[0].force_radius.curve().keys() == curve);
+  // A constant becomes a curve.
+  CHECK(after(shot, {edit::SetCurve{"bulge.center", curve_of<3>({{1, 2}})}}) ==
+        with(shot, "<radial name=\"bulge\" center=\"1 2  3\"/>",
+             "<radial name=\"bulge\">\n    <animate attribute=\"center\">\n      <key frame=\"1\" "
+             "value=\"2 2 2\"/>\n    </animate>\n  </radial>"));
+  // Loops come, change and go.
+  CurveKeys<1> looping = document_of(every_number).scene().forces[0].magnitude.curve().keys();
+  looping.loop->after = 3;
+  const std::string more = after(every_number, {edit::SetCurve{"f.magnitude", looping}});
+  CHECK(more == with(every_number, "after=\"1\"", "after=\"3\""));
+  looping.loop.reset();
+  const std::string none = after(more, {edit::SetCurve{"f.magnitude", looping}});
+  CHECK(none == with(more, "<loop from=\"3\" to=\"8\" after=\"3\" offset=\"9\"/>", ""));
+  looping.loop = Loop<1>{1, 8, 0, 2, {0.5}};
+  SceneDocument document = document_of(none);
+  REQUIRE(document.apply({edit::SetCurve{"f.magnitude", looping}}));
+  CHECK(document.scene().forces[0].magnitude.curve().keys() == looping);
+  // What the channel cannot have.
+  CHECK_THAT(refusal(shot, {edit::SetCurve{"poke.magnitude", curve_of<3>({{1, 2}})}}),
+             contains_text("single numbers"));
+  CHECK_THAT(refusal(shot, {edit::SetCurve{"poke.center", curve_of<1>({{1, 2}})}}),
+             contains_text("vectors of three numbers"));
+  CHECK_THAT(refusal(shot, {edit::SetCurve{"poke.magnitude", CurveKeys<1>{}}}),
+             contains_text("poke.magnitude"));
+  CHECK_THAT(refusal(shot, {edit::SetCurve{"sheet.columns", curve_of<1>({{1, 2}})}}),
+             contains_text("cannot be animated"));
+}
+
+TEST_CASE("a part of a surface is set as a whole, with its comment", "[document]") {
+  const edit::SetPart soft{"sheet", "material", {{"density", "4"}, {"b", "2"}}, "Soft:\nsags."};
+  const std::string once = after(shot, {soft});
+  CHECK(once == with(shot, "    <solver",
+                     "    <!-- Soft:\n         sags. -->\n    <material density=\"4\" b=\"2\"/>\n"
+                     "    <solver"));
+  const edit::SetPart hard{"sheet", "material", {{"damping", "9"}}, "Hard."};
+  CHECK(after(once, {hard}) == with(with(once, "Soft:\n         sags.", "Hard."),
+                                    "density=\"4\" b=\"2\"", "damping=\"9\""));
+  // A comment at the end of another element's line is that element's.
+  const std::string trailing =
+      with(once, "<!-- Soft:\n         sags. -->\n    <material", "<material");
+  const std::string beside = with(trailing, "<grid columns=\"5\" rows=\"5\"/>",
+                                  "<grid columns=\"5\" rows=\"5\"/> <!-- g -->");
+  CHECK_THAT(after(beside, {hard}),
+             contains_text("<!-- g -->\n    <!-- Hard. -->\n    <material damping"));
+  CHECK_THAT(refusal(shot, {edit::SetPart{"poke", "material", {}}}),
+             contains_text("is no surface"));
+  CHECK_THAT(refusal(shot, {edit::SetPart{"sheet", "grid", {}}}),
+             contains_text("allowed: transform, material, tangents, solver"));
+  CHECK_THAT(refusal(shot, {edit::SetPart{"sheet", "material", {}, "a -- b"}}),
+             contains_text("must not contain --"));
+}
+
+TEST_CASE("keys with a $ stay, unless they would have to change", "[document]") {
+  const std::string text =
+      "<scene start=\"1\" end=\"9\">\n  <define name=\"far\" value=\"2\"/>\n"
+      "  <surface name=\"s\"><grid columns=\"5\" rows=\"5\"/></surface>\n"
+      "  <point name=\"f\" center=\"$far 0 0\">\n    <animate attribute=\"magnitude\">\n"
+      "      <key frame=\"1\" value=\"1\"/>\n      <key frame=\"5\" value=\"$far * 2\"/>\n"
+      "      <key frame=\"$far * 4\" value=\"7\"/>\n    </animate>\n"
+      "    <animate attribute=\"forceRadius\" tangent=\"$far\">\n"
+      "      <key frame=\"1\" value=\"1\"/>\n    </animate>\n  </point>\n</scene>\n";
+  const auto keys = [](std::vector<double> frames) {
+    return std::vector{edit::KeysOf{"f.magnitude", std::move(frames)}};
+  };
+  CHECK(after(text, {edit::MoveKeys{keys({1}), 1, {3}}}) ==
+        with(text, "<key frame=\"1\" value=\"1\"/>\n      <key",
+             "<key frame=\"2\" value=\"4\"/>\n      <key"));
+  CHECK(after(text, {edit::MoveKeys{keys({5}), 1}}) == with(text, "frame=\"5\"", "frame=\"6\""));
+  CHECK(after(text, {edit::MoveKeys{keys({8}), 0, {1}}}) ==
+        with(text, "value=\"7\"", "value=\"8\""));
+  CHECK(after(text, {edit::DeleteKeys{keys({5})}}) ==
+        with(text, "      <key frame=\"5\" value=\"$far * 2\"/>\n", ""));
+  CHECK(after(text, {edit::SetKey{"f.magnitude", 5, "6"}}) == with(text, "$far * 2", "6"));
+  CHECK(refusal(text, {edit::MoveKeys{keys({5}), 0, {1}}}) ==
+        "shot.xml: error: f.magnitude: the value with $ in line 7: <key> value=\"$far * 2\" would "
+        "have to change; change what it stands for, or set a number in its place first");
+  for (const Operation& operation :
+       {Operation(edit::MoveKeys{keys({8}), 1}), Operation(edit::Scale{{"f.magnitude"}, 2})})
+    CHECK_THAT(refusal(text, {operation}), contains_text("the value with $ in line"));
+  CHECK_THAT(refusal(text, {edit::Scale{{"f.center"}, 2}}), contains_text("no multiples"));
+  CHECK_THAT(refusal(text, {edit::Scale{{"f.forceRadius"}, 2}}),
+             contains_text("its <animate> has a value with $"));
+  // A curve that is given as a whole has numbers.
+  CHECK(after(text, {edit::SetCurve{"f.magnitude", curve_of<1>({{1, 1}, {5, 9}, {8, 7}})}}) ==
+        with(text, "$far * 2", "9"));
+  CHECK_THAT(after(text, {edit::SetCurve{"f.forceRadius", curve_of<1>({{1, 3}})}}),
+             contains_text("<animate attribute=\"forceRadius\">\n      <key "
+                           "frame=\"1\" value=\"3\"/>"));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class RandomOperation {
 
   Operation make() {
     if (objects_.empty()) return addition();
-    switch (chance_.below(animated_.empty() ? 12 : 25)) {
+    switch (chance_.below(animated_.empty() ? 14 : 29)) {
       case 0:
       case 1:
         return edit::Set{chance_.of(channels_), value()};
@@ -80,36 +80,44 @@ class RandomOperation {
                    ? Operation(edit::Ungroup{{object()}})
                    : Operation(edit::SetKey{chance_.of(channels_), frame(), value()});
       case 12:
+        return set_part();
       case 13:
-        return edit::SetKey{chance_.of(animated_), frame(), value()};
+        return edit::Scale{{chance_.of(channels_)}, factor()};
       case 14:
-        return edit::SetKey{chance_.of(animated_), frame()};
       case 15:
-        return edit::DeleteKeys{keys()};
+        return edit::SetKey{chance_.of(animated_), frame(), value()};
       case 16:
+        return edit::SetKey{chance_.of(animated_), frame()};
       case 17:
+        return edit::DeleteKeys{keys()};
+      case 18:
+        return edit::Scale{{chance_.of(animated_)}, factor()};
+      case 19:
+        return set_curve();
+      case 20:
+      case 21:
         return edit::MoveKeys{
             keys(), chance_.once_in(3) ? 0 : chance_.between(-6, 6) / 2.0, rise(),
             chance_.once_in(2) ? edit::Collision::Replace : edit::Collision::Refuse};
-      case 18:
+      case 22:
         return tangent();
-      case 19:
+      case 23:
         return edit::SetHandle{chance_.of(animated_), old_frame(),
                                chance_.once_in(2) ? edit::Side::In : edit::Side::Out,
                                chance_.pick({"1 2", "-1 2.50", "-1 0 0 0", "2 1 1 1", "3"})};
-      case 20:
+      case 24:
         return interpolation();
-      case 21:
+      case 25:
         return edit::SetExtrapolation{{chance_.of(animated_)},
                                       chance_.pick({"hold", "repeat", "slope 1", "mirror 2"}),
                                       chance_.pick({"hold", "linear", "repeatOffset"})};
-      case 22:
+      case 26:
         return edit::BakeKeys{{chance_.of(animated_)},
                               -1,
                               9,
                               chance_.pick({"1", "2"}) == "1" ? 1.0 : 2.5,
                               chance_.once_in(3)};
-      case 23:
+      case 27:
         return edit::SimplifyKeys{{chance_.of(animated_)}, chance_.once_in(5) ? 0 : 0.1};
       default:
         return edit::Freeze{{chance_.of(animated_)}, frame()};
@@ -190,6 +198,67 @@ class RandomOperation {
     if (set.interpolation != "cubicBezier") set.control.reset();
     return set;
   }
+  double factor() {
+    if (chance_.once_in(30)) return std::numeric_limits<double>::infinity();
+    return chance_.once_in(3) ? chance_.between(1, 4) / 3.0 : chance_.between(-2, 8) / 4.0;
+  }
+  Operation set_part() {
+    if (surfaces_.empty()) return addition();
+    edit::SetPart set{chance_.of(surfaces_), "material", {}};
+    if (chance_.once_in(8)) set.surface = object();
+    if (chance_.once_in(8)) set.part = chance_.pick({"solver", "grid", "transform", ""});
+    if (chance_.once_in(2)) set.attributes.emplace_back("density", value());
+    if (chance_.once_in(2)) set.attributes.emplace_back("b", chance_.number(1, 9));
+    if (chance_.once_in(2)) set.comment = chance_.pick({"soft", "two\nlines", "a -- b", "ends-"});
+    return set;
+  }
+  /// Some of the keys of a curve and others, with all that a curve may have.
+  template <int D>
+  CurveKeys<D> changed(CurveKeys<D> curve) {
+    for (int k = chance_.between(0, 3); k > 0; --k) {
+      Key<D> key;
+      key.frame = chance_.between(-8, 30) / 2.0;
+      key.value.fill(chance_.between(0, 4) / 4.0);
+      if (chance_.once_in(4)) key.left = key.value;
+      if (chance_.once_in(4)) key.next.kind = Interpolation::Kind::Linear;
+      if (chance_.once_in(4)) key.out = {.kind = Tangent<D>::Kind::Slope, .slope = key.value};
+      if (chance_.once_in(4)) key.in = {.kind = Tangent<D>::Kind::Flat, .length = 0.5};
+      curve.keys.push_back(key);
+    }
+    std::ranges::stable_sort(curve.keys, {}, &Key<D>::frame);
+    const auto is_same = [](const Key<D>& a, const Key<D>& b) { return a.frame == b.frame; };
+    curve.keys.erase(std::unique(curve.keys.begin(), curve.keys.end(), is_same), curve.keys.end());
+    if (chance_.once_in(3) && curve.keys.size() > 1)
+      curve.keys.erase(curve.keys.begin() + chance_.below(static_cast<int>(curve.keys.size())));
+    if (chance_.once_in(3))
+      curve.after = {.kind = Extrapolation<D>::Kind::Repeat,
+                     .count = chance_.once_in(2) ? std::optional(2.0) : std::nullopt};
+    if (chance_.once_in(4) && !curve.keys.empty())
+      curve.loop = Loop<D>{curve.keys.front().frame, curve.keys.back().frame + 1, 0, 2};
+    if (chance_.once_in(4)) curve.loop.reset();
+    if (chance_.once_in(4)) curve.overshoot = Overshoot::Contain;
+    return curve;
+  }
+  /// A curve for a channel.
+  Operation set_curve() {
+    const auto channels = channels_of(scene_);
+    const std::string path = chance_.of(chance_.once_in(3) ? channels_ : animated_);
+    const auto found = std::ranges::find(channels, path, &NamedChannel::path);
+    return std::visit(
+        [&]<class One>(const One* one) -> Operation {
+          if constexpr (std::is_same_v<One, Switch>) {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->channel().curve().keys() : CurveKeys<1>{})};
+          } else if constexpr (std::is_same_v<One, Channel<1>>) {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<1>{})};
+          } else {
+            return edit::SetCurve{
+                path, changed(one->is_animated() ? one->curve().keys() : CurveKeys<3>{})};
+          }
+        },
+        found->channel);
+  }
   Operation addition() {
     edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "blob"}), new_name()};
     if (add.kind == "surface")
@@ -257,6 +326,7 @@ std::vector<std::string> comments_of(const std::string& text) {
 bool keeps_comments(const Operation& operation) {
   return !std::holds_alternative<edit::Set>(operation) &&
          !std::holds_alternative<edit::Reset>(operation) &&
+         !std::holds_alternative<edit::SetPart>(operation) &&
          !std::holds_alternative<edit::Freeze>(operation) &&
          !std::holds_alternative<edit::Duplicate>(operation) &&
          !std::holds_alternative<edit::Delete>(operation) &&
@@ -276,6 +346,7 @@ std::vector<double> numbers_of(const std::string& text) {
 
 /// What the scene says differently from what was set; empty: nothing.
 struct ReadBack {
+  const Scene& before;
   const Scene& scene;
 
   const NamedChannel* find(const std::string& path) {
@@ -331,6 +402,74 @@ struct ReadBack {
     if (is_switch) value = value == "1" ? "true" : "false";
     return says(value, *set.value) ? "" : value;
   }
+  /// The keys of a channel; null: it is constant. Of a switch, those of its numbers.
+  template <int D>
+  const CurveKeys<D>* keys_of(const std::string& path) {
+    const NamedChannel* const channel = find(path);
+    if (!channel || !channel->is_animated()) return nullptr;
+    if (const auto* const of = std::get_if<const Channel<D>*>(&channel->channel))
+      return &(*of)->curve().keys();
+    if constexpr (D == 1)
+      if (const auto* const of = std::get_if<const Switch*>(&channel->channel))
+        return &(*of)->channel().curve().keys();
+    return nullptr;
+  }
+  template <int D>
+  static std::string has_same_shape(const Curve<D>& now, const Curve<D>& wanted,
+                                    double factor = 1) {
+    if (now.keys().keys.size() != wanted.keys().keys.size()) return "other keys";
+    const auto is_near = [&](const Value<D>& a, const Value<D>& b, std::size_t c) {
+      const double of = factor * b[c];
+      return std::abs(a[c] - of) <= 1e-9 * std::max({1.0, std::abs(a[c]), std::abs(of)});
+    };
+    for (double frame = -12; frame <= 40; frame += 0.25) {
+      const Value<D> a = now.value(frame), b = wanted.value(frame);
+      const Value<D> left = now.left_value(frame), old_left = wanted.left_value(frame);
+      for (std::size_t c = 0; c < D; ++c)
+        if (!is_near(a, b, c) || !is_near(left, old_left, c))
+          return fmt::format("{} in place of {} at frame {}", a[c], factor * b[c], frame);
+    }
+    return "";
+  }
+  std::string operator()(const edit::SetCurve& set) {
+    return std::visit(
+        [&]<int D>(const CurveKeys<D>& keys) -> std::string {
+          const CurveKeys<D>* const now = keys_of<D>(set.channel);
+          if (!now) return "no such curve";
+          return has_same_shape(Curve<D>::make(*now).value(), Curve<D>::make(keys).value());
+        },
+        set.keys);
+  }
+  std::string operator()(const edit::Scale& scale) {
+    const std::string& path = scale.channels[0];
+    const NamedChannel* const channel = find(path);
+    const std::vector<NamedChannel> olds = channels_of(before);
+    const auto old = std::ranges::find(olds, path, &NamedChannel::path);
+    if (!channel || old == olds.end() || channel->channel.index() != old->channel.index())
+      return "another channel";
+    if (channel->is_animated() != old->is_animated()) return "constant or not";
+    const auto compare = [&]<int D>(const Channel<D>& now, const Channel<D>& was) -> std::string {
+      if (now.is_animated()) return has_same_shape(now.curve(), was.curve(), scale.factor);
+      for (std::size_t c = 0; c < D; ++c)
+        if (now.at(1)[c] != scale.factor * was.at(1)[c]) return "another constant";
+      return "";
+    };
+    return std::visit(
+        [&]<class One>(const One* one) -> std::string {
+          if constexpr (std::is_same_v<One, Switch>)
+            return "a switch";
+          else
+            return compare(*one, *std::get<const One*>(old->channel));
+        },
+        channel->channel);
+  }
+  std::string operator()(const edit::SetPart& set) {
+    for (const auto& [attribute, text] : set.attributes) {
+      const std::string value = value_at(set.surface + "." + attribute, 1);
+      if (!says(value, text)) return value;
+    }
+    return "";
+  }
   std::string operator()(const edit::Rename& rename) {
     const SceneValues values(scene);
     return values.texts().contains(rename.name + ".enabled") ? "" : "no such name";
@@ -371,6 +510,7 @@ void run(unsigned seed, int operations, Counts& counts) {
   for (int k = 0; k < operations; ++k) {
     const Operation operation = RandomOperation(document.scene(), chance).make();
     const std::string before = document.text();
+    const Scene scene_before = document.scene();
     const auto change = document.apply({operation});
     CAPTURE(k, described(operation), before);
     if (!change) {
@@ -397,7 +537,7 @@ void run(unsigned seed, int operations, Counts& counts) {
     }
     if (keeps_comments(operation) && comments_of(before) != comments_of(after))
       FAIL("comments changed");
-    ReadBack read_back{document.scene()};
+    ReadBack read_back{scene_before, document.scene()};
     if (const std::string wrong = std::visit(read_back, operation); !wrong.empty()) {
       CAPTURE(wrong);
       FAIL("what is read is not what was set");

@@ -439,6 +439,17 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
     shot.write("named.xml", "<fragment name=\"x\"/>");
     CHECK(shot.problems() == row.problems);
   }
+  // The attributes of a scene come before all definitions; $$ is a $ there too.
+  Shot early("");
+  early.write("shot.xml", "<scene start=\"1\" end=\"2\"\n fps=\"$rate\">" + define("rate", "25") +
+                              std::string(sheet_xml) + "</scene>");
+  CHECK(early.problems() == Lines{"shot.xml:2: <scene> fps=\"$rate\": the attributes of <scene> "
+                                  "come before all definitions; write the value itself"});
+  // Those of a scene that is included are not taken.
+  Shot outer(R"(<define name="rate" value="25"/><include file="inner.xml"/>)");
+  outer.write("inner.xml", "<scene fps=\"$rate\">" + std::string(sheet_xml) + "</scene>");
+  CHECK(outer.problems().empty());
+  CHECK(outer.scene().fps == 24);
   // A fragment is no scene.
   const Shot shot("");
   shot.folder().write("shot.xml", "<fragment/>");

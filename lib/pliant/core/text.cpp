@@ -1,5 +1,7 @@
 #include "pliant/core/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -24,6 +26,15 @@ std::optional<double> to_number(std::string_view text) {
   const auto [last, error] = std::from_chars(digits->data(), end, number);
   if (error != std::errc{} || last != end || !std::isfinite(number)) return std::nullopt;
   return number;
+}
+
+double with_digits(double number, int digits) {
+  if (digits <= 0 || !std::isfinite(number)) return number;
+  std::array<char, 64> text;
+  const int behind_point = std::min(digits, 17) - 1;
+  const auto written = std::to_chars(text.data(), text.data() + text.size(), number,
+                                     std::chars_format::scientific, behind_point);
+  return to_number({text.data(), written.ptr}).value_or(number);
 }
 
 std::optional<int> to_integer(std::string_view text) {

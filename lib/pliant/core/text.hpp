@@ -15,6 +15,9 @@ std::optional<double> to_number(std::string_view text);
 /// The integer that the whole text spells; nullopt for other texts and outside the range of int.
 std::optional<int> to_integer(std::string_view text);
 
+/// The number rounded to significant decimal digits; itself if `digits` is 0 or it is not finite.
+double with_digits(double number, int digits);
+
 /// The characters that separate the words of a text file.
 inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
 

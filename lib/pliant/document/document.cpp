@@ -21,6 +21,7 @@ namespace {
 Result<void> write(std::string_view text, const std::string& file) {
   auto output = AtomicFile::create(file);
   if (!output) return fail(output.error());
+  if (auto kept = output->keep_permissions(); !kept) return kept;
   if (auto written = output->write(text); !written) return written;
   return output->commit();
 }

@@ -74,6 +74,12 @@ std::vector<Element> Draft::children(Element element) const {
   return found;
 }
 
+std::optional<Element> Draft::first_child(Element element) const {
+  const Element next = element + 1;
+  const bool has_next = next < markup_.elements.size() && place(next).parent == element;
+  return has_next ? std::optional(next) : std::nullopt;
+}
+
 std::vector<Element> Draft::children(Element element, std::string_view name) const {
   std::vector<Element> found = children(element);
   std::erase_if(found, [&](Element child) { return this->name(child) != name; });
@@ -138,6 +144,36 @@ void Draft::remove(Element element) {
   replace(range, keeps_lines_ ? line_ends_of(range.of(text_)) : "");
 }
 
+void Draft::replace_element(Element element, const xml::ElementText& by) {
+  const Surroundings around = inside({.parent = place(element).parent, .after = element});
+  replace(place(element).whole(),
+          xml::text_of(by, around.layout, around.is_inline ? "" : around.margin));
+}
+
+void Draft::set_comment(Element element, std::string_view lines) {
+  const auto margin = margin_of(element);
+  const std::uint32_t begin = place(element).whole().begin;
+  const std::string line_end = keeps_lines_ ? "" : line_end_near(begin);
+  std::string comment = "<!-- ";
+  for (const char c : lines) {
+    if (c == '\n')
+      comment += margin && !keeps_lines_ ? fmt::format("{}{}     ", line_end, *margin) : " ";
+    else
+      comment += c;
+  }
+  comment += " -->";
+  const std::uint32_t end = blanks_begin(begin);
+  const std::string_view before = std::string_view(text_).substr(0, end);
+  if (before.ends_with("-->")) {
+    const auto old = static_cast<std::uint32_t>(before.rfind("<!--"));
+    // One behind another element, at the end of its line, belongs to that.
+    const std::size_t last = before.substr(0, old).find_last_not_of(space);
+    const bool is_first = last == std::string_view::npos || before[last] == '\n';
+    if (is_first || !margin) return replace({old, end}, std::move(comment));
+  }
+  insert(begin, comment + (margin && !keeps_lines_ ? line_end + *margin : " "));
+}
+
 std::uint32_t Draft::blanks_begin(std::uint32_t at) const {
   const std::size_t before = std::string_view(text_).substr(0, at).find_last_not_of(blanks);
   return before == std::string_view::npos ? 0 : static_cast<std::uint32_t>(before + 1);
@@ -168,11 +204,11 @@ std::uint32_t Draft::end_with_comments(std::uint32_t end) const {
 }
 
 std::optional<std::string> Draft::margin_of(Element element) const {
-  const std::uint32_t begin = place(element).whole().begin;
-  const std::string_view before = std::string_view(text_).substr(0, begin);
-  const std::string_view line = before.substr(before.rfind('\n') + 1);
-  if (line.find_first_not_of(space) != std::string_view::npos) return std::nullopt;
-  return std::string(line);
+  const std::string_view before = std::string_view(text_).substr(0, place(element).whole().begin);
+  const std::size_t last = before.find_last_not_of(space);
+  if (last == std::string_view::npos) return std::string(before);
+  if (before[last] != '\n') return std::nullopt;
+  return std::string(before.substr(last + 1));
 }
 
 std::string Draft::line_end_near(std::size_t at) const {
@@ -194,9 +230,8 @@ std::string Draft::indent() const {
 Draft::Surroundings Draft::inside(const Place& place) const {
   Surroundings result;
   const std::uint32_t begin = this->place(place.parent).whole().begin;
-  const std::vector<Element> all = children(place.parent);
   std::optional<Element> neighbour = place.after;
-  if (!neighbour && !all.empty()) neighbour = all.front();
+  if (!neighbour) neighbour = first_child(place.parent);
   if (neighbour) {
     const std::string before = blanks_before(*neighbour);
     result.is_inline = !has_line_end(before);
@@ -207,9 +242,11 @@ Draft::Surroundings Draft::inside(const Place& place) const {
     result.margin = margin.value_or("") + indent();
   }
   result.is_inline = result.is_inline || keeps_lines_;
-  result.layout.line_end = line_end_near(neighbour ? this->place(*neighbour).whole().begin : begin);
-  result.layout.indent = indent();
-  if (result.is_inline) {
+  if (!result.is_inline) {
+    result.layout.line_end =
+        line_end_near(neighbour ? this->place(*neighbour).whole().begin : begin);
+    result.layout.indent = indent();
+  } else {
     result.layout.line_end.clear();
     result.layout.indent.clear();
     result.layout.columns = std::numeric_limits<std::size_t>::max();
@@ -251,7 +288,7 @@ void Draft::insert(const std::vector<std::string>& elements, const Place& place)
   }
   const std::uint32_t at =
       end_with_comments(place.after ? this->place(*place.after).end : parent.tag_end);
-  if (!place.after && children(place.parent).empty()) {
+  if (!place.after && !first_child(place.parent)) {
     const auto end = static_cast<std::uint32_t>(text_.rfind("</", parent.end - 1));
     if (!has_line_end(TextRange{at, end}.of(text_))) text += closing;
   }

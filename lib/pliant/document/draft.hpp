@@ -35,6 +35,7 @@ class Draft {
   const xml::ElementPlace& place(Element element) const { return markup_.elements[element]; }
   std::string_view whole(Element element) const { return place(element).whole().of(text_); }
   std::vector<Element> children(Element element) const;
+  std::optional<Element> first_child(Element element) const;
   std::vector<Element> children(Element element, std::string_view name) const;
   /// The place of an attribute; null if the element does not have it.
   const xml::AttributePlace* attribute(Element element, std::string_view name) const;
@@ -64,6 +65,12 @@ class Draft {
 
   /// Removes an element, and its line if nothing else is on it.
   void remove(Element element);
+
+  /// Replaces an element by another, in the quotes and the indentation of the first.
+  void replace_element(Element element, const xml::ElementText& by);
+
+  /// Puts a comment of these lines before an element, in place of one that stands there.
+  void set_comment(Element element, std::string_view lines);
 
   /// Inserts text that stands for an element: behind a child of `parent` and the comments on its
   /// line, or with `after` null as the first child. It is laid out as its neighbours are.

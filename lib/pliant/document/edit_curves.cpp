@@ -2,14 +2,43 @@
 
 #include "pliant/document/edit_curves.hpp"
 
+#include <cmath>
+
+#include "pliant/core/text.hpp"
+#include "pliant/scene/curve_text.hpp"
+#include "pliant/scene/text.hpp"
 #include "pliant/timeline/edit/bake_keys.hpp"
+#include "pliant/timeline/edit/edit.hpp"
 #include "pliant/timeline/edit/simplify.hpp"
 
 namespace pliant::edit {
+namespace {
+
+/// Rounds what a curve has in the unit of its channel.
+template <int D>
+CurveKeys<D> rounded_keys(CurveKeys<D> curve, int digits) {
+  const auto round = [&](double& number) { number = with_digits(number, digits); };
+  const auto round_all = [&](Value<D>& value) { std::ranges::for_each(value, round); };
+  for (Key<D>& key : curve.keys) {
+    round_all(key.value);
+    if (key.left) round_all(*key.left);
+    if (key.next.amplitude) round(*key.next.amplitude);
+    for (Tangent<D>* const side : {&key.in, &key.out}) {
+      round_all(side->slope);
+      round_all(side->handle_value);
+    }
+  }
+  round_all(curve.before.slope);
+  round_all(curve.after.slope);
+  if (curve.loop) round_all(curve.loop->offset);
+  return curve;
+}
+
+}  // namespace
 
 Result<AnyCurve> Editor::curve_of(const Spot& spot) const {
   const auto animate = animated(spot);
-  if (animate) return read_keyed_curve(draft_, *animate, spot.format.type, spot.path);
+  if (animate) return read_keyed_curve(draft_, *animate, spot.format.type, spot.path, parse_);
   if (on_path(spot))
     return draft_.refuse(
         fmt::format("{0} follows a path; its keys are those of {0}.progress", spot.path));
@@ -51,6 +80,95 @@ Result<void> Editor::operator()(const SimplifyKeys& simplification) {
           return draft_.refuse(fmt::format("{}: {}", curve.channel, fewer.error().message));
         return write_curve(curve, fewer->keys);
       });
+}
+
+Result<void> Editor::operator()(const Scale& scale) {
+  if (!std::isfinite(scale.factor))
+    return draft_.refuse(fmt::format("the factor must be finite, not {}", scale.factor));
+  for (const std::string& channel : scale.channels) {
+    const auto spot = this->spot(channel);
+    if (!spot) return fail(spot.error());
+    if (!animated(*spot)) {
+      if (auto done = scale_constant(*spot, scale); !done) return done;
+      continue;
+    }
+    auto done = for_each_curve({channel}, [&]<int D>(const KeyedCurve<D>& curve) -> Result<void> {
+      if (curve.kind == xml::ValueKind::Boolean)
+        return draft_.refuse(fmt::format("{}: a boolean channel has no multiples", channel));
+      const auto multiple =
+          pliant::scale(curve.curve, Scaling<D>{.value_factor = Scaling<D>::filled(scale.factor)});
+      if (!multiple)
+        return draft_.refuse(
+            fmt::format("{}: times {}: {}", channel, scale.factor, multiple.error().message));
+      return write_curve(curve, rounded_keys(multiple->keys(), scale.digits));
+    });
+    if (!done) return done;
+  }
+  return {};
+}
+
+/// Multiplies the numbers of a constant channel, a component of it perhaps.
+Result<void> Editor::scale_constant(const Spot& spot, const Scale& scale) {
+  auto value = constant(spot);
+  if (!value) return fail(value.error());
+  std::vector<std::string_view> words = xml::words_of(*value);
+  if (spot.component && words.size() > *spot.component) words = {words[*spot.component]};
+  std::vector<double> numbers;
+  for (const std::string_view word : words) {
+    const auto number = xml::parse_number(word);
+    if (!number || !spot.format.is_keyable)
+      return draft_.refuse(fmt::format("{} is {}, of which there are no multiples", spot.path,
+                                       xml::in_quotes(*value)));
+    numbers.push_back(with_digits(scale.factor * *number, scale.digits));
+  }
+  std::string result = changed_words(*value, to_text(numbers));
+  if (spot.component) {
+    auto whole = with_component(spot, to_text(numbers));
+    if (!whole) return fail(whole.error());
+    result = *std::move(whole);
+  }
+  if (result == *value) return {};
+  return set_constant(spot, result);
+}
+
+template <int D>
+Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
+  using xml::ValueKind;
+  const std::string& type = spot.format.type;
+  const bool is_boolean = type == "boolean";
+  if (!spot.format.is_keyable || spot.component)
+    return draft_.refuse(fmt::format("{} cannot be animated", spot.path));
+  if (type != "number or vector" && (type == "vector") != (D == 3))
+    return draft_.refuse(fmt::format("{} has {}, so its keys cannot have {}", spot.path,
+                                     D == 3 ? "single numbers" : "vectors of three numbers",
+                                     D == 3 ? "vectors" : "single numbers"));
+  const auto curve = Curve<D>::make(keys);
+  if (!curve) return draft_.refuse(fmt::format("{}: {}", spot.path, curve.error().message));
+  if (on_path(spot)) return curve_of(spot).map([](const auto&) {});
+  if (const auto old = animated(spot)) {
+    const auto present = curve_of(spot);
+    const auto* const same = present ? std::get_if<KeyedCurve<D>>(&*present) : nullptr;
+    if (same) {
+      replaces_computed_ = true;
+      auto done = write_curve(*same, keys);
+      replaces_computed_ = false;
+      return done;
+    }
+    // What the text has cannot become these keys, such as numbers vectors.
+    draft_.remove(*old);
+    if (auto done = draft_.commit(); !done) return done;
+    return set_curve(*this->spot(spot.path), keys);
+  }
+  return insert_animate(spot, xml::curve_element(spot.attribute(), keys,
+                                                 D == 3       ? ValueKind::Vector
+                                                 : is_boolean ? ValueKind::Boolean
+                                                              : ValueKind::Number));
+}
+
+Result<void> Editor::operator()(const SetCurve& set) {
+  const auto spot = this->spot(set.channel);
+  if (!spot) return fail(spot.error());
+  return std::visit([&](const auto& keys) { return set_curve(*spot, keys); }, set.keys);
 }
 
 }  // namespace pliant::edit

@@ -76,10 +76,20 @@ Result<std::string> Editor::with_component(const Spot& spot, const std::string& 
 Result<void> Editor::set_constant(const Spot& spot, const std::string& value) {
   if (const auto curve = animated(spot)) draft_.remove(*curve);
   if (const auto path = on_path(spot)) draft_.remove(*path);
-  if (spot.element)
-    draft_.set(*spot.element, spot.attribute(), value);
-  else
+  if (spot.element) {
+    std::string text = value;
+    // Blanks around a single number stay.
+    const std::string old = draft_.value(*spot.element, spot.attribute()).value_or("");
+    const std::vector<std::string_view> words = xml::words_of(old);
+    if (spot.format.is_keyable && words.size() == 1 && xml::words_of(value).size() == 1) {
+      const std::size_t at = words.front().data() - old.data();
+      text = old.substr(0, at) + std::string(xml::trimmed(value)) +
+             old.substr(at + words.front().size());
+    }
+    draft_.set(*spot.element, spot.attribute(), text);
+  } else {
     insert_part(spot, {.name = spot.part, .attributes = {{std::string(spot.attribute()), value}}});
+  }
   parts_.insert(spot.path);
   return draft_.commit();
 }
@@ -123,10 +133,14 @@ Result<void> Editor::operator()(const Animate& animate) {
 Result<void> Editor::insert_animate(const Spot& spot, double frame, const std::string& value) {
   if (!spot.format.is_keyable || spot.component)
     return draft_.refuse(fmt::format("{} cannot be animated", spot.path));
-  const xml::ElementText animate{
-      .name = "animate",
-      .attributes = {{"attribute", std::string(spot.attribute())}},
-      .children = {{.name = "key", .attributes = {{"frame", to_text(frame)}, {"value", value}}}}};
+  return insert_animate(
+      spot,
+      {.name = "animate",
+       .attributes = {{"attribute", std::string(spot.attribute())}},
+       .children = {{.name = "key", .attributes = {{"frame", to_text(frame)}, {"value", value}}}}});
+}
+
+Result<void> Editor::insert_animate(const Spot& spot, const xml::ElementText& animate) {
   parts_.insert(spot.path);
   if (!spot.element) {
     insert_part(spot, {.name = spot.part, .children = {animate}});
@@ -153,6 +167,49 @@ Result<void> Editor::operator()(const Freeze& freeze) {
     if (auto done = set_constant(*spot, *value); !done) return done;
   }
   return {};
+}
+
+Result<void> Editor::operator()(const SetPart& set) {
+  const auto object = this->object(set.surface);
+  if (!object) return fail(object.error());
+  if (draft_.name(*object) != "surface")
+    return draft_.refuse(
+        fmt::format("{} is no surface, so it has no parts", xml::in_quotes(set.surface)));
+  constexpr std::string_view allowed[] = {"transform", "material", "tangents", "solver"};
+  if (std::ranges::find(allowed, set.part) == std::end(allowed))
+    return draft_.refuse(fmt::format("{} is no part that can be set; allowed: {}",
+                                     xml::in_quotes(set.part), fmt::join(allowed, ", ")));
+  if (set.comment.find("--") != std::string::npos || set.comment.ends_with('-'))
+    return draft_.refuse("a comment must not contain --, or end with -");
+  const auto name_part = [&](std::string_view attribute) {
+    parts_.insert(fmt::format("{}.{}", set.surface, attribute));
+  };
+  for (const auto& [attribute, value] : set.attributes) name_part(attribute);
+  const xml::ElementText text{.name = set.part, .attributes = set.attributes};
+  // Curves of the part may stand in the surface itself.
+  for (const Element child : draft_.children(*object, "animate")) {
+    const std::string of(xml::trimmed(draft_.value(child, "attribute").value_or("")));
+    if (!find_attribute(set.part, of)) continue;
+    name_part(of);
+    draft_.remove(child);
+  }
+  const std::vector<Element> present = draft_.children(*object, set.part);
+  if (present.empty()) {
+    insert_part({.path = {}, .object = *object, .part = set.part}, text);
+    if (auto done = draft_.commit(); !done || set.comment.empty()) return done;
+  } else {
+    for (const xml::AttributePlace& one : draft_.attributes(present.front()))
+      name_part(one.name.of(draft_.text()));
+    for (const Element child : draft_.children(present.front())) {
+      name_part(draft_.name(child));  // such as a map
+      name_part(xml::trimmed(draft_.value(child, "attribute").value_or("")));
+    }
+    draft_.replace_element(present.front(), text);
+    if (auto done = draft_.commit(); !done || set.comment.empty()) return done;
+  }
+  // The surface has its number still: only what stands in it has changed.
+  draft_.set_comment(draft_.children(*object, set.part).front(), set.comment);
+  return draft_.commit();
 }
 
 /// The text of an animated channel's value at a frame.

@@ -27,7 +27,7 @@ std::string hint_of(std::string_view word, const std::vector<std::string>& known
 
 }  // namespace
 
-Editor::Editor(Draft& draft, const Scene& scene, Parse parse)
+Editor::Editor(Draft& draft, const Scene& scene, ParseScene parse)
     : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(scene_format()) {}
 
 Result<void> Editor::apply(const Operation& operation) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -32,10 +31,8 @@ struct Spot {
 /// draft must not be used.
 class Editor {
  public:
-  using Parse = std::function<Result<Scene>(const std::string& text)>;
-
   /// `scene`: that of the draft's text before the first operation. `parse`: makes that of a text.
-  Editor(Draft& draft, const Scene& scene, Parse parse);
+  Editor(Draft& draft, const Scene& scene, ParseScene parse);
 
   Result<void> apply(const Operation& operation);
 
@@ -48,6 +45,7 @@ class Editor {
   Result<void> operator()(const Reset& reset);
   Result<void> operator()(const Animate& animate);
   Result<void> operator()(const Freeze& freeze);
+  Result<void> operator()(const SetPart& set);
 
   // Keys: edit_keys.cpp, and those that make curves anew: edit_curves.cpp.
   Result<void> operator()(const SetKey& set);
@@ -59,6 +57,8 @@ class Editor {
   Result<void> operator()(const SetExtrapolation& set);
   Result<void> operator()(const BakeKeys& bake);
   Result<void> operator()(const SimplifyKeys& simplification);
+  Result<void> operator()(const Scale& scale);
+  Result<void> operator()(const SetCurve& set);
 
   // Objects: edit_objects.cpp and edit_groups.cpp.
   Result<void> operator()(const Add& addition);
@@ -93,6 +93,7 @@ class Editor {
   Result<void> set_constant(const Spot& spot, const std::string& value);
   void insert_part(const Spot& spot, const xml::ElementText& part);
   Result<void> insert_animate(const Spot& spot, double frame, const std::string& value);
+  Result<void> insert_animate(const Spot& spot, const xml::ElementText& animate);
   Result<std::string> with_component(const Spot& spot, const std::string& value) const;
   Result<std::string> value_at(const Spot& spot, double frame) const;
 
@@ -111,6 +112,12 @@ class Editor {
   Result<void> write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
                            const std::vector<KeyEntry<D>>& keys);
   template <int D>
+  void write_animate(KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                     const std::vector<KeyEntry<D>>& keys);
+  template <int D>
+  Result<void> write_loop(const KeyedCurve<D>& curve, const std::optional<Loop<D>>& wanted);
+  bool is_inherited(Element key, Side side) const;
+  template <int D>
   Result<void> write_keys(const KeyedCurve<D>& curve, const std::vector<KeyEntry<D>>& wanted);
   template <int D>
   void write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEntry<D>& wanted);
@@ -120,6 +127,11 @@ class Editor {
   Result<void> set_key(const KeyedCurve<D>& curve, const SetKey& set);
   void set_side(Element key, Side side, std::string_view name, const std::string& value);
   void set_or_remove(Element element, std::string_view name, const std::string& value);
+  void rewrite(Element element, std::string_view name, const std::string& value);
+  Result<void> commit_rewritten(const std::string& channel);
+  Result<void> scale_constant(const Spot& spot, const Scale& scale);
+  template <int D>
+  Result<void> set_curve(const Spot& spot, const CurveKeys<D>& keys);
 
   // Objects.
   Result<void> forget_target(const std::string& name, const std::vector<std::string>& deleted);
@@ -132,9 +144,11 @@ class Editor {
 
   Draft& draft_;
   const Scene& scene_;
-  Parse parse_;
+  ParseScene parse_;
   std::vector<ElementFormat> formats_;
   std::set<std::string> parts_;
+  bool replaces_computed_ = false;  // whether numbers may take the place of values with `$`
+  std::string computed_;            // an attribute with `$` that had to be rewritten; empty: none
 };
 
 }  // namespace pliant::edit

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/scene/channels.hpp"
 #include "pliant/scene/element.hpp"
 #include "pliant/scene/findings.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -13,6 +14,18 @@
 
 namespace pliant::edit {
 namespace {
+
+/// The curve of a channel with the defaults of its <animate>, which `element` is.
+template <int D>
+AnyCurve keyed(const Draft& draft, const tinyxml2::XMLElement& element, KeyedCurve<D> result) {
+  result.elements = draft.children(result.animate, "key");
+  if (result.kind == xml::ValueKind::Boolean)
+    result.defaults.interpolation.kind = Interpolation::Kind::Step;
+  xml::Table table = xml::table_of(result.defaults, result.axis, result.kind);
+  xml::Findings findings(draft.file());
+  xml::read_attributes(element, table, findings);
+  return result;
+}
 
 template <int D>
 Result<AnyCurve> read_curve_of(const Draft& draft, Element animate, xml::ValueKind kind,
@@ -32,19 +45,62 @@ Result<AnyCurve> read_curve_of(const Draft& draft, Element animate, xml::ValueKi
     for (Error& other : error.others) other.line += first_line - 1;
     return fail(std::move(error));
   }
-  KeyedCurve<D> result{.channel = channel,
-                       .animate = animate,
-                       .elements = draft.children(animate, "key"),
-                       .axis = axis,
-                       .kind = kind,
-                       .defaults = {},
-                       .curve = *std::move(curve)};
-  if (kind == xml::ValueKind::Boolean)
-    result.defaults.interpolation.kind = Interpolation::Kind::Step;
-  xml::Table table = xml::table_of(result.defaults, axis, kind);
-  xml::Findings again(draft.file());
-  xml::read_attributes(element, table, again);
-  return AnyCurve(std::move(result));
+  return keyed<D>(draft, element,
+                  {.channel = channel,
+                   .animate = animate,
+                   .elements = {},
+                   .axis = axis,
+                   .kind = kind,
+                   .defaults = {},
+                   .curve = *std::move(curve)});
+}
+
+/// Whether the value of an attribute is computed; `$$` is not, but is taken for it.
+bool is_computed(const Draft& draft, const xml::AttributePlace& attribute) {
+  return xml::decoded(attribute.value.of(draft.text())).find('$') != std::string::npos;
+}
+
+bool is_computed(const Draft& draft, Element element) {
+  return std::ranges::any_of(draft.attributes(element),
+                             [&](const auto& one) { return is_computed(draft, one); });
+}
+
+/// The curve of a channel that has keys with `$`.
+Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
+                                     const std::string& channel, const ParseScene& parse) {
+  tinyxml2::XMLDocument document;
+  const std::string_view text = draft.whole(animate);
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    return draft.refuse(fmt::format("{}: {}", channel, document.ErrorName()));
+  const auto scene = parse(draft.text());
+  if (!scene) return fail(scene.error());
+  const std::vector<NamedChannel> channels = channels_of(*scene);
+  const auto found = std::ranges::find(channels, channel, &NamedChannel::path);
+  if (is_computed(draft, animate) || found == channels.end() || !found->is_animated())
+    return draft.refuse(
+        fmt::format("{}: its <{}> has a value with $, which is not edited; change the text, or set "
+                    "a number first",
+                    channel, draft.name(animate)));
+  const auto with = [&]<int D>(xml::ValueKind kind, const Curve<D>& curve) {
+    return keyed<D>(draft, *document.RootElement(),
+                    {.channel = channel,
+                     .animate = animate,
+                     .elements = {},
+                     .axis = xml::KeyAxis::Frame,
+                     .kind = kind,
+                     .defaults = {},
+                     .curve = curve});
+  };
+  using xml::ValueKind;
+  return std::visit(
+      [&]<class One>(const One* one) {
+        if constexpr (std::is_same_v<One, Switch>)
+          return with(ValueKind::Boolean, one->channel().curve());
+        else
+          return with(std::is_same_v<One, Channel<1>> ? ValueKind::Number : ValueKind::Vector,
+                      one->curve());
+      },
+      found->channel);
 }
 
 /// Whether a key has three numbers as its value; see the reader of a tangent's channel.
@@ -58,8 +114,12 @@ bool has_wide_values(const Draft& draft, Element animate) {
 }  // namespace
 
 Result<AnyCurve> read_keyed_curve(const Draft& draft, Element animate, std::string_view type,
-                                  const std::string& channel) {
+                                  const std::string& channel, const ParseScene& parse) {
   using xml::ValueKind;
+  const std::vector<Element> keys = draft.children(animate);
+  if (is_computed(draft, animate) ||
+      std::ranges::any_of(keys, [&](Element key) { return is_computed(draft, key); }))
+    return read_computed_curve(draft, animate, channel, parse);
   if (type == "vector") return read_curve_of<3>(draft, animate, ValueKind::Vector, channel);
   if (type == "boolean") return read_curve_of<1>(draft, animate, ValueKind::Boolean, channel);
   if (type == "number or vector" && has_wide_values(draft, animate))

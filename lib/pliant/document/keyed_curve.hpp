@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -7,6 +8,7 @@
 
 #include "pliant/document/draft.hpp"
 #include "pliant/scene/key_text.hpp"
+#include "pliant/scene/scene.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant::edit {
@@ -34,9 +36,16 @@ struct KeyEntry {
   std::optional<std::size_t> origin = {};  ///< the key that it was; null: a new one
 };
 
-/// Reads the curve of an <animate> or <falloff> whose values have the type of an attribute.
-/// Errors: those of the reader, with their lines.
+/// The text `now` with those words of `old` that say the same, and its blanks if it has as many.
+std::string changed_words(std::string_view old, std::string_view now);
+
+/// Makes the scene of a text.
+using ParseScene = std::function<Result<Scene>(const std::string& text)>;
+
+/// Reads the curve of an <animate> or <falloff> whose values have the type of an attribute. Numbers
+/// of keys with a `$` are those of the scene that `parse` makes of the draft.
+/// Errors: those of the reader, with their lines; a `$` in the <animate> itself or in a <falloff>.
 Result<AnyCurve> read_keyed_curve(const Draft& draft, Element animate, std::string_view type,
-                                  const std::string& channel);
+                                  const std::string& channel, const ParseScene& parse);
 
 }  // namespace pliant::edit

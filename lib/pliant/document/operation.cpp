@@ -4,11 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/curve_text.hpp"
+
 namespace pliant {
 
 namespace edit {
 
 std::string to_text(double number) { return fmt::format("{}", number); }
+
+std::string literal_text(std::string_view text) { return xml::with_doubled_dollars(text); }
 
 std::string to_text(const std::vector<double>& numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
@@ -71,6 +75,15 @@ struct Describe {
   }
   std::string operator()(const SimplifyKeys& of) const {
     return fmt::format("simplify keys of {}", channels(of.channels));
+  }
+  std::string operator()(const Scale& of) const {
+    return fmt::format("scale {}", channels(of.channels));
+  }
+  std::string operator()(const SetCurve& of) const {
+    return fmt::format("set curve of {}", of.channel);
+  }
+  std::string operator()(const SetPart& of) const {
+    return fmt::format("set {} of {}", of.part, of.surface);
   }
   std::string operator()(const Add& of) const { return fmt::format("add {}", of.name); }
   std::string operator()(const Duplicate& of) const {

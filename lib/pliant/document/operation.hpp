@@ -2,10 +2,13 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "pliant/timeline/key.hpp"
 
 namespace pliant {
 
@@ -19,6 +22,8 @@ namespace edit {
 /// The fewest digits that are read as the same double; several numbers are separated by blanks.
 std::string to_text(double number);
 std::string to_text(const std::vector<double>& numbers);
+/// A text in which no `$` stands for a definition.
+std::string literal_text(std::string_view text);
 template <class Boolean>
 requires std::is_same_v<Boolean, bool> std::string to_text(Boolean value) {
   return value ? "true" : "false";
@@ -48,6 +53,16 @@ struct Animate {
 struct Freeze {
   std::vector<std::string> channels;
   double frame = 0;
+};
+
+/// A part of a surface with exactly these attributes, in place of what it has: a whole <material>,
+/// for example. `comment`, if it is not empty, stands before it, one line of the file for each of
+/// its own, in place of the comment that stands there.
+struct SetPart {
+  std::string surface;
+  std::string part;  ///< `transform`, `material`, `tangents` or `solver`
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::string comment = {};
 };
 
 // Keys. A key is named by its frame; there must be one at exactly that frame.
@@ -138,6 +153,21 @@ struct SimplifyKeys {
   std::optional<double> last = {};
 };
 
+/// The values of channels times a factor: of keys with their slopes and handles, and all else that
+/// the curve has in the unit of its channel, or the constant.
+struct Scale {
+  std::vector<std::string> channels;
+  double factor = 1;
+  int digits = 0;  ///< significant ones to which each number is rounded; 0: all
+};
+
+/// A whole curve in place of what the channel has. Keys at the frames of old ones are written in
+/// their place, as far as they differ.
+struct SetCurve {
+  std::string channel;
+  std::variant<CurveKeys<1>, CurveKeys<3>> keys;
+};
+
 // Surfaces, forces and groups.
 
 /// An attribute and its value.
@@ -194,11 +224,12 @@ struct Ungroup {
 }  // namespace edit
 
 /// One change of a scene file.
-using Operation = std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
-                               edit::DeleteKeys, edit::MoveKeys, edit::SetTangent, edit::SetHandle,
-                               edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys,
-                               edit::SimplifyKeys, edit::Add, edit::Duplicate, edit::Delete,
-                               edit::Rename, edit::Target, edit::Group, edit::Ungroup>;
+using Operation =
+    std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
+                 edit::DeleteKeys, edit::MoveKeys, edit::SetTangent, edit::SetHandle,
+                 edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys, edit::SimplifyKeys,
+                 edit::Scale, edit::SetCurve, edit::SetPart, edit::Add, edit::Duplicate,
+                 edit::Delete, edit::Rename, edit::Target, edit::Group, edit::Ungroup>;
 
 /// What an operation does, for people: `set poke.magnitude`, `move 3 keys of poke.center`.
 std::string described(const Operation& operation);

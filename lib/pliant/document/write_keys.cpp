@@ -6,6 +6,9 @@
 #include <initializer_list>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "pliant/core/text.hpp"
 #include "pliant/document/editor.hpp"
 #include "pliant/scene/curve_text.hpp"
 #include "pliant/scene/text.hpp"
@@ -28,22 +31,11 @@ bool has_same_bits(const std::optional<Value<D>>& a, const std::optional<Value<D
   return has_same_bits<D>(*a, *b);
 }
 
-/// The text of a value, in which numbers that stay are written as they were.
-template <int D>
-std::string changed_value(std::string_view old, const Value<D>& from, const Value<D>& to,
-                          xml::ValueKind kind) {
-  const std::vector<std::string_view> words = xml::words_of(old);
-  if (words.size() != D || kind == xml::ValueKind::Boolean) return xml::value_text<D>(to, kind);
-  std::string text;
-  std::size_t copied = 0;
-  for (std::size_t c = 0; c < D; ++c) {
-    if (has_same_bits(from[c], to[c])) continue;
-    const std::size_t at = words[c].data() - old.data();
-    text.append(old, copied, at - copied);
-    text += to_text(to[c]);
-    copied = at + words[c].size();
-  }
-  return text.append(old, copied);
+/// Whether two words say the same; a number may be written in several ways.
+bool is_same_word(std::string_view a, std::string_view b) {
+  if (a == b) return true;
+  const auto one = to_number(a), other = to_number(b);
+  return one && other && has_same_bits(*one, *other);
 }
 
 /// The text of a row of the table of something.
@@ -87,11 +79,52 @@ std::vector<bool> staying(const KeyedCurve<D>& curve, const std::vector<KeyEntry
 
 }  // namespace
 
+std::string changed_words(std::string_view old, std::string_view now) {
+  const std::vector<std::string_view> words = xml::words_of(old), wanted = xml::words_of(now);
+  if (words.size() != wanted.size()) return std::string(now);
+  std::string text;
+  std::size_t copied = 0;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (is_same_word(words[k], wanted[k])) continue;
+    const std::size_t at = words[k].data() - old.data();
+    text.append(old, copied, at - copied);
+    text += wanted[k];
+    copied = at + words[k].size();
+  }
+  return text.append(old, copied);
+}
+
 void Editor::set_or_remove(Element element, std::string_view name, const std::string& value) {
   if (value.empty())
     draft_.remove_attribute(element, name);
   else
     draft_.set(element, name, value);
+}
+
+/// Changes an attribute of a curve, or removes it if there is no value.
+void Editor::rewrite(Element element, std::string_view name, const std::string& value) {
+  const auto old = draft_.value(element, name);
+  if (!old && value.empty()) return;
+  if (old && !replaces_computed_ && computed_.empty() && old->find('$') != std::string::npos)
+    computed_ = fmt::format("line {}: <{}> {}=\"{}\"", draft_.line_of(element),
+                            draft_.name(element), name, *old);
+  set_or_remove(element, name, changed_words(old.value_or(""), value));
+}
+
+/// Makes the changes, unless one is of a value with `$`.
+Result<void> Editor::commit_rewritten(const std::string& channel) {
+  if (computed_.empty()) return draft_.commit();
+  return draft_.refuse(
+      fmt::format("{}: the value with $ in {} would have to change; change what it stands for, or "
+                  "set a number in its place first",
+                  channel, computed_));
+}
+
+/// Whether one side of a key has the tangent of its <animate>.
+bool Editor::is_inherited(Element key, Side side) const {
+  const auto has = [&](std::string_view name) { return draft_.attribute(key, name) != nullptr; };
+  if (has("tangent")) return false;
+  return side == Side::In ? !has("in") && !has("inHandle") : !has("out") && !has("outHandle");
 }
 
 /// Changes the attributes of a key that differ.
@@ -100,26 +133,19 @@ void Editor::write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEnt
   const Key<D>& old = curve.keys()[key];
   const Key<D>& now = wanted.key;
   const Element element = curve.elements[key];
-  const auto value = [&](std::string_view name) {
-    return draft_.value(element, name).value_or("");
-  };
   const std::string_view place = xml::place_name(curve.axis);
-  if (!has_same_bits(old.frame, now.frame)) draft_.set(element, place, to_text(now.frame));
+  if (!has_same_bits(old.frame, now.frame)) rewrite(element, place, to_text(now.frame));
   if (!has_same_bits<D>(old.value, now.value))
-    draft_.set(element, "value",
-               changed_value<D>(value("value"), old.value, now.value, curve.kind));
+    rewrite(element, "value", xml::value_text<D>(now.value, curve.kind));
   if (!has_same_bits<D>(old.left, now.left))
-    set_or_remove(element, "left",
-                  !now.left   ? ""
-                  : !old.left ? xml::value_text<D>(*now.left, curve.kind)
-                              : changed_value<D>(value("left"), *old.left, *now.left, curve.kind));
+    rewrite(element, "left", now.left ? xml::value_text<D>(*now.left, curve.kind) : "");
 
   const xml::KeyText<D> was = xml::text_of_key(old, curve.defaults);
   xml::KeyText<D> is = xml::text_of_key(now, curve.defaults);
   if (!has_same_segment(was, is)) {
     const xml::Table table = xml::table_of(is, curve.axis, curve.kind);
     for (const char* const name : {"interpolation", "amplitude", "period", "back", "control"})
-      set_or_remove(element, name, text_in(table, name));
+      rewrite(element, name, text_in(table, name));
   }
   write_sides(curve, key, now);
 }
@@ -127,8 +153,14 @@ void Editor::write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEnt
 /// Changes the tangents of a key that differ.
 template <int D>
 void Editor::write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<D>& wanted) {
-  const Key<D>& old = curve.keys()[key];
+  Key<D> old = curve.keys()[key];
   const Element element = curve.elements[key];
+  // The slope of the <animate> may have another value already.
+  const Tangent<D>& standard = curve.defaults.tangent;
+  if (standard.kind == Tangent<D>::Kind::Slope) {
+    if (is_inherited(element, Side::In)) old.in.slope = standard.slope;
+    if (is_inherited(element, Side::Out)) old.out.slope = standard.slope;
+  }
   const bool has_in = xml::plain(old.in) != xml::plain(wanted.in);
   const bool has_out = xml::plain(old.out) != xml::plain(wanted.out);
   if (!has_in && !has_out) return;
@@ -140,7 +172,7 @@ void Editor::write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<
   const xml::Table table = xml::table_of(text, curve.axis, curve.kind);
   const bool is_shared = draft_.attribute(element, "tangent") != nullptr || text.tangent;
   const auto write = [&](std::initializer_list<const char*> names) {
-    for (const char* const name : names) set_or_remove(element, name, text_in(table, name));
+    for (const char* const name : names) rewrite(element, name, text_in(table, name));
   };
   if (is_shared) write({"tangent"});
   if (is_shared || has_in) write({"in"});
@@ -155,7 +187,7 @@ Result<void> Editor::write_keys(const KeyedCurve<D>& curve,
   for (const KeyEntry<D>& entry : wanted)
     if (entry.origin) write_key(curve, *entry.origin, entry);
   // After changes of attributes, elements have the same numbers.
-  if (auto done = draft_.commit(); !done) return done;
+  if (auto done = commit_rewritten(curve.channel); !done) return done;
 
   const std::vector<bool> stays = staying(curve, wanted);
   std::vector<bool> is_kept(curve.elements.size());
@@ -183,10 +215,10 @@ Result<void> Editor::write_keys(const KeyedCurve<D>& curve,
   return draft_.commit();
 }
 
-/// Writes what a curve has besides keys, then the keys.
+/// Writes the attributes of the <animate>. `curve` gets its new default tangent.
 template <int D>
-Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
-                                 const std::vector<KeyEntry<D>>& keys) {
+void Editor::write_animate(KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                           const std::vector<KeyEntry<D>>& keys) {
   const CurveKeys<D>& before = curve.curve.keys();
   xml::AnimateText<D> text{
       .before = wanted.before, .after = wanted.after, .overshoot = wanted.overshoot};
@@ -195,22 +227,60 @@ Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>&
   const xml::Table standards = xml::table_of(standard, curve.axis, curve.kind);
   const auto write = [&](const char* name, bool is_same) {
     const std::string value = text_in(table, name);
-    if (!is_same)
-      set_or_remove(curve.animate, name, value == text_in(standards, name) ? "" : value);
+    if (!is_same) rewrite(curve.animate, name, value == text_in(standards, name) ? "" : value);
   };
   write("before", before.before == wanted.before);
   write("after", before.after == wanted.after);
   write("overshoot", before.overshoot == wanted.overshoot);
-  for (const Element loop : draft_.children(curve.animate, "loop")) {
-    if (!wanted.loop) {
-      draft_.remove(loop);
-    } else if (wanted.loop->from != before.loop->from) {
-      draft_.set(loop, "from", to_text(wanted.loop->from));
+
+  // A slope that all keys without one get, if they have the same again.
+  Tangent<D>& slope = curve.defaults.tangent;
+  if (slope.kind != Tangent<D>::Kind::Slope) return;
+  std::optional<Value<D>> common;
+  for (const KeyEntry<D>& entry : keys) {
+    if (!entry.origin) continue;
+    for (const Side side : {Side::In, Side::Out}) {
+      if (!is_inherited(curve.elements[*entry.origin], side)) continue;
+      const Tangent<D>& now = side == Side::In ? entry.key.in : entry.key.out;
+      if (now.kind != slope.kind || (common && *common != now.slope)) return;
+      common = now.slope;
     }
   }
-  if (auto done = draft_.commit(); !done) return done;
-  // Without the loop, elements have other numbers.
+  if (!common || *common == slope.slope) return;
+  slope.slope = *common;
+  rewrite(curve.animate, "tangent", xml::value_text<D>(*common, curve.kind));
+}
+
+/// Writes the <loop>.
+template <int D>
+Result<void> Editor::write_loop(const KeyedCurve<D>& curve, const std::optional<Loop<D>>& wanted) {
+  const std::optional<Loop<D>>& before = curve.curve.keys().loop;
+  if (wanted == before) return {};
+  const std::vector<Element> present = draft_.children(curve.animate, "loop");
+  if (!wanted) {
+    for (const Element loop : present) draft_.remove(loop);
+  } else if (!before || present.empty()) {
+    draft_.insert(xml::loop_element(*wanted, curve.kind),
+                  {.parent = curve.animate, .after = draft_.children(curve.animate).back()});
+  } else {
+    Loop<D> old = *before, now = *wanted;
+    const xml::Table olds = xml::table_of(old, curve.kind);
+    for (const xml::Slot& row : xml::table_of(now, curve.kind))
+      if (row.text != text_in(olds, row.attribute.name))
+        rewrite(present.front(), row.attribute.name, row.text);
+  }
+  return commit_rewritten(curve.channel);
+}
+
+/// Writes what a curve has besides keys, then the keys.
+template <int D>
+Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                                 const std::vector<KeyEntry<D>>& keys) {
   KeyedCurve<D> present = curve;
+  write_animate(present, wanted, keys);
+  if (auto done = commit_rewritten(curve.channel); !done) return done;
+  if (auto done = write_loop(curve, wanted.loop); !done) return done;
+  // With or without the loop, elements have other numbers.
   present.elements = draft_.children(curve.animate, "key");
   return write_keys(present, keys);
 }

@@ -17,7 +17,7 @@ double rounded(double number, double range) {
   const int own = place(std::abs(number));
   const int finest = range > 0 ? std::min(own, place(range)) : own;
   const int digits = std::clamp(3 + own - finest, 3, 16);
-  return to_number(fmt::format("{:.{}e}", number, digits)).value_or(number);
+  return with_digits(number, digits + 1);
 }
 
 Result<Channel<1>> scaled(const Channel<1>& channel, double factor) {

@@ -19,14 +19,13 @@ void add_side(const Tangent<D>& side, std::optional<double>& length,
     length = side.length;
 }
 
-/// The text in which no `$` stands for a definition.
+}  // namespace
+
 std::string with_doubled_dollars(std::string_view text) {
   std::string doubled;
   for (const char c : text) doubled.append(c == '$' ? 2 : 1, c);
   return doubled;
 }
-
-}  // namespace
 
 void add_attributes(ElementText& element, const Table& table, const Table& standard) {
   for (std::size_t k = 0; k < table.size(); ++k) {

@@ -10,6 +10,9 @@
 
 namespace pliant::xml {
 
+/// The text in which no `$` stands for a definition.
+std::string with_doubled_dollars(std::string_view text);
+
 /// Adds the attributes that differ from `standard`, a table of the same rows with the default
 /// values, and those that are required.
 void add_attributes(ElementText& element, const Table& table, const Table& standard);

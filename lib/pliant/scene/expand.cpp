@@ -1,8 +1,6 @@
 #include "pliant/scene/expand.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
@@ -14,9 +12,9 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/confined.hpp"
 #include "pliant/scene/definitions.hpp"
-#include "pliant/scene/format.hpp"
+#include "pliant/scene/element_text.hpp"
+#include "pliant/scene/expansion_rules.hpp"
 #include "pliant/scene/nearest.hpp"
-#include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::xml {
@@ -24,146 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view include_name = Description<IncludeText>::element;
-constexpr std::string_view define_name = Description<DefineText>::element;
-constexpr std::string_view fragment_name = "fragment";
-constexpr std::string_view scene_name = Description<Scene>::element;
-
 bool has_definition(std::string_view raw) {
   return raw.find('$') != std::string_view::npos || raw.find("&#") != std::string_view::npos;
 }
-
-/// A character in UTF-8.
-void append_character(std::uint32_t code, std::string& text) {
-  const auto byte = [&](std::uint32_t bits) { text += static_cast<char>(bits); };
-  const auto following = [&](int shift) { byte(0x80U | (code >> shift & 0x3FU)); };
-  if (code < 0x80) return byte(code);
-  if (code < 0x800) {
-    byte(0xC0U | code >> 6U);
-  } else if (code < 0x10000) {
-    byte(0xE0U | code >> 12U);
-    following(6);
-  } else {
-    byte(0xF0U | code >> 18U);
-    following(12);
-    following(6);
-  }
-  following(0);
-}
-
-/// The value of an attribute as an XML reader passes it on. Requires: `scan_markup` accepts it.
-std::string decoded(std::string_view raw) {
-  constexpr std::pair<std::string_view, char> entities[] = {
-      {"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}};
-  std::string text;
-  for (std::size_t at = 0; at < raw.size(); ++at) {
-    if (raw[at] == '\r') {  // XML has one kind of line end
-      text += '\n';
-      if (raw.substr(at + 1, 1) == "\n") ++at;
-      continue;
-    }
-    if (raw[at] != '&') {
-      text += raw[at];
-      continue;
-    }
-    const std::string_view name = raw.substr(at + 1, raw.find(';', at) - at - 1);
-    if (name.starts_with('#')) {
-      const bool is_hex = name.starts_with("#x");
-      std::uint32_t code = 0;
-      std::from_chars(name.data() + (is_hex ? 2 : 1), name.data() + name.size(), code,
-                      is_hex ? 16 : 10);
-      append_character(code, text);
-    } else {
-      for (const auto& [entity, character] : entities)
-        if (name == entity) text += character;
-    }
-    at += name.size() + 1;
-  }
-  return text;
-}
-
-/// The value as it may stand between either kind of quotes, on one line.
-std::string encoded(std::string_view text) {
-  std::string raw;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        raw += "&amp;";
-        break;
-      case '<':
-        raw += "&lt;";
-        break;
-      case '"':
-        raw += "&quot;";
-        break;
-      case '\'':
-        raw += "&apos;";
-        break;
-      case '\n':
-        raw += "&#10;";
-        break;
-      case '\r':
-        raw += "&#13;";
-        break;
-      default:
-        raw += c;
-    }
-  }
-  return raw;
-}
-
-/// Text that is not in comments or elements of the content of an element; empty: none.
-std::string_view bare_text(std::string_view content) {
-  while (!content.empty()) {
-    const std::string_view before = trimmed(content.substr(0, content.find('<')));
-    if (!before.empty() || content.find('<') == std::string_view::npos) return before;
-    content.remove_prefix(content.find('<'));
-    if (!content.starts_with("<!--")) return content;
-    content.remove_prefix(content.find("-->") + 3);
-  }
-  return {};
-}
-
-/// What the format says about places and values.
-class Rules {
- public:
-  Rules() : containers_(including_elements()) {
-    for (const ElementFormat& format : scene_format()) {
-      const bool may_be_included =
-          std::any_of(format.parents.begin(), format.parents.end(), [&](std::string_view parent) {
-            return std::find(containers_.begin(), containers_.end(), parent) != containers_.end();
-          });
-      if (may_be_included && format.name != include_name && format.name != define_name)
-        roots_.push_back(format.name);
-      for (const AttributeFormat& attribute : format.attributes)
-        if (is_text(attribute.type)) texts_.emplace(format.name, attribute.name);
-    }
-  }
-
-  bool may_contain(std::string_view element) const {
-    return std::find(containers_.begin(), containers_.end(), element) != containers_.end();
-  }
-  const std::vector<std::string_view>& containers() const { return containers_; }
-
-  /// The elements that a file that is included may consist of.
-  const std::vector<std::string_view>& roots() const { return roots_; }
-
-  /// Whether the value is a text, which is not computed.
-  bool is_text(std::string_view element, std::string_view attribute) const {
-    return texts_.contains({element, attribute});
-  }
-
- private:
-  static bool is_text(std::string_view type) {
-    constexpr std::string_view types[] = {
-        "path", "text", "name", "names", "word", "one or four words", "boolean"};
-    return std::find(std::begin(types), std::end(types), type) != std::end(types);
-  }
-
-  std::vector<std::string_view> containers_;
-  std::vector<std::string_view> roots_ = {fragment_name, scene_name};
-  std::set<std::pair<std::string_view, std::string_view>> texts_;
-};
 
 /// A file that is included, read once.
 struct IncludedFile {
@@ -266,7 +127,7 @@ class Expander {
   const TextFiles& files_;
   Findings& findings_;
   LineMap map_;
-  Rules rules_;
+  ExpansionRules rules_;
   std::map<std::string, std::unique_ptr<IncludedFile>> read_;  // by identity
   std::string out_;
   int line_ = 1;  // of the end of out_
@@ -363,12 +224,17 @@ void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
   const auto expanded =
       expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number);
   if (!expanded) {
+    const bool is_scene = element.parent == ElementPlace::no_parent && owner == scene_name;
     if (!expanded.error().empty())
-      add_value(text, attribute.name.begin, owner, name, value, expanded.error());
+      add_value(text, attribute.name.begin, owner, name, value,
+                is_scene ? "the attributes of <scene> come before all definitions; write the value "
+                           "itself"
+                         : expanded.error());
     return;
   }
-  emit(encoded(*expanded));
-  emit(text.text.substr(attribute.value.end, 1));
+  const char quote = text.text[attribute.value.end];
+  emit(encoded(*expanded, quote));
+  emit({&quote, 1});
   spend(0, text, attribute.name.begin);
   // The value is on one line now. Its other lines follow it.
   emit(std::string(static_cast<std::size_t>(std::count(raw.begin(), raw.end(), '\n')), '\n'));
@@ -614,25 +480,6 @@ TextFiles files_on_disk(const fs::path& root) {
   return {.identify = [root](const fs::path& path) { return identify_file(path, root); },
           .read = [](const fs::path& path,
                      std::size_t most_bytes) { return read_file(path, most_bytes); }};
-}
-
-std::vector<std::string_view> including_elements() {
-  std::vector<std::string_view> names = {Description<Scene>::element, Description<Surface>::element,
-                                         Description<MaterialChannels>::element,
-                                         Description<Group>::element};
-  for (const Force& kind : force_kinds()) names.push_back(kind_of(kind));
-  return names;
-}
-
-bool needs_expansion(const SourceText& source) {
-  // A $ may also be written as &#36;.
-  for (const std::string_view sign : {"$", "&#"})
-    if (source.text.find(sign) != std::string_view::npos) return true;
-  return std::any_of(source.markup.elements.begin(), source.markup.elements.end(),
-                     [&](const ElementPlace& element) {
-                       const std::string_view name = element.name.of(source.text);
-                       return name == include_name || name == define_name;
-                     });
 }
 
 std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,
