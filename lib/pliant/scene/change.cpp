@@ -375,6 +375,16 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
   return {};
 }
 
+bool names_file(const Scene& scene, const std::string& path) {
+  const auto parts = split(path);
+  if (!parts) return false;
+  Scene changed = scene;  // a table gives access to what it lists
+  const Table table = all_slots(changed, parts->name);
+  return std::any_of(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == parts->attribute && slot.attribute.syntax == Syntax::Path;
+  });
+}
+
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {
   std::optional<std::string> first;
   const auto look_at_all = [&](const auto& thing) {
