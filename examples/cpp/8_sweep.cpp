@@ -1,7 +1,9 @@
-// Runs a scene with nine dampings, two takes at a time, and prints which one settles first.
-// usage: 8_sweep SCENE.xml SURFACE
+// Runs a scene with nine dampings, two takes at a time, and prints which one comes nearest to a
+// peak. usage: 8_sweep SCENE.xml SURFACE PEAK
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -11,8 +13,8 @@
 #include "tell.hpp"
 
 int main(int count, char* arguments[]) {
-  if (count != 3) {
-    std::fprintf(stderr, "usage: 8_sweep SCENE.xml SURFACE\n");
+  if (count != 4) {
+    std::fprintf(stderr, "usage: 8_sweep SCENE.xml SURFACE PEAK\n");
     return 2;
   }
   const auto scene = pliant::load_scene(arguments[1]);
@@ -28,21 +30,20 @@ int main(int count, char* arguments[]) {
 
   std::vector<std::size_t> all(takes->count());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  std::size_t best = 0;
-  int first = scene->end + 1;
+  const double wanted = std::atof(arguments[3]);
+  std::vector<double> peaks(takes->count());
   const auto done =
       sweep->run(all, {.threads = 2, .take_done = [&](const pliant::TakeOutcome& outcome) {
                          // One call at a time, in the order in which takes end. A take that failed
                          // is no reason to stop.
-                         if (!outcome.measures) return pliant::Result<void>();
-                         const int settle = outcome.measures->settle;
-                         if (settle < first || (settle == first && outcome.take < best)) {
-                           first = settle;
-                           best = outcome.take;
-                         }
+                         peaks[outcome.take] = outcome.measures ? outcome.measures->peak : HUGE_VAL;
                          return pliant::Result<void>();
                        }});
   if (!done) return tell(done.error());
+  std::size_t best = 0;
+  for (const std::size_t take : all) {
+    if (std::abs(peaks[take] - wanted) < std::abs(peaks[best] - wanted)) best = take;
+  }
   const std::string damping(takes->texts(best).front());
-  std::printf("take %zu settles first, at frame %d, by damping=%s\n", best, first, damping.c_str());
+  std::printf("take %zu: damping=%s gives a peak of %g\n", best, damping.c_str(), peaks[best]);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/sampling/shape_shelf.hpp"
+#include "pliant/scene/change_texts.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch_folder.hpp"
@@ -93,6 +94,40 @@ TEST_CASE("each value is checked ahead of all takes", "[sweep]") {
   CHECK_THAT(sweep_complaint({"sheet.density=1,2"}, {"poke.magnitud=1"}),
              Catch::Matchers::StartsWith("--set poke.magnitud=1: "));
   CHECK_THAT(sweep_complaint({"poke.center.x*=1,b"}), contains_text("\"b\""));
+}
+
+TEST_CASE("each text is refused as by itself, wherever it stands", "[sweep]") {
+  Scene base = poked();
+  base.forces[0].magnitude = curve({{1, 0}, {5, 9}});
+  using Kind = SceneChange::Kind;
+  const std::vector<std::string_view> texts = {"1",     "3",    "-3",  "0.5",   "box",
+                                               "union", "x",    "",    "1e999", "1 2 3",
+                                               "1 2",   "true", "9,9", "poke"};
+  for (const SceneChange& change :
+       {SceneChange{Kind::Set, "sheet.density"}, SceneChange{Kind::Set, "sheet.columns"},
+        SceneChange{Kind::Set, "sheet.combine"}, SceneChange{Kind::Set, "sheet.translate"},
+        SceneChange{Kind::Set, "sheet.translate.x"}, SceneChange{Kind::Set, "poke.magnitude"},
+        SceneChange{Kind::Times, "poke.magnitude"}, SceneChange{Kind::Plus, "sheet.translate"},
+        SceneChange{Kind::Plus, "poke.center.y"}, SceneChange{Kind::Times, "sheet.combine"},
+        SceneChange{Kind::Set, "poke.center.progress"}, SceneChange{Kind::Set, "scene.seed"},
+        SceneChange{Kind::Set, "poke.targets"}, SceneChange{Kind::Set, "poke.none"}}) {
+    for (const std::string_view first : texts) {
+      for (const std::string_view second : texts) {
+        const std::string_view both[] = {first, second};
+        Result<void> wanted;
+        for (const std::string_view text : both) {
+          SceneChange one = change;
+          one.text = text;
+          Scene changed = base;
+          if (wanted) wanted = make_changes(changed, std::span(&one, 1));
+        }
+        const auto checked = check_change_texts(base, change, both, {}, {});
+        CAPTURE(change.path, first, second);
+        REQUIRE(checked.has_value() == wanted.has_value());
+        if (!wanted) CHECK(checked.error().message == wanted.error().message);
+      }
+    }
+  }
 }
 
 TEST_CASE("frames that the scene lacks are told", "[sweep]") {

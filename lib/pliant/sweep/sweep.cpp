@@ -8,11 +8,10 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/scene/change.hpp"
+#include "pliant/scene/change_texts.hpp"
 
 namespace pliant {
 namespace {
-
-constexpr std::size_t values_between_stops = 256;
 
 bool is_whole(const VariedPath& path) {
   return path.kind == SceneChange::Kind::Set &&
@@ -67,15 +66,12 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
     if (auto made = make_changes(base, takes_.set(), settings_.root); !made)
       return fail(told_after(made.error(), "--set "));
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
-      std::size_t count = 0;
-      const auto check = [&](const Scene&, const Result<void>& made) -> Result<void> {
-        if (++count % values_between_stops == 0 && should_stop && should_stop())
-          return fail(ErrorCode::Interrupted, "interrupted before the first take");
-        if (!made) return fail(told_after(made.error(), takes_.paths()[path].option + ": "));
-        return {};
-      };
-      if (auto checked = visit_texts(base, takes_, path, settings_.root, check); !checked)
-        return checked;
+      const VariedPath& varied = takes_.paths()[path];
+      auto checked = check_change_texts(base, {varied.kind, varied.path}, takes_.texts_of(path),
+                                        settings_.root, should_stop);
+      if (checked) continue;
+      if (checked.error().code == ErrorCode::Interrupted) return checked;
+      return fail(told_after(checked.error(), varied.option + ": "));
     }
   }
   return {};
