@@ -182,12 +182,12 @@ void count_takes(SweepStatus& status) {
 
 class SweepFolder::Parts {
  public:
-  Parts(std::string folder, SweepRequest request, Sweep sweep, std::vector<InputHash> inputs)
-      : folder(std::move(folder)),
-        request(std::move(request)),
-        sweep(std::move(sweep)),
-        inputs(std::move(inputs)) {
-    this->request.variation.table.reset();
+  Parts(std::string name, SweepRequest asked, Sweep made, std::vector<InputHash> hashes)
+      : folder(std::move(name)),
+        request(std::move(asked)),
+        sweep(std::move(made)),
+        inputs(std::move(hashes)) {
+    request.variation.table.reset();
   }
 
   fs::path folder_of_takes() const { return fs::path(folder) / "takes"; }
