@@ -27,19 +27,10 @@
 #include "regions_file.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
+#include "solver_option.hpp"
 
 namespace pliant::cli {
 namespace {
-
-// The solver of that name. Errors: this build does not have it.
-Result<SolverChoice> parse_solver(const std::string& name) {
-  const auto choice = solver_choice(name);
-  if (choice && is_available(*choice)) return *choice;
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("--solver {}: this build does not have it (PLIANT_WITH_CHOLMOD is off); "
-                          "use auto or spectral",
-                          name));
-}
 
 bool is_world(const BakeOptions& options) { return options.space == "world"; }
 
@@ -194,8 +185,11 @@ Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regio
 
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
                              const FrameRange& frames, Output& output,
-                             std::optional<RegionsFile>& regions, std::optional<DtCheck>& check) {
+                             std::optional<RegionsFile>& regions, std::optional<DtCheck>& check,
+                             const BakeSource& source) {
   Summary summary;
+  std::optional<Measurer> measurer;
+  if (source.hash) measurer.emplace(simulation);
   for (const std::size_t k : output.surfaces)
     summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
   Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
@@ -212,6 +206,7 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     }
     if (number >= frames.first) {
       if (check) check->compare(frame, output.surfaces);
+      if (measurer) measurer->add(frame);
       auto written = write_frame(frame, options, simulation.scene(), output, summary);
       if (!written) return fail(written.error());
       if (regions) {
@@ -221,6 +216,12 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
       }
     }
     progress.advance();
+  }
+  if (measurer) {
+    const auto measures = measurer->measures();
+    if (!measures) return fail(measures.error());
+    if (measures->hash != *source.hash)
+      return fail(ErrorCode::SolverFailed, source.title + ": hash differs");
   }
   StageTimer finishing(options.is_profiled ? &output.profile : nullptr, Stage::Writing);
   if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
@@ -264,46 +265,54 @@ void print_profile(const Profile& profile, double elapsed) {
 
 }  // namespace
 
-void add_bake(CLI::App& app, BakeOptions& options) {
-  CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
-  bake->add_option("SCENE", options.scene, "Scene file")->required();
-  bake->add_option("-o,--out", options.out,
-                   fmt::format("Output file; its ending selects the format: {}. Several surfaces "
-                               "are written to a file each, OUT-NAME, but all to one .glb, .gltf "
-                               "or .usda. A sequence (.obj, .ply) has the frame in each name: "
-                               "OUT.0001.obj; a run of # in OUT sets the number of digits",
-                               fmt::join(known_endings(), ", ")))
+void add_bake_options(CLI::App& command, BakeOptions& options) {
+  command
+      .add_option("-o,--out", options.out,
+                  fmt::format("Output file; its ending selects the format: {}. Several surfaces "
+                              "are written to a file each, OUT-NAME, but all to one .glb, .gltf "
+                              "or .usda. A sequence (.obj, .ply) has the frame in each name: "
+                              "OUT.0001.obj; a run of # in OUT sets the number of digits",
+                              fmt::join(known_endings(), ", ")))
       ->required();
-  bake->add_option("--frames", options.frames, "Frames to write, A:B or one frame; all by default");
-  bake->add_option("--surface", options.surface, "Write this surface only");
-  bake->add_option("--space", options.space, "Space of the positions")
+  command.add_option("--frames", options.frames,
+                     "Frames to write, A:B or one frame; all by default");
+  command.add_option("--surface", options.surface, "Write this surface only");
+  command.add_option("--space", options.space, "Space of the positions")
       ->check(CLI::IsMember({"world", "object"}))
       ->capture_default_str();
-  bake->add_option("--solver", options.solver,
-                   "Solver of the plates: in sine space, by CHOLMOD's sparse factors, or the one "
-                   "that suits each region; results differ by at most 2e-9 of their size")
-      ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
-      ->capture_default_str();
-  bake->add_flag(
+  command.add_flag(
       "--resume", options.resume,
       "Keep the files of an .obj or .ply sequence that are already identical to the result");
-  add_root(*bake, options.root);
-  add_changes(*bake, options.changes);
-  add_cache(*bake, options.cache);
-  add_threads(*bake, options.resources);
-  add_memory(*bake, options.resources);
-  bake->add_option("--regions", options.regions,
-                   "Write the regions that each frame solves, and their forces, to this JSON file");
-  bake->add_flag(
+  add_cache(command, options.cache);
+  add_threads(command, options.resources);
+  add_memory(command, options.resources);
+  command.add_option("--regions", options.regions,
+                     "Write the regions that each frame solves, and their forces, to this JSON "
+                     "file");
+  command.add_flag(
       "--check-dt", options.checks_dt,
       "Simulate again with half the time step, and print the largest difference over the "
       "peak displacement");
-  bake->add_flag("--profile", options.is_profiled,
-                 "Print a table on stderr at the end: the time spent in each stage of the run");
-  bake->add_flag("--quiet", options.is_quiet, "No progress and no summary");
+  command.add_flag("--profile", options.is_profiled,
+                   "Print a table on stderr at the end: the time spent in each stage of the run");
+  command.add_flag("--quiet", options.is_quiet, "No progress and no summary");
+}
+
+void add_bake(CLI::App& app, BakeOptions& options) {
+  CLI::App* bake = app.add_subcommand("bake", "Simulate a scene and write the animation");
+  bake->add_option("SCENE", options.scene, "Scene file")->required();
+  add_bake_options(*bake, options);
+  add_solver(*bake, options.solver);
+  add_root(*bake, options.root);
+  add_changes(*bake, options.changes);
 }
 
 int run_bake(const BakeOptions& options) {
+  return run_bake(
+      options, {.read = [&] { return read_scene(options.scene, options.root, options.changes); }});
+}
+
+int run_bake(const BakeOptions& options, const BakeSource& source) {
   const auto begin = std::chrono::steady_clock::now();
   catch_interrupts();
 
@@ -315,7 +324,7 @@ int run_bake(const BakeOptions& options) {
     auto place = check_output_file("--regions", *options.regions);
     if (!place) return report(place.error());
   }
-  auto scene = read_scene(options.scene, options.root, options.changes);
+  auto scene = source.read();
   if (!scene) return report(scene.error());
   const auto frames = parse_frames(options.frames, *scene);
   if (!frames) return report(frames.error());
@@ -348,7 +357,7 @@ int run_bake(const BakeOptions& options) {
     regions.emplace(*std::move(created));
   }
 
-  const auto summary = write_frames(*simulation, options, *frames, *output, regions, check);
+  const auto summary = write_frames(*simulation, options, *frames, *output, regions, check, source);
   print_warnings(*simulation);
   print_cache_notes(store->get(), options.cache);
   if (!summary) return report(with_kept(summary.error(), kept_text(options)));

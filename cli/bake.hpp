@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "cache.hpp"
 #include "command_line.hpp"
+#include "pliant/core/hash.hpp"
 #include "resources.hpp"
 #include "scene_input.hpp"
 
@@ -31,7 +33,20 @@ struct BakeOptions {
 
 void add_bake(CLI::App& app, BakeOptions& options);
 
+/// The options but those that choose the scene, its values and the solver.
+void add_bake_options(CLI::App& command, BakeOptions& options);
+
 /// Simulates a scene and writes the animation. Returns the exit code.
 int run_bake(const BakeOptions& options);
+
+/// A scene that is baked, and what its frames must be.
+struct BakeSource {
+  std::function<Result<Scene>()> read;
+  std::optional<Hash> hash = {};  ///< as `Measures::hash`, of the frames written; none: any
+  std::string title = {};         ///< in the message if they have another one
+};
+
+/// The same for a scene that is read in another way.
+int run_bake(const BakeOptions& options, const BakeSource& source);
 
 }  // namespace pliant::cli

@@ -154,15 +154,15 @@ const Files* files_of(const CLI::App& command, const CLI::Option& option) {
                                                    {"--regions", {{".json"}}},
                                                    {"--root", {{}, true}},
                                                    {"--mesh", {}},
+                                                   {"--takes", {{".csv"}}},
+                                                   {"DIR", {{}, true}},
+                                                   {"SCENE|DIR", {{".xml"}}},
                                                    {"--movie", {{".mp4", ".gif", ".webm"}}}};
   static const std::map<std::string, Files> outputs = {
-      {"bake", {known_endings()}},
-      {"curves", {{".csv", ".svg"}}},
-      {"format", {{".xml"}}},
-      {"new", {{".xml"}}},
-      {"record", {{".replay"}}},
-      {"import curves", {{".xml"}}},
-      {"export curves", {{".json", ".gltf", ".glb", ".anim"}}},
+      {"bake", {known_endings()}},   {"curves", {{".csv", ".svg"}}},
+      {"format", {{".xml"}}},        {"new", {{".xml"}}},
+      {"record", {{".replay"}}},     {"run", {{}, true}},
+      {"import curves", {{".xml"}}}, {"export curves", {{".json", ".gltf", ".glb", ".anim"}}},
       {"view", {{".html"}}}};
   const std::string name = option.get_positional()       ? option.get_name(true)
                            : option.get_lnames().empty() ? ""

@@ -6,21 +6,24 @@
 
 namespace pliant::cli {
 
-Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
-  if (!asked) return FrameRange{scene.start, scene.end};
-  const std::string& text = *asked;
+Result<FrameRange> parse_frame_range(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto first = to_integer(text.substr(0, colon));
   const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
-  if (!first || !last || *first > *last) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--frames {}: must be one frame, or A:B with A <= B", text));
-  }
-  if (*first < scene.start || *last > scene.end) {
+  if (first && last && *first <= *last) return FrameRange{*first, *last};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--frames {}: must be one frame, or A:B with A <= B", text));
+}
+
+Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
+  if (!asked) return FrameRange{scene.start, scene.end};
+  const auto frames = parse_frame_range(*asked);
+  if (!frames) return frames;
+  if (frames->first < scene.start || frames->last > scene.end) {
     return fail(ErrorCode::InvalidInput, fmt::format("--frames {}: the scene has frames {} to {}",
-                                                     text, scene.start, scene.end));
+                                                     *asked, scene.start, scene.end));
   }
-  return FrameRange{*first, *last};
+  return frames;
 }
 
 }  // namespace pliant::cli

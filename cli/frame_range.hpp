@@ -11,6 +11,9 @@ namespace pliant::cli {
 
 using viewer::FrameRange;
 
+/// Parses A:B or one frame. Errors: InvalidInput, naming --frames.
+Result<FrameRange> parse_frame_range(const std::string& text);
+
 /// Parses A:B or one frame, within the scene's frames; null: all frames. Errors: InvalidInput,
 /// naming --frames.
 Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene);

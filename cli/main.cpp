@@ -18,6 +18,7 @@
 #include "replay.hpp"
 #include "report.hpp"
 #include "suggest.hpp"
+#include "sweep.hpp"
 #include "usage.hpp"
 #include "validate.hpp"
 #include "view.hpp"
@@ -47,6 +48,8 @@ int run(int count, char* arguments[]) {
   add_format(app, format);
   SuggestOptions suggest;
   add_suggest(app, suggest);
+  SweepOptions sweep;
+  add_sweep(app, sweep);
   ReplayCommandOptions replay;
   add_replay(app, replay);
   ViewOptions view;
@@ -80,6 +83,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("info")) return run_info(info);
   if (app.got_subcommand("format")) return run_format(format);
   if (app.got_subcommand("suggest")) return run_suggest(suggest);
+  if (app.got_subcommand("sweep")) return run_sweep(app, sweep);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
   if (app.got_subcommand("import")) return run_import(importing);

@@ -24,8 +24,8 @@ bool is_visible(bool is_quiet) { return !is_quiet && isatty(STDERR_FILENO) != 0;
 
 }  // namespace
 
-Progress::Progress(int frame_count, bool is_quiet)
-    : frame_count_(frame_count), is_shown_(is_visible(is_quiet)) {}
+Progress::Progress(int count, bool is_quiet, std::string_view unit)
+    : count_(count), unit_(unit), is_shown_(is_visible(is_quiet)) {}
 
 Progress::~Progress() {
   if (is_shown_) draw("");
@@ -34,21 +34,21 @@ Progress::~Progress() {
 void Progress::advance() {
   ++done_;
   const auto now = Clock::now();
-  if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < frame_count_)) return;
+  if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < count_)) return;
   drawn_ = now;
   draw_bar(now);
 }
 
 void Progress::draw_bar(Clock::time_point now) const {
   constexpr int width = 30;
-  const int filled = static_cast<int>(static_cast<long>(width) * done_ / frame_count_);
+  const int filled = static_cast<int>(static_cast<long>(width) * done_ / count_);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double rate = elapsed > 0 ? done_ / elapsed : 0;
-  const double seconds_left = rate > 0 ? std::min((frame_count_ - done_) / rate, 359'999.0) : 0;
+  const double seconds_left = rate > 0 ? std::min((count_ - done_) / rate, 359'999.0) : 0;
   const long left = std::lround(seconds_left);
-  draw(fmt::format("[{}{}] {}/{} frames, {:.1f} frames/s, {}:{:02} left", std::string(filled, '#'),
-                   std::string(width - filled, '.'), done_, frame_count_, rate, left / 60,
-                   left % 60));
+  draw(fmt::format("[{}{}] {}/{} {}, {:.1f} {}/s, {}:{:02} left{}", std::string(filled, '#'),
+                   std::string(width - filled, '.'), done_, count_, unit_, rate, unit_, left / 60,
+                   left % 60, note_));
 }
 
 std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {

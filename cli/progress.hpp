@@ -2,15 +2,17 @@
 
 #include <chrono>
 #include <functional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 namespace pliant::cli {
 
-/// A bar on stderr with frames, frames per second and time left; not shown if stderr is not a
-/// terminal.
+/// A bar on stderr with frames, or takes, done and per second, and the time left; not shown if
+/// stderr is not a terminal.
 class Progress {
  public:
-  Progress(int frame_count, bool is_quiet);
+  Progress(int count, bool is_quiet, std::string_view unit = "frames");
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();  ///< erases the bar
@@ -18,12 +20,17 @@ class Progress {
   /// Counts one more frame. Draws at most ten times a second.
   void advance();
 
+  /// What stands at the end of the bar from now on.
+  void add_note(std::string note) { note_ = std::move(note); }
+
  private:
   using Clock = std::chrono::steady_clock;
 
   void draw_bar(Clock::time_point now) const;
 
-  int frame_count_;
+  int count_;
+  std::string unit_;
+  std::string note_ = {};
   int done_ = 0;
   bool is_shown_;
   Clock::time_point begin_ = Clock::now();

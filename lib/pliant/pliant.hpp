@@ -17,4 +17,5 @@
 #include "pliant/simulation/state_file.hpp"
 #include "pliant/states/folder_store.hpp"
 #include "pliant/states/state_store.hpp"
+#include "pliant/sweep/sweep.hpp"
 #include "pliant/timeline/sampler.hpp"

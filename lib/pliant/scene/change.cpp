@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/change_texts.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
@@ -261,6 +262,25 @@ Result<void> make_change(Scene& scene, const SceneChange& change, const std::str
   return settle(scene, *path, *found, root);
 }
 
+// Adjusts a copy of the channel.
+class AdjustCopy {
+ public:
+  explicit AdjustCopy(const Adjust& adjust) : adjust_(adjust) {}
+
+  template <class Value>
+  Result<void> operator()(Value* place) const {
+    Value copy = *place;
+    return adjust_(&copy);
+  }
+  template <class Other>
+  Result<void> operator()(const Other& other) const {
+    return adjust_(other);
+  }
+
+ private:
+  const Adjust& adjust_;
+};
+
 template <class Member>
 bool is_adjusted(const Member& member) {
   if constexpr (requires { member.adjustments(); }) {
@@ -373,6 +393,52 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
   if (auto sound = change_scene(changed, std::span<const SceneChange>()); !sound) return sound;
   scene = std::move(changed);
   return {};
+}
+
+Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
+                                std::span<const std::string_view> texts, const std::string& root,
+                                const StopRequest& should_stop) {
+  SceneChange one = change;
+  const auto check_fully = [&](std::string_view text) {
+    Scene changed = scene;
+    one.text = text;
+    return make_changes(changed, std::span(&one, 1), root);
+  };
+  if (texts.empty()) return {};
+  if (auto made = check_fully(texts.front()); !made) return made;
+  // The path is right, so that only the texts can be wrong.
+  const auto path = split(change.path);
+  Scene changed = scene;
+  const Table table = all_slots(changed, path->name);
+  const Slot& found = *std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == path->attribute && may_change(slot);
+  });
+  const bool is_file = found.attribute.syntax == Syntax::Path;
+  const bool is_whole = change.kind == SceneChange::Kind::Set && path->part.empty();
+  const Adjust adjust(*path, one);
+  for (std::size_t k = 1; k < texts.size(); ++k) {
+    if (k % 256 == 0 && should_stop && should_stop())
+      return fail(ErrorCode::Interrupted, "interrupted before the first take");
+    if (is_file) {
+      if (auto made = check_fully(texts[k]); !made) return made;
+      continue;
+    }
+    one.text = texts[k];
+    const Result<void> read =
+        is_whole ? adjust.read(found) : std::visit(AdjustCopy(adjust), found.place);
+    if (!read) return refuse(fmt::format("{}: {}", one.typed(), read.error().message));
+  }
+  return {};
+}
+
+bool names_file(const Scene& scene, const std::string& path) {
+  const auto parts = split(path);
+  if (!parts) return false;
+  Scene changed = scene;  // a table gives access to what it lists
+  const Table table = all_slots(changed, parts->name);
+  return std::any_of(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == parts->attribute && slot.attribute.syntax == Syntax::Path;
+  });
 }
 
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {

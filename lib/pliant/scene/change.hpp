@@ -52,6 +52,9 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
 Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root = {});
 
+/// Whether the path is that of an attribute which names a file.
+bool names_file(const Scene& scene, const std::string& path);
+
 /// The path of the first channel whose curve or path is adjusted, by Times or Plus or in a
 /// component; null: none is.
 std::optional<std::string> first_adjusted_channel(const Scene& scene);

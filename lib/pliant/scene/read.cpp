@@ -121,7 +121,7 @@ bool prepare(std::string_view& text, std::string& expanded, const std::string& n
   if (!markup) return false;
   const SourceText source{text, *markup, name, file.folder};
   if (!needs_expansion(source)) return true;
-  std::optional<Expansion> expansion = expand(source, files_on_disk(file.root), file.findings);
+  std::optional<Expansion> expansion = expand(source, file.texts, file.findings);
   if (!expansion) return false;
   expanded = std::move(expansion->text);
   text = expanded;
@@ -157,7 +157,14 @@ Result<Scene> load_scene(const std::string& file, const std::string& root) {
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
                           const std::string& root) {
-  SceneFile file{.folder = folder, .root = root, .findings = Findings(name)};
+  return parse_scene_of(text, name, folder, root, files_on_disk(root));
+}
+
+Result<Scene> xml::parse_scene_of(std::string_view text, const std::string& name,
+                                  const std::string& folder, const std::string& root,
+                                  TextFiles texts) {
+  SceneFile file{
+      .folder = folder, .root = root, .texts = std::move(texts), .findings = Findings(name)};
   if (text.size() > largest_scene_file)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);

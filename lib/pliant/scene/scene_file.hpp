@@ -6,8 +6,10 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/findings.hpp"
 #include "pliant/scene/scene.hpp"
 
@@ -25,6 +27,7 @@ struct NamedMesh {
 struct SceneFile {
   std::filesystem::path folder;  ///< paths in the file itself are relative to it
   std::filesystem::path root;    ///< contains all files that the scene leads to; empty: any may
+  TextFiles texts;               ///< those that it may include
   Findings findings;
   std::optional<LineMap> files = {};  ///< of the expanded text's lines; absent: nothing is included
   std::map<std::string, int> lines = {};  ///< see SceneLine
@@ -39,5 +42,9 @@ struct SceneFile {
     return std::filesystem::path(files->texts()[static_cast<std::size_t>(text)].file).parent_path();
   }
 };
+
+/// As `parse_scene`, where included files are found by `texts`.
+Result<Scene> parse_scene_of(std::string_view text, const std::string& name,
+                             const std::string& folder, const std::string& root, TextFiles texts);
 
 }  // namespace pliant::xml

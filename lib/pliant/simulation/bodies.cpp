@@ -9,6 +9,7 @@
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/mesh/binding.hpp"
 #include "pliant/sampling/material_maps.hpp"
+#include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 
@@ -66,6 +67,7 @@ Bodies::Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOpti
       threads_(options.threads),
       solver_(options.solver),
       exact_parts_(options.exact_parts),
+      shapes_(options.shapes),
       // Several surfaces are solved in parallel; a single one uses all threads.
       context_{.memory = &memory_,
                .threads = solved_count(scene) == 1 ? &threads_ : nullptr,
@@ -95,7 +97,8 @@ Result<void> Bodies::make_all() {
   std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
     if (context_.is_stopped()) return interrupted_at_start();
-    auto made = make_rest_shape(surface, scene_.origin, context_);
+    auto made = shapes_ ? shapes_->make(surface, scene_.origin, context_)
+                        : make_rest_shape(surface, scene_.origin, context_);
     if (!made) {
       errors.push_back(std::move(made.error()));
       continue;

@@ -25,6 +25,7 @@
 
 namespace pliant {
 
+class ShapeShelf;
 class StateStore;
 
 /// Options of a simulation's run. Only the solver changes results, by 2e-9 of their size at
@@ -69,6 +70,9 @@ struct SimulationOptions {
   /// scene, need not solve unchanged frames again. Outlives the simulation; null: states are not
   /// stored.
   StateStore* store = nullptr;
+
+  /// Shares rest shapes with other simulations. Outlives `make`; null: every shape is made anew.
+  ShapeShelf* shapes = nullptr;
 };
 
 /// How frames were reached, counted each time the simulation advances by a frame.

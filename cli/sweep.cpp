@@ -1,0 +1,49 @@
+#include "sweep.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "counted.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+
+void add_sweep(CLI::App& app, SweepOptions& options) {
+  CLI::App* sweep =
+      app.add_subcommand("sweep", "Run a scene many times, each take with other values");
+  sweep->require_subcommand(1);
+  add_sweep_run(*sweep, options.run);
+  CLI::App* status = sweep->add_subcommand(
+      "status", "Write the table takes.csv anew, and count the takes that are done");
+  status->add_option("DIR", options.folder, "Folder of a sweep")->required();
+  add_sweep_verify(*sweep, options.verify);
+  add_sweep_bake(*sweep, options.bake);
+}
+
+int run_sweep(const CLI::App& app, const SweepOptions& options) {
+  const CLI::App& sweep = *app.get_subcommand("sweep");
+  if (sweep.got_subcommand("run")) return run_sweep_run(*sweep.get_subcommand("run"), options.run);
+  if (sweep.got_subcommand("status")) return run_sweep_status(options.folder);
+  if (sweep.got_subcommand("verify")) return run_sweep_verify(options.verify);
+  return run_sweep_bake(options.bake);
+}
+
+void print_failures(const SweepFolder& folder, const SweepStatus& status, const SweepPart& part) {
+  constexpr std::size_t most_named = 10;
+  for (const HashConflict& conflict : status.conflicts) {
+    if (!part.has(conflict.take)) continue;
+    print(stderr, fmt::format("take {}: hash differs between {} and {}\n", conflict.take,
+                              printable(conflict.host), printable(conflict.other_host)));
+  }
+  std::size_t count = 0;
+  for (std::size_t take = 0; take < status.takes.size(); ++take) {
+    const TakeRecord& record = status.takes[take];
+    if (record.status != TakeStatus::Failed || !part.has(take) || ++count > most_named) continue;
+    print(stderr, fmt::format("{}: {}\n", title_of(folder.sweep(), folder.request().scenes, take),
+                              printable(record.error)));
+  }
+  if (count > most_named)
+    print(stderr, fmt::format("{} failed too\n", counted(count - most_named, "other take")));
+}
+
+}  // namespace pliant::cli

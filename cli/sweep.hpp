@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake.hpp"
+#include "command_line.hpp"
+#include "pliant/sweep/folder.hpp"
+#include "resources.hpp"
+#include "scene_input.hpp"
+
+namespace pliant::cli {
+
+/// Options of `pliant sweep run`.
+struct SweepRunOptions {
+  std::vector<std::string> what;  ///< scenes, or the folder of a sweep
+  std::optional<std::string> out = {};
+  Changes set = {};
+  std::vector<std::string> vary = {};
+  std::optional<std::string> sample = {};
+  std::optional<std::string> takes = {};  ///< a CSV file
+  std::optional<std::string> frames = {};
+  std::string solver = "auto";
+  Root root = {};
+  std::optional<std::string> write = {};
+  std::optional<std::string> part = {};
+  bool makes_only = false;
+  bool is_dry = false;
+  bool retries = false;
+  bool is_quiet = false;
+  ResourceOptions resources;
+};
+
+/// Options of `pliant sweep verify`.
+struct SweepVerifyOptions {
+  std::string folder;
+  int every = 1;
+  bool is_quiet = false;
+  ResourceOptions resources;
+};
+
+/// Options of `pliant sweep bake`.
+struct SweepBakeOptions {
+  std::string folder;
+  std::string take;
+  BakeOptions bake;
+};
+
+/// Options of `pliant sweep`.
+struct SweepOptions {
+  SweepRunOptions run;
+  std::string folder;  ///< of `status`
+  SweepVerifyOptions verify;
+  SweepBakeOptions bake;
+};
+
+void add_sweep(CLI::App& app, SweepOptions& options);
+void add_sweep_run(CLI::App& sweep, SweepRunOptions& options);
+void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options);
+void add_sweep_bake(CLI::App& sweep, SweepBakeOptions& options);
+
+// Each returns the exit code.
+
+int run_sweep(const CLI::App& app, const SweepOptions& options);
+int run_sweep_run(const CLI::App& run, const SweepRunOptions& options);
+int run_sweep_status(const std::string& folder);
+int run_sweep_verify(const SweepVerifyOptions& options);
+int run_sweep_bake(const SweepBakeOptions& options);
+
+/// Prints conflicts of the log and the takes that failed on stderr, those of a part: ten of them,
+/// then their number.
+void print_failures(const SweepFolder& folder, const SweepStatus& status,
+                    const SweepPart& part = {});
+
+}  // namespace pliant::cli

@@ -1,0 +1,52 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "interrupt.hpp"
+#include "pliant/core/text.hpp"
+#include "report.hpp"
+#include "sweep.hpp"
+
+namespace pliant::cli {
+
+void add_sweep_bake(CLI::App& sweep, SweepBakeOptions& options) {
+  CLI::App* bake = sweep.add_subcommand("bake", "Write the animation of one take");
+  bake->add_option("DIR", options.folder, "Folder of a sweep")->required();
+  bake->add_option("TAKE", options.take, "Number of the take")->required();
+  add_bake_options(*bake, options.bake);
+}
+
+int run_sweep_bake(const SweepBakeOptions& options) {
+  catch_interrupts();
+  const auto folder = SweepFolder::open(options.folder);
+  if (!folder) return report(folder.error());
+  const Sweep& sweep = folder->sweep();
+  const auto number = to_integer(options.take);
+  if (!number || *number < 0 || static_cast<std::size_t>(*number) >= sweep.takes().count()) {
+    return report(
+        {.code = ErrorCode::InvalidInput,
+         .message = fmt::format("TAKE {}: {} has the takes 0 to {}", printable(options.take),
+                                printable(options.folder), sweep.takes().count() - 1)});
+  }
+  const auto take = static_cast<std::size_t>(*number);
+  const auto status = folder->status(&was_interrupted);
+  if (!status) return report(status.error());
+  BakeOptions bake = options.bake;
+  bake.solver = name_of(sweep.settings().solver);
+  const TakeRecord& record = status->takes[take];
+  BakeSource source{.read = [&]() -> Result<Scene> {
+                      auto scene = sweep.scene_of(take);
+                      if (!scene) return scene;
+                      if (auto same = folder->check_inputs(*scene); !same)
+                        return fail(same.error());
+                      return scene;
+                    },
+                    .title = fmt::format("take {}", take)};
+  if (!bake.frames) {
+    if (record.status == TakeStatus::Done) source.hash = record.measures.hash;
+    if (const auto frames = sweep.settings().frames)
+      bake.frames = fmt::format("{}:{}", frames->first, frames->last);
+  }
+  return run_bake(bake, source);
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,250 @@
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "counted.hpp"
+#include "frame_range.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/output/writer.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "solver_option.hpp"
+#include "sweep.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// The most bytes of a table of takes.
+constexpr std::size_t largest_table = std::size_t{1} << 30U;
+
+// The options that belong to making a sweep.
+constexpr std::string_view making_options[] = {"--out",   "--set",     "--vary",     "--sample",
+                                               "--takes", "--frames",  "--solver",   "--root",
+                                               "--write", "--dry-run", "--make-only"};
+
+// The options that belong to running its takes.
+constexpr std::string_view running_options[] = {"--part", "--retry"};
+
+tl::unexpected<Error> wrong_usage(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+// K/P
+Result<SweepPart> parse_part(const std::optional<std::string>& text) {
+  if (!text) return SweepPart{};
+  const std::size_t slash = text->find('/');
+  const auto part = to_integer(text->substr(0, slash));
+  const auto count =
+      slash == std::string::npos ? std::nullopt : to_integer(text->substr(slash + 1));
+  if (part && count && *part >= 0 && *part < *count)
+    return SweepPart{static_cast<std::size_t>(*part), static_cast<std::size_t>(*count)};
+  return wrong_usage(
+      fmt::format("--part {}: must be K/P with integers 0 <= K < P", printable(*text)));
+}
+
+Result<SweepRequest> request_of(const SweepRunOptions& options) {
+  SweepRequest request{.scenes = options.what, .root = options.root.value_or("")};
+  for (const std::string& scene : options.what) {
+    if (auto file = check_scene_is_file(scene, "a sweep names the file of its scene"); !file)
+      return fail(file.error());
+  }
+  if (const auto folder = folder_of(options.root); !folder) return fail(folder.error());
+  const auto solver = parse_solver(options.solver);
+  if (!solver) return fail(solver.error());
+  request.solver = *solver;
+  if (options.frames) {
+    const auto frames = parse_frame_range(*options.frames);
+    if (!frames) return fail(frames.error());
+    request.frames = TakeFrames{frames->first, frames->last};
+  }
+  if (options.write) {
+    request.write = options.write->starts_with('.') ? *options.write : "." + *options.write;
+    if (auto known = check_ending("takes" + request.write); !known)
+      return wrong_usage("--write " + printable(*options.write) + ": " + known.error().message);
+    request.write = ending_of("takes" + request.write);
+  }
+  request.variation.scene_count = options.what.size();
+  request.variation.set = options.set;
+  request.variation.vary = options.vary;
+  if (options.sample) {
+    const auto count = to_integer(*options.sample);
+    if (!count || *count < 1)
+      return wrong_usage(
+          fmt::format("--sample {}: must be an integer >= 1", printable(*options.sample)));
+    request.variation.samples = static_cast<std::size_t>(*count);
+  }
+  if (options.takes) {
+    auto table = read_file(*options.takes, largest_table);
+    if (!table) return fail(table.error());
+    request.variation.table = *std::move(table);
+  }
+  return request;
+}
+
+int print_plan(const SweepRequest& request) {
+  const auto sweep = SweepFolder::plan(request, &was_interrupted);
+  if (!sweep) return report(sweep.error());
+  const auto written =
+      write_table(*sweep, request.scenes, {}, [](std::string_view text) -> Result<void> {
+        print(stdout, text);
+        if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+        return {};
+      });
+  return written ? exit_done : report(written.error());
+}
+
+std::string summary_of(const SweepFolder& folder, const SweepStatus& status,
+                       const std::optional<std::string>& part) {
+  return fmt::format("{}: {}{}, {} done, {} failed, {} missing\n", printable(folder.folder()),
+                     part ? "part " + *part + ": " : "", counted(status.takes.size(), "take"),
+                     status.done, status.failed, status.missing());
+}
+
+// What is known of a part only.
+SweepStatus status_of_part(const SweepStatus& status, const SweepPart& part) {
+  SweepStatus of_part;
+  for (std::size_t take = 0; take < status.takes.size(); ++take) {
+    if (!part.has(take)) continue;
+    of_part.takes.push_back(status.takes[take]);
+    of_part.done += status.takes[take].status == TakeStatus::Done ? 1 : 0;
+    of_part.failed += status.takes[take].status == TakeStatus::Failed ? 1 : 0;
+  }
+  for (const HashConflict& conflict : status.conflicts)
+    if (part.has(conflict.take)) of_part.conflicts.push_back(conflict);
+  return of_part;
+}
+
+int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const SweepPart& part) {
+  folder.remove_half_files();
+  const SimulationOptions resources = simulation_options(options.resources);
+  std::optional<Progress> progress;
+  std::size_t failures = 0;
+  const auto ran =
+      folder.run({.threads = resources.threads,
+                  .max_memory = resources.max_memory,
+                  .should_stop = resources.should_stop,
+                  .part = part,
+                  .retry = options.retries,
+                  .begin =
+                      [&](std::size_t count) {
+                        progress.emplace(static_cast<int>(count), options.is_quiet, "takes");
+                      },
+                  .take_done =
+                      [&](const TakeOutcome& outcome) {
+                        if (!outcome.measures)
+                          progress->add_note(fmt::format(", {} failed", ++failures));
+                        progress->advance();
+                      }});
+  progress.reset();
+  const bool is_interrupted = !ran && ran.error().code == ErrorCode::Interrupted;
+  if (is_interrupted) {
+    return report(with_kept(ran.error(),
+                            "takes that ended are kept, and the same command runs "
+                            "those that are missing"));
+  }
+  if (!ran) return report(ran.error());
+  const auto all = folder.status(&was_interrupted);
+  if (!all) return report(all.error());
+  if (!options.part) {
+    if (auto written = folder.write_table(*all); !written) return report(written.error());
+  }
+  const SweepStatus status = status_of_part(*all, part);
+  if (!options.is_quiet) print(stdout, summary_of(folder, status, options.part));
+  print_failures(folder, *all, part);
+  return status.is_complete() ? exit_done : exit_failed;
+}
+
+bool is_folder(const std::string& name) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(name, ignored);
+}
+
+// The sweep of the folder given, or made of the scenes given.
+Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& options) {
+  if (!options.out) {
+    if (options.what.size() != 1 || !is_folder(options.what.front()))
+      return wrong_usage("-o DIR is missing: the folder of the sweep");
+    for (const std::string_view option : making_options) {
+      if (run.count(std::string(option)) > 0)
+        return wrong_usage(
+            fmt::format("{}: {} is a sweep already, whose arguments do not change; "
+                        "make another one of a SCENE with -o DIR",
+                        option, printable(options.what.front())));
+    }
+    return SweepFolder::open(options.what.front());
+  }
+  const auto request = request_of(options);
+  if (!request) return fail(request.error());
+  return SweepFolder::make(*options.out, *request, &was_interrupted);
+}
+
+}  // namespace
+
+void add_sweep_run(CLI::App& sweep, SweepRunOptions& options) {
+  CLI::App* run = sweep.add_subcommand(
+      "run", "Make a sweep in a folder and run its takes; or run those that are missing");
+  run->add_option("SCENE|DIR", options.what, "Scene files, or the folder of a sweep")->required();
+  run->add_option("-o,--out", options.out, "Folder of the sweep, new or the same as before");
+  add_changes(*run, options.set);
+  run->add_option(
+         "--vary", options.vary,
+         "An axis, as often as needed: PATH=VALUES as --set takes a PATH, or PATH*=VALUES, "
+         "PATH+=VALUES. VALUES is a list a,b,c; A:B:N, numbers from A to B; A:B:N:log; "
+         "A..B, integers; or A:B, an interval for --sample. Takes are the product of all "
+         "axes, the last one fastest")
+      ->type_name("PATH=VALUES")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
+  run->add_option("--sample", options.sample,
+                  "Number of points (Sobol') for all intervals A:B together");
+  run->add_option("--takes", options.takes,
+                  "Table of takes in place of --vary: a CSV with a header of PATHs, a row a take");
+  run->add_option("--frames", options.frames,
+                  "Frames to measure and write, A:B or one frame; all by default");
+  add_solver(*run, options.solver);
+  run->add_option("--write", options.write,
+                  "Also write each take's animation, in the format of this ending of bake");
+  add_root(*run, options.root);
+  run->add_option("--part", options.part,
+                  "Run only takes t with t mod P = K, 0 <= K < P: one job of a batch engine")
+      ->type_name("K/P");
+  run->add_flag("--make-only", options.makes_only, "Make the sweep, and run no take");
+  run->add_flag("--dry-run", options.is_dry, "Print the takes as a table; make and run nothing");
+  run->add_flag("--retry", options.retries, "Run takes that failed again");
+  add_threads(*run, options.resources);
+  add_memory(*run, options.resources);
+  run->add_flag("--quiet", options.is_quiet, "No progress and no summary");
+}
+
+int run_sweep_run(const CLI::App& run, const SweepRunOptions& options) {
+  catch_interrupts();
+  const auto part = parse_part(options.part);
+  if (!part) return report(part.error());
+  for (const std::string_view option : running_options) {
+    if ((options.makes_only || options.is_dry) && run.count(std::string(option)) > 0)
+      return report(wrong_usage(fmt::format("{}: no take is run with {}", option,
+                                            options.is_dry ? "--dry-run" : "--make-only"))
+                        .value());
+  }
+  if (options.is_dry && options.out) {
+    const auto request = request_of(options);
+    return request ? print_plan(*request) : report(request.error());
+  }
+  const auto folder = open_sweep(run, options);
+  if (!folder) return report(folder.error());
+  if (!options.makes_only) return run_takes(*folder, options, *part);
+  if (!options.is_quiet)
+    print(stdout, fmt::format("{}: {}\n", printable(folder->folder()),
+                              counted(folder->sweep().takes().count(), "take")));
+  return exit_done;
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,25 @@
+#include <fmt/format.h>
+
+#include "counted.hpp"
+#include "interrupt.hpp"
+#include "report.hpp"
+#include "sweep.hpp"
+
+namespace pliant::cli {
+
+int run_sweep_status(const std::string& name) {
+  catch_interrupts();
+  const auto folder = SweepFolder::open(name);
+  if (!folder) return report(folder.error());
+  folder->remove_half_files();
+  const auto status = folder->status(&was_interrupted);
+  if (!status) return report(status.error());
+  if (auto written = folder->write_table(*status); !written) return report(written.error());
+  print(stdout, fmt::format("{}: {}, {} done, {} failed, {} missing\n", printable(name),
+                            counted(status->takes.size(), "take"), status->done, status->failed,
+                            status->missing()));
+  print_failures(*folder, *status);
+  return status->is_complete() ? exit_done : exit_failed;
+}
+
+}  // namespace pliant::cli

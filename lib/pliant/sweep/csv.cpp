@@ -1,0 +1,67 @@
+#include "pliant/sweep/csv.hpp"
+
+#include <utility>
+
+namespace pliant {
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string field = "\"";
+  for (const char c : text) {
+    if (c == '"') field += '"';
+    field += c;
+  }
+  return field + '"';
+}
+
+Result<std::vector<CsvRow>> parse_csv(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<CsvRow> rows;
+  int line = 1;
+  CsvRow row{.line = line};
+  std::string field;
+  bool is_empty = true;  // the row
+  const auto end_row = [&] {
+    row.fields.push_back(std::exchange(field, {}));
+    if (!is_empty) rows.push_back(std::move(row));
+    row = CsvRow{.line = line};
+    is_empty = true;
+  };
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    if (c == '"' && field.empty()) {
+      const int begin = line;
+      is_empty = false;
+      for (++at;; ++at) {
+        if (at == text.size()) return invalid("a quote is not closed", begin);
+        if (text[at] == '\n') ++line;
+        if (text[at] != '"') {
+          field += text[at];
+        } else if (at + 1 < text.size() && text[at + 1] == '"') {
+          field += text[++at];
+        } else {
+          ++at;
+          break;
+        }
+      }
+      if (at < text.size() && text[at] != ',' && text[at] != '\n' && text[at] != '\r')
+        return invalid("a comma is missing behind a closing quote", line);
+      continue;
+    }
+    ++at;
+    if (c == ',') {
+      is_empty = false;
+      row.fields.push_back(std::exchange(field, {}));
+    } else if (c == '\n') {
+      ++line;
+      end_row();
+    } else if (c != '\r' || (at < text.size() && text[at] != '\n')) {
+      is_empty = false;
+      field += c;
+    }
+  }
+  end_row();
+  return rows;
+}
+
+}  // namespace pliant

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+
+namespace pliant {
+
+// Tables of RFC 4180. Internal to sweep.
+
+/// A field as a table has it: in quotes if it has a comma, a quote or a line end.
+std::string csv_field(std::string_view text);
+
+/// A row of a table.
+struct CsvRow {
+  int line = 0;  ///< of its first character, counted from 1
+  std::vector<std::string> fields = {};
+};
+
+/// The rows of a table, with line ends of either kind, perhaps behind a byte order mark; rows
+/// without any character are left out. Errors: InvalidInput with the line: a quote that is not
+/// closed, or followed by something else than a comma or the line's end.
+Result<std::vector<CsvRow>> parse_csv(std::string_view text);
+
+}  // namespace pliant

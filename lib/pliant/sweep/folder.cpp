@@ -1,0 +1,382 @@
+#include "pliant/sweep/folder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+#include <tuple>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/hash.hpp"
+#include "pliant/output/atomic_file.hpp"
+#include "pliant/output/writer.hpp"
+#include "pliant/states/engine.hpp"
+#include "pliant/sweep/log.hpp"
+#include "pliant/sweep/sweep_file.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t takes_between_stops = 256;
+
+bool is_stopped(const StopRequest& should_stop, std::size_t count) {
+  return count % takes_between_stops == 0 && should_stop && should_stop();
+}
+
+fs::path file_of_sweep(const fs::path& folder) { return folder / "sweep.json"; }
+
+// What AtomicFile leaves if it is killed.
+bool is_half_file(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with('.') && name.ends_with(".part");
+}
+
+Result<std::string> absolute_path(const std::string& name) {
+  if (name.empty()) return std::string();
+  std::error_code error;
+  const fs::path path = fs::absolute(name, error);
+  if (error) return fail(ErrorCode::Unreadable, error.message(), name);
+  return path.string();
+}
+
+// The error with the name of a file as it was typed.
+Error named(Error error, const std::string& path, const std::string& typed) {
+  if (error.file == path) error.file = typed;
+  for (Error& other : error.others) other = named(std::move(other), path, typed);
+  return error;
+}
+
+// What is asked, with the scenes as they are now, before any value is checked.
+struct Asked {
+  SweepFile file;
+  std::vector<Scene> scenes;
+};
+
+Result<Asked> read_request(const SweepRequest& request) {
+  Asked asked;
+  SweepFile& file = asked.file;
+  file.version = PLIANT_VERSION;
+  file.engine = engine_name();
+  file.request = request;
+  if (request.variation.table) file.table_hash = to_text(hash_of(*request.variation.table));
+  auto root = absolute_path(request.root);
+  if (!root) return fail(root.error());
+  file.request.root = *std::move(root);
+  for (const std::string& scene : request.scenes) {
+    const auto path = absolute_path(scene);
+    if (!path) return fail(path.error());
+    auto loaded = load_scene_with_texts(*path, file.request.root);
+    if (!loaded) return fail(named(loaded.error(), *path, scene));
+    asked.scenes.push_back(std::move(loaded->scene));
+    file.texts.push_back(std::move(loaded->texts));
+  }
+  return asked;
+}
+
+SweepSettings settings_of(const SweepRequest& request) {
+  return {.frames = request.frames, .solver = request.solver, .root = request.root};
+}
+
+Result<Sweep> checked_sweep(Asked& asked, const StopRequest& should_stop) {
+  SweepVariation variation = asked.file.request.variation;
+  variation.scene_count = asked.scenes.size();
+  auto takes = Takes::make(variation);
+  if (!takes) return fail(takes.error());
+  return Sweep::make(std::move(asked.scenes), *std::move(takes), settings_of(asked.file.request),
+                     should_stop);
+}
+
+// Whether there is no sweep and may be one. Errors: InvalidInput.
+Result<bool> may_be_made(const std::string& folder) {
+  std::error_code error;
+  if (fs::exists(file_of_sweep(folder), error)) return false;
+  const fs::file_status status = fs::status(folder, error);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_directory(status))
+    return fail(ErrorCode::InvalidInput, fmt::format("-o {}: is not a folder", printable(folder)));
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!is_half_file(entry->path()))
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("-o {}: is not empty, and no sweep; choose another folder",
+                              printable(folder)));
+  }
+  if (error) return fail(ErrorCode::Unreadable, error.message(), folder);
+  return true;
+}
+
+// Gathers the lines of a log.
+class Gathering {
+ public:
+  explicit Gathering(std::size_t count) : lines_(count) { status_.takes.resize(count); }
+
+  void add(LogLine line) {
+    if (line.take >= status_.takes.size()) return;
+    TakeRecord& record = status_.takes[line.take];
+    Origin& origin = lines_[line.take];
+    if (!line.is_done) {
+      // Of several failures the last one counts.
+      const bool is_later = std::tie(line.time, line.error) > std::tie(origin.time, record.error);
+      if (record.status == TakeStatus::Done || !is_later) return;
+      record = {TakeStatus::Failed, {}, std::move(line.error)};
+      origin.time = std::move(line.time);
+      return;
+    }
+    const int host = number_of(line.host);
+    if (record.status != TakeStatus::Done) {
+      record = {TakeStatus::Done, line.measures, {}};
+      origin = {host, {}};
+    } else if (record.measures.hash != line.measures.hash) {
+      // The same one stays, in whatever order they come.
+      if (!origin.has_conflict) {
+        const std::string &own = hosts_[origin.host], &other = hosts_[host];
+        status_.conflicts.push_back({line.take, std::min(own, other), std::max(own, other)});
+        origin.has_conflict = true;
+      }
+      if (to_text(line.measures.hash) < to_text(record.measures.hash)) {
+        record.measures = line.measures;
+        origin.host = host;
+      }
+    }
+  }
+
+  SweepStatus finish() {
+    std::ranges::sort(status_.conflicts, {}, &HashConflict::take);
+    return std::move(status_);
+  }
+
+ private:
+  struct Origin {
+    int host = 0;
+    std::string time = {};  // of a failure
+    bool has_conflict = false;
+  };
+
+  int number_of(const std::string& host) {
+    const auto [found, is_new] = numbers_.try_emplace(host, static_cast<int>(hosts_.size()));
+    if (is_new) hosts_.push_back(host);
+    return found->second;
+  }
+
+  SweepStatus status_;
+  std::vector<Origin> lines_;
+  std::unordered_map<std::string, int> numbers_;
+  std::vector<std::string> hosts_;
+};
+
+void count_takes(SweepStatus& status) {
+  status.done = status.failed = 0;
+  for (const TakeRecord& record : status.takes) {
+    status.done += record.status == TakeStatus::Done ? 1 : 0;
+    status.failed += record.status == TakeStatus::Failed ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+class SweepFolder::Parts {
+ public:
+  Parts(std::string name, SweepRequest asked, Sweep made, std::vector<InputHash> hashes)
+      : folder(std::move(name)),
+        request(std::move(asked)),
+        sweep(std::move(made)),
+        inputs(std::move(hashes)) {
+    request.variation.table.reset();
+  }
+
+  fs::path folder_of_takes() const { return fs::path(folder) / "takes"; }
+
+  // The animation of a take.
+  std::string file_of(std::size_t take) const {
+    return (folder_of_takes() / fmt::format("{:05}{}", take, request.write)).string();
+  }
+
+  // Whether all files of a take are among those of the folder.
+  bool has_files(std::size_t take, const std::unordered_set<std::string>& names) const {
+    const auto scene = sweep.scene_of(take);
+    if (!scene) return false;
+    const auto frames = sweep.frames_of(*scene);
+    if (!frames) return false;
+    AnimationPlan plan{
+        .file = file_of(take), .first_frame = frames->first, .last_frame = frames->last};
+    for (const Surface& surface : scene->surfaces)
+      plan.surfaces.push_back({.name = surface.name, .rest = {}});
+    return std::ranges::all_of(files_of(plan), [&](const std::string& file) {
+      return names.contains(fs::path(file).filename().string());
+    });
+  }
+
+  std::string folder;
+  SweepRequest request;
+  Sweep sweep;
+  mutable InputHashes inputs;
+};
+
+SweepFolder::SweepFolder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SweepFolder::SweepFolder(SweepFolder&&) noexcept = default;
+SweepFolder::~SweepFolder() = default;
+
+Result<Sweep> SweepFolder::plan(const SweepRequest& request, const StopRequest& should_stop) {
+  auto asked = read_request(request);
+  if (!asked) return fail(asked.error());
+  return checked_sweep(*asked, should_stop);
+}
+
+Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequest& request,
+                                      const StopRequest& should_stop) {
+  const auto is_new = may_be_made(folder);
+  if (!is_new) return fail(is_new.error());
+  auto asked = read_request(request);
+  if (!asked) return fail(asked.error());
+  if (!*is_new) {
+    const auto there = read_sweep_file(file_of_sweep(folder));
+    if (!there) return fail(there.error());
+    const std::string difference = difference_of(*there, asked->file);
+    if (difference.empty()) return open(folder);
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("-o {}: is another sweep; it has {}", printable(folder), difference));
+  }
+  auto sweep = checked_sweep(*asked, should_stop);
+  if (!sweep) return fail(sweep.error());
+  asked->file.takes = sweep->takes().parts();
+  InputHashes inputs;
+  const auto add_inputs = [&](const Scene& scene) {
+    inputs.add(scene);
+    return Result<void>();
+  };
+  if (auto added = sweep->for_each_variant(add_inputs); !added) return fail(added.error());
+  asked->file.inputs = inputs.all();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(), folder);
+  if (auto written = write_sweep_file(asked->file, file_of_sweep(folder)); !written)
+    return fail(written.error());
+  return SweepFolder(std::make_unique<Parts>(folder, std::move(asked->file.request),
+                                             *std::move(sweep), std::move(asked->file.inputs)));
+}
+
+Result<SweepFolder> SweepFolder::open(const std::string& folder) {
+  auto file = read_sweep_file(file_of_sweep(folder));
+  if (!file) return fail(file.error());
+  if (file->engine != engine_name())
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{}: the sweep has engine {} of pliant {}, not {} of pliant {}, so "
+                            "that takes would have other bits",
+                            printable(folder), printable(file->engine), printable(file->version),
+                            engine_name(), PLIANT_VERSION));
+  std::vector<Scene> scenes;
+  for (const SceneTexts& texts : file->texts) {
+    auto scene = parse_scene(texts, file->request.root);
+    if (!scene) return fail(scene.error());
+    scenes.push_back(*std::move(scene));
+  }
+  auto takes = Takes::of(std::move(file->takes));
+  if (!takes)
+    return fail(takes.error().code, takes.error().message, file_of_sweep(folder).string());
+  if (!is_available(file->request.solver))
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{}: this build lacks the solver {}", printable(folder),
+                            name_of(file->request.solver)));
+  Sweep sweep = Sweep::unchecked(std::move(scenes), *std::move(takes), settings_of(file->request));
+  return SweepFolder(std::make_unique<Parts>(folder, std::move(file->request), std::move(sweep),
+                                             std::move(file->inputs)));
+}
+
+const std::string& SweepFolder::folder() const { return parts_->folder; }
+const Sweep& SweepFolder::sweep() const { return parts_->sweep; }
+const SweepRequest& SweepFolder::request() const { return parts_->request; }
+
+Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
+  Gathering gathering(sweep().takes().count());
+  auto read =
+      read_log(fs::path(folder()) / "log", [&](LogLine line) { gathering.add(std::move(line)); });
+  if (!read) return fail(read.error());
+  SweepStatus status = gathering.finish();
+  if (!request().write.empty()) {
+    std::unordered_set<std::string> names;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(parts_->folder_of_takes(), ignored), end;
+         !ignored && entry != end; entry.increment(ignored))
+      names.insert(entry->path().filename().string());
+    for (std::size_t take = 0; take < status.takes.size(); ++take) {
+      if (is_stopped(should_stop, take)) return fail(ErrorCode::Interrupted, "interrupted");
+      TakeRecord& record = status.takes[take];
+      if (record.status == TakeStatus::Done && !parts_->has_files(take, names)) record = {};
+    }
+  }
+  count_takes(status);
+  return status;
+}
+
+Result<void> SweepFolder::run(const FolderRun& options) const {
+  const auto now = status(options.should_stop);
+  if (!now) return fail(now.error());
+  std::vector<std::size_t> takes;
+  for (std::size_t take = 0; take < now->takes.size(); ++take) {
+    const TakeStatus one = now->takes[take].status;
+    const bool is_due = one == TakeStatus::Missing || (one == TakeStatus::Failed && options.retry);
+    if (is_due && options.part.has(take)) takes.push_back(take);
+  }
+  if (options.begin) options.begin(takes.size());
+  if (takes.empty()) return {};
+  if (!request().write.empty()) {
+    std::error_code error;
+    fs::create_directories(parts_->folder_of_takes(), error);
+    if (error)
+      return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
+                  parts_->folder_of_takes().string());
+  }
+  auto log = LogFile::create(fs::path(folder()) / "log");
+  if (!log) return fail(log.error());
+  SweepRun run{.threads = options.threads,
+               .max_memory = options.max_memory,
+               .should_stop = options.should_stop,
+               .check = [this](const Scene& scene) { return check_inputs(scene); },
+               .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
+                 // A full disk is no fault of the take.
+                 if (!outcome.measures && outcome.measures.error().code == ErrorCode::Unwritable)
+                   return fail(outcome.measures.error());
+                 if (auto added = log->append(to_line(outcome)); !added) return added;
+                 if (options.take_done) options.take_done(outcome);
+                 return {};
+               }};
+  if (!request().write.empty())
+    run.file_of = [this](std::size_t take) { return parts_->file_of(take); };
+  return sweep().run(takes, run);
+}
+
+Result<void> SweepFolder::check_inputs(const Scene& scene) const {
+  return parts_->inputs.check(scene);
+}
+
+Result<void> SweepFolder::write_table(const SweepStatus& status) const {
+  auto file = AtomicFile::create(fs::path(folder()) / "takes.csv");
+  if (!file) return fail(file.error());
+  auto written = pliant::write_table(sweep(), request().scenes, status.takes,
+                                     [&](std::string_view text) { return file->write(text); });
+  if (!written) return written;
+  return file->commit();
+}
+
+void SweepFolder::remove_half_files() const {
+  const auto now = fs::file_time_type::clock::now();
+  for (const fs::path& folder : {fs::path(this->folder()), parts_->folder_of_takes()}) {
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+         entry.increment(ignored)) {
+      if (!is_half_file(entry->path())) continue;
+      std::error_code unknown;
+      const auto written = fs::last_write_time(entry->path(), unknown);
+      if (!unknown && now - written > std::chrono::hours(1)) fs::remove(entry->path(), unknown);
+    }
+  }
+}
+
+}  // namespace pliant

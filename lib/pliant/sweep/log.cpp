@@ -1,0 +1,200 @@
+#include "pliant/sweep/log.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "pliant/core/hash.hpp"
+#include "pliant/core/read_file.hpp"
+
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t longest_line = std::size_t{1} << 24U;
+
+std::string host_name() {
+  char name[256] = {};
+  if (gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "unknown";
+  return name;
+}
+
+std::string now_in_utc() {
+  const auto now = std::chrono::system_clock::now();
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count();
+  const std::time_t seconds = static_cast<std::time_t>(milliseconds / 1000);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds), milliseconds % 1000);
+}
+
+std::string in_json(const std::string& text) {
+  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+tl::unexpected<Error> cannot_write_log(const std::string& name, int error) {
+  return fail(ErrorCode::Unwritable, std::string("cannot write the log: ") + std::strerror(error),
+              name);
+}
+
+// Reads a member; false: it is missing or of another type.
+
+bool read_member(const Json& json, const char* name, std::string& text) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_string()) return false;
+  text = found->get_ref<const std::string&>();
+  return true;
+}
+
+bool read_member(const Json& json, const char* name, double& number) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_number()) return false;
+  number = found->get<double>();
+  return true;
+}
+
+bool read_member(const Json& json, const char* name, int& number) {
+  const auto found = json.find(name);
+  if (found == json.end() || !found->is_number_integer()) return false;
+  number = found->get<int>();
+  return true;
+}
+
+bool read_measures(const Json& json, Measures& measures) {
+  std::string hash;
+  if (!read_member(json, "peak", measures.peak) ||
+      !read_member(json, "peakFrame", measures.peak_frame) ||
+      !read_member(json, "final", measures.final) || !read_member(json, "rms", measures.rms) ||
+      !read_member(json, "speed", measures.speed) ||
+      !read_member(json, "energy", measures.energy) ||
+      !read_member(json, "settle", measures.settle) || !read_member(json, "hash", hash))
+    return false;
+  const auto read = to_hash(hash);
+  if (read) measures.hash = *read;
+  return read.has_value();
+}
+
+}  // namespace
+
+std::string error_text(const Error& error) {
+  std::string text = error.message;
+  for (const Error& other : error.others) text += "; " + other.message;
+  return printable(text);
+}
+
+std::string to_line(const TakeOutcome& outcome) {
+  std::string line = fmt::format("{{\"take\":{},", outcome.take);
+  if (outcome.measures) {
+    const Measures& m = *outcome.measures;
+    line += fmt::format(
+        "\"status\":\"done\",\"peak\":{},\"peakFrame\":{},\"final\":{},\"rms\":{},\"speed\":{},"
+        "\"energy\":{},\"settle\":{},\"hash\":\"{}\"",
+        m.peak, m.peak_frame, m.final, m.rms, m.speed, m.energy, m.settle, to_text(m.hash));
+  } else {
+    line += "\"status\":\"failed\",\"error\":" + in_json(error_text(outcome.measures.error()));
+  }
+  return line + fmt::format(",\"seconds\":{:.6f},\"host\":{},\"time\":\"{}\"}}\n", outcome.seconds,
+                            in_json(host_name()), now_in_utc());
+}
+
+bool read_line(std::string_view text, LogLine& line) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return false;
+  const auto take = json.find("take");
+  if (take == json.end() || !take->is_number_unsigned()) return false;
+  line.take = take->get<std::size_t>();
+  std::string status;
+  if (!read_member(json, "status", status) || !read_member(json, "seconds", line.seconds) ||
+      !read_member(json, "host", line.host) || !read_member(json, "time", line.time))
+    return false;
+  line.is_done = status == "done";
+  if (line.is_done) return read_measures(json, line.measures);
+  return status == "failed" && read_member(json, "error", line.error);
+}
+
+LogFile::LogFile(LogFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)) {}
+
+LogFile::~LogFile() {
+  if (descriptor_ < 0) return;
+  fsync(descriptor_);
+  close(descriptor_);
+}
+
+Result<LogFile> LogFile::create(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return cannot_write_log(folder.string(), error.value());
+  std::string host = host_name();
+  std::replace(host.begin(), host.end(), '/', '-');
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const auto moment = std::chrono::system_clock::now().time_since_epoch().count();
+    const fs::path file =
+        folder / fmt::format("{}-{}-{}-{}.jsonl", host, getpid(), moment, attempt);
+    const int descriptor =
+        open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666);
+    if (descriptor >= 0) return LogFile(descriptor, file.string());
+    if (errno != EEXIST) return cannot_write_log(file.string(), errno);
+  }
+  return cannot_write_log(folder.string(), EEXIST);
+}
+
+Result<void> LogFile::append(std::string_view line) {
+  for (;;) {
+    const ssize_t count = write(descriptor_, line.data(), line.size());
+    if (count == static_cast<ssize_t>(line.size())) return {};
+    if (count < 0 && errno == EINTR) continue;
+    return cannot_write_log(name_, count < 0 ? errno : ENOSPC);
+  }
+}
+
+Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>& take_line) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().extension() == ".jsonl") files.push_back(entry->path());
+  }
+  if (error == std::errc::no_such_file_or_directory) return {};
+  if (error) return fail(ErrorCode::Unreadable, error.message(), folder.string());
+  std::sort(files.begin(), files.end());
+  const auto take = [&](std::string_view text) {
+    LogLine line;
+    if (read_line(text, line)) take_line(std::move(line));
+  };
+  for (const fs::path& file : files) {
+    std::string rest;  // of a line that is not complete yet
+    auto read = read_pieces(file, [&](std::string_view piece) {
+      for (std::size_t end; (end = piece.find('\n')) != std::string_view::npos;
+           piece.remove_prefix(end + 1)) {
+        if (rest.empty()) {
+          take(piece.substr(0, end));
+        } else {
+          rest += piece.substr(0, end);
+          take(rest);
+          rest.clear();
+        }
+      }
+      rest += piece;
+      // No line of ours; whatever follows on it is none either.
+      if (rest.size() > longest_line) rest = "?";
+      return true;
+    });
+    if (!read) return read;
+  }
+  return {};
+}
+
+}  // namespace pliant

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "pliant/core/result.hpp"
+#include "pliant/sweep/sweep.hpp"
+
+namespace pliant {
+
+// The log of a sweep: lines of JSON, one for each take that ended. Internal to sweep.
+
+/// A line of the log.
+struct LogLine {
+  std::size_t take = 0;
+  bool is_done = false;
+  Measures measures = {};  ///< of a take that is done
+  std::string error = {};  ///< of one that failed
+  double seconds = 0;
+  std::string host = {};
+  std::string time = {};  ///< when it ended: UTC, 2026-11-24T10:45:00.123Z
+};
+
+/// The line for an outcome that ends now, with its line end.
+std::string to_line(const TakeOutcome& outcome);
+
+/// The text of an error in the log and the table: its message, with those found with it.
+std::string error_text(const Error& error);
+
+/// Reads a line; false: it is not a whole one.
+bool read_line(std::string_view text, LogLine& line);
+
+/// One writer's file.
+class LogFile {
+ public:
+  /// A file of its own in the folder, which is made if necessary. Errors: Unwritable.
+  static Result<LogFile> create(const std::filesystem::path& folder);
+
+  LogFile(LogFile&& other) noexcept;
+  LogFile& operator=(LogFile&&) = delete;
+  ~LogFile();
+
+  /// Appends a line by one write. Errors: Unwritable; then nothing more can be appended.
+  Result<void> append(std::string_view line);
+
+ private:
+  LogFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+
+  int descriptor_;
+  std::string name_;
+};
+
+/// Calls `take_line` for each whole line of all files of the folder, which may be missing. Errors:
+/// Unreadable.
+Result<void> read_log(const std::filesystem::path& folder,
+                      const std::function<void(LogLine)>& take_line);
+
+}  // namespace pliant

@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/thread_pool.hpp"
+#include "pliant/output/writer.hpp"
+#include "pliant/sampling/sampling.hpp"
+#include "pliant/sampling/shape_shelf.hpp"
+#include "pliant/simulation/simulation.hpp"
+#include "pliant/sweep/sweep.hpp"
+
+namespace pliant {
+namespace {
+
+tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
+
+// The animation of a take in a file, as a bake writes it.
+class TakeWriter {
+ public:
+  static Result<TakeWriter> make(const Simulation& simulation, const TakeFrames& frames,
+                                 const std::string& file) {
+    const Scene& scene = simulation.scene();
+    AnimationPlan plan{
+        .file = file, .first_frame = frames.first, .last_frame = frames.last, .fps = scene.fps};
+    for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
+      const RestShape& shape = simulation.rest_shapes()[k];
+      const Transform transform = sample_transform(scene.surfaces[k].transform, frames.first);
+      plan.surfaces.push_back({.name = shape.name,
+                               .mesh = &shape.mesh,
+                               .rest = to_world(transform, shape.mesh.positions)});
+    }
+    auto writer = make_writer(plan);
+    if (!writer) return fail(writer.error());
+    return TakeWriter(*std::move(writer), scene.surfaces.size());
+  }
+
+  Result<void> write(const Frame& frame) {
+    for (std::size_t k = 0; k < poses_.size(); ++k)
+      poses_[k].positions = frame.surfaces()[k].positions(std::move(poses_[k].positions));
+    return writer_->write(frame.number(), poses_);
+  }
+
+  Result<void> finish() { return writer_->finish(); }
+
+ private:
+  TakeWriter(std::unique_ptr<AnimationWriter> writer, std::size_t surface_count)
+      : writer_(std::move(writer)), poses_(surface_count) {}
+
+  std::unique_ptr<AnimationWriter> writer_;
+  std::vector<SurfacePose> poses_;
+};
+
+Result<Measures> play(Simulation& simulation, const TakeFrames& frames, const TakeRun& options,
+                      const Scene& scene) {
+  std::optional<TakeWriter> writer;
+  if (!options.file.empty()) {
+    auto made = TakeWriter::make(simulation, frames, options.file);
+    if (!made) return fail(made.error());
+    writer.emplace(*std::move(made));
+  }
+  Measurer measurer(simulation);
+  Frame frame;
+  for (int number = simulation.scene().start; number <= frames.last; ++number) {
+    if (options.should_stop && options.should_stop()) return interrupted();
+    auto reached = simulation.at(number, std::move(frame));
+    if (!reached) return fail(reached.error());
+    frame = *std::move(reached);
+    if (number < frames.first) continue;
+    measurer.add(frame);
+    if (!writer) continue;
+    if (auto written = writer->write(frame); !written) return fail(written.error());
+  }
+  auto measures = measurer.measures();
+  if (!measures) return measures;
+  if (options.check) {
+    if (auto same = options.check(scene); !same) return fail(same.error());
+  }
+  if (writer) {
+    if (auto finished = writer->finish(); !finished) return fail(finished.error());
+  }
+  return measures;
+}
+
+// Hands out takes to threads, as many at once as the memory holds.
+class Turns {
+ public:
+  struct Turn {
+    std::size_t take = 0;
+    std::size_t memory = 0;  // [bytes]
+    std::size_t level = 0;   // takes at once for which the memory is divided; 0: all of it
+    int threads = 1;
+    ShapeShelf* shapes = nullptr;
+  };
+
+  Turns(std::span<const std::size_t> takes, const SweepRun& options)
+      : takes_(takes),
+        options_(options),
+        level_(std::min(static_cast<std::size_t>(options.threads),
+                        std::max<std::size_t>(1, takes.size()))),
+        shelf_(std::in_place, options.max_memory / 8) {}
+
+  std::size_t at_once() const { return level_; }
+
+  // The next take, once there is memory for it; null: there is none.
+  std::optional<Turn> next() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      if (is_ended_) return {};
+      const bool is_first_time = next_ < takes_.size();
+      const bool is_left = is_first_time || !again_.empty();
+      if (!is_first_time && is_left) level_ = std::min(level_, again_.front().level);
+      if (!is_left && running_ == 0) {
+        changed_.notify_all();
+        return {};
+      }
+      if (is_left && memory_used_ + share() <= options_.max_memory - memory_of_shelf()) break;
+      changed_.wait(lock);
+    }
+    Turn turn{.memory = share(), .level = level_};
+    if (next_ < takes_.size()) {
+      turn.take = takes_[next_++];
+    } else {
+      turn.take = again_.front().take;
+      again_.pop_front();
+    }
+    if (level_ == 0) shelf_.reset();
+    turn.shapes = shelf_ ? &*shelf_ : nullptr;
+    turn.threads =
+        std::max(1, options_.threads / static_cast<int>(std::max<std::size_t>(1, level_)));
+    memory_used_ += turn.memory;
+    ++running_;
+    return turn;
+  }
+
+  // A take ended, and is reported, or begins again with more memory.
+  void end(const Turn& turn, const TakeOutcome& outcome) {
+    const std::lock_guard lock(mutex_);
+    memory_used_ -= turn.memory;
+    --running_;
+    changed_.notify_all();
+    const bool has_failed = !outcome.measures;
+    if (has_failed && outcome.measures.error().code == ErrorCode::Interrupted) {
+      is_ended_ = true;
+      return;
+    }
+    if (has_failed && outcome.measures.error().code == ErrorCode::OutOfMemory && turn.level > 0) {
+      again_.push_back({turn.take, turn.level / 2});
+      if (turn.level == level_ && ++short_count_ > done_count_) {
+        level_ /= 2;
+        short_count_ = done_count_ = 0;
+      }
+      return;
+    }
+    ++done_count_;
+    if (is_ended_ || !options_.take_done) return;
+    if (auto told = options_.take_done(outcome); !told) {
+      error_ = std::move(told);
+      is_ended_ = true;
+    }
+  }
+
+  // A thread leaves by an exception: all others end too.
+  void abandon() {
+    const std::lock_guard lock(mutex_);
+    is_ended_ = true;
+    changed_.notify_all();
+  }
+
+  bool is_ended() {
+    const std::lock_guard lock(mutex_);
+    return is_ended_;
+  }
+
+  Result<void> result() {
+    if (!error_) return error_;
+    if (is_ended_) return interrupted();
+    return {};
+  }
+
+ private:
+  std::size_t memory_of_shelf() const { return level_ == 0 ? 0 : options_.max_memory / 8; }
+  std::size_t share() const {
+    return level_ == 0 ? options_.max_memory : (options_.max_memory - memory_of_shelf()) / level_;
+  }
+
+  std::span<const std::size_t> takes_;
+  const SweepRun& options_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::size_t next_ = 0;
+  struct Again {
+    std::size_t take = 0;
+    std::size_t level = 0;  // at most
+  };
+  std::deque<Again> again_;  // takes that lacked memory, after all others
+  std::size_t level_;
+  std::size_t short_count_ = 0,
+              done_count_ = 0;  // of takes at this level that lacked memory or not
+  std::size_t memory_used_ = 0;
+  std::size_t running_ = 0;
+  bool is_ended_ = false;
+  Result<void> error_;
+  std::optional<ShapeShelf> shelf_;
+};
+
+}  // namespace
+
+TakeOutcome Sweep::run(std::size_t take, const TakeRun& options) const {
+  const auto begin = std::chrono::steady_clock::now();
+  TakeOutcome outcome{.take = take, .measures = Measures()};
+  const auto run_it = [&]() -> Result<Measures> {
+    auto scene = scene_of(take);
+    if (!scene) return fail(scene.error());
+    if (options.check) {
+      if (auto same = options.check(*scene); !same) return fail(same.error());
+    }
+    const auto frames = frames_of(*scene);
+    if (!frames) return fail(frames.error());
+    auto simulation = Simulation::make(*scene, {.checkpoint_bytes = 0,
+                                                .max_memory = options.max_memory,
+                                                .threads = options.threads,
+                                                .solver = settings_.solver,
+                                                .should_stop = options.should_stop,
+                                                .shapes = options.shapes});
+    if (!simulation) return fail(simulation.error());
+    outcome.memory = simulation->surface_memory();
+    return play(*simulation, *frames, options, *scene);
+  };
+  try {
+    outcome.measures = run_it();
+  } catch (const std::bad_alloc&) {
+    outcome.measures = fail(ErrorCode::OutOfMemory, "the machine has no more memory");
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return outcome;
+}
+
+Result<void> Sweep::run(std::span<const std::size_t> takes, const SweepRun& options) const {
+  PLIANT_EXPECTS(options.threads >= 1);
+  if (takes.empty()) return {};
+  Turns turns(takes, options);
+  const auto should_stop = [&] {
+    return (options.should_stop && options.should_stop()) || turns.is_ended();
+  };
+  const std::size_t workers = turns.at_once();
+  ThreadPool threads(static_cast<int>(workers));
+  threads.for_each(workers, [&](std::size_t) {
+    while (const auto turn = turns.next()) {
+      const TakeRun run{.max_memory = turn->memory,
+                        .threads = turn->threads,
+                        .should_stop = should_stop,
+                        .shapes = turn->shapes,
+                        .file = options.file_of ? options.file_of(turn->take) : std::string(),
+                        .check = options.check};
+      try {
+        turns.end(*turn, this->run(turn->take, run));
+      } catch (...) {  // of a force or a callback of the program
+        turns.abandon();
+        throw;
+      }
+    }
+  });
+  return turns.result();
+}
+
+}  // namespace pliant

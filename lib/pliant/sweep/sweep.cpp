@@ -1,0 +1,126 @@
+#include "pliant/sweep/sweep.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/scene/change.hpp"
+#include "pliant/scene/change_texts.hpp"
+
+namespace pliant {
+namespace {
+
+bool is_whole(const VariedPath& path) {
+  return path.kind == SceneChange::Kind::Set &&
+         std::count(path.path.begin(), path.path.end(), '.') == 1;
+}
+
+// The error of a change, whose message begins with the change, after `begin`.
+Error told_after(Error error, const std::string& begin) {
+  error.message = begin + error.message;
+  return error;
+}
+
+// Calls `visit` with a scene for each text of a path, changed by it and by what is set; `visit`
+// gets the result of changing it.
+template <class Visit>
+Result<void> visit_texts(const Scene& base, const Takes& takes, std::size_t path,
+                         const std::string& root, const Visit& visit) {
+  const VariedPath& varied = takes.paths()[path];
+  Scene scene = base;
+  for (const std::string_view text : takes.texts_of(path)) {
+    // A whole value takes the place of the last one.
+    if (!is_whole(varied)) scene = base;
+    const SceneChange change{varied.kind, varied.path, std::string(text)};
+    auto made = make_changes(scene, std::span(&change, 1), root);
+    if (auto done = visit(scene, made); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+Sweep::Sweep(std::vector<Scene> scenes, Takes takes, SweepSettings settings)
+    : scenes_(std::move(scenes)), takes_(std::move(takes)), settings_(std::move(settings)) {
+  PLIANT_EXPECTS(scenes_.size() == takes_.parts().scene_count);
+}
+
+Result<Sweep> Sweep::make(std::vector<Scene> scenes, Takes takes, SweepSettings settings,
+                          const StopRequest& should_stop) {
+  Sweep sweep(std::move(scenes), std::move(takes), std::move(settings));
+  if (auto checked = sweep.check_values(should_stop); !checked) return fail(checked.error());
+  if (auto checked = sweep.check_frames(); !checked) return fail(checked.error());
+  return sweep;
+}
+
+Sweep Sweep::unchecked(std::vector<Scene> scenes, Takes takes, SweepSettings settings) {
+  return {std::move(scenes), std::move(takes), std::move(settings)};
+}
+
+Result<void> Sweep::check_values(const StopRequest& should_stop) const {
+  for (const Scene& scene : scenes_) {
+    Scene base = scene;
+    if (auto made = make_changes(base, takes_.set(), settings_.root); !made)
+      return fail(told_after(made.error(), "--set "));
+    for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
+      const VariedPath& varied = takes_.paths()[path];
+      auto checked = check_change_texts(base, {varied.kind, varied.path}, takes_.texts_of(path),
+                                        settings_.root, should_stop);
+      if (checked) continue;
+      if (checked.error().code == ErrorCode::Interrupted) return checked;
+      return fail(told_after(checked.error(), varied.option + ": "));
+    }
+  }
+  return {};
+}
+
+Result<void> Sweep::check_frames() const {
+  for (const VariedPath& path : takes_.paths()) {
+    if (path.path == "scene.start" || path.path == "scene.end") return {};
+  }
+  for (const Scene& scene : scenes_) {
+    Scene base = scene;
+    if (auto made = make_changes(base, takes_.set(), settings_.root); !made) return made;
+    if (auto frames = frames_of(base); !frames) return fail(frames.error());
+  }
+  return {};
+}
+
+Result<void> Sweep::for_each_variant(
+    const std::function<Result<void>(const Scene&)>& look_at) const {
+  for (const Scene& scene : scenes_) {
+    Scene base = scene;
+    if (auto made = make_changes(base, takes_.set(), settings_.root); !made) return made;
+    if (auto looked = look_at(base); !looked) return looked;
+    for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
+      if (!names_file(base, takes_.paths()[path].path)) continue;
+      const auto look = [&](const Scene& changed, const Result<void>& made) {
+        return made ? look_at(changed) : Result<void>();
+      };
+      if (auto looked = visit_texts(base, takes_, path, settings_.root, look); !looked)
+        return looked;
+    }
+  }
+  return {};
+}
+
+Result<Scene> Sweep::scene_of(std::size_t take) const {
+  PLIANT_EXPECTS(take < takes_.count());
+  Scene scene = scenes_[takes_.scene_of(take)];
+  if (auto made = make_changes(scene, takes_.changes(take), settings_.root); !made)
+    return fail(made.error());
+  return scene;
+}
+
+Result<TakeFrames> Sweep::frames_of(const Scene& scene) const {
+  if (!settings_.frames) return TakeFrames{scene.start, scene.end};
+  const auto [first, last] = *settings_.frames;
+  if (first <= last && first >= scene.start && last <= scene.end) return *settings_.frames;
+  return fail(ErrorCode::InvalidInput, fmt::format("--frames {}:{}: the scene has frames {} to {}",
+                                                   first, last, scene.start, scene.end));
+}
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/scene_texts.hpp"
+#include "pliant/sweep/folder.hpp"
+#include "pliant/sweep/input_hashes.hpp"
+#include "pliant/sweep/takes.hpp"
+
+namespace pliant {
+
+// The file sweep.json: what was asked, and everything that takes are made from. Internal to sweep.
+
+struct SweepFile {
+  std::string version = {};  ///< of pliant
+  std::string engine = {};   ///< its digest
+  SweepRequest request = {};
+  std::string table_hash = {};  ///< of the table in the request, which itself is not stored
+  std::vector<SceneTexts> texts = {};
+  std::vector<InputHash> inputs = {};
+  TakeParts takes = {};
+};
+
+/// Writes it, whole or not at all. Errors: InvalidInput: a name is no UTF-8; Unwritable.
+Result<void> write_sweep_file(const SweepFile& content, const std::filesystem::path& file);
+
+/// Errors: Unreadable; InvalidInput: it is no such file.
+Result<SweepFile> read_sweep_file(const std::filesystem::path& file);
+
+/// What differs between a sweep and what is asked now, in words that can follow `it has `; empty:
+/// nothing does. The hashes of files do not count.
+std::string difference_of(const SweepFile& there, const SweepFile& asked);
+
+}  // namespace pliant

@@ -1,0 +1,225 @@
+#include "pliant/sweep/takes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/sweep/csv.hpp"
+#include "pliant/sweep/sobol.hpp"
+#include "pliant/sweep/values.hpp"
+
+namespace pliant {
+namespace {
+
+tl::unexpected<Error> refuse(std::string message) {
+  return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+std::string vary_option(const std::string& typed) { return "--vary " + printable(typed); }
+
+}  // namespace
+
+std::string VariedPath::title() const {
+  return path + (kind == SceneChange::Kind::Times  ? "*"
+                 : kind == SceneChange::Kind::Plus ? "+"
+                                                   : "");
+}
+
+Result<Takes> Takes::make(const SweepVariation& variation) {
+  Takes takes;
+  takes.parts_.scene_count = variation.scene_count;
+  for (const std::string& typed : variation.set) {
+    auto change = parse_change(typed);
+    if (!change) return refuse("--set " + change.error().message);
+    for (const SceneChange& other : takes.parts_.set) {
+      if (change->overlaps(other) || other.overlaps(*change))
+        return refuse(fmt::format("--set {}: {} changes the same value", typed, other.typed()));
+    }
+    takes.parts_.set.push_back(*std::move(change));
+  }
+  if (variation.table) {
+    if (!variation.vary.empty() || variation.samples)
+      return refuse("--takes: the table says what varies, so it excludes --vary and --sample");
+    if (auto read = takes.read_table(*variation.table); !read) return fail(read.error());
+  } else if (auto read = takes.read_axes(variation); !read) {
+    return fail(read.error());
+  }
+  if (auto counted = takes.count_takes(); !counted) return fail(counted.error());
+  return takes;
+}
+
+Result<Takes> Takes::of(TakeParts parts) {
+  const auto is_sound = [&](const TakeAxis& axis) {
+    return axis.count >= 1 && !axis.paths.empty() &&
+           axis.texts.size() == axis.count * axis.paths.size() &&
+           std::all_of(axis.paths.begin(), axis.paths.end(),
+                       [&](std::size_t path) { return path < parts.paths.size(); });
+  };
+  std::vector<int> uses(parts.paths.size());
+  bool are_sound = parts.scene_count >= 1;
+  for (const TakeAxis& axis : parts.axes) {
+    are_sound = are_sound && is_sound(axis);
+    if (!are_sound) break;
+    for (const std::size_t path : axis.paths) ++uses[path];
+  }
+  if (!are_sound || !std::all_of(uses.begin(), uses.end(), [](int count) { return count == 1; }))
+    return refuse("the axes of the takes do not belong together");
+  Takes takes;
+  takes.parts_ = std::move(parts);
+  if (auto counted = takes.count_takes(); !counted) return fail(counted.error());
+  return takes;
+}
+
+Result<void> Takes::add_path(const std::string& option, const SceneChange& change) {
+  for (const SceneChange& other : parts_.set) {
+    if (change.overlaps(other) || other.overlaps(change))
+      return refuse(fmt::format("{}: --set {} sets the same value", option, other.typed()));
+  }
+  for (const VariedPath& other : parts_.paths) {
+    const SceneChange earlier{other.kind, other.path, {}};
+    if (change.overlaps(earlier) || earlier.overlaps(change))
+      return refuse(fmt::format("{}: {} varies the same value", option, other.title()));
+  }
+  parts_.paths.push_back({change.path, change.kind, option});
+  return {};
+}
+
+Result<void> Takes::read_axes(const SweepVariation& variation) {
+  struct Interval {
+    double from, to;
+  };
+  std::vector<Interval> intervals;
+  TakeAxis sampled;
+  for (const std::string& typed : variation.vary) {
+    const std::string option = vary_option(typed);
+    const auto change = parse_change(typed);
+    if (!change) return refuse(option + ": write PATH=VALUES, PATH*=VALUES or PATH+=VALUES");
+    auto values = parse_axis_values(change->text);
+    if (!values) return refuse(fmt::format("{}: {}", option, values.error().message));
+    if (auto added = add_path(option, *change); !added) return added;
+    if (!values->is_interval()) {
+      const std::size_t count = values->texts.size();
+      parts_.axes.push_back({{parts_.paths.size() - 1}, std::move(values->texts), count});
+      continue;
+    }
+    if (!variation.samples)
+      return refuse(
+          fmt::format("{}: an interval needs --sample N, the number of points in it; or "
+                      "write A:B:N",
+                      option));
+    if (intervals.size() == most_intervals)
+      return refuse(fmt::format("{}: at most {} intervals can be sampled", option, most_intervals));
+    intervals.push_back({values->from, values->to});
+    sampled.paths.push_back(parts_.paths.size() - 1);
+  }
+  if (!variation.samples) return {};
+  if (intervals.empty())
+    return refuse("--sample: no --vary has an interval A:B to take points from");
+  if (*variation.samples < 1 || *variation.samples > most_takes)
+    return refuse(fmt::format("--sample {}: must be an integer from 1 to {}", *variation.samples,
+                              most_takes));
+  sampled.count = *variation.samples;
+  const std::vector<double> points = sobol_points(intervals.size(), 0, sampled.count);
+  sampled.texts.reserve(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [from, to] = intervals[k % intervals.size()];
+    const double value = from + (to - from) * points[k];
+    if (!std::isfinite(value))
+      return refuse(fmt::format("--sample: the interval {}:{} is too long", from, to));
+    sampled.texts.push_back(fmt::format("{}", value));
+  }
+  parts_.axes.insert(parts_.axes.begin(), std::move(sampled));
+  return {};
+}
+
+Result<void> Takes::read_table(std::string_view text) {
+  auto rows = parse_csv(text);
+  const auto at_line = [](int line, const std::string& message) {
+    return refuse(fmt::format("--takes, line {}: {}", line, message));
+  };
+  if (!rows) return at_line(rows.error().line, rows.error().message);
+  if (rows->size() < 2)
+    return refuse("--takes: the table needs a header of paths, and a row a take");
+  const CsvRow& header = rows->front();
+  TakeAxis axis;
+  for (const std::string& field : header.fields) {
+    SceneChange change{.path = field};
+    if (!field.empty() && (field.back() == '*' || field.back() == '+')) {
+      change.kind = field.back() == '*' ? SceneChange::Kind::Times : SceneChange::Kind::Plus;
+      change.path.pop_back();
+    }
+    if (change.path.empty()) return at_line(header.line, "a path is missing in the header");
+    axis.paths.push_back(parts_.paths.size());
+    if (auto added = add_path(fmt::format("--takes, line {}: {}", header.line, field), change);
+        !added)
+      return added;
+  }
+  axis.count = rows->size() - 1;
+  for (std::size_t k = 1; k < rows->size(); ++k) {
+    CsvRow& row = (*rows)[k];
+    if (row.fields.size() != header.fields.size())
+      return at_line(row.line, fmt::format("has {} values, but the header has {} paths",
+                                           row.fields.size(), header.fields.size()));
+    std::move(row.fields.begin(), row.fields.end(), std::back_inserter(axis.texts));
+  }
+  parts_.axes.push_back(std::move(axis));
+  return {};
+}
+
+Result<void> Takes::count_takes() {
+  if (parts_.axes.empty() && parts_.scene_count < 2)
+    return refuse("nothing varies; give --vary, --takes or several scenes");
+  double all = static_cast<double>(parts_.scene_count);
+  for (const TakeAxis& axis : parts_.axes) all *= static_cast<double>(axis.count);
+  if (all > static_cast<double>(most_takes))
+    return refuse(
+        fmt::format("{:.0f} takes are too many; at most {} are allowed", all, most_takes));
+  count_ = static_cast<std::size_t>(all);
+  return {};
+}
+
+std::size_t Takes::row_of(std::size_t axis, std::size_t take) const {
+  for (std::size_t k = parts_.axes.size(); k-- > axis + 1;) take /= parts_.axes[k].count;
+  return take % parts_.axes[axis].count;
+}
+
+std::size_t Takes::scene_of(std::size_t take) const { return take / (count_ / parts_.scene_count); }
+
+std::vector<std::string_view> Takes::texts(std::size_t take) const {
+  std::vector<std::string_view> texts(parts_.paths.size());
+  for (std::size_t k = 0; k < parts_.axes.size(); ++k) {
+    const TakeAxis& axis = parts_.axes[k];
+    const std::size_t first = row_of(k, take) * axis.paths.size();
+    for (std::size_t n = 0; n < axis.paths.size(); ++n)
+      texts[axis.paths[n]] = axis.texts[first + n];
+  }
+  return texts;
+}
+
+std::vector<SceneChange> Takes::changes(std::size_t take) const {
+  std::vector<SceneChange> changes = parts_.set;
+  const std::vector<std::string_view> own = texts(take);
+  for (std::size_t k = 0; k < parts_.paths.size(); ++k)
+    changes.push_back({parts_.paths[k].kind, parts_.paths[k].path, std::string(own[k])});
+  return changes;
+}
+
+std::vector<std::string_view> Takes::texts_of(std::size_t path) const {
+  std::vector<std::string_view> texts;
+  std::unordered_set<std::string_view> known;
+  for (const TakeAxis& axis : parts_.axes) {
+    const auto found = std::find(axis.paths.begin(), axis.paths.end(), path);
+    if (found == axis.paths.end()) continue;
+    for (auto k = static_cast<std::size_t>(found - axis.paths.begin()); k < axis.texts.size();
+         k += axis.paths.size()) {
+      if (known.insert(axis.texts[k]).second) texts.push_back(axis.texts[k]);
+    }
+  }
+  return texts;
+}
+
+}  // namespace pliant

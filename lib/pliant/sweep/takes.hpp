@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/change.hpp"
+
+namespace pliant {
+
+/// What varies in a sweep, as typed. SWEEP.
+struct SweepVariation {
+  std::size_t scene_count = 1;         ///< the first axis if there are several
+  std::vector<std::string> set = {};   ///< `--set`: in every take
+  std::vector<std::string> vary = {};  ///< `--vary PATH=VALUES`, `PATH*=VALUES`, `PATH+=VALUES`
+  std::optional<std::size_t> samples = {};  ///< `--sample`: points for all intervals together
+  std::optional<std::string> table = {};    ///< `--takes`: the text of a CSV, in place of `vary`
+};
+
+/// A value that differs from take to take.
+struct VariedPath {
+  std::string path;
+  SceneChange::Kind kind = SceneChange::Kind::Set;
+  std::string option = {};  ///< as typed, for messages: `--vary PATH=VALUES`; empty: unknown
+
+  std::string title() const;  ///< as the table heads it: PATH, `PATH*` or `PATH+`
+};
+
+/// Paths that vary together: row k has the text of each, one after the other.
+struct TakeAxis {
+  std::vector<std::size_t> paths = {};  ///< by their index
+  std::vector<std::string> texts = {};  ///< count x paths
+  std::size_t count = 0;                ///< of rows, >= 1
+};
+
+/// What a `Takes` consists of, to store it.
+struct TakeParts {
+  std::size_t scene_count = 1;
+  std::vector<SceneChange> set = {};   ///< made in every take
+  std::vector<VariedPath> paths = {};  ///< in the order of the table
+  std::vector<TakeAxis> axes = {};     ///< the slowest first, without the scenes
+};
+
+/// All takes of a sweep: the product of its axes, the last one fastest, numbered from 0. The scenes
+/// are the slowest axis, then all intervals together, then the others as typed.
+class Takes {
+ public:
+  /// Errors: InvalidInput, beginning with the option as typed: a word that is none; a path that is
+  /// varied twice, or set too; an interval without samples or samples without an interval; more
+  /// than `most_intervals`; nothing that varies; more than `most_takes` takes, with their number; a
+  /// table whose rows are not as wide as its header, with the line.
+  static Result<Takes> make(const SweepVariation& variation);
+
+  /// The same from its parts. Errors: InvalidInput: they do not belong together.
+  static Result<Takes> of(TakeParts parts);
+
+  const TakeParts& parts() const { return parts_; }
+
+  std::size_t count() const { return count_; }
+  std::size_t scene_of(std::size_t take) const;
+
+  const std::vector<SceneChange>& set() const { return parts_.set; }
+  const std::vector<VariedPath>& paths() const { return parts_.paths; }
+
+  /// The text of each path in a take.
+  std::vector<std::string_view> texts(std::size_t take) const;
+
+  /// What is changed in its scene: what is set, then each path.
+  std::vector<SceneChange> changes(std::size_t take) const;
+
+  /// Each text that a path has in some take, in the order of the first take that has it.
+  std::vector<std::string_view> texts_of(std::size_t path) const;
+
+ private:
+  Result<void> read_axes(const SweepVariation& variation);
+  Result<void> read_table(std::string_view text);
+  Result<void> add_path(const std::string& option, const SceneChange& change);
+  Result<void> count_takes();
+  std::size_t row_of(std::size_t axis, std::size_t take) const;
+
+  TakeParts parts_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace pliant

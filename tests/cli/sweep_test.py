@@ -1,0 +1,381 @@
+"""`pliant sweep`: its tables and bits, and what a kill, a full disk and a broken machine do to it.
+
+PLIANT_SWEEP_KILLS is the number of runs that are killed at random moments, 20 by default.
+"""
+
+import csv
+import glob
+import io
+import json
+import math
+import os
+import random
+import resource
+import signal
+import subprocess
+import time
+
+from command import PLIANT, SANITIZED, Command, main
+
+SCENE = """<scene version="1" start="1" end="{end}">
+  <surface name="sheet"><grid columns="{columns}" rows="9" width="10" depth="10"/>
+    <material density="{density}" damping="5" c="{c}"/></surface>
+  <point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2.5" magnitude="{magnitude}"/>
+</scene>
+"""
+PLAIN = {"end": 8, "columns": 11, "density": 1, "c": 2, "magnitude": 900}
+VARY = ("--vary", "sheet.density=1,3", "--vary", "poke.magnitude*=0.5:2:4")
+KILLS = int(os.environ.get("PLIANT_SWEEP_KILLS", "4" if SANITIZED else "20"))
+
+
+def edited(**changed):
+    return SCENE.format(**{**PLAIN, **changed})
+
+
+class Sweeps(Command):
+    def sweep(self, *arguments, **options):
+        return self.run_pliant("sweep", *arguments, **options)
+
+    def make(self, name="s", *options, vary=VARY, scene=None, code=0):
+        scene = scene or self.write("scene.xml", edited())
+        return self.sweep("run", scene, "-o", self.path(name), *vary, *options, code=code)
+
+    def table(self, name="s"):
+        return self.read(f"{name}/takes.csv")
+
+    def rows(self, name="s"):
+        return list(csv.DictReader(io.StringIO(self.table(name).decode())))
+
+    def tree(self):
+        return {os.path.join(folder, name): os.stat(os.path.join(folder, name)).st_mtime_ns
+                for folder, _, names in os.walk(self.folder) for name in names}
+
+    def undisturbed(self, *options, vary=VARY):
+        self.make("undisturbed", "--threads", "1", *options, vary=vary)
+        return self.table("undisturbed")
+
+    # Values and bits.
+
+    def test_each_take_has_the_bits_of_the_scene_edited_by_hand(self):
+        self.make("s", "--write", "npy", vary=("--vary", "sheet.density=1,3", "--vary", "poke.magnitude=450,900",
+                                               "--vary", "sheet.columns=9,11"))
+        rows = self.rows()
+        self.assertEqual(len(rows), 8)
+        for number, row in enumerate(rows):
+            scene = self.write("edited.xml", edited(density=row["sheet.density"], columns=row["sheet.columns"],
+                                                    magnitude=row["poke.magnitude"]))
+            summary = self.run_pliant("bake", scene, "-o", self.path("edited.npy")).stdout
+            self.assertEqual(self.read("edited.npy"), self.read(f"s/takes/{number:05}.npy"))
+            self.assertIn(f"peak displacement {float(row['peak']):.6g}", summary)
+            self.sweep("bake", self.path("s"), str(number), "-o", self.path("one.npy"))
+            self.assertEqual(self.read("edited.npy"), self.read("one.npy"))
+        self.assertEqual(len({row["hash"] for row in rows}), 8)
+
+    def test_measures_and_hash_are_those_of_the_animation(self):
+        import numpy
+        self.make("s", "--write", ".npy", "--frames", "2:7", vary=("--vary", "sheet.density=0.5,20"))
+        for number, row in enumerate(self.rows()):
+            x = numpy.load(self.path(f"s/takes/{number:05}.npy"))
+            self.run_pliant("bake", self.path("scene.xml"), "-o", self.path("rest.npy"), "--frames", "1")
+            rest = numpy.load(self.path("rest.npy"))[0]
+            away = numpy.sqrt(((x - rest) ** 2).sum(axis=2))
+            steps = numpy.sqrt(((x[1:] - x[:-1]) ** 2).sum(axis=2))
+            length = 1 / 24
+            close = lambda name, value: self.assertTrue(math.isclose(float(row[name]), value, rel_tol=1e-12), name)
+            close("peak", away.max())
+            self.assertEqual(int(row["peakFrame"]), 2 + int(away.max(axis=1).argmax()))
+            close("final", away[-1].max())
+            close("rms", math.sqrt((away ** 2).mean()))
+            close("speed", steps.max() / length)
+            close("energy", (steps ** 2).sum(axis=1).max() / (2 * x.shape[1] * length ** 2))
+            late = [frame for frame in range(len(steps)) if steps[frame].max() > away.max() / 1000]
+            self.assertEqual(int(row["settle"]), 2 + (late[-1] + 1 if late else 0))
+
+    def test_a_table_from_elsewhere(self):
+        takes = self.write("design.csv", 'sheet.density,poke.magnitude*,"poke.center"\n1,2,0 0 0\n7,0.5,"1 0 0"\n')
+        self.make("s", vary=("--takes", takes))
+        text = self.table().decode()
+        self.assertTrue(text.startswith("take,status,sheet.density,poke.magnitude*,poke.center,peak,"), text)
+        self.assertIn("\n1,done,7,0.5,1 0 0,", text)
+
+    def test_several_scenes_are_the_first_axis(self):
+        one, two = self.write("one.xml", edited()), self.write("two.xml", edited(density=9))
+        self.sweep("run", one, two, "-o", self.path("s"), "--set", "poke.magnitude=500", "--vary", "sheet.c=1,2")
+        self.assertEqual([(row["scene"], row["sheet.c"]) for row in self.rows()],
+                         [(one, "1"), (one, "2"), (two, "1"), (two, "2")])
+        hashes = [row["hash"] for row in self.rows()]
+        self.assertEqual(len(set(hashes)), 4)
+
+    def test_samples_begin_with_the_same_takes(self):
+        vary = ("--vary", "sheet.density=1:3", "--vary", "poke.magnitude=100:900")
+        self.make("few", "--sample", "2", vary=vary)
+        self.make("many", "--sample", "5", vary=vary)
+        few, many = self.table("few").splitlines(), self.table("many").splitlines()
+        self.assertEqual(few, many[:3])
+        self.assertTrue(few[1].startswith(b"0,done,2,500,"), few[1])
+
+    def test_a_dry_run_prints_the_table_as_it_begins_and_writes_nothing(self):
+        scene = self.write("scene.xml", edited())
+        before = self.tree()
+        text = self.make("s", "--dry-run", scene=scene).stdout
+        self.assertEqual(self.tree(), before)
+        self.assertEqual(text.splitlines()[0], "take,status,sheet.density,poke.magnitude*,peak,peakFrame,final,rms,"
+                                               "speed,energy,settle,hash,error")
+        self.assertEqual(text.splitlines()[5], "4,missing,3,0.5,,,,,,,,,")
+        self.make("s", "--make-only", scene=scene)
+        self.sweep("status", self.path("s"), code=1)
+        self.assertEqual(self.table().decode(), text)
+
+    # What is wrong.
+
+    def test_wrong_usage_is_told_ahead_of_all_work(self):
+        scene = self.write("scene.xml", edited())
+        for options, parts in [
+                (["--vary", "sheet.densty=1,2"], ["--vary sheet.densty=1,2: ", 'did you mean "density"']),
+                (["--vary", "sheet.density=1,-2"], ["--vary sheet.density=1,-2: ", "at least 0"]),
+                (["--vary", "sheet.density=1:2"], ["--vary sheet.density=1:2: ", "--sample"]),
+                (["--vary", "sheet.density=1:2:0"], ["no count"]),
+                (["--vary", "sheet.density=1..2", "--set", "sheet.density=2"], ["--set sheet.density=2"]),
+                (["--vary", "sheet.density=1..2000", "--vary", "poke.magnitude=1..2000"], ["4000000 takes"]),
+                (["--vary", "sheet.density=1", "--part", "3/3"], ["--part 3/3"]),
+                (["--vary", "sheet.density=1", "--frames", "1:99"], ["--frames 1:99", "1 to 8"]),
+                (["--vary", "sheet.density=1", "--write", "abc"], ["--write abc"]),
+                (["--vary", "sheet.density=1", "--sample", "0"], ["--sample 0"]),
+                (["--vary", "sheet.density=1", "--make-only", "--part", "0/2"], ["--part", "--make-only"]),
+                (["--vary", "sheet.density=1", "--engine", "slurm"], ["--engine"]),
+                ([], ["nothing varies"])]:
+            with self.subTest(options=options):
+                before = self.tree()
+                errors = self.sweep("run", scene, "-o", self.path("s"), *options, code=2).stderr
+                for part in parts:
+                    self.assertIn(part, errors)
+                self.assertEqual(self.tree(), before)
+        self.assertIn("-o DIR is missing", self.sweep("run", scene, "--vary", "sheet.density=1", code=2).stderr)
+        self.assertIn("sweep.json", self.sweep("status", self.folder, code=2).stderr)
+
+    def test_another_sweep_in_the_folder_is_refused(self):
+        self.make()
+        before = self.tree()
+        errors = self.make("s", vary=("--vary", "sheet.density=1,4"), code=2).stderr
+        self.assertIn("it has --vary sheet.density=1,3", errors)
+        self.assertIn("not --vary sheet.density=1,4", errors)
+        self.assertIn("is a sweep already", self.sweep("run", self.path("s"), "--vary", "a.b=1", code=2).stderr)
+        self.assertEqual({name: stamp for name, stamp in self.tree().items() if "/s/" in name},
+                         {name: stamp for name, stamp in before.items() if "/s/" in name})
+        self.write("scene.xml", edited(density=2))
+        self.assertIn("scene.xml", self.sweep("run", self.path("scene.xml"), "-o", self.path("s"), *VARY, code=2).stderr)
+        self.sweep("run", self.path("s"))  # takes run the text that they were made of
+
+    def test_failed_takes_are_named(self):
+        result = self.make("s", vary=("--vary", "sheet.c=-5,2", "--vary", "sheet.d=1,9"), code=1)
+        self.assertIn("take 0 (sheet.c=-5, sheet.d=1): ", result.stderr)
+        self.assertIn("4 takes, 3 done, 1 failed, 0 missing", result.stdout)
+        row = self.rows()[0]
+        self.assertEqual((row["status"], row["peak"], row["hash"]), ("failed", "", ""))
+        self.assertIn(f"): {row['error']}", result.stderr)
+        again = self.sweep("run", self.path("s"), code=1)
+        self.assertEqual(len(glob.glob(self.path("s/log/*"))), 1)
+        self.assertEqual(again.stderr, result.stderr)
+        self.sweep("run", self.path("s"), "--retry", code=1)
+        self.assertEqual(len(glob.glob(self.path("s/log/*"))), 2)
+        many = self.make("many", vary=("--vary", "sheet.c=-5", "--vary", "sheet.density=1..13"), code=1)
+        self.assertEqual(len(many.stderr.splitlines()), 11)
+        self.assertIn("3 other takes failed too", many.stderr)
+
+    def test_a_changed_mesh_fails_the_take_by_name(self):
+        mesh = "".join(f"v {i} 0 {j}\n" for j in range(5) for i in range(5))
+        mesh += "".join(f"vt {i / 4} {j / 4}\n" for j in range(5) for i in range(5))
+        for j in range(4):
+            for i in range(4):
+                corners = [5 * j + i + 1, 5 * j + i + 2, 5 * j + i + 7, 5 * j + i + 6]
+                mesh += "f " + " ".join(f"{corner}/{corner}" for corner in corners) + "\n"
+        self.write("a.obj", mesh)
+        self.write("b.obj", mesh.replace("v 2 0 2\n", "v 2 0.25 2\n"))
+        scene = self.write("mesh.xml", '<scene version="1" start="1" end="4"><surface name="m"><mesh file="a.obj"/>'
+                           '</surface><point name="p" center="2 0 2" deformationRadius="2" magnitude="9"/></scene>')
+        vary = ("--vary", "m.file=a.obj,b.obj", "--vary", "m.density=1,2")
+        self.make("wanted", scene=scene, vary=vary)
+        self.assertEqual(len({row["hash"] for row in self.rows("wanted")}), 4)
+        self.make("s", "--make-only", scene=scene, vary=vary)
+        kept = self.read("b.obj").decode()
+        self.write("b.obj", kept + "# edited\n")
+        result = self.sweep("run", self.path("s"), code=1)
+        self.assertIn("take 2 (m.file=b.obj, m.density=1): ", result.stderr)
+        self.assertIn("b.obj has changed", result.stderr)
+        self.assertEqual([row["status"] for row in self.rows()], ["done", "done", "failed", "failed"])
+        self.write("b.obj", kept)
+        self.sweep("run", self.path("s"), "--retry")
+        self.assertEqual(self.table(), self.table("wanted"))
+
+    # Parts, kills, machines.
+
+    def test_parts_in_any_order_give_the_same_table(self):
+        wanted = self.undisturbed("--write", "obj")
+        self.make("s", "--make-only", "--write", "obj")
+        for part in (2, 0, 1):
+            out = self.sweep("run", self.path("s"), "--part", f"{part}/3").stdout
+            self.assertIn(f"part {part}/3: ", out)
+        self.assertFalse(os.path.exists(self.path("s/takes.csv")))
+        self.sweep("status", self.path("s"))
+        self.assertEqual(self.table(), wanted)
+        self.sweep("run", self.path("s"), "--part", "9/10")  # has no take
+
+    def test_two_workers_on_one_part(self):
+        wanted = self.undisturbed("--write", "npy")
+        self.make("s", "--make-only", "--write", "npy")
+        command = [PLIANT, "sweep", "run", self.path("s"), "--threads", "1", "--quiet"]
+        workers = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+        for worker in workers:
+            self.assertEqual(worker.communicate(timeout=120)[1], "")
+            self.assertEqual(worker.returncode, 0)
+        self.sweep("status", self.path("s"))
+        self.assertEqual(self.table(), wanted)
+        self.assertEqual(self.read("s/takes/00003.npy"), self.read("undisturbed/takes/00003.npy"))
+
+    def test_a_kill_at_any_moment_loses_only_takes_under_way(self):
+        vary = ("--vary", "sheet.density=1..12", "--vary", "sheet.columns=11,41")
+        begin = time.monotonic()
+        wanted = self.undisturbed("--write", "npy", vary=vary)
+        whole = time.monotonic() - begin
+        source = random.Random(1)
+        runs = 0
+        while runs < KILLS:
+            name = f"s{runs}"
+            scene = self.path("scene.xml")
+            first = [PLIANT, "sweep", "run", scene, "-o", self.path(name), *vary, "--write", "npy", "--threads", "2"]
+            done = 0
+            while runs < KILLS:
+                part = source.choice([[], ["--part", "0/2"], ["--part", "1/2"]])
+                with subprocess.Popen([*first, *part], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+                    time.sleep(source.uniform(0, whole))
+                    process.send_signal(signal.SIGKILL)
+                runs += 1
+                if process.returncode == 0 and not part:
+                    break
+                lines = self.whole_lines(name)
+                self.assertGreaterEqual(lines, done)  # nothing is lost
+                done = lines
+            self.run_pliant(*first[1:])
+            self.assertEqual(self.table(name), wanted)
+            for take in (0, 23):
+                self.assertEqual(self.read(f"{name}/takes/{take:05}.npy"), self.read(f"undisturbed/takes/{take:05}.npy"))
+
+    def whole_lines(self, name):
+        takes = set()
+        for file in glob.glob(self.path(f"{name}/log/*.jsonl")):
+            with open(file, encoding="utf-8") as lines:
+                takes.update(json.loads(line)["take"] for line in lines if line.endswith("\n"))
+        return len(takes)
+
+    def test_an_interrupt_ends_within_a_second_and_keeps_what_ended(self):
+        vary = ("--vary", "sheet.density=1..400")
+        for number in (signal.SIGINT, signal.SIGTERM):
+            name = f"s{number}"
+            scene = self.write("scene.xml", edited(end=60, columns=61))
+            with subprocess.Popen([PLIANT, "sweep", "run", scene, "-o", self.path(name), *vary, "--write", "npy"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                deadline = time.monotonic() + 60
+                while not self.log_size(name) and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                process.send_signal(number)
+                begin = time.monotonic()
+                _, errors = process.communicate(timeout=60)
+                took = time.monotonic() - begin
+            self.assertEqual(process.returncode, 1, errors)
+            self.assertIn("takes that ended are kept", errors)
+            if not SANITIZED:
+                self.assertLess(took, 3)  # a second, on a machine that others use too
+            self.assertFalse(glob.glob(self.path(f"{name}/**/.*"), recursive=True))
+            self.assertGreater(self.whole_lines(name), 0)
+
+    def log_size(self, name):
+        return sum(os.path.getsize(file) for file in glob.glob(self.path(f"{name}/log/*.jsonl")))
+
+    def test_half_lines_count_for_nothing(self):
+        wanted = self.undisturbed()
+        self.make("s")
+        file = glob.glob(self.path("s/log/*.jsonl"))[0]
+        with open(file, "rb") as log:
+            text = log.read()
+        for cut in random.Random(2).sample(range(len(text)), 5):
+            with open(file, "wb") as log:
+                log.write(text[:cut])
+            os.remove(self.path("s/takes.csv"))
+            self.sweep("run", self.path("s"))
+            self.assertEqual(self.table(), wanted)
+            for other in glob.glob(self.path("s/log/*.jsonl")):
+                if other != file:
+                    os.remove(other)
+
+    def test_a_take_without_its_files_is_run_again(self):
+        self.make("s", "--write", "obj")
+        kept = self.read("s/takes/00002.0003.obj")
+        os.remove(self.path("s/takes/00002.0003.obj"))
+        self.assertIn("7 done, 0 failed, 1 missing", self.sweep("status", self.path("s"), code=1).stdout)
+        self.sweep("run", self.path("s"))
+        self.assertEqual(self.read("s/takes/00002.0003.obj"), kept)
+
+    def test_a_full_disk_ends_the_run_and_loses_nothing(self):
+        wanted = self.undisturbed("--write", "npy")
+        self.make("s", "--make-only", "--write", "npy")
+        size = os.path.getsize(self.path("undisturbed/takes/00000.npy"))
+        for limit in (100, 700, size - 1):  # in the log's first line, in its third, in an animation
+            with self.subTest(limit=limit):
+                limited = self.sweep("run", self.path("s"), code=1, preexec_fn=lambda: resource.setrlimit(
+                    resource.RLIMIT_FSIZE, (limit, limit)))
+                self.assertIn("cannot write", limited.stderr)
+                self.assertFalse(glob.glob(self.path("s/**/.*"), recursive=True))
+        self.sweep("run", self.path("s"))
+        self.assertEqual(self.table(), wanted)
+
+    def test_a_broken_machine_shows_itself(self):
+        self.make("s")
+        wanted = self.table()
+        with open(glob.glob(self.path("s/log/*.jsonl"))[0], encoding="utf-8") as log:
+            line = json.loads(log.readlines()[-1])
+        # As a worker with a changed bit writes it.
+        changed = {**line, "host": "badnode", "hash": f"{int(line['hash'], 16) ^ 1:032x}"}
+        self.write("s/log/badnode.jsonl", json.dumps(changed) + "\n")
+        for command in ("status", "run"):
+            errors = self.sweep(command, self.path("s"), code=1).stderr
+            self.assertIn(f"take {line['take']}: hash differs between ", errors)
+            self.assertIn("badnode", errors)
+            self.assertIn(line["host"], errors)
+        # Alone, it is found by running the take again.
+        os.remove(self.path("s/log/badnode.jsonl"))
+        self.assertIn("verified", self.sweep("verify", self.path("s")).stdout)
+        for file in glob.glob(self.path("s/log/*.jsonl")):
+            with open(file, encoding="utf-8") as log:
+                text = log.read()
+            with open(file, "w", encoding="utf-8") as log:
+                log.write(text.replace(line["hash"], changed["hash"]))
+        out = self.sweep("verify", self.path("s"), code=1).stdout
+        self.assertEqual(out, f"take {line['take']}: hash differs\n")
+        baked = self.sweep("bake", self.path("s"), str(line["take"]), "-o", self.path("x.npy"), code=1)
+        self.assertIn(f"take {line['take']}: hash differs", baked.stderr)
+        self.assertFalse(os.path.exists(self.path("x.npy")))
+        self.assertNotEqual(wanted, b"")
+
+    def test_every_kth_take_is_verified(self):
+        self.make("s")
+        self.assertIn("3 takes verified", self.sweep("verify", self.path("s"), "--every", "3").stdout)
+
+    def test_take_numbers_of_bake(self):
+        self.make("s", "--frames", "2:5")
+        for take in ("8", "-1", "x"):
+            self.assertIn("0 to 7", self.sweep("bake", self.path("s"), "--out", self.path("x.npy"), "--", take,
+                                               code=2).stderr)
+        self.assertIn("4 frames", self.sweep("bake", self.path("s"), "3", "-o", self.path("x.npy")).stdout)
+        self.assertIn("2 frames", self.sweep("bake", self.path("s"), "3", "-o", self.path("x.npy"),
+                                             "--frames", "1:2").stdout)
+
+    def test_threads_and_memory_change_nothing(self):
+        wanted = self.undisturbed()
+        for options in (["--threads", "7"], ["--threads", "2", "--max-memory", "0.002"]):
+            name = "s" + options[1]
+            self.make(name, *options)
+            self.assertEqual(self.table(name), wanted)
+
+
+if __name__ == "__main__":
+    main()

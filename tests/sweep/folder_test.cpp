@@ -1,0 +1,235 @@
+#include "pliant/sweep/folder.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "pliant/core/read_file.hpp"
+#include "pliant/sweep/log.hpp"
+#include "support/catch.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view shot = R"(<scene version="1" start="1" end="6">
+  <include file="rig.xml"/>
+  <point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2" magnitude="900"/>
+</scene>)";
+constexpr std::string_view rig = R"(<fragment>
+  <surface name="sheet"><grid columns="9" rows="9" width="8" depth="8"/></surface>
+</fragment>)";
+
+// A folder with a scene, and what is asked of it.
+class Place {
+ public:
+  Place() {
+    folder_.write("shot.xml", shot);
+    folder_.write("rig.xml", rig);
+  }
+
+  SweepRequest request(const std::vector<std::string>& vary = {"sheet.density=1,2,3",
+                                                               "poke.magnitude*=1,2"}) const {
+    return {.scenes = {folder_.file("shot.xml").string()}, .variation = {.vary = vary}};
+  }
+  std::string sweep() const { return folder_.file("sweep").string(); }
+  std::string table() const { return read_file(folder_.file("sweep/takes.csv")).value(); }
+  std::string log() const {
+    std::string all;
+    for (const auto& entry : fs::directory_iterator(folder_.file("sweep/log")))
+      all += read_file(entry.path()).value();
+    return all;
+  }
+  const ScratchFolder& folder() const { return folder_; }
+
+ private:
+  ScratchFolder folder_;
+};
+
+std::string finish(const Place& place, const SweepFolder& folder) {
+  REQUIRE(folder.write_table(folder.status().value()));
+  return place.table();
+}
+
+std::string undisturbed_table(const SweepRequest& request) {
+  const ScratchFolder scratch;
+  const auto folder = SweepFolder::make(scratch.file("sweep").string(), request).value();
+  REQUIRE(folder.run({}));
+  REQUIRE(folder.write_table(folder.status().value()));
+  return read_file(scratch.file("sweep/takes.csv")).value();
+}
+
+std::string complaint_of(const Result<SweepFolder>& folder) {
+  REQUIRE_FALSE(folder);
+  return folder.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("the table has the same bytes whatever ran it", "[sweep][threads]") {
+  const Place place;
+  const SweepRequest request = place.request();
+  const std::string wanted = undisturbed_table(request);
+  CHECK(std::count(wanted.begin(), wanted.end(), '\n') == 7);
+  const auto folder = SweepFolder::make(place.sweep(), request).value();
+  const int way = GENERATE(0, 1, 2, 3);
+  if (way == 0) REQUIRE(folder.run({.threads = 3}));
+  if (way == 1) {  // parts, in any order
+    for (const std::size_t part : {2u, 0u, 3u, 1u}) REQUIRE(folder.run({.part = {part, 4}}));
+  }
+  if (way == 2) {  // interrupted again and again
+    for (int n = 0; n < 20 && folder.status()->missing() > 0; ++n) {
+      std::atomic<int> count = 0;
+      CHECK((folder.run({.threads = 2,
+                         .should_stop = [&] { return count > 0; },
+                         .take_done = [&](const TakeOutcome&) { ++count; }}) ||
+             count > 0));
+    }
+  }
+  if (way == 3) {  // by two that know nothing of each other
+    const auto other = SweepFolder::open(place.sweep()).value();
+    std::atomic<int> count = 0;
+    CHECK_FALSE(folder.run({.should_stop = [&] { return count > 1; },
+                            .take_done = [&](const TakeOutcome&) { ++count; }}));
+    REQUIRE(other.run({}));
+  }
+  CHECK(finish(place, folder) == wanted);
+}
+
+TEST_CASE("takes run the text that the sweep was made of", "[sweep]") {
+  const Place place;
+  const SweepRequest request = place.request();
+  const std::string wanted = undisturbed_table(request);
+  REQUIRE(SweepFolder::make(place.sweep(), request));
+  fs::remove(place.folder().file("rig.xml"));
+  place.folder().write("shot.xml", "nothing");
+  const auto folder = SweepFolder::open(place.sweep()).value();
+  REQUIRE(folder.run({}));
+  CHECK(finish(place, folder) == wanted);
+}
+
+TEST_CASE("what is no whole line counts for nothing", "[sweep]") {
+  const Place place;
+  const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
+  REQUIRE(folder.run({}));
+  const std::string wanted = finish(place, folder);
+  const std::string line = place.log().substr(0, place.log().find('\n') + 1);
+  for (std::size_t length = 0; length < line.size(); ++length) {
+    LogLine read;
+    CHECK_FALSE(read_line(
+        line.substr(0, length > 0 && length == line.size() - 1 ? length - 1 : length), read));
+  }
+  place.folder().write("sweep/log/other.jsonl", line.substr(0, line.size() / 2) + "\n\n{}\nnull\n" +
+                                                    std::string(9, '\0') + "\n{\"take\":99999}\n" +
+                                                    line.substr(0, 20));
+  CHECK(finish(place, folder) == wanted);
+  CHECK(folder.status()->is_complete());
+}
+
+TEST_CASE("different hashes of a take are found, with both hosts", "[sweep]") {
+  const Place place;
+  const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
+  REQUIRE(folder.run({}));
+  const std::string wanted = finish(place, folder);
+  std::string line = place.log().substr(0, place.log().find('\n') + 1);
+  LogLine read;
+  REQUIRE(read_line(line, read));
+  const auto put = [&](std::string_view name, const std::string& value) {
+    const std::string begin = "\"" + std::string(name) + "\":\"";
+    const std::size_t at = line.find(begin) + begin.size();
+    line.replace(at, line.find('"', at) - at, value);
+  };
+  put("host", "brokenhost");
+  put("hash", std::string(32, 'f'));
+  place.folder().write("sweep/log/z.jsonl", line);
+  const auto status = folder.status().value();
+  REQUIRE(status.conflicts.size() == 1);
+  CHECK(status.conflicts[0].take == read.take);
+  CHECK(
+      (status.conflicts[0].host == "brokenhost" || status.conflicts[0].other_host == "brokenhost"));
+  CHECK_FALSE(status.is_complete());
+  CHECK(finish(place, folder) == wanted);
+  // The same whichever line comes first.
+  fs::rename(place.folder().file("sweep/log/z.jsonl"), place.folder().file("sweep/log/0.jsonl"));
+  CHECK(finish(place, folder) == wanted);
+}
+
+TEST_CASE("failed takes are run again only if asked", "[sweep]") {
+  const Place place;
+  const auto folder =
+      SweepFolder::make(place.sweep(), place.request({"sheet.c=-5,2", "sheet.d=1,9"})).value();
+  REQUIRE(folder.run({}));
+  CHECK(folder.status()->failed == 1);
+  std::size_t count = 9;
+  REQUIRE(folder.run({.begin = [&](std::size_t n) { count = n; }}));
+  CHECK(count == 0);
+  REQUIRE(folder.run({.retry = true, .begin = [&](std::size_t n) { count = n; }}));
+  CHECK(count == 1);
+  CHECK_THAT(finish(place, folder), contains_text("0,failed,-5,1,,,,,,,,,"));
+}
+
+TEST_CASE("another sweep in a folder is refused with the difference", "[sweep]") {
+  const Place place;
+  const SweepRequest request = place.request();
+  REQUIRE(SweepFolder::make(place.sweep(), request));
+  const std::string before = read_file(place.sweep() + "/sweep.json").value();
+  REQUIRE(SweepFolder::make(place.sweep(), request));
+  SweepRequest other = place.request({"sheet.density=1,2"});
+  CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), other)),
+             contains_text("it has --vary sheet.density=1,2,3 --vary poke.magnitude*=1,2, not "
+                           "--vary sheet.density=1,2"));
+  other = request;
+  other.frames = TakeFrames{1, 3};
+  CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), other)),
+             contains_text("it has no --frames, not --frames 1:3"));
+  other = request;
+  other.write = ".npy";
+  CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), other)), contains_text("--write .npy"));
+  place.folder().write("rig.xml", std::string(rig) + "\n");
+  CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), request)), contains_text("rig.xml"));
+  CHECK(read_file(place.sweep() + "/sweep.json").value() == before);
+}
+
+TEST_CASE("a folder that is no sweep stays as it is", "[sweep]") {
+  const Place place;
+  fs::create_directory(place.sweep());
+  place.folder().write("sweep/mine.txt", "mine");
+  CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), place.request())),
+             contains_text("is not empty, and no sweep"));
+  CHECK(SweepFolder::open(place.sweep()).error().code == ErrorCode::Unreadable);
+  fs::remove(place.folder().file("sweep/mine.txt"));
+  place.folder().write("sweep/.sweep.json.1-0.part", "half");
+  CHECK(SweepFolder::make(place.sweep(), place.request()));
+}
+
+TEST_CASE("a damaged sweep.json is refused", "[sweep]") {
+  const Place place;
+  REQUIRE(SweepFolder::make(place.sweep(), place.request()));
+  const std::string text = read_file(place.sweep() + "/sweep.json").value();
+  for (std::size_t length = 0; length + 2 < text.size(); length += 37) {
+    place.folder().write("sweep/sweep.json", text.substr(0, length));
+    CHECK_FALSE(SweepFolder::open(place.sweep()));
+  }
+  std::string other = text;
+  other.replace(other.find("\"engine\": \"") + 11, 4, "aaaa");
+  place.folder().write("sweep/sweep.json", other);
+  CHECK_THAT(complaint_of(SweepFolder::open(place.sweep())), contains_text("has engine"));
+}
+
+TEST_CASE("half files are removed after an hour", "[sweep]") {
+  const Place place;
+  const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
+  const auto old = place.folder().write("sweep/.takes.csv.1-0.part", "half");
+  place.folder().write("sweep/.takes.csv.2-0.part", "half");
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  folder.remove_half_files();
+  CHECK_FALSE(fs::exists(old));
+  CHECK(fs::exists(place.folder().file("sweep/.takes.csv.2-0.part")));
+}

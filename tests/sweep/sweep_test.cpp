@@ -1,0 +1,251 @@
+#include "pliant/sweep/sweep.hpp"
+
+#include <atomic>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pliant/sampling/shape_shelf.hpp"
+#include "pliant/scene/change_texts.hpp"
+#include "support/catch.hpp"
+#include "support/scenes.hpp"
+#include "support/scratch_folder.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+
+namespace {
+
+Scene poked(int end = 8) {
+  return scene({sheet("sheet", 11)}, {poke("poke", {0, 0, 0}, 900)}, end);
+}
+
+Sweep sweep_of(const std::vector<std::string>& vary, Scene base = poked()) {
+  return Sweep::make({std::move(base)}, Takes::make({.vary = vary}).value()).value();
+}
+
+std::vector<std::size_t> all_takes(const Sweep& sweep) {
+  std::vector<std::size_t> takes(sweep.takes().count());
+  std::iota(takes.begin(), takes.end(), std::size_t{0});
+  return takes;
+}
+
+using Outcomes = std::map<std::size_t, TakeOutcome>;
+
+Outcomes run_all(const Sweep& sweep, SweepRun run = {}) {
+  Outcomes outcomes;
+  run.take_done = [&](const TakeOutcome& outcome) {
+    CHECK(outcomes.emplace(outcome.take, outcome).second);
+    return Result<void>();
+  };
+  REQUIRE(sweep.run(all_takes(sweep), run));
+  CHECK(outcomes.size() == sweep.takes().count());
+  return outcomes;
+}
+
+Measures measures_of(const Scene& scene) {
+  auto simulation = Simulation::make(scene).value();
+  Measurer measurer(simulation);
+  for (const int frame : simulation.frames()) measurer.add(simulation.at(frame).value());
+  return measurer.measures().value();
+}
+
+std::string sweep_complaint(const std::vector<std::string>& vary,
+                            const std::vector<std::string>& set = {}) {
+  const auto sweep = Sweep::make({poked()}, Takes::make({.set = set, .vary = vary}).value());
+  REQUIRE_FALSE(sweep);
+  CHECK(sweep.error().code == ErrorCode::InvalidInput);
+  return sweep.error().message;
+}
+
+}  // namespace
+
+TEST_CASE("a take has the bits of its scene, whatever runs it", "[sweep][threads]") {
+  const Sweep sweep =
+      sweep_of({"sheet.density=3,40", "poke.magnitude*=0.5,2", "sheet.columns=9,11"});
+  const int threads = GENERATE(1, 2, 5, 16);
+  const Outcomes outcomes = run_all(sweep, {.threads = threads});
+  for (const auto& [take, outcome] : outcomes) {
+    REQUIRE(outcome.measures);
+    Scene edited = poked();
+    edited.surfaces[0].material.density = take / 4 == 0 ? 3.0 : 40.0;
+    edited.forces[0].magnitude = take / 2 % 2 == 0 ? 450.0 : 1800.0;
+    std::get<GridSheet>(edited.surfaces[0].shape).columns = take % 2 == 0 ? 9 : 11;
+    CHECK(*outcome.measures == measures_of(edited));
+  }
+}
+
+TEST_CASE("a take that fails stops nothing", "[sweep][threads]") {
+  // c <= -2 sqrt(b d) for some combinations only.
+  const Sweep sweep = sweep_of({"sheet.c=-5,2", "sheet.d=1,9"});
+  const Outcomes outcomes = run_all(sweep, {.threads = 2});
+  CHECK_FALSE(outcomes.at(0).measures);
+  CHECK_THAT(outcomes.at(0).measures.error().message, contains_text("c"));
+  for (const std::size_t take : {1u, 2u, 3u}) CHECK(outcomes.at(take).measures);
+}
+
+TEST_CASE("each value is checked ahead of all takes", "[sweep]") {
+  CHECK_THAT(sweep_complaint({"sheet.density=1,-2"}),
+             Catch::Matchers::StartsWith("--vary sheet.density=1,-2: ") &&
+                 contains_text("must be at least 0"));
+  CHECK_THAT(sweep_complaint({"sheet.densty=1"}), contains_text("did you mean \"density\""));
+  CHECK_THAT(sweep_complaint({"sheet.density=1,2"}, {"poke.magnitud=1"}),
+             Catch::Matchers::StartsWith("--set poke.magnitud=1: "));
+  CHECK_THAT(sweep_complaint({"poke.center.x*=1,b"}), contains_text("\"b\""));
+}
+
+TEST_CASE("each text is refused as by itself, wherever it stands", "[sweep]") {
+  Scene base = poked();
+  base.forces[0].magnitude = curve({{1, 0}, {5, 9}});
+  using Kind = SceneChange::Kind;
+  const std::vector<std::string_view> texts = {"1",     "3",    "-3",  "0.5",   "box",
+                                               "union", "x",    "",    "1e999", "1 2 3",
+                                               "1 2",   "true", "9,9", "poke"};
+  for (const SceneChange& change :
+       {SceneChange{Kind::Set, "sheet.density"}, SceneChange{Kind::Set, "sheet.columns"},
+        SceneChange{Kind::Set, "sheet.combine"}, SceneChange{Kind::Set, "sheet.translate"},
+        SceneChange{Kind::Set, "sheet.translate.x"}, SceneChange{Kind::Set, "poke.magnitude"},
+        SceneChange{Kind::Times, "poke.magnitude"}, SceneChange{Kind::Plus, "sheet.translate"},
+        SceneChange{Kind::Plus, "poke.center.y"}, SceneChange{Kind::Times, "sheet.combine"},
+        SceneChange{Kind::Set, "poke.center.progress"}, SceneChange{Kind::Set, "scene.seed"},
+        SceneChange{Kind::Set, "poke.targets"}, SceneChange{Kind::Set, "poke.none"}}) {
+    for (const std::string_view first : texts) {
+      for (const std::string_view second : texts) {
+        const std::string_view both[] = {first, second};
+        Result<void> wanted;
+        for (const std::string_view text : both) {
+          SceneChange one = change;
+          one.text = text;
+          Scene changed = base;
+          if (wanted) wanted = make_changes(changed, std::span(&one, 1));
+        }
+        const auto checked = check_change_texts(base, change, both, {}, {});
+        CAPTURE(change.path, first, second);
+        REQUIRE(checked.has_value() == wanted.has_value());
+        if (!wanted) CHECK(checked.error().message == wanted.error().message);
+      }
+    }
+  }
+}
+
+TEST_CASE("frames that the scene lacks are told", "[sweep]") {
+  const Takes takes = Takes::make({.vary = {"sheet.density=1"}}).value();
+  const auto sweep = Sweep::make({poked()}, takes, {.frames = TakeFrames{2, 9}});
+  REQUIRE_FALSE(sweep);
+  CHECK_THAT(sweep.error().message, contains_text("--frames 2:9: the scene has frames 1 to 8"));
+  // If the frames vary, it fails those takes that lack them.
+  const Takes ends = Takes::make({.vary = {"scene.end=8,9"}}).value();
+  const Sweep varied = Sweep::make({poked()}, ends, {.frames = TakeFrames{2, 9}}).value();
+  const Outcomes outcomes = run_all(varied);
+  CHECK_FALSE(outcomes.at(0).measures);
+  CHECK(outcomes.at(1).measures);
+}
+
+TEST_CASE("memory bounds how many takes run at once, not their results", "[sweep][threads]") {
+  const Sweep sweep = sweep_of({"sheet.density=1,2,3,4,5,6"});
+  const Outcomes free = run_all(sweep, {.threads = 4});
+  const std::size_t one = free.at(0).memory;
+  REQUIRE(one > 0);
+  // From too little for one to enough for some.
+  std::size_t suffices = 0;
+  for (std::size_t memory = one / 2; suffices == 0; memory += memory / 4) {
+    const Outcomes outcomes = run_all(sweep, {.threads = 4, .max_memory = memory});
+    std::size_t done = 0;
+    for (const auto& [take, outcome] : outcomes) {
+      if (!outcome.measures) {
+        CHECK(outcome.measures.error().code == ErrorCode::OutOfMemory);
+        continue;
+      }
+      ++done;
+      CHECK(*outcome.measures == *free.at(take).measures);
+    }
+    CHECK((done == 0 || done == 6));
+    if (done == 6) suffices = memory;
+    // A simulation by itself fits in the same memory.
+    const auto alone = sweep.run(0, {.max_memory = memory}).measures;
+    CHECK(alone.has_value() == (done == 6));
+  }
+  CHECK(suffices < 4 * one);
+}
+
+TEST_CASE("a run ends when asked, and when the caller fails", "[sweep][threads]") {
+  const Sweep sweep = sweep_of({"sheet.density=1..40"});
+  std::atomic<int> count = 0;
+  const auto stopped = sweep.run(all_takes(sweep), {.threads = 2,
+                                                    .should_stop = [&] { return count >= 5; },
+                                                    .take_done =
+                                                        [&](const TakeOutcome& outcome) {
+                                                          CHECK(outcome.measures);
+                                                          ++count;
+                                                          return Result<void>();
+                                                        }});
+  REQUIRE_FALSE(stopped);
+  CHECK(stopped.error().code == ErrorCode::Interrupted);
+  CHECK(count < 10);
+  count = 0;
+  const auto failed = sweep.run(
+      all_takes(sweep), {.threads = 2, .take_done = [&](const TakeOutcome&) -> Result<void> {
+                           if (++count < 3) return {};
+                           return fail(ErrorCode::Unwritable, "full");
+                         }});
+  REQUIRE_FALSE(failed);
+  CHECK(failed.error().message == "full");
+  CHECK(count == 3);
+}
+
+TEST_CASE("an exception of a force ends the run", "[sweep][threads]") {
+  Scene thrower = poked();
+  thrower.forces[0].kind =
+      CustomForce{.unit_force = [](const Vector3d&, const ForceTime& time) -> Vector3d {
+        if (time.frame == 3) throw std::runtime_error("mine");
+        return {0, 1, 0};
+      }};
+  const Sweep sweep = sweep_of({"sheet.density=1..9"}, thrower);
+  CHECK_THROWS_AS((void)sweep.run(all_takes(sweep), {.threads = 3}), std::runtime_error);
+}
+
+TEST_CASE("a shared shape is that of its own surface", "[sweep]") {
+  ShapeShelf shelf(std::size_t{1} << 30U);
+  const SceneOrigin origin;
+  Surface surface = sheet("sheet", 9);
+  const auto first = shelf.make(surface, origin, {}).value();
+  surface.material.density = 7.0;  // not of the shape
+  const auto same = shelf.make(surface, origin, {}).value();
+  CHECK(same.shape.mesh.positions == first.shape.mesh.positions);
+  CHECK(same.memory.bytes() == first.memory.bytes());
+  std::get<GridSheet>(surface.shape).width = 5;
+  const auto other = shelf.make(surface, origin, {}).value();
+  CHECK(other.shape.mesh.positions ==
+        make_rest_shape(surface, origin).value().shape.mesh.positions);
+  CHECK(other.shape.mesh.positions != first.shape.mesh.positions);
+}
+
+TEST_CASE("a mesh file is read once for all takes", "[sweep]") {
+  const ScratchFolder folder;
+  std::string text;
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i) text += "v " + std::to_string(i) + " 0 " + std::to_string(j) + "\n";
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i)
+      text += "vt " + std::to_string(i / 4.0) + " " + std::to_string(j / 4.0) + "\n";
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) {
+      text += "f";
+      for (const int corner : {j * 5 + i, j * 5 + i + 1, (j + 1) * 5 + i + 1, (j + 1) * 5 + i})
+        text += " " + std::to_string(corner + 1) + "/" + std::to_string(corner + 1);
+      text += "\n";
+    }
+  const auto file = folder.write("mesh.obj", text);
+  Surface surface = sheet("mesh");
+  surface.shape = MeshFile{.path = file.string()};
+  const Sweep sweep = sweep_of({"mesh.density=1,2"}, scene({surface}, {poke("p", {2, 0, 2})}));
+  ShapeShelf shelf(std::size_t{1} << 30U);
+  const auto first = sweep.run(0, {.shapes = &shelf}).measures;
+  REQUIRE(first);
+  std::filesystem::remove(file);
+  CHECK(sweep.run(0, {.shapes = &shelf}).measures.value() == *first);
+  CHECK(sweep.run(1, {.shapes = &shelf}).measures);
+  CHECK_FALSE(sweep.run(1, {}).measures);
+}
