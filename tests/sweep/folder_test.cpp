@@ -133,6 +133,15 @@ TEST_CASE("what is no whole line counts for nothing", "[sweep]") {
   CHECK(folder.status()->is_complete());
 }
 
+TEST_CASE("reading the log ends when asked", "[sweep]") {
+  const Place place;
+  const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
+  REQUIRE(folder.run({}));
+  const auto status = folder.status([] { return true; });
+  REQUIRE_FALSE(status);
+  CHECK(status.error().code == ErrorCode::Interrupted);
+}
+
 TEST_CASE("different hashes of a take are found, with both hosts", "[sweep]") {
   const Place place;
   const auto folder = SweepFolder::make(place.sweep(), place.request()).value();

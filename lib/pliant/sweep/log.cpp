@@ -160,7 +160,8 @@ Result<void> LogFile::append(std::string_view line) {
   }
 }
 
-Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>& take_line) {
+Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>& take_line,
+                      const StopRequest& should_stop) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -176,6 +177,7 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
   };
   for (const fs::path& file : files) {
     std::string rest;  // of a line that is not complete yet
+    bool is_stopped = false;
     auto read = read_pieces(file, [&](std::string_view piece) {
       for (std::size_t end; (end = piece.find('\n')) != std::string_view::npos;
            piece.remove_prefix(end + 1)) {
@@ -190,9 +192,11 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
       rest += piece;
       // No line of ours; whatever follows on it is none either.
       if (rest.size() > longest_line) rest = "?";
-      return true;
+      is_stopped = should_stop && should_stop();
+      return !is_stopped;
     });
     if (!read) return read;
+    if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/sweep/sweep.hpp"
 
 namespace pliant {
@@ -54,8 +55,9 @@ class LogFile {
 };
 
 /// Calls `take_line` for each whole line of all files of the folder, which may be missing. Errors:
-/// Unreadable.
+/// Unreadable; Interrupted.
 Result<void> read_log(const std::filesystem::path& folder,
-                      const std::function<void(LogLine)>& take_line);
+                      const std::function<void(LogLine)>& take_line,
+                      const StopRequest& should_stop = {});
 
 }  // namespace pliant
