@@ -295,7 +295,9 @@ class RandomOperation {
 bool is_named(const std::string& path, const std::vector<std::string>& parts) {
   return path == "order" || std::ranges::any_of(parts, [&](const std::string& part) {
            const std::string whole = part.starts_with('.') ? "scene" + part : part;
-           return path == whole || path.starts_with(whole + ".");
+           // One attribute, two values.
+           const bool is_wrap = whole.ends_with(".wrap") && path.starts_with(whole);
+           return path == whole || is_wrap || path.starts_with(whole + ".");
          });
 }
 
@@ -399,7 +401,11 @@ struct ReadBack {
             return key_in(one->curve().keys().keys);
         },
         channel->channel);
-    if (is_switch) value = value == "1" ? "true" : "false";
+    // A copy in a loop is a key as well.
+    if (value == "no such key")
+      value = value_at(set.channel, set.frame);
+    else if (is_switch)
+      value = value == "1" ? "true" : "false";
     return says(value, *set.value) ? "" : value;
   }
   /// The keys of a channel; null: it is constant. Of a switch, those of its numbers.
@@ -414,20 +420,24 @@ struct ReadBack {
         return &(*of)->channel().curve().keys();
     return nullptr;
   }
-  template <int D>
-  static std::string has_same_shape(const Curve<D>& now, const Curve<D>& wanted,
+  /// A number stands for three components.
+  template <int N, int D>
+  static std::string has_same_shape(const Curve<N>& now, const Curve<D>& wanted,
                                     double factor = 1) {
     if (now.keys().keys.size() != wanted.keys().keys.size()) return "other keys";
-    const auto is_near = [&](const Value<D>& a, const Value<D>& b, std::size_t c) {
-      const double of = factor * b[c];
-      return std::abs(a[c] - of) <= 1e-9 * std::max({1.0, std::abs(a[c]), std::abs(of)});
+    const auto is_near = [&](double a, double b) {
+      const double of = factor * b;
+      // An elastic whose amplitude is just its change has an infinite derivative by that.
+      return std::abs(a - of) <= 1e-7 * std::max({1.0, std::abs(a), std::abs(of)});
     };
     for (double frame = -12; frame <= 40; frame += 0.25) {
-      const Value<D> a = now.value(frame), b = wanted.value(frame);
-      const Value<D> left = now.left_value(frame), old_left = wanted.left_value(frame);
-      for (std::size_t c = 0; c < D; ++c)
-        if (!is_near(a, b, c) || !is_near(left, old_left, c))
-          return fmt::format("{} in place of {} at frame {}", a[c], factor * b[c], frame);
+      const Value<N> a = now.value(frame), left = now.left_value(frame);
+      const Value<D> b = wanted.value(frame), old_left = wanted.left_value(frame);
+      for (std::size_t c = 0; c < D; ++c) {
+        const std::size_t own = std::min<std::size_t>(c, N - 1);
+        if (!is_near(a[own], b[c]) || !is_near(left[own], old_left[c]))
+          return fmt::format("{} in place of {} at frame {}", a[own], factor * b[c], frame);
+      }
     }
     return "";
   }
@@ -435,6 +445,12 @@ struct ReadBack {
     return std::visit(
         [&]<int D>(const CurveKeys<D>& keys) -> std::string {
           const CurveKeys<D>* const now = keys_of<D>(set.channel);
+          if constexpr (D == 3) {
+            // Keys of a tangent whose components are all the same may be written as numbers.
+            const CurveKeys<1>* const numbers = keys_of<1>(set.channel);
+            if (numbers)
+              return has_same_shape(Curve<1>::make(*numbers).value(), Curve<D>::make(keys).value());
+          }
           if (!now) return "no such curve";
           return has_same_shape(Curve<D>::make(*now).value(), Curve<D>::make(keys).value());
         },
