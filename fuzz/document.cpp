@@ -5,6 +5,7 @@
 
 #include "pliant/document/document.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -59,6 +60,20 @@ class Fields {
       }
     }
     return keys;
+  }
+  /// `1 5,2 6,8 3`: frames and values, sorted or not
+  template <int D>
+  CurveKeys<D> keys_of_a_curve() {
+    CurveKeys<D> curve;
+    for (const std::string_view one : words(field(), ",")) {
+      Key<D>& key = curve.keys.emplace_back();
+      std::vector<double> numbers;
+      for (const std::string_view word : words(one, " ")) numbers.push_back(to_double(word, 0));
+      numbers.resize(1 + D);
+      key.frame = numbers[0];
+      std::copy_n(numbers.begin() + 1, D, key.value.begin());
+    }
+    return curve;
   }
   /// `a=1,b=2`
   std::vector<edit::Given> attributes() {
@@ -138,6 +153,15 @@ std::optional<Operation> operation_of(std::string_view line, const Scene& scene)
     case 's':
       return edit::SimplifyKeys{in.paths(), in.number(), maybe(in.number(none)),
                                 maybe(in.number(none))};
+    case 'c':
+      return edit::Scale{in.paths(), in.number(1),
+                         static_cast<int>(std::clamp(in.number(), 0.0, 17.0))};
+    case 'C':
+      return edit::SetCurve{in.path(), in.keys_of_a_curve<1>()};
+    case 'V':
+      return edit::SetCurve{in.path(), in.keys_of_a_curve<3>()};
+    case 'p':
+      return edit::SetPart{in.text(), in.text(), in.attributes(), in.text()};
     case '+':
       return edit::Add{in.text(), in.text(), in.attributes(), in.text(), in.text()};
     case '2':
