@@ -42,20 +42,27 @@ int run_sweep_verify(const SweepVerifyOptions& options) {
                                    "takes");
   const SimulationOptions resources = simulation_options(options.resources);
   const auto ran = folder->sweep().run(
-      takes, {.threads = resources.threads,
-              .max_memory = resources.max_memory,
-              .should_stop = resources.should_stop,
-              .check = [&](const Scene& scene) { return folder->check_inputs(scene); },
-              .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
-                progress->advance();
-                if (!outcome.measures) {
-                  differences[outcome.take] = outcome.measures.error().message;
-                } else if (outcome.measures->hash != status->takes[outcome.take].measures.hash) {
-                  differences[outcome.take] = "hash differs";
-                }
-                return {};
-              }});
+      takes,
+      {.threads = resources.threads,
+       .max_memory = resources.max_memory,
+       .should_stop = resources.should_stop,
+       .check =
+           [&](const Scene& scene) { return folder->check_inputs(scene, resources.should_stop); },
+       .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
+         progress->advance();
+         if (!outcome.measures) {
+           differences[outcome.take] = outcome.measures.error().message;
+         } else if (outcome.measures->hash != status->takes[outcome.take].measures.hash) {
+           differences[outcome.take] = "hash differs";
+         }
+         return {};
+       }});
   progress.reset();
+  if (takes.empty()) {
+    print(stderr,
+          fmt::format("pliant: error: {}: no take to verify is done\n", printable(options.folder)));
+    return exit_failed;
+  }
   for (const auto& [take, difference] : differences)
     print(stdout, fmt::format("take {}: {}\n", take, printable(difference)));
   if (!ran) return report(ran.error());

@@ -166,6 +166,56 @@ class Sweeps(Command):
         self.assertIn("scene.xml", self.sweep("run", self.path("scene.xml"), "-o", self.path("s"), *VARY, code=2).stderr)
         self.sweep("run", self.path("s"))  # takes run the text that they were made of
 
+    def test_several_makers_at_once_make_one_sweep(self):
+        scene = self.write("scene.xml", edited(end=2))
+        for attempt in range(4):
+            name = f"s{attempt}"
+            axes = [f"sheet.density={1 + k % 2}..{2 + k % 2}" for k in range(6)]
+            makers = [subprocess.Popen([PLIANT, "sweep", "run", scene, "-o", self.path(name), "--vary", axis],
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for axis in axes]
+            errors = [maker.communicate(timeout=300)[1] for maker in makers]
+            with open(self.path(f"{name}/sweep.json"), encoding="utf-8") as file:
+                made, = json.load(file)["arguments"]["vary"]
+            for axis, maker, error in zip(axes, makers, errors):
+                if axis == made:
+                    self.assertEqual(maker.returncode, 0, error)
+                else:
+                    self.assertEqual(maker.returncode, 2)
+                    self.assertIn("is another sweep", error)
+            self.sweep("verify", self.path(name))
+            self.assertFalse(glob.glob(self.path(f"{name}/.*")))
+
+    def test_the_file_of_a_stranger_leads_nowhere_else(self):
+        self.make("s", "--write", "npy", "--make-only")
+        file = self.path("s/sweep.json")
+        with open(file, encoding="utf-8") as opened:
+            text = opened.read()
+        os.makedirs(self.path("s/takes/00000"))
+        wrong = [('"write":".npy"', f'"write":"{write}"') for write in ("/../../../escaped.npy", ".foo", "npy", ".NPY")]
+        wrong += [('"frames":null', f'"frames":[{frame},2]') for frame in ("1e300", "4294967297", "1.5", '"1"')]
+        for old, new in wrong:
+            self.assertIn(old, text)
+            with open(file, "w", encoding="utf-8") as opened:
+                opened.write(text.replace(old, new))
+            for command in ("run", "status", "verify"):
+                done = self.sweep(command, self.path("s"), code=2)
+                self.assertIn("is not the file of a sweep", done.stderr)
+                self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertEqual(self.files(), ["s", "scene.xml"])
+        os.remove(file)
+        os.mkfifo(file)
+        self.assertIn("is no regular file", self.sweep("status", self.path("s"), code=2).stderr)
+
+    def test_what_is_no_log_is_left_alone(self):
+        self.make("s")
+        os.mkfifo(self.path("s/log/a.jsonl"))
+        os.mkdir(self.path("s/log/b.jsonl"))
+        with open(glob.glob(self.path("s/log/*-*.jsonl"))[0], "a", encoding="utf-8") as log:
+            log.write("[" * 3_000_000 + "\n" + '{"take":0,"status":"done","peak":1,"peakFrame":1e300}\n')
+        wanted = self.table()
+        self.sweep("run", self.path("s"))
+        self.assertEqual(self.table(), wanted)
+
     def test_failed_takes_are_named(self):
         result = self.make("s", vary=("--vary", "sheet.c=-5,2", "--vary", "sheet.d=1,9"), code=1)
         self.assertIn("take 0 (sheet.c=-5, sheet.d=1): ", result.stderr)
@@ -288,6 +338,20 @@ class Sweeps(Command):
             self.assertFalse(glob.glob(self.path(f"{name}/**/.*"), recursive=True))
             self.assertGreater(self.whole_lines(name), 0)
 
+    def test_an_interrupt_ends_the_reading_of_meshes(self):
+        os.truncate(self.write("big.obj", ""), 16 << 30)  # needs no disk
+        scene = self.write("scene.xml", edited().replace('<grid columns="11" rows="9" width="10" depth="10"/>',
+                                                         '<mesh file="big.obj"/>'))
+        with subprocess.Popen([PLIANT, "sweep", "run", scene, "-o", self.path("s"), "--vary", "sheet.density=1,2",
+                               "--make-only"], stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(0.5)
+            process.send_signal(signal.SIGINT)
+            begin = time.monotonic()
+            _, errors = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, 1, errors)
+        self.assertLess(time.monotonic() - begin, 30 if SANITIZED else 3)
+        self.assertFalse(os.path.exists(self.path("s")))
+
     def log_size(self, name):
         return sum(os.path.getsize(file) for file in glob.glob(self.path(f"{name}/log/*.jsonl")))
 
@@ -359,6 +423,8 @@ class Sweeps(Command):
     def test_every_kth_take_is_verified(self):
         self.make("s")
         self.assertIn("3 takes verified", self.sweep("verify", self.path("s"), "--every", "3").stdout)
+        self.make("none", "--make-only")
+        self.assertIn("no take to verify", self.sweep("verify", self.path("none"), code=1).stderr)
 
     def test_take_numbers_of_bake(self):
         self.make("s", "--frames", "2:5")

@@ -51,6 +51,18 @@ TEST_CASE("two writers of one name do not meet", "[output][atomic_file]") {
   CHECK(folder.entry_count() == 1);
 }
 
+TEST_CASE("a file that must be new takes the place of none", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  auto first = AtomicFile::create(folder.file("a.txt")),
+       second = AtomicFile::create(folder.file("a.txt"));
+  REQUIRE(first->write("first"));
+  REQUIRE(second->write("second"));
+  CHECK(second->commit_new().value());
+  CHECK_FALSE(first->commit_new().value());
+  CHECK(read_file(folder.file("a.txt")).value() == "second");
+  CHECK(folder.entry_count() == 1);
+}
+
 TEST_CASE("a new file has the permissions of any other", "[output][atomic_file]") {
   const ScratchFolder folder;
   REQUIRE(AtomicFile::create(folder.file("a.txt"))->commit());

@@ -91,6 +91,13 @@ Result<void> AtomicFile::keep_permissions() {
 Result<void> AtomicFile::commit() { return commit_as(file_); }
 
 Result<void> AtomicFile::commit_as(const std::filesystem::path& file) {
+  return place(file, false).map([](bool) {});
+}
+
+Result<bool> AtomicFile::commit_new() { return place(file_, true); }
+
+// Gives it a name, with `only_new` unless another file has it. Whether it has it.
+Result<bool> AtomicFile::place(const std::filesystem::path& file, bool only_new) {
   PLIANT_EXPECTS(stream_);
   PLIANT_EXPECTS(file.parent_path() == file_.parent_path());
   const OpenFolder folder(file_);
@@ -98,17 +105,20 @@ Result<void> AtomicFile::commit_as(const std::filesystem::path& file) {
   if (file != file_) done = check_output_place(file);
   if (auto finished = finish_bytes(); done) done = std::move(finished);
   if (done && folder.error() != 0) done = unwritable(folder.error());
+  bool is_taken = false;
   if (done) {
-    if (const int error = folder.rename(part_, file.filename().string()); error != 0)
-      done = unwritable(error);
+    const std::string name = file.filename().string();
+    const int error = only_new ? folder.rename_new(part_, name) : folder.rename(part_, name);
+    is_taken = only_new && error == EEXIST;
+    if (error != 0 && !is_taken) done = unwritable(error);
   }
-  if (!done) {
+  if (!done || is_taken) {
     if (folder.error() == 0) folder.remove(part_);
-    return done;
+    return done.map([] { return false; });
   }
-  if (flush_ != Flush::All) return {};
+  if (flush_ != Flush::All) return true;
   if (const int error = folder.flush(); error != 0) return unwritable(error);
-  return {};
+  return true;
 }
 
 // Writes all remaining bytes, and closes.

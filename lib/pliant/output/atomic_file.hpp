@@ -41,7 +41,12 @@ class AtomicFile {
   /// Gives the file its name. Errors: Unwritable. Requires: not committed before.
   Result<void> commit();
 
-  /// The same with another name in the same folder, for a file whose name depends on its content.
+  /// The same, but never in place of another file, however many processes do this at once. Whether
+  /// it has the name now; if not, its bytes are gone.
+  Result<bool> commit_new();
+
+  /// As `commit`, with another name in the same folder, for a file whose name depends on its
+  /// content.
   Result<void> commit_as(const std::filesystem::path& file);
 
  private:
@@ -52,6 +57,7 @@ class AtomicFile {
 
   AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush);
   Result<void> finish_bytes();
+  Result<bool> place(const std::filesystem::path& file, bool only_new);
   tl::unexpected<Error> unwritable(int error_number) const;
 
   std::filesystem::path file_;

@@ -29,6 +29,18 @@ int OpenFolder::rename(const std::string& from, const std::string& to) const {
   return renameat(descriptor_, from.c_str(), descriptor_, to.c_str()) == 0 ? 0 : errno;
 }
 
+int OpenFolder::rename_new(const std::string& from, const std::string& to) const {
+  // By a link, which network file systems have too; others have no links.
+  if (linkat(descriptor_, from.c_str(), descriptor_, to.c_str(), 0) == 0) {
+    remove(from);
+    return 0;
+  }
+  if (errno == EEXIST) return EEXIST;
+  return renameat2(descriptor_, from.c_str(), descriptor_, to.c_str(), RENAME_NOREPLACE) == 0
+             ? 0
+             : errno;
+}
+
 void OpenFolder::remove(const std::string& name) const { unlinkat(descriptor_, name.c_str(), 0); }
 
 int OpenFolder::flush() const { return is_readable_ ? flush_descriptor(descriptor_) : 0; }

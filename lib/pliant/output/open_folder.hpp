@@ -23,6 +23,8 @@ class OpenFolder {
   int descriptor() const { return descriptor_; }
 
   int rename(const std::string& from, const std::string& to) const;
+  /// The same, but EEXIST if there is a file with the new name.
+  int rename_new(const std::string& from, const std::string& to) const;
   void remove(const std::string& name) const;
 
   /// Flushes the folder's names to the disk; also returns 0 if the file system does not support

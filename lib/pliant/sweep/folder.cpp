@@ -95,17 +95,22 @@ Result<Sweep> checked_sweep(Asked& asked, const StopRequest& should_stop) {
 // Whether there is no sweep and may be one. Errors: InvalidInput.
 Result<bool> may_be_made(const std::string& folder) {
   std::error_code error;
-  if (fs::exists(file_of_sweep(folder), error)) return false;
+  const auto is_made = [&] {
+    std::error_code ignored;
+    return fs::exists(file_of_sweep(folder), ignored);
+  };
+  if (is_made()) return false;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return true;
   if (!fs::is_directory(status))
     return fail(ErrorCode::InvalidInput, fmt::format("-o {}: is not a folder", printable(folder)));
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!is_half_file(entry->path()))
-      return fail(ErrorCode::InvalidInput,
-                  fmt::format("-o {}: is not empty, and no sweep; choose another folder",
-                              printable(folder)));
+    if (is_half_file(entry->path())) continue;
+    if (is_made()) return false;  // by another process, just now
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("-o {}: is not empty, and no sweep; choose another folder", printable(folder)));
   }
   if (error) return fail(ErrorCode::Unreadable, error.message(), folder);
   return true;
@@ -234,30 +239,30 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
   if (!is_new) return fail(is_new.error());
   auto asked = read_request(request);
   if (!asked) return fail(asked.error());
-  if (!*is_new) {
+  const auto open_the_same = [&]() -> Result<SweepFolder> {
     const auto there = read_sweep_file(file_of_sweep(folder));
     if (!there) return fail(there.error());
     const std::string difference = difference_of(*there, asked->file);
     if (difference.empty()) return open(folder);
     return fail(ErrorCode::InvalidInput,
                 fmt::format("-o {}: is another sweep; it has {}", printable(folder), difference));
-  }
+  };
+  if (!*is_new) return open_the_same();
   auto sweep = checked_sweep(*asked, should_stop);
   if (!sweep) return fail(sweep.error());
   asked->file.takes = sweep->takes().parts();
   InputHashes inputs;
-  const auto add_inputs = [&](const Scene& scene) {
-    inputs.add(scene);
-    return Result<void>();
-  };
+  const auto add_inputs = [&](const Scene& scene) { return inputs.add(scene, should_stop); };
   if (auto added = sweep->for_each_variant(add_inputs); !added) return fail(added.error());
   asked->file.inputs = inputs.all();
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
     return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(), folder);
-  if (auto written = write_sweep_file(asked->file, file_of_sweep(folder)); !written)
-    return fail(written.error());
+  if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+  const auto written = write_sweep_file(asked->file, file_of_sweep(folder));
+  if (!written) return fail(written.error());
+  if (!*written) return open_the_same();  // another process was quicker
   return SweepFolder(std::make_unique<Parts>(folder, std::move(asked->file.request),
                                              *std::move(sweep), std::move(asked->file.inputs)));
 }
@@ -336,25 +341,26 @@ Result<void> SweepFolder::run(const FolderRun& options) const {
   }
   auto log = LogFile::create(fs::path(folder()) / "log");
   if (!log) return fail(log.error());
-  SweepRun run{.threads = options.threads,
-               .max_memory = options.max_memory,
-               .should_stop = options.should_stop,
-               .check = [this](const Scene& scene) { return check_inputs(scene); },
-               .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
-                 // A full disk is no fault of the take.
-                 if (!outcome.measures && outcome.measures.error().code == ErrorCode::Unwritable)
-                   return fail(outcome.measures.error());
-                 if (auto added = log->append(to_line(outcome)); !added) return added;
-                 if (options.take_done) options.take_done(outcome);
-                 return {};
-               }};
+  SweepRun run{
+      .threads = options.threads,
+      .max_memory = options.max_memory,
+      .should_stop = options.should_stop,
+      .check = [&](const Scene& scene) { return check_inputs(scene, options.should_stop); },
+      .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
+        // A full disk is no fault of the take.
+        if (!outcome.measures && outcome.measures.error().code == ErrorCode::Unwritable)
+          return fail(outcome.measures.error());
+        if (auto added = log->append(to_line(outcome)); !added) return added;
+        if (options.take_done) options.take_done(outcome);
+        return {};
+      }};
   if (!request().write.empty())
     run.file_of = [this](std::size_t take) { return parts_->file_of(take); };
   return sweep().run(takes, run);
 }
 
-Result<void> SweepFolder::check_inputs(const Scene& scene) const {
-  return parts_->inputs.check(scene);
+Result<void> SweepFolder::check_inputs(const Scene& scene, const StopRequest& should_stop) const {
+  return parts_->inputs.check(scene, should_stop);
 }
 
 Result<void> SweepFolder::write_table(const SweepStatus& status) const {
@@ -370,6 +376,7 @@ void SweepFolder::remove_half_files() const {
   const auto now = fs::file_time_type::clock::now();
   for (const fs::path& folder : {fs::path(this->folder()), parts_->folder_of_takes()}) {
     std::error_code ignored;
+    if (folder != this->folder() && fs::is_symlink(folder, ignored)) continue;
     for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
          entry.increment(ignored)) {
       if (!is_half_file(entry->path())) continue;

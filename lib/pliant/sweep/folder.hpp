@@ -109,7 +109,7 @@ class SweepFolder {
   Result<void> run(const FolderRun& options) const;
 
   /// Checks that a take's meshes, caches and maps are those of the sweep. Errors: Unreadable.
-  Result<void> check_inputs(const Scene& scene) const;
+  Result<void> check_inputs(const Scene& scene, const StopRequest& should_stop = {}) const;
 
   /// Writes `takes.csv`. Errors: Unwritable.
   Result<void> write_table(const SweepStatus& status) const;

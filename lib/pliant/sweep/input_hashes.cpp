@@ -14,13 +14,16 @@
 namespace pliant {
 namespace {
 
-Result<Hash> hash_of_file(const std::string& file) {
+Result<Hash> hash_of_file(const std::string& file, const StopRequest& should_stop) {
   HashStream stream;
+  bool is_stopped = false;
   const auto read = read_pieces(file, [&](std::string_view piece) {
     stream.add(piece);
-    return true;
+    is_stopped = should_stop && should_stop();
+    return !is_stopped;
   });
   if (!read) return fail(read.error());
+  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
   return stream.hash();
 }
 
@@ -67,14 +70,17 @@ const std::vector<std::string>& InputHashes::files_of(const Scene& scene) {
   return found->second;
 }
 
-void InputHashes::add(const Scene& scene) {
+Result<void> InputHashes::add(const Scene& scene, const StopRequest& should_stop) {
   const std::lock_guard lock(mutex_);
   for (const std::string& file : files_of(scene)) {
     if (files_.contains(file)) continue;
     std::string stamp = stamp_of(file);
     if (stamp.empty()) continue;
-    if (const auto hash = hash_of_file(file)) files_[file] = {*hash, std::move(stamp)};
+    const auto hash = hash_of_file(file, should_stop);
+    if (hash) files_[file] = {*hash, std::move(stamp)};
+    if (!hash && hash.error().code == ErrorCode::Interrupted) return fail(hash.error());
   }
+  return {};
 }
 
 std::vector<InputHash> InputHashes::all() const {
@@ -83,7 +89,7 @@ std::vector<InputHash> InputHashes::all() const {
   return all;
 }
 
-Result<void> InputHashes::check(const Scene& scene) {
+Result<void> InputHashes::check(const Scene& scene, const StopRequest& should_stop) {
   const std::lock_guard lock(mutex_);
   const auto refuse = [](const std::string& file, std::string_view reason) {
     return fail(ErrorCode::Unreadable, fmt::format("{} {}", printable(file), reason));
@@ -94,7 +100,8 @@ Result<void> InputHashes::check(const Scene& scene) {
     std::string stamp = stamp_of(file);
     if (stamp.empty()) return refuse(file, "is gone");
     if (stamp == known->second.stamp) continue;
-    const auto hash = hash_of_file(file);
+    const auto hash = hash_of_file(file, should_stop);
+    if (!hash && hash.error().code == ErrorCode::Interrupted) return fail(hash.error());
     if (!hash) return refuse(file, "cannot be read");
     if (*hash != known->second.hash) return refuse(file, "has changed since the sweep was made");
     known->second.stamp = std::move(stamp);

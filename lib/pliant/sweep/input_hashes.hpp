@@ -7,6 +7,7 @@
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -26,14 +27,16 @@ class InputHashes {
   InputHashes& operator=(InputHashes&&) = delete;
 
   /// Reads and adds the files of a scene; those that cannot be read are left out.
-  void add(const Scene& scene);
+  /// Errors: Interrupted.
+  Result<void> add(const Scene& scene, const StopRequest& should_stop = {});
 
   std::vector<InputHash> all() const;
 
   /// Checks that the files of a scene are those of the sweep. A file is read again only if its
   /// size, its number or a time of it has changed. Errors: Unreadable, naming the file: it has
   /// changed, is gone, or could not be read when the sweep was made.
-  Result<void> check(const Scene& scene);
+  /// Interrupted.
+  Result<void> check(const Scene& scene, const StopRequest& should_stop = {});
 
  private:
   struct Known {

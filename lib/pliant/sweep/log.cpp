@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstring>
 #include <ctime>
 #include <system_error>
@@ -24,7 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t longest_line = std::size_t{1} << 24U;
+// What a line of JSON costs to read is 100 times its length.
+constexpr std::size_t longest_line = std::size_t{1} << 18U;
+
+// Of a take; further errors are left out.
+constexpr std::size_t longest_error = 4096;
 
 std::string host_name() {
   char name[256] = {};
@@ -68,8 +73,9 @@ bool read_member(const Json& json, const char* name, double& number) {
 bool read_member(const Json& json, const char* name, int& number) {
   const auto found = json.find(name);
   if (found == json.end() || !found->is_number_integer()) return false;
-  number = found->get<int>();
-  return true;
+  const auto whole = found->get<std::int64_t>();
+  number = static_cast<int>(whole);
+  return number == whole;
 }
 
 bool read_measures(const Json& json, Measures& measures) {
@@ -90,7 +96,10 @@ bool read_measures(const Json& json, Measures& measures) {
 
 std::string error_text(const Error& error) {
   std::string text = error.message;
-  for (const Error& other : error.others) text += "; " + other.message;
+  for (const Error& other : error.others) {
+    if (text.size() > longest_error) break;
+    text += "; " + other.message;
+  }
   return printable(text);
 }
 
@@ -166,7 +175,9 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->path().extension() == ".jsonl") files.push_back(entry->path());
+    std::error_code unknown;
+    if (entry->path().extension() == ".jsonl" && entry->is_regular_file(unknown))
+      files.push_back(entry->path());
   }
   if (error == std::errc::no_such_file_or_directory) return {};
   if (error) return fail(ErrorCode::Unreadable, error.message(), folder.string());

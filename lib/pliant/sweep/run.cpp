@@ -121,7 +121,10 @@ class Turns {
         changed_.notify_all();
         return {};
       }
-      if (is_left && memory_used_ + share() <= options_.max_memory - memory_of_shelf()) break;
+      // Alone with all of it, the shelf's part too, which another take may be using.
+      const bool may_begin = level_ > 0 || running_ == 0;
+      if (is_left && may_begin && memory_used_ + share() <= options_.max_memory - memory_of_shelf())
+        break;
       changed_.wait(lock);
     }
     Turn turn{.memory = share(), .level = level_};
@@ -254,13 +257,13 @@ Result<void> Sweep::run(std::span<const std::size_t> takes, const SweepRun& opti
   ThreadPool threads(static_cast<int>(workers));
   threads.for_each(workers, [&](std::size_t) {
     while (const auto turn = turns.next()) {
-      const TakeRun run{.max_memory = turn->memory,
-                        .threads = turn->threads,
-                        .should_stop = should_stop,
-                        .shapes = turn->shapes,
-                        .file = options.file_of ? options.file_of(turn->take) : std::string(),
-                        .check = options.check};
       try {
+        const TakeRun run{.max_memory = turn->memory,
+                          .threads = turn->threads,
+                          .should_stop = should_stop,
+                          .shapes = turn->shapes,
+                          .file = options.file_of ? options.file_of(turn->take) : std::string(),
+                          .check = options.check};
         turns.end(*turn, this->run(turn->take, run));
       } catch (...) {  // of a force or a callback of the program
         turns.abandon();

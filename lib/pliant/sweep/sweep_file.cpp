@@ -1,7 +1,9 @@
 #include "pliant/sweep/sweep_file.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -10,7 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/writer.hpp"
 
 namespace pliant {
 namespace {
@@ -125,6 +129,13 @@ std::vector<std::string> strings_of(FileJson& json) {
   return strings;
 }
 
+int frame_of(const FileJson& json) {
+  const auto frame = json.is_number_integer() ? json.get<std::int64_t>() : std::int64_t{1} << 40;
+  if (frame < std::numeric_limits<int>::min() || frame > std::numeric_limits<int>::max())
+    throw std::invalid_argument("a frame is none");
+  return static_cast<int>(frame);
+}
+
 SweepRequest request_of(FileJson& arguments) {
   SweepRequest request;
   request.scenes = strings_of(arguments.at("scenes"));
@@ -134,12 +145,16 @@ SweepRequest request_of(FileJson& arguments) {
   if (const FileJson& samples = arguments.at("sample"); !samples.is_null())
     request.variation.samples = samples.get<std::size_t>();
   if (const FileJson& frames = arguments.at("frames"); !frames.is_null())
-    request.frames = TakeFrames{frames.at(0).get<int>(), frames.at(1).get<int>()};
+    request.frames = TakeFrames{frame_of(frames.at(0)), frame_of(frames.at(1))};
   const auto solver = solver_choice(arguments.at("solver").get_ref<const std::string&>());
   if (!solver) throw std::invalid_argument("the solver is unknown");
   request.solver = *solver;
   request.root = arguments.at("root").get<std::string>();
   request.write = arguments.at("write").get<std::string>();
+  // It becomes a part of file names.
+  const std::string written = "takes" + request.write;
+  if (!request.write.empty() && (!check_ending(written) || ending_of(written) != request.write))
+    throw std::invalid_argument("the ending of --write is none");
   return request;
 }
 
@@ -216,7 +231,7 @@ std::string one_text(std::string_view option, const std::string& value) {
 
 }  // namespace
 
-Result<void> write_sweep_file(const SweepFile& content, const std::filesystem::path& file) {
+Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file) {
   auto opened = AtomicFile::create(file);
   if (!opened) return fail(opened.error());
   JsonFile out(*opened);
@@ -226,11 +241,15 @@ Result<void> write_sweep_file(const SweepFile& content, const std::filesystem::p
     return fail(ErrorCode::InvalidInput,
                 "the names and values of a sweep must be UTF-8, but one is not");
   }
-  if (auto written = out.finish(); !written) return written;
-  return opened->commit();
+  if (auto written = out.finish(); !written) return fail(written.error());
+  return opened->commit_new();
 }
 
 Result<SweepFile> read_sweep_file(const std::filesystem::path& file) {
+  std::error_code error;
+  if (const auto status = std::filesystem::status(file, error);
+      std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    return fail(ErrorCode::InvalidInput, "is no regular file", file.string());
   auto text = read_file(file);
   if (!text) return fail(text.error());
   FileJson json = FileJson::parse(*text, nullptr, false);

@@ -25,8 +25,9 @@ struct SweepFile {
   TakeParts takes = {};
 };
 
-/// Writes it, whole or not at all. Errors: InvalidInput: a name is no UTF-8; Unwritable.
-Result<void> write_sweep_file(const SweepFile& content, const std::filesystem::path& file);
+/// Writes it, whole or not at all, and never in place of another. Whether it is written now; if
+/// not, there is one. Errors: InvalidInput: a name is no UTF-8; Unwritable.
+Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file);
 
 /// Errors: Unreadable; InvalidInput: it is no such file.
 Result<SweepFile> read_sweep_file(const std::filesystem::path& file);
