@@ -166,6 +166,22 @@ class Sweeps(Command):
         self.assertIn("scene.xml", self.sweep("run", self.path("scene.xml"), "-o", self.path("s"), *VARY, code=2).stderr)
         self.sweep("run", self.path("s"))  # takes run the text that they were made of
 
+    def test_a_wrong_value_of_a_table_is_told_with_its_line(self):
+        table = self.write("t.csv", "sheet.density,sheet.b\n" + "1,2\n" * 50 + '"3",-1\n' + "1,-1\n")
+        scene = self.write("scene.xml", edited())
+        errors = self.sweep("run", scene, "-o", self.path("s"), "--takes", table, code=2).stderr
+        self.assertIn("--takes, line 52: sheet.b=-1: \"-1\": must be greater than 0", errors)
+        self.assertEqual(self.files(), ["scene.xml", "t.csv"])
+
+    def test_a_gltf_without_its_numbers_is_run_again(self):
+        self.make("s", "--write", "gltf")
+        self.assertIn("8 done", self.sweep("status", self.path("s")).stdout)
+        numbers, = glob.glob(self.path("s/takes/00003.*.bin"))
+        os.remove(numbers)
+        self.assertIn("7 done, 0 failed, 1 missing", self.sweep("status", self.path("s"), code=1).stdout)
+        self.sweep("run", self.path("s"))
+        self.assertTrue(os.path.exists(numbers))
+
     def test_several_makers_at_once_make_one_sweep(self):
         scene = self.write("scene.xml", edited(end=2))
         for attempt in range(4):

@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 using namespace pliant;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -14,7 +15,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 Rows fields_of(std::string_view text) {
   Rows rows;
-  const auto parsed = parse_csv(text);
+  const auto parsed = parse_csv(text, 1000);
   REQUIRE(parsed);
   for (const CsvRow& row : *parsed) rows.push_back(row.fields);
   return rows;
@@ -48,14 +49,22 @@ TEST_CASE("tables of other programs are read", "[sweep][csv]") {
                   "a,b\r\n1,\r\n\r\n,2") == Rows{{"a", "b"}, {"1", ""}, {"", "2"}});
   CHECK(fields_of("\"1 \"\"2\"\"\",\"\"\n") == Rows{{"1 \"2\"", ""}});
   CHECK(fields_of("").empty());
-  CHECK(parse_csv("a\n\"b\nc\"\nd").value()[2].line == 4);
+  CHECK(parse_csv("a\n\"b\nc\"\nd", 3).value()[2].line == 4);
 }
 
 TEST_CASE("a broken table is told with its line", "[sweep][csv]") {
-  const auto open = parse_csv("a\n\"b\nc");
+  const auto open = parse_csv("a\n\"b\nc", 3);
   REQUIRE_FALSE(open);
   CHECK(open.error().line == 2);
-  const auto behind = parse_csv("a\n\"b\"c");
+  const auto behind = parse_csv("a\n\"b\"c", 3);
   REQUIRE_FALSE(behind);
   CHECK(behind.error().line == 2);
+}
+
+TEST_CASE("a table that is too large is told with its size", "[sweep][csv]") {
+  CHECK(parse_csv("a\n1\n\n2\n", 3).value().size() == 3);
+  CHECK_THAT(parse_csv("a\n1\n\n2\n3", 3).error().message, StartsWith("4 rows are too many"));
+  const std::string wide(most_csv_fields, ',');
+  CHECK(parse_csv(wide.substr(1), 1).value()[0].fields.size() == most_csv_fields);
+  CHECK_THAT(parse_csv("a\n" + wide, 2).error().message, StartsWith("has more than 10000 values"));
 }

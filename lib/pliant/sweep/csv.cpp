@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace pliant {
 
 std::string csv_field(std::string_view text) {
@@ -14,16 +16,17 @@ std::string csv_field(std::string_view text) {
   return field + '"';
 }
 
-Result<std::vector<CsvRow>> parse_csv(std::string_view text) {
+Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<CsvRow> rows;
+  std::size_t count = 0;
   int line = 1;
   CsvRow row{.line = line};
   std::string field;
   bool is_empty = true;  // the row
   const auto end_row = [&] {
     row.fields.push_back(std::exchange(field, {}));
-    if (!is_empty) rows.push_back(std::move(row));
+    if (!is_empty && ++count <= most_rows) rows.push_back(std::move(row));
     row = CsvRow{.line = line};
     is_empty = true;
   };
@@ -52,6 +55,8 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text) {
     if (c == ',') {
       is_empty = false;
       row.fields.push_back(std::exchange(field, {}));
+      if (row.fields.size() >= most_csv_fields)
+        return invalid(fmt::format("has more than {} values", most_csv_fields), row.line);
     } else if (c == '\n') {
       ++line;
       end_row();
@@ -61,6 +66,9 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text) {
     }
   }
   end_row();
+  if (count > most_rows)
+    return invalid(fmt::format("{} rows are too many; at most {} are allowed", count, most_rows),
+                   1);
   return rows;
 }
 

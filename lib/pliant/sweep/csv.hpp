@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@ namespace pliant {
 /// A field as a table has it: in quotes if it has a comma, a quote or a line end.
 std::string csv_field(std::string_view text);
 
+inline constexpr std::size_t most_csv_fields = 10'000;  ///< of a row
+
 /// A row of a table.
 struct CsvRow {
   int line = 0;  ///< of its first character, counted from 1
@@ -21,7 +24,9 @@ struct CsvRow {
 
 /// The rows of a table, with line ends of either kind, perhaps behind a byte order mark; rows
 /// without any character are left out. Errors: InvalidInput with the line: a quote that is not
-/// closed, or followed by something else than a comma or the line's end.
-Result<std::vector<CsvRow>> parse_csv(std::string_view text);
+/// closed, or followed by something else than a comma or the line's end; more than
+/// `most_csv_fields` fields in a row; with the number, more than `most_rows` rows, which are not
+/// kept.
+Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows);
 
 }  // namespace pliant

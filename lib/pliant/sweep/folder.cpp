@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -203,7 +203,7 @@ class SweepFolder::Parts {
   }
 
   // Whether all files of a take are among those of the folder.
-  bool has_files(std::size_t take, const std::unordered_set<std::string>& names) const {
+  bool has_files(std::size_t take, const std::set<std::string>& names) const {
     const auto scene = sweep.scene_of(take);
     if (!scene) return false;
     const auto frames = sweep.frames_of(*scene);
@@ -212,9 +212,16 @@ class SweepFolder::Parts {
         .file = file_of(take), .first_frame = frames->first, .last_frame = frames->last};
     for (const Surface& surface : scene->surfaces)
       plan.surfaces.push_back({.name = surface.name, .rest = {}});
-    return std::ranges::all_of(files_of(plan), [&](const std::string& file) {
-      return names.contains(fs::path(file).filename().string());
-    });
+    const auto name_of = [](const std::string& file) { return fs::path(file).filename().string(); };
+    const bool has_known = std::ranges::all_of(
+        files_of(plan), [&](const std::string& file) { return names.contains(name_of(file)); });
+    if (!has_known || request.write != ".gltf") return has_known;
+    // The name of its numbers depends on them.
+    const std::string head = fs::path(plan.file).stem().string() + ".";
+    for (auto name = names.lower_bound(head); name != names.end() && name->starts_with(head);
+         ++name)
+      if (is_named_at_the_end(plan, *name)) return true;
+    return false;
   }
 
   std::string folder;
@@ -306,7 +313,7 @@ Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
   if (!read) return fail(read.error());
   SweepStatus status = gathering.finish();
   if (!request().write.empty()) {
-    std::unordered_set<std::string> names;
+    std::set<std::string> names;
     std::error_code ignored;
     for (fs::directory_iterator entry(parts_->folder_of_takes(), ignored), end;
          !ignored && entry != end; entry.increment(ignored))

@@ -67,11 +67,19 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
       return fail(told_after(made.error(), "--set "));
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       const VariedPath& varied = takes_.paths()[path];
-      auto checked = check_change_texts(base, {varied.kind, varied.path}, takes_.texts_of(path),
-                                        settings_.root, should_stop);
+      const std::vector<std::string_view> texts = takes_.texts_of(path);
+      const auto check = [&](std::span<const std::string_view> some) {
+        return check_change_texts(base, {varied.kind, varied.path}, some, settings_.root,
+                                  should_stop);
+      };
+      auto checked = check(texts);
       if (checked) continue;
       if (checked.error().code == ErrorCode::Interrupted) return checked;
-      return fail(told_after(checked.error(), varied.option + ": "));
+      const auto wrong = std::ranges::find_if(texts, [&](const std::string_view& text) {
+        return !check({&text, 1});
+      });
+      const std::string_view text = wrong != texts.end() ? *wrong : texts.front();
+      return fail(told_after(checked.error(), takes_.place_of(path, text) + ": "));
     }
   }
   return {};

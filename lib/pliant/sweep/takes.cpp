@@ -137,7 +137,7 @@ Result<void> Takes::read_axes(const SweepVariation& variation) {
 }
 
 Result<void> Takes::read_table(std::string_view text) {
-  auto rows = parse_csv(text);
+  auto rows = parse_csv(text, most_takes + 1);  // and the header
   const auto at_line = [](int line, const std::string& message) {
     return refuse(fmt::format("--takes, line {}: {}", line, message));
   };
@@ -161,6 +161,7 @@ Result<void> Takes::read_table(std::string_view text) {
   axis.count = rows->size() - 1;
   for (std::size_t k = 1; k < rows->size(); ++k) {
     CsvRow& row = (*rows)[k];
+    row_lines_.push_back(row.line);
     if (row.fields.size() != header.fields.size())
       return at_line(row.line, fmt::format("has {} values, but the header has {} paths",
                                            row.fields.size(), header.fields.size()));
@@ -180,6 +181,16 @@ Result<void> Takes::count_takes() {
         fmt::format("{:.0f} takes are too many; at most {} are allowed", all, most_takes));
   count_ = static_cast<std::size_t>(all);
   return {};
+}
+
+std::string Takes::place_of(std::size_t path, std::string_view text) const {
+  if (row_lines_.empty()) return parts_.paths[path].option;
+  const TakeAxis& axis = parts_.axes.back();
+  const auto column = static_cast<std::size_t>(
+      std::find(axis.paths.begin(), axis.paths.end(), path) - axis.paths.begin());
+  std::size_t row = 0;
+  while (row + 1 < axis.count && axis.texts[row * axis.paths.size() + column] != text) ++row;
+  return fmt::format("--takes, line {}", row_lines_[row]);
 }
 
 std::size_t Takes::row_of(std::size_t axis, std::size_t take) const {

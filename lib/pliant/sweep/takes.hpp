@@ -71,6 +71,9 @@ class Takes {
   /// What is changed in its scene: what is set, then each path.
   std::vector<SceneChange> changes(std::size_t take) const;
 
+  /// Where a path has a text, for messages: the first row of a table, or the option as typed.
+  std::string place_of(std::size_t path, std::string_view text) const;
+
   /// Each text that a path has in some take, in the order of the first take that has it.
   std::vector<std::string_view> texts_of(std::size_t path) const;
 
@@ -83,6 +86,7 @@ class Takes {
 
   TakeParts parts_;
   std::size_t count_ = 0;
+  std::vector<int> row_lines_;  // of a table
 };
 
 }  // namespace pliant
