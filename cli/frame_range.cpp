@@ -17,7 +17,7 @@ Result<FrameRange> parse_frame_range(const std::string& text) {
 
 Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
   if (!asked) return FrameRange{scene.start, scene.end};
-  const auto frames = parse_frame_range(*asked);
+  auto frames = parse_frame_range(*asked);
   if (!frames) return frames;
   if (frames->first < scene.start || frames->last > scene.end) {
     return fail(ErrorCode::InvalidInput, fmt::format("--frames {}: the scene has frames {} to {}",
