@@ -355,12 +355,12 @@ class Sweeps(Command):
             self.assertGreater(self.whole_lines(name), 0)
 
     def test_an_interrupt_ends_the_reading_of_meshes(self):
-        os.truncate(self.write("big.obj", ""), 16 << 30)  # needs no disk
+        os.truncate(self.write("big.obj", ""), 64 << 30)  # needs no disk
         scene = self.write("scene.xml", edited().replace('<grid columns="11" rows="9" width="10" depth="10"/>',
                                                          '<mesh file="big.obj"/>'))
         with subprocess.Popen([PLIANT, "sweep", "run", scene, "-o", self.path("s"), "--vary", "sheet.density=1,2",
                                "--make-only"], stderr=subprocess.PIPE, text=True) as process:
-            time.sleep(0.5)
+            time.sleep(6 if SANITIZED else 2)  # it reads by then, and for long
             process.send_signal(signal.SIGINT)
             begin = time.monotonic()
             _, errors = process.communicate(timeout=300)
