@@ -15,6 +15,18 @@ using namespace pliant;
 using namespace pliant::testing;
 using Catch::Matchers::Contains;
 
+namespace {
+
+// A file a.txt that is written and has no name yet.
+AtomicFile begun(const ScratchFolder& folder, std::string_view content) {
+  auto file = AtomicFile::create(folder.file("a.txt"));
+  REQUIRE(file);
+  REQUIRE(file->write(content));
+  return *std::move(file);
+}
+
+}  // namespace
+
 TEST_CASE("a committed file is whole and nothing else is left", "[output][atomic_file]") {
   const ScratchFolder folder;
   auto file = AtomicFile::create(folder.file("a.bin"));
@@ -41,24 +53,18 @@ TEST_CASE("a file that is not committed leaves what was there", "[output][atomic
 
 TEST_CASE("two writers of one name do not meet", "[output][atomic_file]") {
   const ScratchFolder folder;
-  auto first = AtomicFile::create(folder.file("a.txt")),
-       second = AtomicFile::create(folder.file("a.txt"));
-  REQUIRE(first->write("first"));
-  REQUIRE(second->write("second"));
-  REQUIRE(second->commit());
-  REQUIRE(first->commit());
+  auto first = begun(folder, "first"), second = begun(folder, "second");
+  REQUIRE(second.commit());
+  REQUIRE(first.commit());
   CHECK(read_file(folder.file("a.txt")).value() == "first");
   CHECK(folder.entry_count() == 1);
 }
 
 TEST_CASE("a file that must be new takes the place of none", "[output][atomic_file]") {
   const ScratchFolder folder;
-  auto first = AtomicFile::create(folder.file("a.txt")),
-       second = AtomicFile::create(folder.file("a.txt"));
-  REQUIRE(first->write("first"));
-  REQUIRE(second->write("second"));
-  CHECK(second->commit_new().value());
-  CHECK_FALSE(first->commit_new().value());
+  auto first = begun(folder, "first"), second = begun(folder, "second");
+  CHECK(second.commit_new().value());
+  CHECK_FALSE(first.commit_new().value());
   CHECK(read_file(folder.file("a.txt")).value() == "second");
   CHECK(folder.entry_count() == 1);
 }

@@ -77,7 +77,7 @@ class SpectralPlate {
     double* load[3] = {};
     double* displacement[3] = {};
     double* pending[3] = {};
-    double* growth[3] = {};  // of the load, in exact steps; not the plate's
+    double* growth[3] = {};  // a transformed load, in exact steps; not the plate's
     double* sums[3] = {};    // of rows, of columns, and the edge
   };
 
