@@ -376,4 +376,20 @@ TEST_CASE("a frame that is no number has no value", "[timeline][curve]") {
 }
 
 }  // namespace
+
+TEST_CASE("copies of a curve share its parts, and what is made of one leaves the others",
+          "[timeline][curve]") {
+  CurveKeys<1> keys;
+  keys.keys = {key(1, 2), key(5, 7)};
+  Curve<1> one = make(keys);
+  const Curve<1> copy = one;
+  CHECK(&copy.keys() == &one.keys());
+  const Curve<1> twice = one.adjusted({Adjustment{Adjustment::Kind::Times, 2}});
+  CHECK(&copy.keys() == &one.keys());
+  CHECK(at(twice, 5) == 14);
+  one = twice;
+  CHECK(&one.keys() == &twice.keys());
+  CHECK(at(copy, 5) == 7);
+}
+
 }  // namespace pliant::testing

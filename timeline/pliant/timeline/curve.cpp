@@ -56,19 +56,16 @@ tl::expected<Curve<D>, CurveError> Curve<D>::make(CurveKeys<D> keys) {
 }
 
 template <int D>
-Curve<D>::Curve(Parts parts) : parts_(std::make_unique<const Parts>(std::move(parts))) {}
+Curve<D>::Curve(Parts parts) : parts_(std::make_shared<const Parts>(std::move(parts))) {}
 
 template <int D>
-Curve<D>::Curve(const Curve& other) : Curve(Parts(*other.parts_)) {}
+Curve<D>::Curve(const Curve&) = default;
 
 template <int D>
 Curve<D>::Curve(Curve&&) noexcept = default;
 
 template <int D>
-Curve<D>& Curve<D>::operator=(const Curve& other) {
-  *this = Curve(other);
-  return *this;
-}
+Curve<D>& Curve<D>::operator=(const Curve&) = default;
 
 template <int D>
 Curve<D>& Curve<D>::operator=(Curve&&) noexcept = default;

@@ -45,7 +45,7 @@ class Curve {
   /// `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without copies.
   [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
 
-  Curve(const Curve&);
+  Curve(const Curve&);  ///< shares its parts: of constant cost
   Curve(Curve&&) noexcept;
   Curve& operator=(const Curve&);
   Curve& operator=(Curve&&) noexcept;
@@ -86,7 +86,7 @@ class Curve {
 
   explicit Curve(Parts parts);
 
-  std::unique_ptr<const Parts> parts_;  // null once moved from
+  std::shared_ptr<const Parts> parts_;  // of all copies; null once moved from
 };
 
 extern template class Curve<1>;
