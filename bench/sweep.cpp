@@ -1,14 +1,15 @@
 // Measures what a sweep adds to the solves of its takes, and what a million takes cost.
 //
-//   takes      1000 takes of a scene with other dampings, on two threads, in a folder: seconds, and
-//              processor time over that of playing the same scenes by themselves, one simulation
-//              after the other, on two threads
+//   takes      1000 takes of a scene with other dampings, or of what --vary says, on two threads,
+//   in
+//              a folder: seconds, and processor time over that of playing the same scenes by
+//              themselves, one simulation after the other, on two threads
 //   plan       10^6 takes: two intervals sampled, all values checked, sweep.json written [s]
 //   resume     the folder opened, its log of 10^6 lines read [s]
 //   table      takes.csv written [s]
 //   memory     the most that the process had [MB]
 //
-// Run: build/release/bench/sweep [SCENE] [--takes N] [--million N]
+// Run: build/release/bench/sweep [SCENE] [--takes N] [--vary PATH=VALUES] [--million N]
 
 #include <algorithm>
 #include <atomic>
@@ -40,6 +41,7 @@ constexpr int thread_count = 2;
 struct Options {
   std::string scene = "examples/sheet.xml";
   int takes = 1000;
+  std::string vary = {};  // empty: so many dampings
   int million = 1'000'000;
 };
 
@@ -91,7 +93,9 @@ double play_all(const Sweep& sweep) {
 void measure_takes(const Options& options, const Scratch& scratch) {
   const SweepRequest request{
       .scenes = {options.scene},
-      .variation = {.vary = {fmt::format("sheet.damping=5:100:{}", options.takes)}}};
+      .variation = {.vary = {options.vary.empty()
+                                 ? fmt::format("sheet.damping=5:100:{}", options.takes)
+                                 : options.vary}}};
   double processor = processor_seconds();
   const double wall = seconds([&] {
     const auto folder = value_or_abort(SweepFolder::make(scratch.file("takes"), request));
@@ -146,6 +150,8 @@ int main(int count, char* arguments[]) {
     const std::string_view word = arguments[k];
     if (word == "--takes" && k + 1 < count) {
       options.takes = std::atoi(arguments[++k]);
+    } else if (word == "--vary" && k + 1 < count) {
+      options.vary = arguments[++k];
     } else if (word == "--million" && k + 1 < count) {
       options.million = std::atoi(arguments[++k]);
     } else {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/core/shelf.hpp"
 #include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/change_texts.hpp"
 #include "support/catch.hpp"
@@ -207,16 +208,17 @@ TEST_CASE("an exception of a force ends the run", "[sweep][threads]") {
 }
 
 TEST_CASE("a shared shape is that of its own surface", "[sweep]") {
-  ShapeShelf shelf(std::size_t{1} << 30U);
+  Shelf shelf(std::size_t{1} << 30U);
+  const RunContext context{.shelf = &shelf};
   const SceneOrigin origin;
   Surface surface = sheet("sheet", 9);
-  const auto first = shelf.make(surface, origin, {}).value();
+  const auto first = find_rest_shape(surface, origin, context).value();
   surface.material.density = 7.0;  // not of the shape
-  const auto same = shelf.make(surface, origin, {}).value();
+  const auto same = find_rest_shape(surface, origin, context).value();
   CHECK(same.shape.mesh.positions == first.shape.mesh.positions);
   CHECK(same.memory.bytes() == first.memory.bytes());
   std::get<GridSheet>(surface.shape).width = 5;
-  const auto other = shelf.make(surface, origin, {}).value();
+  const auto other = find_rest_shape(surface, origin, context).value();
   CHECK(other.shape.mesh.positions ==
         make_rest_shape(surface, origin).value().shape.mesh.positions);
   CHECK(other.shape.mesh.positions != first.shape.mesh.positions);
@@ -241,11 +243,34 @@ TEST_CASE("a mesh file is read once for all takes", "[sweep]") {
   Surface surface = sheet("mesh");
   surface.shape = MeshFile{.path = file.string()};
   const Sweep sweep = sweep_of({"mesh.density=1,2"}, scene({surface}, {poke("p", {2, 0, 2})}));
-  ShapeShelf shelf(std::size_t{1} << 30U);
-  const auto first = sweep.run(0, {.shapes = &shelf}).measures;
+  Shelf shelf(std::size_t{1} << 30U);
+  const auto first = sweep.run(0, {.shelf = &shelf}).measures;
   REQUIRE(first);
   std::filesystem::remove(file);
-  CHECK(sweep.run(0, {.shapes = &shelf}).measures.value() == *first);
-  CHECK(sweep.run(1, {.shapes = &shelf}).measures);
+  CHECK(sweep.run(0, {.shelf = &shelf}).measures.value() == *first);
+  CHECK(sweep.run(1, {.shelf = &shelf}).measures);
   CHECK_FALSE(sweep.run(1, {}).measures);
+}
+
+TEST_CASE("takes share sparse factors, and no bit depends on it", "[sweep][threads]") {
+  Surface surface = sheet("sheet", 12);
+  surface.shape = make_mesh(std::get<GridSheet>(surface.shape));
+  surface.reading.uv = UvReading::Surface;
+  surface.solver.region = SolvedRegion::All;
+  const auto simulate = [&](double magnitude, Shelf* shelf) {
+    auto simulation = Simulation::make(scene({surface}, {poke("poke", {0, 0, 0}, magnitude)}, 5),
+                                       {.shelf = shelf})
+                          .value();
+    Measurer measurer(simulation);
+    for (const int frame : simulation.frames()) measurer.add(simulation.at(frame).value());
+    return std::pair(measurer.measures().value(), simulation.solver_counts().factorizations);
+  };
+  Shelf shelf(std::size_t{1} << 30U);
+  const auto first = simulate(500, &shelf), second = simulate(900, &shelf),
+             alone = simulate(900, nullptr);
+  CHECK(first.second == 1);
+  CHECK(alone.second == 1);
+  CHECK(second.second == (available_solvers().front() == SolverChoice::Cholmod ? 0 : 1));
+  CHECK(second.first == alone.first);
+  CHECK(second.first.hash != first.first.hash);
 }

@@ -7,6 +7,7 @@
 namespace pliant {
 
 class MemoryBudget;
+class Shelf;
 class ThreadPool;
 struct Profile;
 
@@ -19,6 +20,7 @@ struct RunContext {
   MemoryBudget* memory = nullptr;  ///< from which large parts reserve theirs; null: no limit
   ThreadPool* threads = nullptr;   ///< null: the calling thread only
   int most_lanes = widest_lanes;   ///< doubles per vector; the fewest there are if all have more
+  Shelf* shelf = nullptr;          ///< what is shared with other runs; null: nothing is
   Profile* profile = nullptr;      ///< receives the times, from one thread; null: no profiling
   StopRequest should_stop = {};    ///< called from any thread; empty: never stops
 

@@ -1,9 +1,13 @@
 #include "pliant/sampling/shape_shelf.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <tuple>
 #include <utility>
 #include <variant>
+
+#include "pliant/core/hash.hpp"
+#include "pliant/core/shelf.hpp"
 
 namespace pliant {
 namespace {
@@ -62,42 +66,36 @@ bool has_same_shape(const Surface& a, const Surface& b) {
          a.solver.edges.are_clamped() == b.solver.edges.are_clamped();
 }
 
+struct KeptShape final : Shelf::Item {
+  Surface surface;
+  RestShape shape;
+  std::size_t bytes = 0;
+};
+
 }  // namespace
 
-ShapeShelf::Kept ShapeShelf::find(const Surface& surface) {
-  const std::lock_guard lock(mutex_);
-  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& kept) {
-    return has_same_shape(kept.surface, surface);
-  });
-  if (found == kept_.end()) return {};
-  std::rotate(kept_.begin(), found, found + 1);
-  return kept_.front();
-}
-
-void ShapeShelf::keep(Kept kept) {
-  if (kept.bytes > max_bytes_) return;
-  const std::lock_guard lock(mutex_);
-  std::erase_if(kept_,
-                [&](const Kept& other) { return has_same_shape(other.surface, kept.surface); });
-  kept_.insert(kept_.begin(), std::move(kept));
-  std::size_t bytes = 0;
-  const auto first_gone = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& one) {
-    bytes += one.bytes;
-    return bytes > max_bytes_;
-  });
-  kept_.erase(first_gone, kept_.end());
-}
-
-Result<ReservedShape> ShapeShelf::make(const Surface& surface, const SceneOrigin& origin,
-                                       const RunContext& context) {
-  if (std::holds_alternative<Mesh>(surface.shape)) return make_rest_shape(surface, origin, context);
-  if (const Kept kept = find(surface); kept.shape) {
+Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin& origin,
+                                      const RunContext& context) {
+  // A mesh made by a program is not compared.
+  if (!context.shelf || std::holds_alternative<Mesh>(surface.shape))
+    return make_rest_shape(surface, origin, context);
+  const Hash key = hash_of(surface.name);
+  const auto kept = context.shelf->find<KeptShape>(
+      key, [&](const KeptShape& one) { return has_same_shape(one.surface, surface); });
+  if (kept) {
     MemoryShare memory(context.memory);
-    if (memory.try_resize(kept.bytes)) return ReservedShape{*kept.shape, std::move(memory)};
+    if (memory.try_resize(kept->bytes)) return ReservedShape{kept->shape, std::move(memory)};
     // Making it tells what does not fit.
   }
   auto made = make_rest_shape(surface, origin, context);
-  if (made) keep({surface, std::make_shared<const RestShape>(made->shape), made->memory.bytes()});
+  if (made && !kept) {
+    auto shape = std::make_shared<KeptShape>();
+    shape->surface = surface;
+    shape->shape = made->shape;
+    shape->bytes = made->memory.bytes();
+    const std::size_t bytes = shape->bytes;
+    context.shelf->keep(key, std::move(shape), bytes);
+  }
   return made;
 }
 

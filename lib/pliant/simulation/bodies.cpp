@@ -67,11 +67,11 @@ Bodies::Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOpti
       threads_(options.threads),
       solver_(options.solver),
       exact_parts_(options.exact_parts),
-      shapes_(options.shapes),
       // Several surfaces are solved in parallel; a single one uses all threads.
       context_{.memory = &memory_,
                .threads = solved_count(scene) == 1 ? &threads_ : nullptr,
                .most_lanes = options.most_lanes,
+               .shelf = options.shelf,
                .should_stop = options.should_stop},
       profiles_(options.profile ? scene.surfaces.size() : 0),
       round_done_(options.round_done) {}
@@ -97,8 +97,7 @@ Result<void> Bodies::make_all() {
   std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
     if (context_.is_stopped()) return interrupted_at_start();
-    auto made = shapes_ ? shapes_->make(surface, scene_.origin, context_)
-                        : make_rest_shape(surface, scene_.origin, context_);
+    auto made = find_rest_shape(surface, scene_.origin, context_);
     if (!made) {
       errors.push_back(std::move(made.error()));
       continue;

@@ -109,7 +109,6 @@ class Bodies {
   std::vector<std::optional<BodyState>> cycles_;  // the states at their beginnings, once known
   SolverChoice solver_;
   int exact_parts_;
-  ShapeShelf* shapes_;             // null: shapes are made anew
   RunContext context_;             // of the bodies, each with a profile of its own
   std::vector<Profile> profiles_;  // one a surface; empty: no profiling
   std::function<void(std::string_view, int, double)> round_done_;

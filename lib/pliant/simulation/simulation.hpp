@@ -25,7 +25,7 @@
 
 namespace pliant {
 
-class ShapeShelf;
+class Shelf;
 class StateStore;
 
 /// Options of a simulation's run. Only the solver changes results, by 2e-9 of their size at
@@ -71,8 +71,9 @@ struct SimulationOptions {
   /// stored.
   StateStore* store = nullptr;
 
-  /// Shares rest shapes with other simulations. Outlives `make`; null: every shape is made anew.
-  ShapeShelf* shapes = nullptr;
+  /// Shares rest shapes and sparse factors with other simulations. Outlives the simulation; null:
+  /// all are made anew.
+  Shelf* shelf = nullptr;
 };
 
 /// How frames were reached, counted each time the simulation advances by a frame.

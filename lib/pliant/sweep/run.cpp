@@ -10,10 +10,10 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/sampling/sampling.hpp"
-#include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/sweep/sweep.hpp"
 
@@ -21,6 +21,14 @@ namespace pliant {
 namespace {
 
 tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
+
+// Of the memory, what takes share may use this.
+std::size_t shelf_part(std::size_t max_memory) { return max_memory / 8; }
+
+// What each of so many takes at once may use; 0 takes: one, with all of it.
+std::size_t share_of(std::size_t count, std::size_t max_memory) {
+  return count == 0 ? max_memory : (max_memory - shelf_part(max_memory)) / count;
+}
 
 // The animation of a take in a file, as a bake writes it.
 class TakeWriter {
@@ -97,15 +105,14 @@ class Turns {
     std::size_t memory = 0;  // [bytes]
     std::size_t level = 0;   // takes at once for which the memory is divided; 0: all of it
     int threads = 1;
-    ShapeShelf* shapes = nullptr;
+    Shelf* shelf = nullptr;
   };
 
   Turns(std::span<const std::size_t> takes, const SweepRun& options)
       : takes_(takes),
         options_(options),
-        level_(std::min(static_cast<std::size_t>(options.threads),
-                        std::max<std::size_t>(1, takes.size()))),
-        shelf_(std::in_place, options.max_memory / 8) {}
+        level_(takes_at_once(takes.size(), options.threads, options.max_memory).count),
+        shelf_(std::in_place, memory_of_shelf()) {}
 
   std::size_t at_once() const { return level_; }
 
@@ -135,7 +142,7 @@ class Turns {
       again_.pop_front();
     }
     if (level_ == 0) shelf_.reset();
-    turn.shapes = shelf_ ? &*shelf_ : nullptr;
+    turn.shelf = shelf_ ? &*shelf_ : nullptr;
     turn.threads =
         std::max(1, options_.threads / static_cast<int>(std::max<std::size_t>(1, level_)));
     memory_used_ += turn.memory;
@@ -189,10 +196,8 @@ class Turns {
   }
 
  private:
-  std::size_t memory_of_shelf() const { return level_ == 0 ? 0 : options_.max_memory / 8; }
-  std::size_t share() const {
-    return level_ == 0 ? options_.max_memory : (options_.max_memory - memory_of_shelf()) / level_;
-  }
+  std::size_t memory_of_shelf() const { return level_ == 0 ? 0 : shelf_part(options_.max_memory); }
+  std::size_t share() const { return share_of(level_, options_.max_memory); }
 
   std::span<const std::size_t> takes_;
   const SweepRun& options_;
@@ -211,10 +216,15 @@ class Turns {
   std::size_t running_ = 0;
   bool is_ended_ = false;
   Result<void> error_;
-  std::optional<ShapeShelf> shelf_;
+  std::optional<Shelf> shelf_;
 };
 
 }  // namespace
+
+TakesAtOnce takes_at_once(std::size_t takes, int threads, std::size_t max_memory) {
+  const auto count = std::min(static_cast<std::size_t>(threads), std::max<std::size_t>(1, takes));
+  return {count, share_of(count, max_memory)};
+}
 
 TakeOutcome Sweep::run(std::size_t take, const TakeRun& options) const {
   const auto begin = std::chrono::steady_clock::now();
@@ -232,7 +242,7 @@ TakeOutcome Sweep::run(std::size_t take, const TakeRun& options) const {
                                                 .threads = options.threads,
                                                 .solver = settings_.solver,
                                                 .should_stop = options.should_stop,
-                                                .shapes = options.shapes});
+                                                .shelf = options.shelf});
     if (!simulation) return fail(simulation.error());
     outcome.memory = simulation->surface_memory();
     return play(*simulation, *frames, options, *scene);
@@ -261,7 +271,7 @@ Result<void> Sweep::run(std::span<const std::size_t> takes, const SweepRun& opti
         const TakeRun run{.max_memory = turn->memory,
                           .threads = turn->threads,
                           .should_stop = should_stop,
-                          .shapes = turn->shapes,
+                          .shelf = turn->shelf,
                           .file = options.file_of ? options.file_of(turn->take) : std::string(),
                           .check = options.check};
         turns.end(*turn, this->run(turn->take, run));

@@ -18,7 +18,7 @@
 
 namespace pliant {
 
-class ShapeShelf;
+class Shelf;
 
 /// Frames, both ends included.
 struct TakeFrames {
@@ -38,8 +38,8 @@ struct TakeRun {
   std::size_t max_memory = std::numeric_limits<std::size_t>::max();  ///< as `SimulationOptions`
   int threads = 1;
   StopRequest should_stop = {};
-  ShapeShelf* shapes = nullptr;  ///< shared with other takes; null: made anew
-  std::string file = {};         ///< the animation is written to it as by a bake; empty: nowhere
+  Shelf* shelf = nullptr;  ///< what is shared with other takes; null: nothing is
+  std::string file = {};   ///< the animation is written to it as by a bake; empty: nowhere
   /// Called with the scene before it is simulated and at the end; an error fails the take.
   std::function<Result<void>(const Scene&)> check = {};
 };
@@ -65,6 +65,13 @@ struct SweepRun {
   /// ends the run.
   std::function<Result<void>(const TakeOutcome&)> take_done = {};
 };
+
+/// How many takes a run begins with at once, and the memory that each of them may use [bytes].
+struct TakesAtOnce {
+  std::size_t count = 1;
+  std::size_t memory = std::numeric_limits<std::size_t>::max();
+};
+TakesAtOnce takes_at_once(std::size_t takes, int threads, std::size_t max_memory);
 
 /// A scene that is run many times, each take with other values. Immutable: several threads may use
 /// one. The bits of a take are those of a simulation of the scene edited so by hand. SWEEP.

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/hash_stream.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/solver_errors.hpp"
 
@@ -14,6 +16,9 @@ namespace {
 
 // Those of the first step, which tries, and of the one that is accepted.
 constexpr std::size_t most_kept = 2;
+
+// In place of a step's length, for the factor that finds unknowns without a mass.
+constexpr double held = -1;
 
 template <class Number>
 bool are_same(const Number* a, const Number* b, Eigen::Index count) {
@@ -32,12 +37,59 @@ bool are_same(const MovingMatrix& a, const MovingMatrix& b) {
          are_same(a.stiffness.valuePtr(), b.stiffness.valuePtr(), a.stiffness.nonZeros());
 }
 
+template <class Number>
+void add_to(HashStream& stream, const Number* first, std::size_t count) {
+  stream.add({reinterpret_cast<const char*>(first), sizeof(Number) * count});
+}
+
+void add_pattern(HashStream& stream, const SparseMatrix& matrix) {
+  add_to(stream, matrix.outerIndexPtr(), static_cast<std::size_t>(matrix.cols()) + 1);
+  add_to(stream, matrix.innerIndexPtr(), static_cast<std::size_t>(matrix.nonZeros()));
+}
+
+Hash key_of_pattern(const SparseMatrix& matrix) {
+  HashStream stream;
+  stream.add("order of ");
+  add_pattern(stream, matrix);
+  return stream.hash();
+}
+
+Hash key_of_factors(const MovingMatrix& matrix, double length) {
+  HashStream stream;
+  stream.add("complex factors of ");
+  add_pattern(stream, matrix.stiffness);
+  add_to(stream, matrix.stiffness.valuePtr(),
+         static_cast<std::size_t>(matrix.stiffness.nonZeros()));
+  for (const auto* const numbers : {&matrix.inertia, &matrix.drag})
+    add_to(stream, numbers->data(), numbers->size());
+  add_to(stream, &length, 1);
+  return stream.hash();
+}
+
 }  // namespace
+
+struct SparseMotion::KeptPattern final : Shelf::Item {
+  bool is_of(const SparseMatrix& matrix) const {
+    return starts.size() == static_cast<std::size_t>(matrix.cols()) + 1 &&
+           rows.size() == static_cast<std::size_t>(matrix.nonZeros()) &&
+           are_same(starts.data(), matrix.outerIndexPtr(), matrix.cols() + 1) &&
+           are_same(rows.data(), matrix.innerIndexPtr(), matrix.nonZeros());
+  }
+
+  std::vector<int> starts, rows;
+  FactorPattern pattern;
+};
+
+struct SparseMotion::KeptFactors final : Shelf::Item {
+  std::shared_ptr<const MovingMatrix> matrix;
+  double length = 0;
+  ComplexFactors factors;
+};
 
 template <class Work>
 void SparseMotion::for_each_pole(const Work& work) {
   // A small matrix is not worth a thread.
-  if (context_.threads && pattern_.size() > 2000) {
+  if (context_.threads && pattern_->size() > 2000) {
     context_.threads->for_each(pole_count, work);
   } else {
     for (std::size_t pole = 0; pole < pole_count; ++pole) work(pole);
@@ -52,23 +104,72 @@ Result<void> SparseMotion::prepare(MovingMatrix matrix) try {
   factors_.clear();
   holding_.reset();
   if (!keeps_pattern) {
-    // The order copies the pattern; its entries are counted before they are stored.
-    const std::size_t bytes = 250 * static_cast<std::size_t>(matrix.stiffness.cols());
-    if (!memory_.try_resize(bytes)) {
-      return fail(factor_too_large(matrix.stiffness.cols(), memory_.complaint(bytes)));
-    }
-    pattern_ = FactorPattern(matrix.stiffness);
-    const std::size_t stored = bytes + pattern_.memory();
-    if (!memory_.try_resize(stored)) {
-      return fail(factor_too_large(matrix.stiffness.cols(), memory_.complaint(stored)));
-    }
-    pattern_.store_entries();
-    ++counts_.analyses;
+    if (auto found = find_pattern(matrix.stiffness); !found) return found;
   }
-  matrix_ = std::move(matrix);
+  matrix_ = std::make_shared<const MovingMatrix>(std::move(matrix));
   return {};
 } catch (const std::bad_alloc&) {
   return fail(no_memory_for_factor(matrix.stiffness.cols()));
+}
+
+Result<void> SparseMotion::find_pattern(const SparseMatrix& matrix) {
+  // The order copies the pattern; its entries are counted before they are stored.
+  const std::size_t bytes = 250 * static_cast<std::size_t>(matrix.cols());
+  const auto reserve = [&](std::size_t all) -> Result<void> {
+    if (memory_.try_resize(all)) return {};
+    return fail(factor_too_large(matrix.cols(), memory_.complaint(all)));
+  };
+  if (auto reserved = reserve(bytes); !reserved) return reserved;
+  const Hash key = context_.shelf ? key_of_pattern(matrix) : Hash();
+  const auto kept = context_.shelf
+                        ? context_.shelf->find<KeptPattern>(
+                              key, [&](const KeptPattern& one) { return one.is_of(matrix); })
+                        : nullptr;
+  if (kept) {
+    pattern_ = std::shared_ptr<const FactorPattern>(kept, &kept->pattern);
+    return reserve(bytes + pattern_->memory());
+  }
+  auto made = std::make_shared<KeptPattern>();
+  made->pattern = FactorPattern(matrix);
+  if (auto reserved = reserve(bytes + made->pattern.memory()); !reserved) return reserved;
+  made->pattern.store_entries();
+  ++counts_.analyses;
+  pattern_ = std::shared_ptr<const FactorPattern>(made, &made->pattern);
+  if (!context_.shelf) return {};
+  made->starts.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1);
+  made->rows.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  const std::size_t all =
+      made->pattern.memory() + (made->starts.size() + made->rows.size()) * sizeof(int);
+  context_.shelf->keep(key, std::move(made), all);
+  return {};
+}
+
+// Those on the shelf of an equal matrix and the same length, or new ones.
+Result<std::shared_ptr<const SparseMotion::ComplexFactors>> SparseMotion::find_factors(
+    double length, std::size_t count, const std::function<Result<void>(ComplexFactors&)>& make) {
+  const Hash key = context_.shelf ? key_of_factors(*matrix_, length) : Hash();
+  if (context_.shelf) {
+    const auto kept = context_.shelf->find<KeptFactors>(key, [&](const KeptFactors& one) {
+      return one.length == length && are_same(*one.matrix, *matrix_);
+    });
+    if (kept) return std::shared_ptr<const ComplexFactors>(kept, &kept->factors);
+  }
+  auto made = std::make_shared<KeptFactors>();
+  made->factors.resize(count);
+  if (auto done = make(made->factors); !done) return fail(done.error());
+  counts_.factorizations += 2 * static_cast<int>(count);
+  const std::shared_ptr<const ComplexFactors> factors(made, &made->factors);
+  if (context_.shelf) {
+    made->length = length;
+    made->matrix = matrix_;
+    const SparseMatrix& stiffness = matrix_->stiffness;
+    const std::size_t bytes =
+        count * ComplexFactor::memory(*pattern_) +
+        static_cast<std::size_t>(stiffness.nonZeros()) * (sizeof(double) + sizeof(int)) +
+        static_cast<std::size_t>(stiffness.cols()) * (2 * sizeof(double) + sizeof(int));
+    context_.shelf->keep(key, std::move(made), bytes);
+  }
+  return factors;
 }
 
 Result<SparseMotion::Factors*> SparseMotion::factors_for(double length) {
@@ -79,64 +180,64 @@ Result<SparseMotion::Factors*> SparseMotion::factors_for(double length) {
     return &factors_.front();
   }
   while (factors_.size() >= most_kept) factors_.pop_back();
-  const int size = pattern_.size();
+  const int size = pattern_->size();
   const std::size_t bytes =
-      pattern_.memory() + static_cast<std::size_t>(size) * 600 +
-      (pole_count * (factors_.size() + 1) + 1) * ComplexFactor::memory(pattern_) +
+      pattern_->memory() + static_cast<std::size_t>(size) * 600 +
+      (pole_count * (factors_.size() + 1) + 1) * ComplexFactor::memory(*pattern_) +
       pole_count * (static_cast<std::size_t>(size) * ComplexFactor::row_numbers * sizeof(double));
   if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
-  Factors factors{.length = length, .of_pole = {}};
-  std::array<Result<void>, pole_count> done;
-  const SubStep step{length};
-  for_each_pole([&](std::size_t pole) {
-    const Complex rate = step.rate(static_cast<int>(pole));
-    std::vector<Complex> shifts(matrix_->inertia.size());
-    for (std::size_t k = 0; k < shifts.size(); ++k) {
-      shifts[k] = (rate * matrix_->inertia[k] + Complex{matrix_->drag[k], 0}) * rate;
+  const auto made = find_factors(length, pole_count, [&](ComplexFactors& factors) {
+    std::array<Result<void>, pole_count> done;
+    const SubStep step{length};
+    for_each_pole([&](std::size_t pole) {
+      const Complex rate = step.rate(static_cast<int>(pole));
+      std::vector<Complex> shifts(matrix_->inertia.size());
+      for (std::size_t k = 0; k < shifts.size(); ++k) {
+        shifts[k] = (rate * matrix_->inertia[k] + Complex{matrix_->drag[k], 0}) * rate;
+      }
+      done[pole] =
+          factors[pole].factorize(*pattern_, matrix_->stiffness, shifts, context_.should_stop);
+    });
+    for (Result<void>& one : done) {
+      if (!one) return std::move(one);
     }
-    done[pole] =
-        factors.of_pole[pole].factorize(pattern_, matrix_->stiffness, shifts, context_.should_stop);
+    return Result<void>();
   });
-  for (const Result<void>& one : done) {
-    if (!one) return fail(one.error());
-  }
-  counts_.factorizations += 2 * pole_count;
-  factors_.push_front(std::move(factors));
+  if (!made) return fail(made.error());
+  factors_.push_front({length, *made});
   return &factors_.front();
 }
 
 // The unknowns without a mass at the start of an interval: in equilibrium with the others, which a
 // large diagonal holds.
 Result<void> SparseMotion::find_massless(const Field& force, Field& w) {
-  const int size = pattern_.size();
+  const int size = pattern_->size();
   const auto masses = static_cast<int>(matrix_->inertia.size());
   if (masses == size) return {};
   const Eigen::VectorXd diagonal = matrix_->stiffness.diagonal();
   const double hold = 1e20 * diagonal.cwiseAbs().maxCoeff();
   if (!holding_) {
-    const std::size_t bytes = memory_.bytes() + ComplexFactor::memory(pattern_);
+    const std::size_t bytes = memory_.bytes() + ComplexFactor::memory(*pattern_);
     if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
-    const std::vector<Complex> shifts(matrix_->inertia.size(), Complex{hold, 0});
-    holding_.emplace();
-    auto done = holding_->factorize(pattern_, matrix_->stiffness, shifts, context_.should_stop);
-    if (!done) {
-      holding_.reset();
-      return done;
-    }
-    counts_.factorizations += 2;
+    auto made = find_factors(held, 1, [&](ComplexFactors& factors) {
+      const std::vector<Complex> shifts(matrix_->inertia.size(), Complex{hold, 0});
+      return factors.front().factorize(*pattern_, matrix_->stiffness, shifts, context_.should_stop);
+    });
+    if (!made) return fail(made.error());
+    holding_ = *made;
   }
   std::vector<double>& x = solutions_[0];
   x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
   for (int place = 0; place < size; ++place) {
-    const int row = ComplexFactor::row_of(pattern_, place);
+    const int row = ComplexFactor::row_of(*pattern_, place);
     for (int c = 0; c < 3; ++c) {
       x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c] =
           row < masses ? hold * w(row, c) : force(row, c);
     }
   }
-  holding_->solve(pattern_, x.data());
+  holding_->front().solve(*pattern_, x.data());
   for (int place = 0; place < size; ++place) {
-    const int row = ComplexFactor::row_of(pattern_, place);
+    const int row = ComplexFactor::row_of(*pattern_, place);
     if (row < masses) continue;
     for (int c = 0; c < 3; ++c)
       w(row, c) = x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c];
@@ -170,7 +271,7 @@ Field SparseMotion::product(const Field& w) const {
 Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, const Field& lack,
                                  const Field& growth, const Field& v) {
   if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-  const int size = pattern_.size();
+  const int size = pattern_->size();
   const auto masses = static_cast<int>(matrix_->inertia.size());
   for_each_pole([&](std::size_t pole) {
     constexpr int half = ComplexFactor::row_numbers / 2;
@@ -179,7 +280,7 @@ Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, co
     std::vector<double>& x = solutions_[pole];
     x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
     for (int place = 0; place < size; ++place) {
-      const int row = ComplexFactor::row_of(pattern_, place);
+      const int row = ComplexFactor::row_of(*pattern_, place);
       double* const to = x.data() + long{place} * ComplexFactor::row_numbers;
       for (int c = 0; c < 3; ++c) {
         Complex side = of_growth * growth(row, c) + Complex{step.of_lack() * lack(row, c), 0};
@@ -188,7 +289,7 @@ Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, co
         to[half + c] = side.im;
       }
     }
-    factors.of_pole[pole].solve(pattern_, x.data());
+    (*factors.of_pole)[pole].solve(*pattern_, x.data());
   });
   counts_.solves += 2 * pole_count;
   return {};
@@ -196,8 +297,8 @@ Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, co
 
 Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& forces, Field& moving,
                                    Field& v) try {
-  PLIANT_EXPECTS(matrix_.has_value());
-  const int size = pattern_.size();
+  PLIANT_EXPECTS(matrix_ != nullptr);
+  const int size = pattern_->size();
   const auto masses = static_cast<Eigen::Index>(matrix_->inertia.size());
   PLIANT_EXPECTS(moving.rows() == masses && v.rows() == masses && forces.first.rows() == size &&
                  forces.last.rows() == size);
@@ -217,7 +318,7 @@ Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& fo
     if (auto solved = solve(**factors, step, lack, growth, v); !solved) return solved;
     double doubt = 0, before = 0, after = 0, speed = 0, old_speed = 0;
     for (int place = 0; place < size; ++place) {
-      const int row = ComplexFactor::row_of(pattern_, place);
+      const int row = ComplexFactor::row_of(*pattern_, place);
       for (int c = 0; c < 3; ++c) {
         double moved = 0, velocity = 0, uncertain = 0;
         for (int pole = 0; pole < pole_count; ++pole) {
@@ -253,7 +354,7 @@ Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& fo
   moving = w.topRows(masses);
   return {};
 } catch (const std::bad_alloc&) {
-  return fail(no_memory_for_factor(pattern_.size()));
+  return fail(no_memory_for_factor(pattern_->size()));
 }
 
 }  // namespace pliant

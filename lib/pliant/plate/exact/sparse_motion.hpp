@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <list>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,7 +32,8 @@ struct ForceChange {
 };
 
 /// Solves the equation of a `MovingMatrix` over an interval, to 1e-6 of its motion in each of 250
-/// intervals, in steps of `SubStep`. Internal to plate.
+/// intervals, in steps of `SubStep`. Orders and factors of equal matrices are taken from the shelf,
+/// if they are there; what is reserved is the same. Internal to plate.
 class SparseMotion {
  public:
   explicit SparseMotion(const RunContext& context) : context_(context), memory_(context.memory) {}
@@ -47,14 +50,22 @@ class SparseMotion {
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
+  // One for each pole, or the one that holds.
+  using ComplexFactors = std::vector<ComplexFactor>;
+
   // The factors for steps of one length.
   struct Factors {
     double length = 0;
-    std::array<ComplexFactor, pole_count> of_pole;
+    std::shared_ptr<const ComplexFactors> of_pole;
   };
+  struct KeptPattern;
+  struct KeptFactors;
   // Workspace of one pole: its solution in the order of the factor.
   using Solutions = std::array<std::vector<double>, pole_count>;
 
+  Result<void> find_pattern(const SparseMatrix& matrix);
+  Result<std::shared_ptr<const ComplexFactors>> find_factors(
+      double length, std::size_t count, const std::function<Result<void>(ComplexFactors&)>& make);
   Result<Factors*> factors_for(double length);
   Result<void> find_massless(const Field& force, Field& w);
   Field product(const Field& w) const;
@@ -65,10 +76,10 @@ class SparseMotion {
 
   RunContext context_;
   MemoryShare memory_;
-  std::optional<MovingMatrix> matrix_;
-  FactorPattern pattern_;
-  std::list<Factors> factors_;            // the last used first
-  std::optional<ComplexFactor> holding_;  // finds unknowns without a mass
+  std::shared_ptr<const MovingMatrix> matrix_;  // null: none
+  std::shared_ptr<const FactorPattern> pattern_ = std::make_shared<const FactorPattern>();
+  std::list<Factors> factors_;                     // the last used first
+  std::shared_ptr<const ComplexFactors> holding_;  // finds unknowns without a mass; null: not yet
   Solutions solutions_;
   SolverCounts counts_;
 };

@@ -9,6 +9,17 @@
 namespace pliant {
 namespace {
 
+// A factor frees itself with a workspace of its own, because it may outlive the one that it was
+// made with.
+std::shared_ptr<cholmod_factor> owned(cholmod_factor* factor) {
+  return {factor, [](cholmod_factor* last) {
+            cholmod_common common = {};
+            cholmod_start(&common);
+            cholmod_free_factor(&last, &common);
+            cholmod_finish(&common);
+          }};
+}
+
 /// CHOLMOD's workspace and settings, and everything allocated with them.
 class CholmodFactor final : public SparseFactor {
  public:
@@ -26,7 +37,6 @@ class CholmodFactor final : public SparseFactor {
     common_.try_catch = 1;
   }
   ~CholmodFactor() override {
-    cholmod_free_factor(&factor_, &common_);
     cholmod_free_factor(&pattern_, &common_);
     for (cholmod_dense* dense : {solution_, workspace_y_, workspace_e_}) {
       cholmod_free_dense(&dense, &common_);
@@ -35,7 +45,7 @@ class CholmodFactor final : public SparseFactor {
   }
 
   Result<void> analyze(const SparseMatrix& matrix) override {
-    cholmod_free_factor(&factor_, &common_);
+    factor_.reset();
     cholmod_free_factor(&pattern_, &common_);
     cholmod_sparse view = view_of(matrix);
     pattern_ = cholmod_analyze(&view, &common_);
@@ -48,21 +58,21 @@ class CholmodFactor final : public SparseFactor {
 
   // What `cholmod_factorize` does, but some rows at a time.
   Result<void> factorize(const SparseMatrix& matrix, const StopRequest& should_stop) override {
-    cholmod_free_factor(&factor_, &common_);
+    factor_.reset();
     cholmod_sparse* const ordered = in_order(matrix);
-    if (ordered) factor_ = cholmod_copy_factor(pattern_, &common_);
+    if (ordered) factor_ = owned(cholmod_copy_factor(pattern_, &common_));
     bool is_stopped = false;
     // LDL^T, not packed: that would leave room for the diagonal alone, and each column would move
     // whenever it grows.
-    if (factor_ && cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, factor_, &common_)) {
+    if (factor_ && cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, factor_.get(), &common_)) {
       constexpr std::size_t rows_at_a_time = 64;
       const auto size = static_cast<std::size_t>(matrix.rows());
       double beta[2] = {0, 0};
       for (std::size_t row = 0; row < size && common_.status == CHOLMOD_OK; row += rows_at_a_time) {
         is_stopped = should_stop && should_stop();
         if (is_stopped) break;
-        cholmod_rowfac(ordered, nullptr, beta, row, std::min(size, row + rows_at_a_time), factor_,
-                       &common_);
+        cholmod_rowfac(ordered, nullptr, beta, row, std::min(size, row + rows_at_a_time),
+                       factor_.get(), &common_);
       }
     }
     cholmod_sparse* rest = ordered;
@@ -88,7 +98,7 @@ class CholmodFactor final : public SparseFactor {
     view.xtype = CHOLMOD_REAL;
     view.dtype = CHOLMOD_DOUBLE;
     // solve2 reuses its solution and workspaces from call to call.
-    cholmod_solve2(CHOLMOD_A, factor_, &view, nullptr, &solution_, nullptr, &workspace_y_,
+    cholmod_solve2(CHOLMOD_A, factor_.get(), &view, nullptr, &solution_, nullptr, &workspace_y_,
                    &workspace_e_, &common_);
     if (auto checked = check(right_hand_sides.rows()); !checked) return fail(checked.error());
     return Field(Eigen::Map<const Field>(static_cast<const double*>(solution_->x),
@@ -102,7 +112,13 @@ class CholmodFactor final : public SparseFactor {
         static_cast<const int*>(factor_->i), static_cast<const double*>(factor_->x)};
   }
 
-  void release() override { cholmod_free_factor(&factor_, &common_); }
+  void release() override { factor_.reset(); }
+
+  // A solve only reads the factor.
+  bool share(const SparseFactor& other) override {
+    factor_ = static_cast<const CholmodFactor&>(other).factor_;
+    return true;
+  }
 
  private:
   // The matrix as CHOLMOD sees it, without a copy.
@@ -143,8 +159,8 @@ class CholmodFactor final : public SparseFactor {
   }
 
   cholmod_common common_ = {};
-  cholmod_factor* pattern_ = nullptr;  // of the analysis
-  cholmod_factor* factor_ = nullptr;
+  cholmod_factor* pattern_ = nullptr;       // of the analysis
+  std::shared_ptr<cholmod_factor> factor_;  // perhaps of several
   cholmod_dense* solution_ = nullptr;
   cholmod_dense* workspace_y_ = nullptr;
   cholmod_dense* workspace_e_ = nullptr;

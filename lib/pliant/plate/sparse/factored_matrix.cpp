@@ -1,8 +1,13 @@
 #include "pliant/plate/sparse/factored_matrix.hpp"
 
+#include <array>
 #include <new>
+#include <string_view>
+#include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/hash_stream.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/plate/solver_errors.hpp"
 
 namespace pliant {
@@ -16,7 +21,27 @@ constexpr std::size_t bytes_to_analyze = 250;
 constexpr std::size_t bytes_to_factorize = 350;
 constexpr std::size_t bytes_of_entry = 12;  // of the factor: a double and an index
 
+template <class Number>
+std::string_view bytes_in(const Number* first, Eigen::Index count) {
+  return {reinterpret_cast<const char*>(first), sizeof(Number) * static_cast<std::size_t>(count)};
+}
+
+std::array<std::string_view, 3> bytes_of(const SparseMatrix& matrix) {
+  return {bytes_in(matrix.outerIndexPtr(), matrix.cols() + 1),
+          bytes_in(matrix.innerIndexPtr(), matrix.nonZeros()),
+          bytes_in(matrix.valuePtr(), matrix.nonZeros())};
+}
+
 }  // namespace
+
+// A factor with the matrix that it is of.
+struct FactoredMatrix::Kept final : Shelf::Item {
+  SparseMatrix matrix;
+  std::unique_ptr<const SparseFactor> factor = {};  // null: it has supernodes
+  std::shared_ptr<const SupernodalFactor::Numbers> supernodes = {};
+  std::size_t entries = 0;
+  std::size_t supernode_bytes = 0;
+};
 
 Result<void> FactoredMatrix::take(long size, std::size_t bytes) {
   if (memory_.try_resize(bytes)) return {};
@@ -24,29 +49,86 @@ Result<void> FactoredMatrix::take(long size, std::size_t bytes) {
   return fail(factor_too_large(size, memory_.complaint(bytes)));
 }
 
+Result<void> FactoredMatrix::take_factor(long size, std::size_t entries) {
+  has_supernodes_ = false;
+  if (supernodes_) supernodes_->release();
+  return take(size, bytes_to_factorize * size + bytes_of_entry * entries);
+}
+
 Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
                                     const std::function<SparseMatrix()>& assemble) try {
-  if (!has_same_pattern || !factor_) {
-    has_same_pattern = false;
+  if (!has_same_pattern || !factor_ || !is_analyzed_) {
     // Frees the old factor first, to make room for the new one.
     factor_.reset();
     factor_ = make_sparse_factor(choice_);
+    is_analyzed_ = false;
     if (auto taken = take(size, bytes_to_analyze * size); !taken) return taken;
   }
   const SparseMatrix matrix = assemble();
-  if (!has_same_pattern) {
+  const Hash key = shelf_ ? key_of(matrix) : Hash();
+  if (shelf_) {
+    const auto kept = shelf_->find<Kept>(
+        key, [&](const Kept& one) { return bytes_of(one.matrix) == bytes_of(matrix); });
+    if (kept) return use(size, *kept);
+  }
+  if (!is_analyzed_) {
     ++counts_.analyses;
     if (auto analyzed = factor_->analyze(matrix); !analyzed) return analyzed;
+    is_analyzed_ = true;
   }
-  has_supernodes_ = false;
-  if (supernodes_) supernodes_->release();
-  const std::size_t bytes = bytes_to_factorize * size + bytes_of_entry * factor_->entries();
-  if (auto taken = take(size, bytes); !taken) return taken;
+  const std::size_t entries = factor_->entries();
+  if (auto taken = take_factor(size, entries); !taken) return taken;
   ++counts_.factorizations;
   if (auto factored = factor_->factorize(matrix, should_stop_); !factored) return factored;
-  return supernodes_ ? join_columns(size) : Result<void>();
+  if (supernodes_) {
+    if (auto joined = join_columns(size); !joined) return joined;
+  }
+  if (shelf_) keep(key, matrix, entries);
+  return {};
 } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
   return fail(no_memory_for_factor(size));
+}
+
+// All that a factor depends on.
+Hash FactoredMatrix::key_of(const SparseMatrix& matrix) const {
+  HashStream stream;
+  stream.add(supernodes_ ? "supernodes of " : "factor of ");
+  stream.add(name_of(choice_));
+  for (const std::string_view bytes : bytes_of(matrix)) stream.add(bytes);
+  return stream.hash();
+}
+
+// Reserves what making it would.
+Result<void> FactoredMatrix::use(long size, const Kept& kept) {
+  if (auto taken = take_factor(size, kept.entries); !taken) return taken;
+  if (!kept.supernodes) {
+    factor_->share(*kept.factor);
+    return {};
+  }
+  const std::size_t bytes = kept.supernode_bytes;
+  if (auto taken = take(size, memory_.bytes() + bytes); !taken) return taken;
+  supernodes_->use(kept.supernodes);
+  has_supernodes_ = true;
+  factor_->release();
+  return take(size, bytes_to_factorize * size + bytes);
+}
+
+void FactoredMatrix::keep(const Hash& key, const SparseMatrix& matrix, std::size_t entries) try {
+  auto kept = std::make_shared<Kept>();
+  kept->entries = entries;
+  if (has_supernodes_) {
+    kept->supernodes = supernodes_->numbers();
+    kept->supernode_bytes = memory_.bytes() - bytes_to_factorize * matrix.cols();
+  } else {
+    auto factor = make_sparse_factor(choice_);
+    if (!factor->share(*factor_)) return;
+    kept->factor = std::move(factor);
+  }
+  kept->matrix = matrix;
+  std::size_t bytes = has_supernodes_ ? kept->supernode_bytes : bytes_of_entry * entries;
+  for (const std::string_view part : bytes_of(matrix)) bytes += part.size();
+  shelf_->keep(key, std::move(kept), bytes);
+} catch (const std::bad_alloc&) {  // a shelf is not needed
 }
 
 Result<void> FactoredMatrix::join_columns(long size) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "pliant/core/hash.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
@@ -13,12 +14,16 @@
 namespace pliant {
 
 /// A sparse matrix that is factored again and again: keeps what depends on its pattern only, and
-/// reserves memory before it is used. Internal to plate.
+/// reserves memory before it is used. A factor of an equal matrix is taken from the shelf, if there
+/// is one; what is reserved is the same. Internal to plate.
 class FactoredMatrix {
  public:
   /// Requires: the choice is available.
   FactoredMatrix(SolverChoice choice, const RunContext& context)
-      : choice_(choice), memory_(context.memory), should_stop_(context.should_stop) {}
+      : choice_(choice),
+        memory_(context.memory),
+        should_stop_(context.should_stop),
+        shelf_(context.shelf) {}
 
   /// Solves by supernodes if the library shows its factor: twice as fast, but other bits.
   void use_supernodes(const PlateKernels& kernels) { supernodes_.emplace(kernels); }
@@ -37,14 +42,22 @@ class FactoredMatrix {
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
+  struct Kept;
+
   Result<void> take(long size, std::size_t bytes);
+  Result<void> take_factor(long size, std::size_t entries);
   Result<void> join_columns(long size);
+  Result<void> use(long size, const Kept& kept);
+  Hash key_of(const SparseMatrix& matrix) const;
+  void keep(const Hash& key, const SparseMatrix& matrix, std::size_t entries);
 
   SolverChoice choice_;
   MemoryShare memory_;
   StopRequest should_stop_;
+  Shelf* shelf_;
   std::unique_ptr<SparseFactor> factor_;
   std::optional<SupernodalFactor> supernodes_;
+  bool is_analyzed_ = false;     // by `factor_`
   bool has_supernodes_ = false;  // of the last factor
   SolverCounts counts_;
 };

@@ -53,6 +53,12 @@ class SparseFactor {
 
   /// Frees the numbers: what follows is `factorize`.
   virtual void release() {}
+
+  /// Solves with the numbers of another factor, which the two share; this one need not be analyzed.
+  /// Several may share the numbers of one at the same time, in several threads. False: nothing has
+  /// changed, since the library cannot do this. Requires: the other is of the same library, and
+  /// `factorize` succeeded.
+  virtual bool share(const SparseFactor&) { return false; }
 };
 
 std::unique_ptr<SparseFactor> make_cholmod_factor();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -25,19 +26,20 @@ class SupernodalFactor {
   void take(const FactorColumns& columns);
 
   /// Frees the numbers.
-  void release() { entries_ = {}; }
+  void release() { numbers_.reset(); }
 
-  /// Solves for three right-hand sides (#rows x 3). Requires: `take` was called.
+  /// What `take` copied, for other factors to solve with, in other threads too.
+  struct Numbers;
+  std::shared_ptr<const Numbers> numbers() const { return numbers_; }
+  void use(std::shared_ptr<const Numbers> numbers);
+
+  /// Solves for three right-hand sides (#rows x 3). Requires: `take` or `use` was called.
   Field solve(const Field& right_hand_sides);
 
  private:
   const PlateKernels* kernels_;
-  std::vector<Supernode> supernodes_;
-  long row_count_ = 0, entry_count_ = 0;
-  std::vector<int> order_;
-  std::vector<int> rows_;
-  NumberBlock entries_;
-  std::vector<double> pivots_;
+  std::shared_ptr<Numbers> planned_;
+  std::shared_ptr<const Numbers> numbers_;
   NumberBlock x_;  // that a solve works on
 };
 
