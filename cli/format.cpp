@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -22,12 +21,6 @@ Result<void> write_file(const std::string& file, const std::string& text) {
   if (!output) return fail(output.error());
   if (auto written = output->write(text); !written) return written;
   return output->commit();
-}
-
-// To a terminal without what would act on it; elsewhere byte for byte.
-void write_out(const std::string& text) {
-  if (isatty(STDOUT_FILENO) != 0) return print(stdout, text);
-  std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 Result<void> check_out(const FormatOptions& options, const Scene& scene) {
@@ -73,7 +66,7 @@ int run_format(const FormatOptions& options) {
   const auto text = format_scene(source->text, source->name);
   if (!text) return report(text.error());
   if (target.empty()) {
-    write_out(*text);
+    print_bytes(stdout, *text);
     return exit_done;
   }
   if (options.is_in_place && *text == source->text) return exit_done;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace pliant::cli {
 
@@ -17,6 +18,11 @@ void print(std::FILE* stream, std::string_view text) {
   }
   std::fwrite(lines.data(), 1, lines.size(), stream);
   std::fflush(stream);
+}
+
+void print_bytes(std::FILE* stream, std::string_view bytes) {
+  if (isatty(fileno(stream)) != 0) return print(stream, bytes);
+  std::fwrite(bytes.data(), 1, bytes.size(), stream);
 }
 
 int exit_code(const Error& error) {

@@ -21,6 +21,9 @@ inline constexpr int exit_usage = 2;   ///< wrong usage, or a scene that cannot 
 /// (`exit_code_after_output`).
 void print(std::FILE* stream, std::string_view text);
 
+/// Writes bytes to the standard output or error as they are; to a terminal as `print` does.
+void print_bytes(std::FILE* stream, std::string_view bytes);
+
 /// The exit code for an error.
 int exit_code(const Error& error);
 

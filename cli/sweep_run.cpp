@@ -93,7 +93,7 @@ int print_plan(const SweepRequest& request) {
   if (!sweep) return report(sweep.error());
   const auto written =
       write_table(*sweep, request.scenes, {}, [](std::string_view text) -> Result<void> {
-        print(stdout, text);
+        print_bytes(stdout, text);
         if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
         return {};
       });
