@@ -17,7 +17,7 @@ void add_sweep_bake(CLI::App& sweep, SweepBakeOptions& options) {
 
 int run_sweep_bake(const SweepBakeOptions& options) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(options.folder);
+  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
   if (!folder) return report(folder.error());
   const Sweep& sweep = folder->sweep();
   const auto number = to_integer(options.take);
@@ -36,7 +36,7 @@ int run_sweep_bake(const SweepBakeOptions& options) {
   BakeSource source{.read = [&]() -> Result<Scene> {
                       auto scene = sweep.scene_of(take);
                       if (!scene) return scene;
-                      if (auto same = folder->check_inputs(*scene); !same)
+                      if (auto same = folder->check_inputs(*scene, &was_interrupted); !same)
                         return fail(same.error());
                       return scene;
                     },

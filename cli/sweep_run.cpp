@@ -81,7 +81,7 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
     request.variation.samples = static_cast<std::size_t>(*count);
   }
   if (options.takes) {
-    auto table = read_file(*options.takes, largest_table);
+    auto table = read_file(*options.takes, largest_table, &was_interrupted);
     if (!table) return fail(table.error());
     request.variation.table = *std::move(table);
   }
@@ -122,7 +122,7 @@ SweepStatus status_of_part(const SweepStatus& status, const SweepPart& part) {
 }
 
 int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const SweepPart& part) {
-  folder.remove_half_files();
+  folder.remove_half_files(&was_interrupted);
   const SimulationOptions resources = simulation_options(options.resources);
   std::optional<Progress> progress;
   std::size_t failures = 0;
@@ -153,7 +153,8 @@ int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const S
   const auto all = folder.status(&was_interrupted);
   if (!all) return report(all.error());
   if (!options.part) {
-    if (auto written = folder.write_table(*all); !written) return report(written.error());
+    if (auto written = folder.write_table(*all, &was_interrupted); !written)
+      return report(written.error());
   }
   const SweepStatus status = status_of_part(*all, part);
   if (!options.is_quiet) print(stdout, summary_of(folder, status, options.part));
@@ -178,7 +179,7 @@ Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& optio
                         "make another one of a SCENE with -o DIR",
                         option, printable(options.what.front())));
     }
-    return SweepFolder::open(options.what.front());
+    return SweepFolder::open(options.what.front(), &was_interrupted);
   }
   const auto request = request_of(options);
   if (!request) return fail(request.error());

@@ -9,12 +9,13 @@ namespace pliant::cli {
 
 int run_sweep_status(const std::string& name) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(name);
+  const auto folder = SweepFolder::open(name, &was_interrupted);
   if (!folder) return report(folder.error());
-  folder->remove_half_files();
+  folder->remove_half_files(&was_interrupted);
   const auto status = folder->status(&was_interrupted);
   if (!status) return report(status.error());
-  if (auto written = folder->write_table(*status); !written) return report(written.error());
+  if (auto written = folder->write_table(*status, &was_interrupted); !written)
+    return report(written.error());
   print(stdout, fmt::format("{}: {}, {} done, {} failed, {} missing\n", printable(name),
                             counted(status->takes.size(), "take"), status->done, status->failed,
                             status->missing()));

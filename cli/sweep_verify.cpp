@@ -28,7 +28,7 @@ void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options) {
 
 int run_sweep_verify(const SweepVerifyOptions& options) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(options.folder);
+  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
   if (!folder) return report(folder.error());
   const auto status = folder->status(&was_interrupted);
   if (!status) return report(status.error());

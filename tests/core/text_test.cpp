@@ -73,3 +73,9 @@ TEST_CASE("an ending is that of the name, in lower case", "[core][file_ending]")
   CHECK(ending_of("a.obj/c").empty());
   CHECK(ending_of(".npy").empty());  // a hidden file's name
 }
+
+TEST_CASE("UTF-8 is told from other bytes", "[core][text]") {
+  for (const char* text : {"", "plain", "\u00e9\u20ac\U0001f600", "a\x7f\n"}) CHECK(is_utf8(text));
+  for (const char* text : {"\xe9", "a\xc3", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\x80"})
+    CHECK_FALSE(is_utf8(text));
+}

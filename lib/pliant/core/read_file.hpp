@@ -7,13 +7,15 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
 /// All bytes of a file. Errors: Unreadable, naming the file and the reason: it does not exist, is a
-/// folder, may not be read, or is larger than `max_bytes`.
+/// folder, may not be read, or is larger than `max_bytes`. Interrupted.
 Result<std::string> read_file(const std::filesystem::path& file,
-                              std::size_t max_bytes = std::size_t{4} << 30);
+                              std::size_t max_bytes = std::size_t{4} << 30,
+                              const StopRequest& should_stop = {});
 
 /// Passes the bytes of a file to `take`, in pieces, until it returns false. Errors: as `read_file`,
 /// for a file of any size.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -27,6 +28,13 @@ inline std::string_view trim(std::string_view text, std::string_view blanks) {
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
+
+/// The number of bytes of the first character; 0 if it is not UTF-8 (RFC 3629). Requires: not
+/// empty.
+std::size_t length_of_character(std::string_view text);
+
+/// Whether all of the text is UTF-8.
+bool is_utf8(std::string_view text);
 
 /// The ending of a file's name with its dot, in lower case: `.obj` for `Head.OBJ`; empty: no
 /// ending.

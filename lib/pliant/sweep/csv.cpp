@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/sweep/stops.hpp"
+
 namespace pliant {
 
 std::string csv_field(std::string_view text) {
@@ -16,7 +18,10 @@ std::string csv_field(std::string_view text) {
   return field + '"';
 }
 
-Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows) {
+Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows,
+                                      const StopRequest& should_stop) {
+  constexpr std::size_t bytes_between_stops = std::size_t{1} << 18U;
+  std::size_t next_stop = 0;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   std::vector<CsvRow> rows;
   std::size_t count = 0;
@@ -31,6 +36,10 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_ro
     is_empty = true;
   };
   for (std::size_t at = 0; at < text.size();) {
+    if (at >= next_stop) {
+      if (is_stopped(should_stop)) return interrupted();
+      next_stop = at + bytes_between_stops;
+    }
     const char c = text[at];
     if (c == '"' && field.empty()) {
       const int begin = line;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -26,7 +27,8 @@ struct CsvRow {
 /// without any character are left out. Errors: InvalidInput with the line: a quote that is not
 /// closed, or followed by something else than a comma or the line's end; more than
 /// `most_csv_fields` fields in a row; with the number, more than `most_rows` rows, which are not
-/// kept.
-Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows);
+/// kept. Interrupted.
+Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows,
+                                      const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -12,22 +12,19 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/states/engine.hpp"
 #include "pliant/sweep/log.hpp"
+#include "pliant/sweep/own_folder.hpp"
+#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/sweep_file.hpp"
 
 namespace pliant {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t takes_between_stops = 256;
-
-bool is_stopped(const StopRequest& should_stop, std::size_t count) {
-  return count % takes_between_stops == 0 && should_stop && should_stop();
-}
 
 fs::path file_of_sweep(const fs::path& folder) { return folder / "sweep.json"; }
 
@@ -45,6 +42,72 @@ Result<std::string> absolute_path(const std::string& name) {
   return path.string();
 }
 
+// What the file of a sweep holds must be UTF-8.
+Result<void> check_is_utf8(std::string_view what, const std::string& text) {
+  if (is_utf8(text)) return {};
+  return fail(
+      ErrorCode::InvalidInput,
+      fmt::format("{} {}: is not UTF-8, as all that a sweep keeps must be", what, printable(text)));
+}
+
+Result<void> check_is_utf8(const SweepRequest& request) {
+  struct Texts {
+    std::string_view what;
+    const std::vector<std::string>& texts;
+  };
+  const SweepVariation& variation = request.variation;
+  for (const auto& [what, texts] : {Texts{"SCENE", request.scenes}, Texts{"--set", variation.set},
+                                    Texts{"--vary", variation.vary}}) {
+    for (const std::string& text : texts)
+      if (auto is = check_is_utf8(what, text); !is) return is;
+  }
+  if (variation.table && !is_utf8(*variation.table))
+    return fail(ErrorCode::InvalidInput, "--takes: the table is not UTF-8; save it as UTF-8");
+  return check_is_utf8("--root", request.root);
+}
+
+// What the scenes lead to.
+Result<void> check_is_utf8(const SweepFile& file) {
+  for (const SceneTexts& texts : file.texts) {
+    for (const IncludedText& text : texts.included) {
+      if (auto is = check_is_utf8("the included file", text.path); !is) return is;
+      if (auto is = check_is_utf8("the included file", text.identity); !is) return is;
+    }
+  }
+  for (const InputHash& input : file.inputs)
+    if (auto is = check_is_utf8("the file", input.file); !is) return is;
+  return {};
+}
+
+// A folder that is removed, with those above it that were made for it, unless it is kept.
+class NewFolder {
+ public:
+  explicit NewFolder(const fs::path& folder) {
+    std::error_code error;
+    for (fs::path missing = fs::absolute(folder, error); !error && !missing.empty();
+         missing = missing.parent_path()) {
+      if (!missing.has_filename()) continue;  // behind a slash at the end
+      if (fs::exists(missing, error) || error) break;
+      made_.push_back(missing);
+    }
+    fs::create_directories(folder, error_);
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+  ~NewFolder() {
+    std::error_code ignored;  // another process may use it by now
+    for (const fs::path& folder : made_)
+      if (!fs::remove(folder, ignored)) return;
+  }
+
+  const std::error_code& error() const { return error_; }
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<fs::path> made_;  // the innermost first
+  std::error_code error_;
+};
+
 // The error with the name of a file as it was typed.
 Error named(Error error, const std::string& path, const std::string& typed) {
   if (error.file == path) error.file = typed;
@@ -58,7 +121,8 @@ struct Asked {
   std::vector<Scene> scenes;
 };
 
-Result<Asked> read_request(const SweepRequest& request) {
+Result<Asked> read_request(const SweepRequest& request, const StopRequest& should_stop) {
+  if (auto is = check_is_utf8(request); !is) return fail(is.error());
   Asked asked;
   SweepFile& file = asked.file;
   file.version = PLIANT_VERSION;
@@ -68,9 +132,13 @@ Result<Asked> read_request(const SweepRequest& request) {
   auto root = absolute_path(request.root);
   if (!root) return fail(root.error());
   file.request.root = *std::move(root);
+  if (auto is = check_is_utf8("the folder of --root", file.request.root); !is)
+    return fail(is.error());
   for (const std::string& scene : request.scenes) {
+    if (is_stopped(should_stop)) return interrupted();
     const auto path = absolute_path(scene);
     if (!path) return fail(path.error());
+    if (auto is = check_is_utf8("the folder of SCENE", *path); !is) return fail(is.error());
     auto loaded = load_scene_with_texts(*path, file.request.root);
     if (!loaded) return fail(named(loaded.error(), *path, scene));
     asked.scenes.push_back(std::move(loaded->scene));
@@ -86,7 +154,7 @@ SweepSettings settings_of(const SweepRequest& request) {
 Result<Sweep> checked_sweep(Asked& asked, const StopRequest& should_stop) {
   SweepVariation variation = asked.file.request.variation;
   variation.scene_count = asked.scenes.size();
-  auto takes = Takes::make(variation);
+  auto takes = Takes::make(variation, should_stop);
   if (!takes) return fail(takes.error());
   return Sweep::make(std::move(asked.scenes), *std::move(takes), settings_of(asked.file.request),
                      should_stop);
@@ -235,7 +303,7 @@ SweepFolder::SweepFolder(SweepFolder&&) noexcept = default;
 SweepFolder::~SweepFolder() = default;
 
 Result<Sweep> SweepFolder::plan(const SweepRequest& request, const StopRequest& should_stop) {
-  auto asked = read_request(request);
+  auto asked = read_request(request, should_stop);
   if (!asked) return fail(asked.error());
   return checked_sweep(*asked, should_stop);
 }
@@ -244,13 +312,13 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
                                       const StopRequest& should_stop) {
   const auto is_new = may_be_made(folder);
   if (!is_new) return fail(is_new.error());
-  auto asked = read_request(request);
+  auto asked = read_request(request, should_stop);
   if (!asked) return fail(asked.error());
   const auto open_the_same = [&]() -> Result<SweepFolder> {
-    const auto there = read_sweep_file(file_of_sweep(folder));
+    const auto there = read_sweep_file(file_of_sweep(folder), should_stop);
     if (!there) return fail(there.error());
     const std::string difference = difference_of(*there, asked->file);
-    if (difference.empty()) return open(folder);
+    if (difference.empty()) return open(folder, should_stop);
     return fail(ErrorCode::InvalidInput,
                 fmt::format("-o {}: is another sweep; it has {}", printable(folder), difference));
   };
@@ -262,20 +330,20 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
   const auto add_inputs = [&](const Scene& scene) { return inputs.add(scene, should_stop); };
   if (auto added = sweep->for_each_variant(add_inputs); !added) return fail(added.error());
   asked->file.inputs = inputs.all();
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(), folder);
-  if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
-  const auto written = write_sweep_file(asked->file, file_of_sweep(folder));
+  if (auto is = check_is_utf8(asked->file); !is) return fail(is.error());
+  NewFolder made(folder);
+  if (made.error())
+    return fail(ErrorCode::Unwritable, "cannot make the folder: " + made.error().message(), folder);
+  const auto written = write_sweep_file(asked->file, file_of_sweep(folder), should_stop);
   if (!written) return fail(written.error());
+  made.keep();
   if (!*written) return open_the_same();  // another process was quicker
   return SweepFolder(std::make_unique<Parts>(folder, std::move(asked->file.request),
                                              *std::move(sweep), std::move(asked->file.inputs)));
 }
 
-Result<SweepFolder> SweepFolder::open(const std::string& folder) {
-  auto file = read_sweep_file(file_of_sweep(folder));
+Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopRequest& should_stop) {
+  auto file = read_sweep_file(file_of_sweep(folder), should_stop);
   if (!file) return fail(file.error());
   if (file->engine != engine_name())
     return fail(ErrorCode::InvalidInput,
@@ -285,6 +353,7 @@ Result<SweepFolder> SweepFolder::open(const std::string& folder) {
                             engine_name(), PLIANT_VERSION));
   std::vector<Scene> scenes;
   for (const SceneTexts& texts : file->texts) {
+    if (is_stopped(should_stop)) return interrupted();
     auto scene = parse_scene(texts, file->request.root);
     if (!scene) return fail(scene.error());
     scenes.push_back(*std::move(scene));
@@ -316,10 +385,12 @@ Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
     std::set<std::string> names;
     std::error_code ignored;
     for (fs::directory_iterator entry(parts_->folder_of_takes(), ignored), end;
-         !ignored && entry != end; entry.increment(ignored))
+         !ignored && entry != end; entry.increment(ignored)) {
       names.insert(entry->path().filename().string());
+      if (is_stopped(should_stop, names.size())) return interrupted();
+    }
     for (std::size_t take = 0; take < status.takes.size(); ++take) {
-      if (is_stopped(should_stop, take)) return fail(ErrorCode::Interrupted, "interrupted");
+      if (is_stopped(should_stop, take)) return interrupted();
       TakeRecord& record = status.takes[take];
       if (record.status == TakeStatus::Done && !parts_->has_files(take, names)) record = {};
     }
@@ -340,11 +411,7 @@ Result<void> SweepFolder::run(const FolderRun& options) const {
   if (options.begin) options.begin(takes.size());
   if (takes.empty()) return {};
   if (!request().write.empty()) {
-    std::error_code error;
-    fs::create_directories(parts_->folder_of_takes(), error);
-    if (error)
-      return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
-                  parts_->folder_of_takes().string());
+    if (auto made = make_own_folder(parts_->folder_of_takes()); !made) return made;
   }
   auto log = LogFile::create(fs::path(folder()) / "log");
   if (!log) return fail(log.error());
@@ -370,22 +437,32 @@ Result<void> SweepFolder::check_inputs(const Scene& scene, const StopRequest& sh
   return parts_->inputs.check(scene, should_stop);
 }
 
-Result<void> SweepFolder::write_table(const SweepStatus& status) const {
+Result<void> SweepFolder::make_inner_folder(const std::string& name) const {
+  return make_own_folder(fs::path(folder()) / name);
+}
+
+Result<void> SweepFolder::write_table(const SweepStatus& status,
+                                      const StopRequest& should_stop) const {
   auto file = AtomicFile::create(fs::path(folder()) / "takes.csv");
   if (!file) return fail(file.error());
-  auto written = pliant::write_table(sweep(), request().scenes, status.takes,
-                                     [&](std::string_view text) { return file->write(text); });
+  const auto write = [&](std::string_view text) -> Result<void> {
+    if (is_stopped(should_stop)) return interrupted();
+    return file->write(text);
+  };
+  auto written = pliant::write_table(sweep(), request().scenes, status.takes, write);
   if (!written) return written;
   return file->commit();
 }
 
-void SweepFolder::remove_half_files() const {
+void SweepFolder::remove_half_files(const StopRequest& should_stop) const {
   const auto now = fs::file_time_type::clock::now();
+  std::size_t count = 0;
   for (const fs::path& folder : {fs::path(this->folder()), parts_->folder_of_takes()}) {
     std::error_code ignored;
     if (folder != this->folder() && fs::is_symlink(folder, ignored)) continue;
     for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
          entry.increment(ignored)) {
+      if (is_stopped(should_stop, ++count)) return;
       if (!is_half_file(entry->path())) continue;
       std::error_code unknown;
       const auto written = fs::last_write_time(entry->path(), unknown);

@@ -82,12 +82,14 @@ class SweepFolder {
   /// Makes a sweep in a folder that is empty or not there, or opens the one that is there if it is
   /// the same. Errors: those of `load_scene`, `Takes::make` and `Sweep::make`; InvalidInput: a
   /// folder with other files; a sweep with other arguments, scenes or engine, naming the
-  /// difference. Unwritable. Interrupted.
+  /// difference; a name or value that is not UTF-8. Unwritable. Interrupted. Then no folder is
+  /// left that was not there.
   static Result<SweepFolder> make(const std::string& folder, const SweepRequest& request,
                                   const StopRequest& should_stop = {});
 
   /// Opens a sweep. Errors: InvalidInput, Unreadable: it is none; it has another engine.
-  static Result<SweepFolder> open(const std::string& folder);
+  /// Interrupted.
+  static Result<SweepFolder> open(const std::string& folder, const StopRequest& should_stop = {});
 
   /// The sweep of a request without a folder. Errors: as `make`.
   static Result<Sweep> plan(const SweepRequest& request, const StopRequest& should_stop = {});
@@ -111,11 +113,15 @@ class SweepFolder {
   /// Checks that a take's meshes, caches and maps are those of the sweep. Errors: Unreadable.
   Result<void> check_inputs(const Scene& scene, const StopRequest& should_stop = {}) const;
 
-  /// Writes `takes.csv`. Errors: Unwritable.
-  Result<void> write_table(const SweepStatus& status) const;
+  /// Writes `takes.csv`. Errors: Unwritable; Interrupted.
+  Result<void> write_table(const SweepStatus& status, const StopRequest& should_stop = {}) const;
+
+  /// Makes a folder in that of the sweep, if it is not there. Errors: InvalidInput: a link is in
+  /// its place; Unwritable.
+  Result<void> make_inner_folder(const std::string& name) const;
 
   /// Removes what killed runs left half written, if older than an hour.
-  void remove_half_files() const;
+  void remove_half_files(const StopRequest& should_stop = {}) const;
 
  private:
   class Parts;

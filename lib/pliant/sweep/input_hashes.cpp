@@ -10,6 +10,7 @@
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/inputs.hpp"
+#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {
@@ -19,11 +20,11 @@ Result<Hash> hash_of_file(const std::string& file, const StopRequest& should_sto
   bool is_stopped = false;
   const auto read = read_pieces(file, [&](std::string_view piece) {
     stream.add(piece);
-    is_stopped = should_stop && should_stop();
+    is_stopped = pliant::is_stopped(should_stop);
     return !is_stopped;
   });
   if (!read) return fail(read.error());
-  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_stopped) return interrupted();
   return stream.hash();
 }
 
@@ -71,6 +72,7 @@ const std::vector<std::string>& InputHashes::files_of(const Scene& scene) {
 }
 
 Result<void> InputHashes::add(const Scene& scene, const StopRequest& should_stop) {
+  if (is_stopped(should_stop)) return interrupted();
   const std::lock_guard lock(mutex_);
   for (const std::string& file : files_of(scene)) {
     if (files_.contains(file)) continue;

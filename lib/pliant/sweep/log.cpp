@@ -18,6 +18,9 @@
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/sweep/own_folder.hpp"
+#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {
@@ -143,9 +146,7 @@ LogFile::~LogFile() {
 }
 
 Result<LogFile> LogFile::create(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) return cannot_write_log(folder.string(), error.value());
+  if (auto made = make_own_folder(folder); !made) return fail(made.error());
   std::string host = host_name();
   std::replace(host.begin(), host.end(), '/', '-');
   for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -203,11 +204,11 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
       rest += piece;
       // No line of ours; whatever follows on it is none either.
       if (rest.size() > longest_line) rest = "?";
-      is_stopped = should_stop && should_stop();
+      is_stopped = pliant::is_stopped(should_stop);
       return !is_stopped;
     });
     if (!read) return read;
-    if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+    if (is_stopped) return interrupted();
   }
   return {};
 }

@@ -15,12 +15,11 @@
 #include "pliant/output/writer.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/simulation.hpp"
+#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/sweep.hpp"
 
 namespace pliant {
 namespace {
-
-tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
 
 // Of the memory, what takes share may use this.
 std::size_t shelf_part(std::size_t max_memory) { return max_memory / 8; }

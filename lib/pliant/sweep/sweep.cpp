@@ -9,6 +9,7 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/scene/change.hpp"
 #include "pliant/scene/change_texts.hpp"
+#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {
@@ -78,6 +79,7 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
       const auto wrong = std::ranges::find_if(texts, [&](const std::string_view& text) {
         return !check({&text, 1});
       });
+      if (is_stopped(should_stop)) return interrupted();
       const std::string_view text = wrong != texts.end() ? *wrong : texts.front();
       return fail(told_after(checked.error(), takes_.place_of(path, text) + ": "));
     }

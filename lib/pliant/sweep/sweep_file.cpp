@@ -1,8 +1,11 @@
 #include "pliant/sweep/sweep_file.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -15,6 +18,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/writer.hpp"
+#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {
@@ -30,12 +34,14 @@ std::string_view word_of(SceneChange::Kind kind) {
 // Writes pieces of JSON, gathered.
 class JsonFile {
  public:
-  explicit JsonFile(AtomicFile& file) : file_(file) {}
+  JsonFile(AtomicFile& file, const StopRequest& should_stop)
+      : file_(file), should_stop_(should_stop) {}
 
   void text(std::string_view text) {
     gathered_ += text;
     if (gathered_.size() > most_gathered) flush();
   }
+  bool has_failed() const { return !written_; }
   // Throws if it is no UTF-8, as nlohmann-json does.
   void value(const FileJson& json) { text(json.dump()); }
 
@@ -48,11 +54,20 @@ class JsonFile {
   static constexpr std::size_t most_gathered = std::size_t{1} << 20U;
 
   void flush() {
+    if (written_ && is_stopped(should_stop_)) written_ = interrupted();
+    size_ += gathered_.size();
+    if (written_ && size_ > largest_sweep_file)
+      written_ = fail(ErrorCode::InvalidInput,
+                      fmt::format("the values and scenes of the sweep need more than the {} MiB "
+                                  "that a sweep may have; make several",
+                                  largest_sweep_file >> 20U));
     if (written_) written_ = file_.write(gathered_);
     gathered_.clear();
   }
 
   AtomicFile& file_;
+  const StopRequest& should_stop_;
+  std::size_t size_ = 0;
   std::string gathered_;
   Result<void> written_;
 };
@@ -111,7 +126,7 @@ void write_content(const SweepFile& content, JsonFile& out) {
     out.text(k == 0 ? "\n{\"paths\": " : ",\n{\"paths\": ");
     out.value(axis.paths);
     out.text(fmt::format(", \"count\": {}, \"texts\": [", axis.count));
-    for (std::size_t n = 0; n < axis.texts.size(); ++n) {
+    for (std::size_t n = 0; n < axis.texts.size() && !out.has_failed(); ++n) {
       if (n > 0) out.text(",");
       out.value(axis.texts[n]);
     }
@@ -119,6 +134,97 @@ void write_content(const SweepFile& content, JsonFile& out) {
   }
   out.text("]}\n");
 }
+
+// Asks whether to stop.
+class Stops {
+ public:
+  explicit Stops(const StopRequest& should_stop) : should_stop_(should_stop) {}
+
+  bool ask() { return is_stopped_ = is_stopped_ || pliant::is_stopped(should_stop_); }
+  bool is_stopped() const { return is_stopped_; }
+
+ private:
+  const StopRequest& should_stop_;
+  bool is_stopped_ = false;
+};
+
+// The characters of a text, which ends early if that is asked for.
+class StoppingText {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  StoppingText(const char* at, const char* end, Stops& stops)
+      : at_(at), end_(end), stops_(&stops) {}
+
+  const char& operator*() const { return *at_; }
+  StoppingText& operator++() {
+    constexpr std::uintptr_t bytes_between_stops = std::uintptr_t{1} << 18U;
+    ++at_;
+    if (reinterpret_cast<std::uintptr_t>(at_) % bytes_between_stops == 0 && stops_->ask())
+      at_ = end_;
+    return *this;
+  }
+  StoppingText operator++(int) {
+    StoppingText before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const StoppingText& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  const char* end_;
+  Stops* stops_;
+};
+
+// Takes the texts of the axes, nearly all that a large sweep has, out of the JSON while it is
+// parsed, and refuses more than a sweep can have before it takes memory.
+class AxisTexts {
+ public:
+  using Event = FileJson::parse_event_t;
+
+  // For nlohmann-json: whether it keeps what it has parsed. Throws if it is too much.
+  bool operator()(int depth, Event event, FileJson& parsed) {
+    if (event == Event::object_start || event == Event::array_start) {
+      if (depth >= most_depth) throw std::invalid_argument("it is nested too deeply");
+      if (depth >= 4 && is_in_axes()) throw std::invalid_argument("a value of an axis is none");
+      if (event == Event::object_start && depth == 2 && is_in_axes()) texts_.emplace_back();
+      return count();
+    }
+    if (event == Event::key) {
+      if (depth == 1) section_ = parsed.get_ref<const std::string&>();
+      if (depth == 3) member_ = parsed.get_ref<const std::string&>();
+      return count();
+    }
+    if (event != Event::value) return true;
+    if (depth != 4 || !is_in_axes() || member_ != "texts" || texts_.empty()) return count();
+    if (++text_count_ > most_take_texts) throw std::invalid_argument("it has too many values");
+    texts_.back().push_back(std::move(parsed.get_ref<std::string&>()));
+    return false;
+  }
+
+  std::vector<std::vector<std::string>> take() { return std::move(texts_); }
+
+ private:
+  static constexpr int most_depth = 6;
+  // Several for each take: a sweep may have a million scenes, and as many meshes.
+  static constexpr std::size_t most_counted = 20'000'000;
+
+  bool is_in_axes() const { return section_ == "axes"; }
+  bool count() {
+    if (++count_ > most_counted) throw std::invalid_argument("it has too many members");
+    return true;
+  }
+
+  std::string section_, member_;
+  std::size_t count_ = 0;
+  std::size_t text_count_ = 0;
+  std::vector<std::vector<std::string>> texts_;
+};
 
 // Reads members that must be there; throws if they are not, as nlohmann-json does.
 
@@ -171,7 +277,8 @@ std::vector<SceneTexts> texts_of(FileJson& scenes) {
   return all;
 }
 
-TakeParts takes_of(FileJson& json, const SweepRequest& request) {
+TakeParts takes_of(const FileJson& json, std::vector<std::vector<std::string>> texts,
+                   const SweepRequest& request) {
   TakeParts parts{.scene_count = request.scenes.size()};
   for (const std::string& typed : request.variation.set) {
     auto change = parse_change(typed);
@@ -185,13 +292,15 @@ TakeParts takes_of(FileJson& json, const SweepRequest& request) {
                                                                   ? SceneChange::Kind::Plus
                                                                   : SceneChange::Kind::Set});
   }
-  for (FileJson& one : json.at("axes"))
-    parts.axes.push_back({one.at("paths").get<std::vector<std::size_t>>(),
-                          strings_of(one.at("texts")), one.at("count").get<std::size_t>()});
+  const FileJson& axes = json.at("axes");
+  if (axes.size() != texts.size()) throw std::invalid_argument("the axes are not complete");
+  for (std::size_t k = 0; k < texts.size(); ++k)
+    parts.axes.push_back({axes[k].at("paths").get<std::vector<std::size_t>>(), std::move(texts[k]),
+                          axes[k].at("count").get<std::size_t>()});
   return parts;
 }
 
-SweepFile content_of(FileJson json) {
+SweepFile content_of(FileJson json, std::vector<std::vector<std::string>> texts) {
   SweepFile content;
   if (json.at("sweep").get<int>() != format_version)
     throw std::invalid_argument("another version of the format");
@@ -207,7 +316,7 @@ SweepFile content_of(FileJson json) {
     if (!hash) throw std::invalid_argument("a hash is none");
     content.inputs.push_back({one.at("file").get<std::string>(), *hash});
   }
-  content.takes = takes_of(json, content.request);
+  content.takes = takes_of(json, std::move(texts), content.request);
   return content;
 }
 
@@ -231,10 +340,11 @@ std::string one_text(std::string_view option, const std::string& value) {
 
 }  // namespace
 
-Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file) {
+Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file,
+                              const StopRequest& should_stop) {
   auto opened = AtomicFile::create(file);
   if (!opened) return fail(opened.error());
-  JsonFile out(*opened);
+  JsonFile out(*opened, should_stop);
   try {
     write_content(content, out);
   } catch (const FileJson::exception&) {
@@ -245,25 +355,36 @@ Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::p
   return opened->commit_new();
 }
 
-Result<SweepFile> read_sweep_file(const std::filesystem::path& file) {
+Result<SweepFile> read_sweep_file(const std::filesystem::path& file,
+                                  const StopRequest& should_stop) {
   std::error_code error;
   if (const auto status = std::filesystem::status(file, error);
       std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     return fail(ErrorCode::InvalidInput, "is no regular file", file.string());
-  auto text = read_file(file);
+  if (const auto size = std::filesystem::file_size(file, error);
+      !error && size > largest_sweep_file)
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("is larger than {} MiB, more than a sweep can have", largest_sweep_file >> 20U),
+        file.string());
+  auto text = read_file(file, largest_sweep_file, should_stop);
   if (!text) return fail(text.error());
-  FileJson json = FileJson::parse(*text, nullptr, false);
-  text->clear();
-  text->shrink_to_fit();
   const auto refuse = [&](std::string_view reason) {
     return fail(
         ErrorCode::InvalidInput,
         fmt::format("is not the file of a sweep that this pliant can read: {}", printable(reason)),
         file.string());
   };
-  if (json.is_discarded()) return refuse("it is no JSON");
   try {
-    return content_of(std::move(json));
+    Stops stops(should_stop);
+    AxisTexts texts;
+    const char* const end = text->data() + text->size();
+    FileJson json = FileJson::parse(StoppingText(text->data(), end, stops),
+                                    StoppingText(end, end, stops), std::ref(texts), false);
+    if (stops.is_stopped()) return interrupted();
+    if (json.is_discarded()) return refuse("it is no JSON");
+    *text = std::string();
+    return content_of(std::move(json), texts.take());
   } catch (const std::exception& error) {
     return refuse(error.what());
   }

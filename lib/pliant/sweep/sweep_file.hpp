@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene_texts.hpp"
 #include "pliant/sweep/folder.hpp"
 #include "pliant/sweep/input_hashes.hpp"
@@ -26,11 +28,17 @@ struct SweepFile {
 };
 
 /// Writes it, whole or not at all, and never in place of another. Whether it is written now; if
-/// not, there is one. Errors: InvalidInput: a name is no UTF-8; Unwritable.
-Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file);
+/// not, there is one. Errors: InvalidInput: a name is no UTF-8; it is larger than
+/// `largest_sweep_file`; Unwritable; Interrupted.
+Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file,
+                              const StopRequest& should_stop = {});
 
-/// Errors: Unreadable; InvalidInput: it is no such file.
-Result<SweepFile> read_sweep_file(const std::filesystem::path& file);
+/// Errors: Unreadable, also if it is too large; InvalidInput: it is no such file; Interrupted.
+Result<SweepFile> read_sweep_file(const std::filesystem::path& file,
+                                  const StopRequest& should_stop = {});
+
+/// A million takes with the most intervals have some 0.8 GB. [bytes]
+inline constexpr std::size_t largest_sweep_file = std::size_t{2} << 30U;
 
 /// What differs between a sweep and what is asked now, in words that can follow `it has `; empty:
 /// nothing does. The hashes of files do not count.

@@ -10,6 +10,7 @@
 
 #include "pliant/sweep/csv.hpp"
 #include "pliant/sweep/sobol.hpp"
+#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/values.hpp"
 
 namespace pliant {
@@ -17,6 +18,12 @@ namespace {
 
 tl::unexpected<Error> refuse(std::string message) {
   return fail(ErrorCode::InvalidInput, std::move(message));
+}
+
+Result<void> check_text_count(std::size_t count) {
+  if (count <= most_take_texts) return {};
+  return refuse(fmt::format("{} values are too many; at most {} are allowed, over all takes", count,
+                            most_take_texts));
 }
 
 std::string vary_option(const std::string& typed) { return "--vary " + printable(typed); }
@@ -29,7 +36,7 @@ std::string VariedPath::title() const {
                                                    : "");
 }
 
-Result<Takes> Takes::make(const SweepVariation& variation) {
+Result<Takes> Takes::make(const SweepVariation& variation, const StopRequest& should_stop) {
   Takes takes;
   takes.parts_.scene_count = variation.scene_count;
   for (const std::string& typed : variation.set) {
@@ -44,8 +51,9 @@ Result<Takes> Takes::make(const SweepVariation& variation) {
   if (variation.table) {
     if (!variation.vary.empty() || variation.samples)
       return refuse("--takes: the table says what varies, so it excludes --vary and --sample");
-    if (auto read = takes.read_table(*variation.table); !read) return fail(read.error());
-  } else if (auto read = takes.read_axes(variation); !read) {
+    if (auto read = takes.read_table(*variation.table, should_stop); !read)
+      return fail(read.error());
+  } else if (auto read = takes.read_axes(variation, should_stop); !read) {
     return fail(read.error());
   }
   if (auto counted = takes.count_takes(); !counted) return fail(counted.error());
@@ -88,7 +96,7 @@ Result<void> Takes::add_path(const std::string& option, const SceneChange& chang
   return {};
 }
 
-Result<void> Takes::read_axes(const SweepVariation& variation) {
+Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest& should_stop) {
   struct Interval {
     double from, to;
   };
@@ -123,9 +131,11 @@ Result<void> Takes::read_axes(const SweepVariation& variation) {
     return refuse(fmt::format("--sample {}: must be an integer from 1 to {}", *variation.samples,
                               most_takes));
   sampled.count = *variation.samples;
+  if (auto few = check_text_count(sampled.count * intervals.size()); !few) return few;
   const std::vector<double> points = sobol_points(intervals.size(), 0, sampled.count);
   sampled.texts.reserve(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
+    if (is_stopped(should_stop, k)) return interrupted();
     const auto& [from, to] = intervals[k % intervals.size()];
     const double value = from + (to - from) * points[k];
     if (!std::isfinite(value))
@@ -136,17 +146,19 @@ Result<void> Takes::read_axes(const SweepVariation& variation) {
   return {};
 }
 
-Result<void> Takes::read_table(std::string_view text) {
-  auto rows = parse_csv(text, most_takes + 1);  // and the header
+Result<void> Takes::read_table(std::string_view text, const StopRequest& should_stop) {
+  auto rows = parse_csv(text, most_takes + 1, should_stop);  // and the header
   const auto at_line = [](int line, const std::string& message) {
     return refuse(fmt::format("--takes, line {}: {}", line, message));
   };
+  if (!rows && rows.error().code == ErrorCode::Interrupted) return fail(rows.error());
   if (!rows) return at_line(rows.error().line, rows.error().message);
   if (rows->size() < 2)
     return refuse("--takes: the table needs a header of paths, and a row a take");
   const CsvRow& header = rows->front();
   TakeAxis axis;
   for (const std::string& field : header.fields) {
+    if (is_stopped(should_stop)) return interrupted();
     SceneChange change{.path = field};
     if (!field.empty() && (field.back() == '*' || field.back() == '+')) {
       change.kind = field.back() == '*' ? SceneChange::Kind::Times : SceneChange::Kind::Plus;
@@ -159,6 +171,7 @@ Result<void> Takes::read_table(std::string_view text) {
       return added;
   }
   axis.count = rows->size() - 1;
+  if (auto few = check_text_count(axis.count * header.fields.size()); !few) return few;
   for (std::size_t k = 1; k < rows->size(); ++k) {
     CsvRow& row = (*rows)[k];
     row_lines_.push_back(row.line);

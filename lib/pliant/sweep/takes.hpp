@@ -7,9 +7,14 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/change.hpp"
 
 namespace pliant {
+
+/// The most values that all axes of a sweep may have, each counted where it stands: a hundred for
+/// each of a million takes.
+inline constexpr std::size_t most_take_texts = 100'000'000;
 
 /// What varies in a sweep, as typed. SWEEP.
 struct SweepVariation {
@@ -51,8 +56,9 @@ class Takes {
   /// Errors: InvalidInput, beginning with the option as typed: a word that is none; a path that is
   /// varied twice, or set too; an interval without samples or samples without an interval; more
   /// than `most_intervals`; nothing that varies; more than `most_takes` takes, with their number; a
-  /// table whose rows are not as wide as its header, with the line.
-  static Result<Takes> make(const SweepVariation& variation);
+  /// table whose rows are not as wide as its header, with the line; more than `most_take_texts`
+  /// values. Interrupted.
+  static Result<Takes> make(const SweepVariation& variation, const StopRequest& should_stop = {});
 
   /// The same from its parts. Errors: InvalidInput: they do not belong together.
   static Result<Takes> of(TakeParts parts);
@@ -78,8 +84,8 @@ class Takes {
   std::vector<std::string_view> texts_of(std::size_t path) const;
 
  private:
-  Result<void> read_axes(const SweepVariation& variation);
-  Result<void> read_table(std::string_view text);
+  Result<void> read_axes(const SweepVariation& variation, const StopRequest& should_stop);
+  Result<void> read_table(std::string_view text, const StopRequest& should_stop);
   Result<void> add_path(const std::string& option, const SceneChange& change);
   Result<void> count_takes();
   std::size_t row_of(std::size_t axis, std::size_t take) const;
