@@ -40,7 +40,7 @@ void print_failures(const SweepFolder& folder, const SweepStatus& status, const 
     const TakeRecord& record = status.takes[take];
     if (record.status != TakeStatus::Failed || !part.has(take) || ++count > most_named) continue;
     print(stderr, fmt::format("{}: {}\n", title_of(folder.sweep(), folder.request().scenes, take),
-                              printable(record.error)));
+                              printable(record.full_error)));
   }
   if (count > most_named)
     print(stderr, fmt::format("{} failed too\n", counted(count - most_named, "other take")));

@@ -51,7 +51,7 @@ int run_sweep_verify(const SweepVerifyOptions& options) {
        .take_done = [&](const TakeOutcome& outcome) -> Result<void> {
          progress->advance();
          if (!outcome.measures) {
-           differences[outcome.take] = outcome.measures.error().message;
+           differences[outcome.take] = to_lines(outcome.measures.error()).front();
          } else if (outcome.measures->hash != status->takes[outcome.take].measures.hash) {
            differences[outcome.take] = "hash differs";
          }

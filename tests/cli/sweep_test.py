@@ -238,7 +238,7 @@ class Sweeps(Command):
         self.assertIn("4 takes, 3 done, 1 failed, 0 missing", result.stdout)
         row = self.rows()[0]
         self.assertEqual((row["status"], row["peak"], row["hash"]), ("failed", "", ""))
-        self.assertIn(f"): {row['error']}", result.stderr)
+        self.assertIn(row["error"], result.stderr)
         again = self.sweep("run", self.path("s"), code=1)
         self.assertEqual(len(glob.glob(self.path("s/log/*"))), 1)
         self.assertEqual(again.stderr, result.stderr)

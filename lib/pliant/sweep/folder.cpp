@@ -197,13 +197,13 @@ class Gathering {
       // Of several failures the last one counts.
       const bool is_later = std::tie(line.time, line.error) > std::tie(origin.time, record.error);
       if (record.status == TakeStatus::Done || !is_later) return;
-      record = {TakeStatus::Failed, {}, std::move(line.error)};
+      record = {TakeStatus::Failed, {}, std::move(line.error), std::move(line.full_error)};
       origin.time = std::move(line.time);
       return;
     }
     const int host = number_of(line.host);
     if (record.status != TakeStatus::Done) {
-      record = {TakeStatus::Done, line.measures, {}};
+      record = {TakeStatus::Done, line.measures, {}, {}};
       origin = {host, {}};
     } else if (record.measures.hash != line.measures.hash) {
       // The same one stays, in whatever order they come.

@@ -34,7 +34,8 @@ enum class TakeStatus { Missing, Failed, Done };
 struct TakeRecord {
   TakeStatus status = TakeStatus::Missing;
   Measures measures = {};  ///< of a take that is done
-  std::string error = {};  ///< of a take that failed
+  std::string error = {};  ///< of a take that failed, with names of files without their folders
+  std::string full_error = {};  ///< the same with the folders
 };
 
 /// Two lines of the log of one take whose hashes differ.

@@ -31,9 +31,6 @@ using Json = nlohmann::json;
 // What a line of JSON costs to read is 100 times its length.
 constexpr std::size_t longest_line = std::size_t{1} << 18U;
 
-// Of a take; further errors are left out.
-constexpr std::size_t longest_error = 4096;
-
 std::string host_name() {
   char name[256] = {};
   if (gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "unknown";
@@ -97,13 +94,26 @@ bool read_measures(const Json& json, Measures& measures) {
 
 }  // namespace
 
-std::string error_text(const Error& error) {
-  std::string text = error.message;
-  for (const Error& other : error.others) {
-    if (text.size() > longest_error) break;
-    text += "; " + other.message;
-  }
-  return printable(text);
+std::string error_text(const Error& error, Folders folders) {
+  std::string text;
+  const auto add = [&](const Error& one) {
+    if (!text.empty()) text += "; ";
+    if (!one.file.empty()) {
+      text += folders == Folders::With ? one.file : fs::path(one.file).filename().string();
+      if (one.line > 0) text += fmt::format(":{}", one.line);
+      text += ": ";
+    }
+    text += one.message;
+  };
+  add(error);
+  for (const Error& other : error.others)
+    if (text.size() < longest_error_text) add(other);
+  text = printable(text);
+  if (text.size() <= longest_error_text) return text;
+  constexpr std::string_view rest = "…";
+  std::size_t end = longest_error_text - rest.size();
+  while (length_of_character(text.substr(end, 4)) == 0) --end;  // not within a character
+  return text.substr(0, end).append(rest);
 }
 
 std::string to_line(const TakeOutcome& outcome) {
@@ -115,7 +125,10 @@ std::string to_line(const TakeOutcome& outcome) {
         "\"energy\":{},\"settle\":{},\"hash\":\"{}\"",
         m.peak, m.peak_frame, m.final, m.rms, m.speed, m.energy, m.settle, to_text(m.hash));
   } else {
-    line += "\"status\":\"failed\",\"error\":" + in_json(error_text(outcome.measures.error()));
+    const Error& error = outcome.measures.error();
+    line += fmt::format("\"status\":\"failed\",\"error\":{},\"fullError\":{}",
+                        in_json(error_text(error, Folders::Without)),
+                        in_json(error_text(error, Folders::With)));
   }
   return line + fmt::format(",\"seconds\":{:.6f},\"host\":{},\"time\":\"{}\"}}\n", outcome.seconds,
                             in_json(host_name()), now_in_utc());
@@ -133,7 +146,9 @@ bool read_line(std::string_view text, LogLine& line) {
     return false;
   line.is_done = status == "done";
   if (line.is_done) return read_measures(json, line.measures);
-  return status == "failed" && read_member(json, "error", line.error);
+  if (status != "failed" || !read_member(json, "error", line.error)) return false;
+  if (!read_member(json, "fullError", line.full_error)) line.full_error = line.error;
+  return true;
 }
 
 LogFile::LogFile(LogFile&& other) noexcept

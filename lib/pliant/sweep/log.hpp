@@ -18,8 +18,9 @@ namespace pliant {
 struct LogLine {
   std::size_t take = 0;
   bool is_done = false;
-  Measures measures = {};  ///< of a take that is done
-  std::string error = {};  ///< of one that failed
+  Measures measures = {};       ///< of a take that is done
+  std::string error = {};       ///< of one that failed, as in the table
+  std::string full_error = {};  ///< the same with the folders of files
   double seconds = 0;
   std::string host = {};
   std::string time = {};  ///< when it ended: UTC, 2026-11-24T10:45:00.123Z
@@ -28,8 +29,15 @@ struct LogLine {
 /// The line for an outcome that ends now, with its line end.
 std::string to_line(const TakeOutcome& outcome);
 
-/// The text of an error in the log and the table: its message, with those found with it.
-std::string error_text(const Error& error);
+/// Whether the text of an error has the folders of its files. Without them it does not depend on
+/// where a sweep is.
+enum class Folders { Without, With };
+
+/// The text of an error in the log: FILE:LINE: MESSAGE, with those found with it, at most
+/// `longest_error_text` bytes.
+std::string error_text(const Error& error, Folders folders);
+
+inline constexpr std::size_t longest_error_text = 8192;
 
 /// Reads a line; false: it is not a whole one.
 bool read_line(std::string_view text, LogLine& line);
