@@ -10,6 +10,7 @@
 #include "counted.hpp"
 #include "frame_range.hpp"
 #include "interrupt.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/writer.hpp"
@@ -121,6 +122,12 @@ SweepStatus status_of_part(const SweepStatus& status, const SweepPart& part) {
   return of_part;
 }
 
+void tell_memory(std::size_t count, const SimulationOptions& resources) {
+  const TakesAtOnce at_once = takes_at_once(count, resources.threads, resources.max_memory);
+  print(stderr, fmt::format("{} at once, up to {} each\n", counted(at_once.count, "take"),
+                            bytes_text(at_once.memory)));
+}
+
 int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const SweepPart& part) {
   folder.remove_half_files(&was_interrupted);
   const SimulationOptions resources = simulation_options(options.resources);
@@ -134,6 +141,7 @@ int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const S
                   .retry = options.retries,
                   .begin =
                       [&](std::size_t count) {
+                        if (!options.is_quiet && count > 0) tell_memory(count, resources);
                         progress.emplace(static_cast<int>(count), options.is_quiet, "takes");
                       },
                   .take_done =

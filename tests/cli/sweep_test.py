@@ -241,10 +241,10 @@ class Sweeps(Command):
         self.assertIn(row["error"], result.stderr)
         again = self.sweep("run", self.path("s"), code=1)
         self.assertEqual(len(glob.glob(self.path("s/log/*"))), 1)
-        self.assertEqual(again.stderr, result.stderr)
+        self.assertEqual(again.stderr.splitlines(), result.stderr.splitlines()[1:])  # but for the memory of a take
         self.sweep("run", self.path("s"), "--retry", code=1)
         self.assertEqual(len(glob.glob(self.path("s/log/*"))), 2)
-        many = self.make("many", vary=("--vary", "sheet.c=-5", "--vary", "sheet.density=1..13"), code=1)
+        many = self.make("many", "--quiet", vary=("--vary", "sheet.c=-5", "--vary", "sheet.density=1..13"), code=1)
         self.assertEqual(len(many.stderr.splitlines()), 11)
         self.assertIn("3 other takes failed too", many.stderr)
 
