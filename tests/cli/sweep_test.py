@@ -3,9 +3,7 @@
 PLIANT_SWEEP_KILLS is the number of runs that are killed at random moments, 20 by default.
 """
 
-import csv
 import glob
-import io
 import json
 import math
 import os
@@ -15,45 +13,13 @@ import signal
 import subprocess
 import time
 
-from command import PLIANT, SANITIZED, Command, main
+from command import PLIANT, SANITIZED, main
+from sweeps import VARY, SweepCommand, edited
 
-SCENE = """<scene version="1" start="1" end="{end}">
-  <surface name="sheet"><grid columns="{columns}" rows="9" width="10" depth="10"/>
-    <material density="{density}" damping="5" c="{c}"/></surface>
-  <point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2.5" magnitude="{magnitude}"/>
-</scene>
-"""
-PLAIN = {"end": 8, "columns": 11, "density": 1, "c": 2, "magnitude": 900}
-VARY = ("--vary", "sheet.density=1,3", "--vary", "poke.magnitude*=0.5:2:4")
 KILLS = int(os.environ.get("PLIANT_SWEEP_KILLS", "4" if SANITIZED else "20"))
 
 
-def edited(**changed):
-    return SCENE.format(**{**PLAIN, **changed})
-
-
-class Sweeps(Command):
-    def sweep(self, *arguments, **options):
-        return self.run_pliant("sweep", *arguments, **options)
-
-    def make(self, name="s", *options, vary=VARY, scene=None, code=0):
-        scene = scene or self.write("scene.xml", edited())
-        return self.sweep("run", scene, "-o", self.path(name), *vary, *options, code=code)
-
-    def table(self, name="s"):
-        return self.read(f"{name}/takes.csv")
-
-    def rows(self, name="s"):
-        return list(csv.DictReader(io.StringIO(self.table(name).decode())))
-
-    def tree(self):
-        return {os.path.join(folder, name): os.stat(os.path.join(folder, name)).st_mtime_ns
-                for folder, _, names in os.walk(self.folder) for name in names}
-
-    def undisturbed(self, *options, vary=VARY):
-        self.make("undisturbed", "--threads", "1", *options, vary=vary)
-        return self.table("undisturbed")
-
+class Sweeps(SweepCommand):
     # Values and bits.
 
     def test_each_take_has_the_bits_of_the_scene_edited_by_hand(self):
@@ -326,13 +292,6 @@ class Sweeps(Command):
             for take in (0, 23):
                 self.assertEqual(self.read(f"{name}/takes/{take:05}.npy"), self.read(f"undisturbed/takes/{take:05}.npy"))
 
-    def whole_lines(self, name):
-        takes = set()
-        for file in glob.glob(self.path(f"{name}/log/*.jsonl")):
-            with open(file, encoding="utf-8") as lines:
-                takes.update(json.loads(line)["take"] for line in lines if line.endswith("\n"))
-        return len(takes)
-
     def test_an_interrupt_ends_within_a_second_and_keeps_what_ended(self):
         vary = ("--vary", "sheet.density=1..400")
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -367,9 +326,6 @@ class Sweeps(Command):
         self.assertEqual(process.returncode, 1, errors)
         self.assertLess(time.monotonic() - begin, 30 if SANITIZED else 3)
         self.assertFalse(os.path.exists(self.path("s")))
-
-    def log_size(self, name):
-        return sum(os.path.getsize(file) for file in glob.glob(self.path(f"{name}/log/*.jsonl")))
 
     def test_half_lines_count_for_nothing(self):
         wanted = self.undisturbed()

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/sweep/log.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
@@ -140,6 +141,86 @@ TEST_CASE("reading the log ends when asked", "[sweep]") {
   const auto status = folder.status([] { return true; });
   REQUIRE_FALSE(status);
   CHECK(status.error().code == ErrorCode::Interrupted);
+}
+
+// Calls `work` with stop requests that are granted ever later, the last one never; each must end
+// it.
+template <class Work, class Look>
+void stop_at_every_moment(const Work& work, const Look& look, int least_asked) {
+  int asked = 0;
+  REQUIRE(work([&] { return ++asked < 0; }));
+  CHECK(asked >= least_asked);
+  const int all = asked;
+  for (int moment = 1; moment <= all; moment += 1 + all / 23) {
+    CAPTURE(moment, all);
+    asked = 0;
+    const auto ended = work([&] { return ++asked >= moment; });
+    REQUIRE_FALSE(ended);
+    CHECK(ended.error().code == ErrorCode::Interrupted);
+    look();
+  }
+}
+
+TEST_CASE("making a sweep, opening it and writing its table end when asked", "[sweep]") {
+  const Place place;
+  SweepRequest request =
+      place.request({"sheet.density=1:2", "sheet.damping=1:2", "poke.magnitude=1:2"});
+  request.variation.samples = 30'000;
+  const auto made = place.folder().file("over/there");
+  stop_at_every_moment(
+      [&](const StopRequest& should_stop) {
+        fs::remove_all(made.parent_path());
+        return SweepFolder::make(made.string(), request, should_stop);
+      },
+      [&] { CHECK_FALSE(fs::exists(made.parent_path())); }, 100);
+  const auto folder = SweepFolder::make(place.sweep(), request).value();
+  constexpr int quarter = 1 << 18;
+  stop_at_every_moment(
+      [&](const StopRequest& should_stop) { return SweepFolder::open(place.sweep(), should_stop); },
+      [] {}, static_cast<int>(fs::file_size(place.folder().file("sweep/sweep.json"))) / quarter);
+  const auto status = folder.status().value();
+  stop_at_every_moment(
+      [&](const StopRequest& should_stop) {
+        fs::remove(place.folder().file("sweep/takes.csv"));
+        return folder.write_table(status, should_stop);
+      },
+      [&] { CHECK_FALSE(fs::exists(place.folder().file("sweep/takes.csv"))); }, 2);
+  std::string table = "sheet.density,poke.magnitude\n";
+  for (int row = 0; row < 60'000; ++row) table += "1.5,\"2\"\n";
+  stop_at_every_moment(
+      [&](const StopRequest& should_stop) { return Takes::make({.table = table}, should_stop); },
+      [] {}, 2);
+}
+
+TEST_CASE("a sweep that cannot be written leaves no folder", "[sweep]") {
+  const Place place;
+  const SweepRequest request = place.request();
+  place.folder().write("plain", "");
+  for (const char* name : {"plain/over/there", "plain"}) {
+    CHECK_FALSE(SweepFolder::make(place.folder().file(name).string(), request));
+    CHECK(fs::is_regular_file(place.folder().file("plain")));
+  }
+}
+
+TEST_CASE("an error of a take has its place, in the table without folders", "[sweep]") {
+  Error error{.message = "is wrong", .file = "/over/there/shot.xml", .line = 7};
+  CHECK(error_text(error, Folders::With) == "/over/there/shot.xml:7: is wrong");
+  CHECK(error_text(error, Folders::Without) == "shot.xml:7: is wrong");
+  error.others.push_back({.message = "cannot be read", .file = "/over/a.obj"});
+  error.others.push_back({.message = "is odd"});
+  CHECK(error_text(error, Folders::Without) ==
+        "shot.xml:7: is wrong; a.obj: cannot be read; is odd");
+  // A line of the log has a limit, and a name may have any length.
+  std::string name = "x";
+  while (name.size() < 300'000) name += "\u00e9";
+  error.message = name;
+  const std::string text = error_text(error, Folders::With);
+  CHECK(text.size() <= longest_error_text);
+  CHECK(text.size() > longest_error_text - 8);
+  CHECK(is_utf8(text));
+  LogLine line;
+  REQUIRE(read_line(to_line({.take = 3, .measures = fail(error)}), line));
+  CHECK(line.full_error == text);
 }
 
 TEST_CASE("different hashes of a take are found, with both hosts", "[sweep]") {
