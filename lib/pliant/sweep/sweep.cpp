@@ -68,7 +68,7 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
       return fail(told_after(made.error(), "--set "));
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       const VariedPath& varied = takes_.paths()[path];
-      const std::vector<std::string_view> texts = takes_.texts_of(path);
+      const std::vector<std::string_view> texts = takes_.texts_of(path, should_stop);
       const auto check = [&](std::span<const std::string_view> some) {
         return check_change_texts(base, {varied.kind, varied.path}, some, settings_.root,
                                   should_stop);

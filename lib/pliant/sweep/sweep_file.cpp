@@ -44,6 +44,14 @@ class JsonFile {
   bool has_failed() const { return !written_; }
   // Throws if it is no UTF-8, as nlohmann-json does.
   void value(const FileJson& json) { text(json.dump()); }
+  void quoted(std::string_view text) {
+    const bool is_plain = std::ranges::all_of(
+        text, [](char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; });
+    if (!is_plain) return value(text);
+    gathered_ += '"';
+    gathered_ += text;
+    this->text("\"");
+  }
 
   Result<void> finish() {
     flush();
@@ -128,7 +136,7 @@ void write_content(const SweepFile& content, JsonFile& out) {
     out.text(fmt::format(", \"count\": {}, \"texts\": [", axis.count));
     for (std::size_t n = 0; n < axis.texts.size() && !out.has_failed(); ++n) {
       if (n > 0) out.text(",");
-      out.value(axis.texts[n]);
+      out.quoted(axis.texts[n]);
     }
     out.text("]}");
   }
@@ -203,11 +211,11 @@ class AxisTexts {
     if (event != Event::value) return true;
     if (depth != 4 || !is_in_axes() || member_ != "texts" || texts_.empty()) return count();
     if (++text_count_ > most_take_texts) throw std::invalid_argument("it has too many values");
-    texts_.back().push_back(std::move(parsed.get_ref<std::string&>()));
+    texts_.back().push_back(parsed.get_ref<const std::string&>());
     return false;
   }
 
-  std::vector<std::vector<std::string>> take() { return std::move(texts_); }
+  std::vector<TextList> take() { return std::move(texts_); }
 
  private:
   static constexpr int most_depth = 6;
@@ -223,7 +231,7 @@ class AxisTexts {
   std::string section_, member_;
   std::size_t count_ = 0;
   std::size_t text_count_ = 0;
-  std::vector<std::vector<std::string>> texts_;
+  std::vector<TextList> texts_;
 };
 
 // Reads members that must be there; throws if they are not, as nlohmann-json does.
@@ -277,8 +285,7 @@ std::vector<SceneTexts> texts_of(FileJson& scenes) {
   return all;
 }
 
-TakeParts takes_of(const FileJson& json, std::vector<std::vector<std::string>> texts,
-                   const SweepRequest& request) {
+TakeParts takes_of(const FileJson& json, std::vector<TextList> texts, const SweepRequest& request) {
   TakeParts parts{.scene_count = request.scenes.size()};
   for (const std::string& typed : request.variation.set) {
     auto change = parse_change(typed);
@@ -300,7 +307,7 @@ TakeParts takes_of(const FileJson& json, std::vector<std::vector<std::string>> t
   return parts;
 }
 
-SweepFile content_of(FileJson json, std::vector<std::vector<std::string>> texts) {
+SweepFile content_of(FileJson json, std::vector<TextList> texts) {
   SweepFile content;
   if (json.at("sweep").get<int>() != format_version)
     throw std::invalid_argument("another version of the format");

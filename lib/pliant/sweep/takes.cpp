@@ -111,7 +111,10 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
     if (auto added = add_path(option, *change); !added) return added;
     if (!values->is_interval()) {
       const std::size_t count = values->texts.size();
-      parts_.axes.push_back({{parts_.paths.size() - 1}, std::move(values->texts), count});
+      TakeAxis& axis = parts_.axes.emplace_back();
+      axis.paths = {parts_.paths.size() - 1};
+      axis.count = count;
+      for (const std::string& text : values->texts) axis.texts.push_back(text);
       continue;
     }
     if (!variation.samples)
@@ -133,7 +136,6 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
   sampled.count = *variation.samples;
   if (auto few = check_text_count(sampled.count * intervals.size()); !few) return few;
   const std::vector<double> points = sobol_points(intervals.size(), 0, sampled.count);
-  sampled.texts.reserve(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (is_stopped(should_stop, k)) return interrupted();
     const auto& [from, to] = intervals[k % intervals.size()];
@@ -173,12 +175,14 @@ Result<void> Takes::read_table(std::string_view text, const StopRequest& should_
   axis.count = rows->size() - 1;
   if (auto few = check_text_count(axis.count * header.fields.size()); !few) return few;
   for (std::size_t k = 1; k < rows->size(); ++k) {
+    if (is_stopped(should_stop, k)) return interrupted();
     CsvRow& row = (*rows)[k];
     row_lines_.push_back(row.line);
     if (row.fields.size() != header.fields.size())
       return at_line(row.line, fmt::format("has {} values, but the header has {} paths",
                                            row.fields.size(), header.fields.size()));
-    std::move(row.fields.begin(), row.fields.end(), std::back_inserter(axis.texts));
+    for (const std::string& field : row.fields) axis.texts.push_back(field);
+    row.fields = {};
   }
   parts_.axes.push_back(std::move(axis));
   return {};
@@ -232,7 +236,8 @@ std::vector<SceneChange> Takes::changes(std::size_t take) const {
   return changes;
 }
 
-std::vector<std::string_view> Takes::texts_of(std::size_t path) const {
+std::vector<std::string_view> Takes::texts_of(std::size_t path,
+                                              const StopRequest& should_stop) const {
   std::vector<std::string_view> texts;
   std::unordered_set<std::string_view> known;
   for (const TakeAxis& axis : parts_.axes) {
@@ -241,6 +246,7 @@ std::vector<std::string_view> Takes::texts_of(std::size_t path) const {
     for (auto k = static_cast<std::size_t>(found - axis.paths.begin()); k < axis.texts.size();
          k += axis.paths.size()) {
       if (known.insert(axis.texts[k]).second) texts.push_back(axis.texts[k]);
+      if (is_stopped(should_stop, known.size())) return texts;
     }
   }
   return texts;

@@ -9,6 +9,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/change.hpp"
+#include "pliant/sweep/text_list.hpp"
 
 namespace pliant {
 
@@ -37,7 +38,7 @@ struct VariedPath {
 /// Paths that vary together: row k has the text of each, one after the other.
 struct TakeAxis {
   std::vector<std::size_t> paths = {};  ///< by their index
-  std::vector<std::string> texts = {};  ///< count x paths
+  TextList texts = {};                  ///< count x paths
   std::size_t count = 0;                ///< of rows, >= 1
 };
 
@@ -80,8 +81,10 @@ class Takes {
   /// Where a path has a text, for messages: the first row of a table, or the option as typed.
   std::string place_of(std::size_t path, std::string_view text) const;
 
-  /// Each text that a path has in some take, in the order of the first take that has it.
-  std::vector<std::string_view> texts_of(std::size_t path) const;
+  /// Each text that a path has in some take, in the order of the first take that has it. Some are
+  /// missing if it was asked to stop.
+  std::vector<std::string_view> texts_of(std::size_t path,
+                                         const StopRequest& should_stop = {}) const;
 
  private:
   Result<void> read_axes(const SweepVariation& variation, const StopRequest& should_stop);
