@@ -273,4 +273,9 @@ TEST_CASE("takes share sparse factors, and no bit depends on it", "[sweep][threa
   CHECK(second.second == (available_solvers().front() == SolverChoice::Cholmod ? 0 : 1));
   CHECK(second.first == alone.first);
   CHECK(second.first.hash != first.first.hash);
+  const Sweep sweep = sweep_of({"poke.magnitude=900,500,700,900,1100,900"},
+                               scene({surface}, {poke("poke", {0, 0, 0})}, 5));
+  const Outcomes outcomes = run_all(sweep, {.threads = 3});
+  for (const std::size_t take : {0u, 3u, 5u}) CHECK(outcomes.at(take).measures == alone.first);
+  CHECK(outcomes.at(1).measures == first.first);
 }

@@ -37,7 +37,7 @@ Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::p
 Result<SweepFile> read_sweep_file(const std::filesystem::path& file,
                                   const StopRequest& should_stop = {});
 
-/// A million takes with the most intervals have some 0.8 GB. [bytes]
+/// A million takes with the most intervals have some 0.7 GB. [bytes]
 inline constexpr std::size_t largest_sweep_file = std::size_t{2} << 30U;
 
 /// What differs between a sweep and what is asked now, in words that can follow `it has `; empty:
