@@ -1,13 +1,15 @@
-# Generates random scenes, by KIND_scenes.py, and compares them.
+# Generates random scenes, by KIND_scenes.py, and compares them. KIND.finds has what the search for them
+# found; if scenes are drawn in another way, compare.py says that they are not well posed any more, and
+# KIND_scenes.py --finds makes the file anew.
 # usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DALSO=… -DWORK=… -DSEED=… -DCOUNT=… -P run_random.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
 execute_process(COMMAND "${PYTHON}" "${REFERENCE}/${KIND}_scenes.py"
-  --seed ${SEED} --count ${COUNT} -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
+  --seed ${SEED} --count ${COUNT} --finds "${REFERENCE}/${KIND}.finds" -o "${WORK}" COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB scenes "${WORK}/*.xml")
 list(LENGTH scenes count)
 if(NOT count EQUAL COUNT)
   message(FATAL_ERROR "${count} scenes of ${COUNT} were made")
 endif()
-execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes} ${ALSO}
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes} ${ALSO} --well-posed
   COMMAND_ERROR_IS_FATAL ANY)
