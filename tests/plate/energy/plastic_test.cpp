@@ -310,6 +310,7 @@ TEST_CASE("a plate that flows has the same bits with vectors of every width", "[
       CAPTURE(one.name, components);
       PlateProblem problem = problem_of(one, {0.15, 0.1});
       problem.tangents = {};
+      problem.load *= 2;  // a free plate may else not yield by one component alone
       for (int k = 2; k >= components; --k) problem.load.col(k == 2 ? 0 : 2).setZero();
       const auto run = [&](int lanes) {
         const auto solver = make_plate_solver(one.choice, {.most_lanes = lanes});
