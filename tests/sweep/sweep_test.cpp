@@ -171,6 +171,29 @@ TEST_CASE("memory bounds how many takes run at once, not their results", "[sweep
   CHECK(suffices < 4 * one);
 }
 
+TEST_CASE("takes that are watched end where they are told", "[sweep][threads]") {
+  const Sweep sweep = sweep_of({"sheet.density=3,40", "poke.magnitude*=0.5,2"});
+  const int threads = GENERATE(1, 3);
+  const auto last_of = [](std::size_t take) { return 2 + static_cast<int>(take); };
+  std::atomic<int> frames = 0;
+  const Outcomes outcomes = run_all(sweep, {.threads = threads,
+                                            .watch = [&](std::size_t take, const Simulation&,
+                                                         const Frame& frame) -> Result<bool> {
+                                              ++frames;
+                                              if (take == 3)
+                                                return fail(ErrorCode::NotFinite, "seen enough");
+                                              return frame.number() < last_of(take);
+                                            }});
+  CHECK(frames == 2 + 3 + 4 + 1);
+  for (std::size_t take = 0; take < 3; ++take) {
+    // As if the scene ended there.
+    Scene shorter = sweep.scene_of(take).value();
+    shorter.end = last_of(take);
+    CHECK(outcomes.at(take).measures.value() == measures_of(shorter));
+  }
+  CHECK(outcomes.at(3).measures.error().message == "seen enough");
+}
+
 TEST_CASE("a run ends when asked, and when the caller fails", "[sweep][threads]") {
   const Sweep sweep = sweep_of({"sheet.density=1..40"});
   std::atomic<int> count = 0;

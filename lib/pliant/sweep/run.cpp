@@ -67,6 +67,7 @@ class TakeWriter {
 
 Result<Measures> play(Simulation& simulation, const TakeFrames& frames, const TakeRun& options,
                       const Scene& scene) {
+  PLIANT_EXPECTS(options.file.empty() || !options.watch);
   std::optional<TakeWriter> writer;
   if (!options.file.empty()) {
     auto made = TakeWriter::make(simulation, frames, options.file);
@@ -82,6 +83,11 @@ Result<Measures> play(Simulation& simulation, const TakeFrames& frames, const Ta
     frame = *std::move(reached);
     if (number < frames.first) continue;
     measurer.add(frame);
+    if (options.watch) {
+      const auto goes_on = options.watch(simulation, frame);
+      if (!goes_on) return fail(goes_on.error());
+      if (!*goes_on) break;
+    }
     if (!writer) continue;
     if (auto written = writer->write(frame); !written) return fail(written.error());
   }
@@ -267,12 +273,17 @@ Result<void> Sweep::run(std::span<const std::size_t> takes, const SweepRun& opti
   threads.for_each(workers, [&](std::size_t) {
     while (const auto turn = turns.next()) {
       try {
-        const TakeRun run{.max_memory = turn->memory,
-                          .threads = turn->threads,
-                          .should_stop = should_stop,
-                          .shelf = turn->shelf,
-                          .file = options.file_of ? options.file_of(turn->take) : std::string(),
-                          .check = options.check};
+        TakeRun run{.max_memory = turn->memory,
+                    .threads = turn->threads,
+                    .should_stop = should_stop,
+                    .shelf = turn->shelf,
+                    .file = options.file_of ? options.file_of(turn->take) : std::string(),
+                    .check = options.check};
+        if (options.watch) {
+          run.watch = [&, take = turn->take](const Simulation& simulation, const Frame& frame) {
+            return options.watch(take, simulation, frame);
+          };
+        }
         turns.end(*turn, this->run(turn->take, run));
       } catch (...) {  // of a force or a callback of the program
         turns.abandon();

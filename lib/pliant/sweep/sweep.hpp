@@ -42,6 +42,9 @@ struct TakeRun {
   std::string file = {};   ///< the animation is written to it as by a bake; empty: nowhere
   /// Called with the scene before it is simulated and at the end; an error fails the take.
   std::function<Result<void>(const Scene&)> check = {};
+  /// Called with each frame that is measured; false ends the take there, and its measures are those
+  /// of the frames so far. An error fails it. Not with a file.
+  std::function<Result<bool>(const Simulation&, const Frame&)> watch = {};
 };
 
 /// How a take ended.
@@ -61,6 +64,8 @@ struct SweepRun {
   StopRequest should_stop = {};                               ///< called from any thread
   std::function<std::string(std::size_t take)> file_of = {};  ///< `TakeRun::file`; empty: none
   std::function<Result<void>(const Scene&)> check = {};       ///< `TakeRun::check`, from any thread
+  /// `TakeRun::watch`, from any thread. A take that begins again with more memory comes again.
+  std::function<Result<bool>(std::size_t take, const Simulation&, const Frame&)> watch = {};
   /// Called for each take that ended, one call at a time, from any thread, in any order. An error
   /// ends the run.
   std::function<Result<void>(const TakeOutcome&)> take_done = {};
