@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <string>
@@ -34,5 +35,16 @@ class Arrays {
  private:
   std::string bytes_;
 };
+
+/// What a page unpacks: the length of the head, the head and the arrays.
+inline std::string joined(const Json& head, const std::string& arrays) {
+  // An author's text may contain bytes that are not UTF-8.
+  std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<std::uint32_t>(text.size());
+  std::string bytes(sizeof(length), '\0');
+  std::memcpy(bytes.data(), &length, sizeof(length));
+  return bytes + text + arrays;
+}
 
 }  // namespace pliant::viewer

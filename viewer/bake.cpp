@@ -1,37 +1,24 @@
 #include "viewer/bake.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "pliant/mesh/triangulate.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/bytes.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/forces.hpp"
 #include "viewer/json.hpp"
+#include "viewer/mesh_order.hpp"
 #include "viewer/motion.hpp"
 
 namespace pliant::viewer {
 namespace {
-
-std::vector<std::uint32_t> triangle_vertices(const Mesh& mesh) {
-  std::vector<std::uint32_t> vertices;
-  for (const std::array<int, 3>& triangle : triangulate(mesh)) {
-    for (const int corner : triangle) {
-      vertices.push_back(static_cast<std::uint32_t>(mesh.corner_vertices[corner]));
-    }
-  }
-  return vertices;
-}
 
 // Both ends of each edge of the faces, each edge once.
 std::vector<std::uint32_t> edge_vertices(const Mesh& mesh) {
@@ -64,16 +51,6 @@ std::vector<float> vertex_uvs(const Mesh& mesh) {
     }
   }
   return uvs;
-}
-
-// Vertices in the order of their nodes, those without one first, so that neighbours in a row of the
-// grid are next to each other.
-std::vector<int> node_order(const std::vector<int>& vertex_nodes) {
-  std::vector<int> order(vertex_nodes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return vertex_nodes[a] < vertex_nodes[b]; });
-  return order;
 }
 
 Json transform_json(const Transform& transform) {
@@ -208,17 +185,6 @@ Json messages_of(const Simulation& simulation) {
     add("warning", place, place.told(warning.message()));
   }
   return messages;
-}
-
-// Concatenates the length of the head, the head and the arrays.
-std::string joined(const Json& head, const std::string& arrays) {
-  // An author's text may contain bytes that are not UTF-8.
-  std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<std::uint32_t>(text.size());
-  std::string bytes(sizeof(length), '\0');
-  std::memcpy(bytes.data(), &length, sizeof(length));
-  return bytes + text + arrays;
 }
 
 Result<void> check_memory(const Simulation& simulation, const FrameRange& frames,

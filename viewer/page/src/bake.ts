@@ -6,7 +6,7 @@ export type Vector = [number, number, number];
 /** First and last column, first and last row, in nodes. */
 export type Box = [number, number, number, number];
 
-interface ArrayPlace {
+export interface ArrayPlace {
   begin: number;
   count: number;
 }
@@ -22,7 +22,7 @@ export interface Marks {
 }
 
 /** Displacements from the mesh at rest, packed. */
-interface MotionHead {
+export interface MotionHead {
   step: number;
   predictors: ArrayPlace;
   lowBytes: ArrayPlace;
@@ -233,7 +233,7 @@ function vertexOrder(nodes: Int32Array, nodeCount: number): Uint32Array {
 }
 
 /** Integer displacements in steps, frames x vertices x 3, from the errors of their predictions. */
-function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Array, order: Uint32Array): Int16Array {
+export function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Array, order: Uint32Array): Int16Array {
   const count = order.length;
   const steps = new Int16Array(predictors.length * count * 3);
   const along = 4;
@@ -269,13 +269,10 @@ export class Bake {
   readonly head: Head;
   readonly surfaces: BakedSurface[];
 
-  /** `unpacked`: the length of the head, the head, the arrays. */
   constructor(unpacked: ArrayBuffer) {
-    const start = 4;
-    const length = new DataView(unpacked).getUint32(0, true);
-    this.head = JSON.parse(new TextDecoder().decode(new Uint8Array(unpacked, start, length))) as Head;
-    if (this.head.version !== 1) throw new Error(`this page reads version 1, not ${this.head.version}`);
-    this.surfaces = this.head.surfaces.map((head) => new BakedSurface(head, unpacked, start + length));
+    const { head, start } = split<Head>(unpacked);
+    this.head = head;
+    this.surfaces = head.surfaces.map((surface) => new BakedSurface(surface, unpacked, start));
   }
 
   get frameCount(): number {
@@ -283,10 +280,23 @@ export class Bake {
   }
 }
 
+/** The head of what a command packed, and where its arrays begin: the length of the head, the head, the arrays. */
+export function split<T extends { version: number }>(unpacked: ArrayBuffer): { head: T; start: number } {
+  const begin = 4;
+  const length = new DataView(unpacked).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(unpacked, begin, length))) as T;
+  if (head.version !== 1) throw new Error(`this page reads version 1, not ${head.version}`);
+  return { head, start: begin + length };
+}
+
 /** Undoes the deflate stream that the command made. */
-export async function unpack(packed: Uint8Array<ArrayBuffer>): Promise<Bake> {
+export function inflate(packed: Uint8Array<ArrayBuffer>): Promise<ArrayBuffer> {
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Bake(await new Response(stream).arrayBuffer());
+  return new Response(stream).arrayBuffer();
+}
+
+export async function unpack(packed: Uint8Array<ArrayBuffer>): Promise<Bake> {
+  return new Bake(await inflate(packed));
 }
 
 /** The bytes of a base 64 text. */

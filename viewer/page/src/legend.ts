@@ -7,7 +7,7 @@ import type { Palette } from "./theme";
 import type { Viewer } from "./viewer";
 
 /** A scene defines no unit of length: lengths are in the units of its numbers, times in seconds. */
-const titles = { displacement: "Displacement [scene units]", velocity: "Velocity [scene units/s]" };
+export const titles = { displacement: "Displacement [scene units]", velocity: "Velocity [scene units/s]" };
 
 interface Ink {
   colour: string;

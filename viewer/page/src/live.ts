@@ -11,10 +11,14 @@ export interface LiveListener {
   connected(isConnected: boolean): void;
 }
 
-export async function fetchBake(): Promise<Bake> {
+export async function fetchPacked(): Promise<Uint8Array<ArrayBuffer>> {
   const response = await fetch("bake", { cache: "no-store" });
   if (!response.ok) throw new Error(`the server answered ${response.status}`);
-  return unpack(new Uint8Array(await response.arrayBuffer()));
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+export async function fetchBake(): Promise<Bake> {
+  return unpack(await fetchPacked());
 }
 
 export function follow(listener: LiveListener): void {

@@ -50,3 +50,8 @@ export function readLook(address: string): Look {
     peak: number("peak"),
   };
 }
+
+/** The words that were given. */
+export function defined(look: Look): Look {
+  return Object.fromEntries(Object.entries(look).filter(([, value]) => value !== undefined)) as Look;
+}

@@ -3,13 +3,15 @@
 import { bytesOf, unpack, type Bake, type Message } from "./bake";
 import { numberText } from "./curve_plot";
 import { CurvePanel } from "./curves";
+import { element } from "./element";
 import { ForceList } from "./force_list";
 import { FrameAxis } from "./frame_axis";
 import { drawLabels } from "./labels";
 import { legendOf, showLegend } from "./legend";
 import { fetchBake, follow } from "./live";
-import { readLook, type Look } from "./look";
+import { defined, readLook, type Look } from "./look";
 import { showMessages } from "./messages";
+import { answerOrders, isPicture } from "./orders";
 import { takePicture, type PictureJob } from "./picture";
 import { Readout } from "./readout";
 import "./style.css";
@@ -17,12 +19,6 @@ import type { Colour, Style } from "./surface_view";
 import { ThemeChoice } from "./theme";
 import { prepare, textSize, Timeline } from "./timeline";
 import { Viewer } from "./viewer";
-
-function element<T extends Element>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no ${id}`);
-  return found as unknown as T;
-}
 
 const themes = new ThemeChoice();
 const viewer = new Viewer(element("view"), themes);
@@ -32,8 +28,6 @@ const timeline = new Timeline(element("timeline"), playback, axis, themes);
 const curves = new CurvePanel(element("channels"), element("curve-view"), element("curve-values"), playback, axis, themes);
 const forceList = new ForceList(element("forces"), element("show-all"), viewer.forces);
 const readout = new Readout(stage, element("readout"), themes);
-/** Opened by the command, for a picture. */
-const isPicture = location.pathname.endsWith("/take");
 
 // Playback
 
@@ -275,34 +269,15 @@ function goLive(): void {
   });
 }
 
-/** An order of the command; orders are numbered from 1. */
-type Order = PictureJob & { number?: number; look: string };
-
-async function nextOrder(done: number): Promise<Order> {
-  for (;;) {
-    const order = (await (await fetch("job")).json()) as Order;
-    if ((order.number ?? 0) > done) return order;
-    await new Promise((resume) => setTimeout(resume, 4));
-  }
-}
-
 /**
  * `pliant view --png` and `--movie` open the page only for this: it sends one picture per order.
  */
 async function sendPictures(): Promise<void> {
   load(await fetchBake());
-  for (let done = 0; ; ) {
-    const order = await nextOrder(done);
-    if (done === 0) apply({ theme: "light", ...defined(readLook(order.look)) });
-    const picture = await takePicture(viewer, themes, order);
-    done = order.number!;
-    const answer = await fetch("picture", { method: "POST", body: picture });
-    if (!answer.ok) throw new Error(`the server answered ${answer.status} to the picture`);
-  }
-}
-
-function defined(look: Look): Look {
-  return Object.fromEntries(Object.entries(look).filter(([, value]) => value !== undefined)) as Look;
+  await answerOrders<PictureJob>((order, isFirst) => {
+    if (isFirst) apply({ theme: "light", ...defined(readLook(order.look)) });
+    return takePicture(viewer, themes, order);
+  });
 }
 
 async function begin(): Promise<void> {

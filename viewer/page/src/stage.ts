@@ -23,19 +23,68 @@ const lamps = [
 ];
 const ambient = 0.75;
 
-const lampsOf = () =>
-  lamps.map(({ from, colour, strength }) => {
-    const light = new THREE.DirectionalLight(colour, strength);
-    light.position.fromArray(from);
-    return light;
-  });
+/** Puts the camera and the lamps into the scene. They move with it, so that no side is ever dark. */
+export function light(scene: THREE.Scene, camera: THREE.Camera): void {
+  for (const { from, colour, strength } of lamps) {
+    const lamp = new THREE.DirectionalLight(colour, strength);
+    lamp.position.fromArray(from);
+    camera.add(lamp, lamp.target);
+  }
+  scene.add(camera, new THREE.AmbientLight(0xffffff, ambient));
+}
+
+/** The way to the camera: turned about the vertical and tilted up, in degrees. */
+export function wayOf(turn?: number, tilt?: number): THREE.Vector3 {
+  const a = turn === undefined ? restTurn : THREE.MathUtils.degToRad(turn);
+  const b = tilt === undefined ? restTilt : THREE.MathUtils.degToRad(tilt);
+  return new THREE.Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
+}
+
+/** Near and far enough for a box. */
+export function bound(camera: THREE.PerspectiveCamera, box: THREE.Box3): void {
+  const size = Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
+  camera.near = size / 500;
+  camera.far = size * 50;
+  camera.updateProjectionMatrix();
+}
+
+/** Looks at the box from `way` so that its corners fill the picture up to a margin. */
+export function fit(camera: THREE.PerspectiveCamera, box: THREE.Box3, way: THREE.Vector3): void {
+  const center = box.getCenter(new THREE.Vector3());
+  const side = new THREE.Vector3(0, 1, 0).cross(way);
+  if (side.lengthSq() < 1e-9) side.set(1, 0, 0);
+  side.normalize();
+  const over = way.clone().cross(side);
+  const tanV = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2));
+  const tanH = tanV * camera.aspect;
+  let distance = 0;
+  for (let k = 0; k < 8; ++k) {
+    const corner = new THREE.Vector3(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z).sub(center);
+    const depth = corner.dot(way);
+    distance = Math.max(distance, depth + Math.abs(corner.dot(side)) / tanH, depth + Math.abs(corner.dot(over)) / tanV);
+  }
+  camera.position.copy(center).addScaledVector(way, 1.04 * Math.max(distance, 1e-12));
+  camera.lookAt(center);
+}
+
+/** A grid of squares of a round size under a box. */
+export function floorUnder(box: THREE.Box3, axisColour: string, colour: string): THREE.GridHelper {
+  const size = box.getSize(new THREE.Vector3());
+  const extent = 1.5 * Math.max(size.x, size.z, 0.3 * size.y, 1e-9);
+  const power = 10 ** Math.floor(Math.log10(extent / 10));
+  const cell = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= extent / 20)!;
+  const count = 2 * Math.ceil(extent / cell / 2);
+  const grid = new THREE.GridHelper(count * cell, count, axisColour, colour);
+  const center = box.getCenter(new THREE.Vector3());
+  grid.position.set(Math.round(center.x / cell) * cell, box.min.y - 0.02 * size.length(), Math.round(center.z / cell) * cell);
+  return grid;
+}
 
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: OrbitControls;
-  private readonly lights = lampsOf();
   private floor = new THREE.Group();
   private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
   private isStale = true;
@@ -45,9 +94,8 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    // They move with the camera, so that no side is ever dark.
-    for (const light of this.lights) this.camera.add(light, light.target);
-    this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, ambient), this.floor);
+    light(this.scene, this.camera);
+    this.scene.add(this.floor);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
@@ -81,9 +129,7 @@ export class Stage {
   bound(box: THREE.Box3): void {
     this.box = box.clone();
     const size = Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
-    this.camera.near = size / 500;
-    this.camera.far = size * 50;
-    this.camera.updateProjectionMatrix();
+    bound(this.camera, box);
     this.controls.minDistance = size / 100;
     this.controls.maxDistance = size * 12;
     this.buildFloor();
@@ -91,18 +137,14 @@ export class Stage {
 
   /** Fits everything into the view, from the camera's present direction. */
   frameAll(): void {
-    const center = this.box.getCenter(new THREE.Vector3());
     const toCamera = this.camera.position.clone().sub(this.controls.target);
     if (toCamera.lengthSq() === 0) toCamera.set(0, 0, 1);
-    this.lookFrom(center, toCamera.normalize());
+    this.lookFrom(toCamera.normalize());
   }
 
   /** Resets the view, or turns it about the vertical and tilts it; in degrees. */
   look(turn?: number, tilt?: number): void {
-    const a = turn === undefined ? restTurn : THREE.MathUtils.degToRad(turn);
-    const b = tilt === undefined ? restTilt : THREE.MathUtils.degToRad(tilt);
-    const way = new THREE.Vector3(Math.sin(a) * Math.cos(b), Math.sin(b), Math.cos(a) * Math.cos(b));
-    this.lookFrom(this.box.getCenter(new THREE.Vector3()), way);
+    this.lookFrom(wayOf(turn, tilt));
   }
 
   /** Fixes the size of the picture, independent of the page, and fits the view to it. */
@@ -141,38 +183,15 @@ export class Stage {
     this.draw();
   }
 
-  // The box's corners fill the picture up to a margin.
-  private lookFrom(center: THREE.Vector3, way: THREE.Vector3): void {
-    const side = new THREE.Vector3(0, 1, 0).cross(way);
-    if (side.lengthSq() < 1e-9) side.set(1, 0, 0);
-    side.normalize();
-    const over = way.clone().cross(side);
-    const tanV = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
-    const tanH = tanV * this.camera.aspect;
-    let distance = 0;
-    for (let k = 0; k < 8; ++k) {
-      const corner = new THREE.Vector3(k & 1 ? this.box.max.x : this.box.min.x, k & 2 ? this.box.max.y : this.box.min.y, k & 4 ? this.box.max.z : this.box.min.z).sub(center);
-      const depth = corner.dot(way);
-      distance = Math.max(distance, depth + Math.abs(corner.dot(side)) / tanH, depth + Math.abs(corner.dot(over)) / tanV);
-    }
-    this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(way, 1.04 * Math.max(distance, 1e-12));
-    this.camera.lookAt(center);
+  private lookFrom(way: THREE.Vector3): void {
+    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
+    fit(this.camera, this.box, way);
     this.controls.update();
     this.invalidate();
   }
 
-  // A grid of squares of a round size under the scene.
   private buildFloor(): void {
     this.floor.clear();
-    const size = this.box.getSize(new THREE.Vector3());
-    const extent = 1.5 * Math.max(size.x, size.z, 0.3 * size.y, 1e-9);
-    const power = 10 ** Math.floor(Math.log10(extent / 10));
-    const cell = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= extent / 20)!;
-    const count = 2 * Math.ceil(extent / cell / 2);
-    const grid = new THREE.GridHelper(count * cell, count, this.floorColours[0], this.floorColours[1]);
-    const center = this.box.getCenter(new THREE.Vector3());
-    grid.position.set(Math.round(center.x / cell) * cell, this.box.min.y - 0.02 * size.length(), Math.round(center.z / cell) * cell);
-    this.floor.add(grid);
+    this.floor.add(floorUnder(this.box, this.floorColours[0], this.floorColours[1]));
   }
 }

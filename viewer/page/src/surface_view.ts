@@ -5,6 +5,7 @@ import * as THREE from "three";
 import { at, type BakedSurface } from "./bake";
 import { bends } from "./relief";
 import { displacementRamp, velocityRamp, type Ramp } from "./ramp";
+import { paintNumbers, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
 import type { Palette } from "./theme";
 
 export type Style = "shaded" | "lines" | "wireframe";
@@ -24,29 +25,6 @@ function placement(surface: BakedSurface, index: number, share: number): THREE.M
   const matrix = new THREE.Matrix4();
   matrix.set(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], 0, 0, 0, 1);
   return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
-}
-
-/** The factor by which a bend brightens a ridge and darkens a valley. */
-const reliefShare = 0.35;
-
-/** Multiplies colours by 1 + the share of the vertex's `relief`. */
-function showRelief(material: THREE.MeshStandardMaterial): void {
-  material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader
-      .replace("#include <common>", "attribute float relief;\nvarying float vRelief;\n#include <common>")
-      .replace("#include <begin_vertex>", "vRelief = relief;\n#include <begin_vertex>");
-    shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "varying float vRelief;\n#include <common>")
-      // A ridge on the front is a valley on the back.
-      .replace("#include <color_fragment>", `#include <color_fragment>\ndiffuseColor.rgb *= 1.0 + ${reliefShare.toFixed(2)} * (gl_FrontFacing ? vRelief : -vRelief);`);
-  };
-}
-
-/** The longest side of the box around the positions. */
-function sizeOf(positions: Float32Array): number {
-  const box = new THREE.Box3().setFromArray(positions as unknown as number[]);
-  const { x, y, z } = box.getSize(new THREE.Vector3());
-  return Math.max(x, y, z);
 }
 
 export class SurfaceView {
@@ -84,12 +62,7 @@ export class SurfaceView {
     geometry.setAttribute("color", changing());
     geometry.setAttribute("relief", new THREE.BufferAttribute(new Float32Array(count / 3), 1).setUsage(THREE.DynamicDrawUsage));
     geometry.setIndex(new THREE.BufferAttribute(surface.triangles, 1));
-    const material = new THREE.MeshStandardMaterial({
-      vertexColors: true, side: THREE.DoubleSide, roughness: 0.7, metalness: 0,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-    });
-    showRelief(material);
-    this.mesh = new THREE.Mesh(geometry, material);
+    this.mesh = new THREE.Mesh(geometry, surfaceMaterial());
     this.mesh.name = surface.head.name;
 
     const wires = new THREE.BufferGeometry();
@@ -128,13 +101,7 @@ export class SurfaceView {
       for (let k = 0; k < colours.length; k += 3) this.plain.toArray(colours, k);
     } else {
       const numbers = colour === "displacement" ? this.displacement : this.speed;
-      const ramp = ramps[colour].colours;
-      for (let vertex = 0; vertex < numbers.length; ++vertex) {
-        const shade = peak > 0 ? Math.min(Math.round((255 * numbers[vertex]) / peak), 255) : 0;
-        colours[3 * vertex] = ramp[3 * shade];
-        colours[3 * vertex + 1] = ramp[3 * shade + 1];
-        colours[3 * vertex + 2] = ramp[3 * shade + 2];
-      }
+      paintNumbers(numbers, peak, ramps[colour], colours);
     }
     attribute.needsUpdate = true;
   }
@@ -168,27 +135,10 @@ export class SurfaceView {
     this.lines.material.dispose();
   }
 
-  // A normal is the normalised sum of the area vectors of the triangles around its vertex.
   private turnNormals(p: Float32Array): void {
     const attribute = this.mesh.geometry.getAttribute("normal") as THREE.BufferAttribute;
     const n = attribute.array as Float32Array;
-    n.fill(0);
-    const { triangles } = this.surface;
-    for (let k = 0; k < triangles.length; k += 3) {
-      const a = 3 * triangles[k];
-      const b = 3 * triangles[k + 1];
-      const c = 3 * triangles[k + 2];
-      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-      n[a] += x; n[a + 1] += y; n[a + 2] += z;
-      n[b] += x; n[b + 1] += y; n[b + 2] += z;
-      n[c] += x; n[c + 1] += y; n[c + 2] += z;
-    }
-    for (let k = 0; k < n.length; k += 3) {
-      const length = Math.hypot(n[k], n[k + 1], n[k + 2]) || 1;
-      n[k] /= length; n[k + 1] /= length; n[k + 2] /= length;
-    }
+    turnNormals(p, this.surface.triangles, n);
     attribute.needsUpdate = true;
     const relief = this.mesh.geometry.getAttribute("relief") as THREE.BufferAttribute;
     bends(p, n, this.surface.edges, this.size, relief.array as Float32Array, this.edgeCounts);
