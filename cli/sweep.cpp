@@ -18,6 +18,7 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
   status->add_option("DIR", options.folder, "Folder of a sweep")->required();
   add_sweep_verify(*sweep, options.verify);
   add_sweep_bake(*sweep, options.bake);
+  add_sweep_view(*sweep, options.view);
 }
 
 int run_sweep(const CLI::App& app, const SweepOptions& options) {
@@ -25,6 +26,7 @@ int run_sweep(const CLI::App& app, const SweepOptions& options) {
   if (sweep.got_subcommand("run")) return run_sweep_run(*sweep.get_subcommand("run"), options.run);
   if (sweep.got_subcommand("status")) return run_sweep_status(options.folder);
   if (sweep.got_subcommand("verify")) return run_sweep_verify(options.verify);
+  if (sweep.got_subcommand("view")) return run_sweep_view(options.view);
   return run_sweep_bake(options.bake);
 }
 

@@ -47,18 +47,32 @@ struct SweepBakeOptions {
   BakeOptions bake;
 };
 
+/// Options of `pliant sweep view`.
+struct SweepViewOptions {
+  std::string folder;
+  std::optional<std::string> out = {};  ///< the page
+  std::optional<std::string> png = {};  ///< a picture of the contact sheet
+  std::optional<int> frame = {};        ///< of all pictures; null: that of each take's peak
+  std::string size = "320x240";         ///< of each take in the picture [px]
+  std::string look;                     ///< of the picture, in the syntax of the page's address
+  bool is_quiet = false;
+  ResourceOptions resources;
+};
+
 /// Options of `pliant sweep`.
 struct SweepOptions {
   SweepRunOptions run;
   std::string folder;  ///< of `status`
   SweepVerifyOptions verify;
   SweepBakeOptions bake;
+  SweepViewOptions view;
 };
 
 void add_sweep(CLI::App& app, SweepOptions& options);
 void add_sweep_run(CLI::App& sweep, SweepRunOptions& options);
 void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options);
 void add_sweep_bake(CLI::App& sweep, SweepBakeOptions& options);
+void add_sweep_view(CLI::App& sweep, SweepViewOptions& options);
 
 // Each returns the exit code.
 
@@ -67,6 +81,7 @@ int run_sweep_run(const CLI::App& run, const SweepRunOptions& options);
 int run_sweep_status(const std::string& folder);
 int run_sweep_verify(const SweepVerifyOptions& options);
 int run_sweep_bake(const SweepBakeOptions& options);
+int run_sweep_view(const SweepViewOptions& options);
 
 /// Prints conflicts of the log and the takes that failed on stderr, those of a part: ten of them,
 /// then their number.

@@ -15,7 +15,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -143,24 +142,6 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
   return "file://" + path;
 }
 
-// The order for a picture: a table of frames, each with its number below and one legend for all, or
-// a single frame. The page executes each `number` once, so it does not draw the next picture before
-// it is ordered.
-viewer::PictureOrder order_of(int number, const std::vector<int>& frames, viewer::PictureSize size,
-                              const std::string& look) {
-  constexpr int most_columns = 4;
-  const int count = static_cast<int>(frames.size());
-  const int label = count > 1 ? 28 : 0;
-  const int strip = count > 1 ? 76 : 0;
-  const int columns = std::min(most_columns, count);
-  const int rows = (count + columns - 1) / columns;
-  const nlohmann::json job = {{"number", number}, {"width", size.width}, {"height", size.height},
-                              {"frames", frames}, {"columns", columns},  {"label", label},
-                              {"strip", strip},   {"look", look}};
-  return {job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-          {columns * size.width, rows * (size.height + label) + strip}};
-}
-
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
@@ -193,7 +174,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
 
 // WxH in pixels, at most the size of a canvas.
 Result<viewer::PictureSize> parse_size(const std::string& text) {
-  constexpr int most = 8192;
+  constexpr int most = longest_side;
   const std::size_t cross = text.find('x');
   const auto width = to_integer(text.substr(0, cross));
   const auto height =
@@ -245,9 +226,30 @@ Result<PictureTaker> PictureTaker::start(std::string_view page, std::string pack
   return PictureTaker(std::make_unique<State>(State{*std::move(server), *std::move(folder)}));
 }
 
+// A table of frames, each with its number below and one legend for all, or a single frame.
 void PictureTaker::order(const std::vector<int>& frames, viewer::PictureSize size,
                          const std::string& look) {
-  state_->server.order_picture(order_of(++state_->orders, frames, size, look));
+  constexpr int most_columns = 4;
+  const int count = static_cast<int>(frames.size());
+  const int label = count > 1 ? 28 : 0;
+  const int strip = count > 1 ? 76 : 0;
+  const int columns = std::min(most_columns, count);
+  const int rows = (count + columns - 1) / columns;
+  order({{"width", size.width},
+         {"height", size.height},
+         {"frames", frames},
+         {"columns", columns},
+         {"label", label},
+         {"strip", strip},
+         {"look", look}},
+        {columns * size.width, rows * (size.height + label) + strip});
+}
+
+// The page executes each `number` once, so it does not draw the next picture before it is ordered.
+void PictureTaker::order(viewer::Json job, viewer::PictureSize size) {
+  job["number"] = ++state_->orders;
+  state_->server.order_picture(
+      {job.dump(-1, ' ', false, viewer::Json::error_handler_t::replace), size});
 }
 
 Result<std::string> PictureTaker::take() {

@@ -8,6 +8,7 @@
 
 #include "pliant/core/result.hpp"
 #include "view.hpp"
+#include "viewer/json.hpp"
 #include "viewer/png_check.hpp"
 
 namespace pliant::cli {
@@ -18,6 +19,8 @@ int picture_view(const ViewOptions& options, std::string_view page);
 
 /// Parses WxH, at most the size of a canvas. Errors: InvalidInput, naming --size.
 Result<viewer::PictureSize> parse_size(const std::string& text);
+
+inline constexpr int longest_side = 8192;  ///< of a canvas [px]
 
 /// Checks that there is a browser. Errors: Unwritable if not; `option` is the option that needs
 /// one.
@@ -42,7 +45,8 @@ class ScratchFolder {
 /// A headless browser that draws pictures of a bake, one after the other; ended by the destructor.
 class PictureTaker {
  public:
-  /// `packed`: see `ViewBake`. Errors: Unwritable if there is no browser.
+  /// `packed`: see `ViewBake`, or `SweepBake` for the page of a sweep. Errors: Unwritable if there
+  /// is no browser.
   static Result<PictureTaker> start(std::string_view page, std::string packed);
 
   PictureTaker(PictureTaker&&) noexcept;
@@ -51,6 +55,8 @@ class PictureTaker {
 
   /// Requests a picture of one frame, or a sheet of several; `look` in the syntax of --look.
   void order(const std::vector<int>& frames, viewer::PictureSize size, const std::string& look);
+  /// Requests a picture of that size; `job`: what the page shall draw, an object.
+  void order(viewer::Json job, viewer::PictureSize size);
   /// Waits for the requested picture, a PNG file. Errors: Unwritable if the browser ended or needs
   /// too long; Interrupted.
   Result<std::string> take();

@@ -6,8 +6,8 @@
 
 namespace pliant::viewer {
 
-// The built page, empty in a build without npm; generated, see cli/CMakeLists.txt.
-extern const std::span<const unsigned char> embedded_page;
+// The built pages, empty in a build without npm; generated, see viewer/CMakeLists.txt.
+extern const std::span<const unsigned char> embedded_page, embedded_sweep_page;
 
 namespace {
 
@@ -43,17 +43,20 @@ void put(std::string& page, std::string_view begin, std::string_view end, std::s
   page.replace(from + begin.size(), to - from - begin.size(), text);
 }
 
-}  // namespace
-
-Result<std::string_view> page_template() {
-  if (!embedded_page.empty()) {
-    return std::string_view(reinterpret_cast<const char*>(embedded_page.data()),
-                            embedded_page.size());
+Result<std::string_view> text_of(std::span<const unsigned char> page) {
+  if (!page.empty()) {
+    return std::string_view(reinterpret_cast<const char*>(page.data()), page.size());
   }
   return fail(ErrorCode::Unwritable,
               "this build has no viewer, because npm or its packages were missing; "
               "script/bootstrap && script/build adds it");
 }
+
+}  // namespace
+
+Result<std::string_view> page_template() { return text_of(embedded_page); }
+
+Result<std::string_view> sweep_page_template() { return text_of(embedded_sweep_page); }
 
 std::string policy_of(std::string_view page) {
   const std::size_t from = page.find(policy_begin);

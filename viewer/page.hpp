@@ -7,16 +7,19 @@
 
 namespace pliant::viewer {
 
-/// The page that shows a bake, from cli/viewer. Errors: Unwritable if this build has no page; the
+/// The page that shows a bake, from viewer/page. Errors: Unwritable if this build has no page; the
 /// message says how to get it.
 Result<std::string_view> page_template();
+
+/// The page that shows a sweep. Errors: likewise.
+Result<std::string_view> sweep_page_template();
 
 /// The page's content security policy: it may use its own scripts and styles and connect to its own
 /// server, nothing else.
 std::string policy_of(std::string_view page);
 
-/// A self-contained page: `page` with a title and `packed` (see `ViewBake`) inside. It makes no
-/// requests.
+/// A self-contained page: `page` with a title and `packed` (see `ViewBake`, `SweepBake`) inside. It
+/// makes no requests.
 std::string page_with(std::string_view page, std::string_view title, std::string_view packed);
 
 }  // namespace pliant::viewer

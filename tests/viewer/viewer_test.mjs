@@ -16,6 +16,8 @@ import { fileURLToPath } from "node:url";
 
 import { chromium } from "playwright-core";
 
+import { sweepTests } from "./sweep_tests.mjs";
+
 const [pliant, examples, pictures, ...only] = process.argv.slice(2).map((word, k) => (k < 3 ? path.resolve(word) : word));
 mkdirSync(pictures, { recursive: true });
 const folder = mkdtempSync(path.join(tmpdir(), "pliant-viewer-"));
@@ -1273,6 +1275,8 @@ test("a movie that is interrupted leaves nothing", async () => {
   assert.deepEqual(readdirSync(out), []);
   assert.deepEqual(readdirSync(scratch).filter((name) => name.startsWith("pliant-view-")), []);
 });
+
+sweepTests({ test, run, inFolder, example, withPage, readNpy, near, pictures, pliant, folder });
 
 const failures = [];
 let passed = 0;

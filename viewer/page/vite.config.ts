@@ -1,5 +1,5 @@
-// Builds the page as one file with its scripts and styles inside, so that it opens from the file
-// system. Its policy allows only these.
+// Builds a page as one file with its scripts and styles inside, so that it opens from the file
+// system. Its policy allows only these. `--mode sweep` builds sweep.html, otherwise index.html.
 
 import { createHash } from "node:crypto";
 
@@ -26,8 +26,8 @@ function inlined(): Plugin {
     name: "inlined",
     enforce: "post",
     generateBundle(_, bundle) {
-      const page = Object.values(bundle).find((each) => each.fileName === "index.html");
-      if (page?.type !== "asset") throw new Error("no index.html among what was built");
+      const page = Object.values(bundle).find((each) => each.fileName.endsWith(".html"));
+      if (page?.type !== "asset") throw new Error("no page among what was built");
       let html = String(page.source);
       const scripts: string[] = [];
       const styles: string[] = [];
@@ -56,8 +56,11 @@ function inlined(): Plugin {
   };
 }
 
-export default defineConfig({
+export default defineConfig(({ mode }) => ({
   base: "./",
   plugins: [inlined()],
-  build: { target: "es2022", modulePreload: false, assetsInlineLimit: 0, reportCompressedSize: false },
-});
+  build: {
+    target: "es2022", modulePreload: false, assetsInlineLimit: 0, reportCompressedSize: false, emptyOutDir: false,
+    rollupOptions: { input: mode === "sweep" ? "sweep.html" : "index.html" },
+  },
+}));

@@ -1,0 +1,183 @@
+"""`pliant sweep view`: what it writes, what it refuses, and what an interrupt leaves.
+
+tests/viewer opens the page in a browser. A build without npm has no page; then only its message is
+tested.
+"""
+
+import glob
+import os
+import re
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from command import PLIANT, SANITIZED, Command, main
+from view_server import HAS_PAGE
+from view_test import read_page
+
+SCENE = """<scene version="1" start="1" end="{end}">
+  <surface name="sheet"><grid columns="{columns}" rows="9" width="10" depth="10"/></surface>
+  <point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2.5" magnitude="900"/>
+</scene>
+"""
+
+
+class SweepViews(Command):
+    def make(self, *vary, name="s", columns=11, end=8, options=(), code=0):
+        scene = self.write("scene.xml", SCENE.format(columns=columns, end=end))
+        varied = [word for each in vary for word in ("--vary", each)]
+        self.run_pliant("sweep", "run", scene, "-o", self.path(name), *varied, "--quiet", *options, code=code)
+
+    def view(self, *options, name="s", code=0, **more):
+        return self.run_pliant("sweep", "view", self.path(name), *options, code=code, **more)
+
+    def refused(self, *options, name="s"):
+        result = self.view(*options, name=name, code=2)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        return result.stderr
+
+
+@unittest.skipIf(HAS_PAGE, "this build has a page")
+class NoPages(SweepViews):
+    def test_without_npm_there_is_no_page(self):
+        self.make("sheet.density=1,2")
+        self.assertIn("this build has no viewer", self.view("-o", self.path("s.html"), code=1).stderr)
+
+
+@unittest.skipUnless(HAS_PAGE, "this build has no page")
+class SweepPages(SweepViews):
+    def test_the_page_has_the_takes_that_are_done(self):
+        self.make("sheet.c=-5,0,2", "poke.magnitude*=1,-1", code=1)
+        summary = self.view("-o", self.path("s.html")).stdout
+        self.assertRegex(summary, r"/s\.html: 4 of 6 takes shown, \d+ kB, \d+\.\d\d s\n$")
+        title, head, _ = read_page(self.path("s.html"))
+        self.assertEqual(title, "s – pliant")
+        self.assertEqual((head["takes"], head["done"], head["failed"]), (6, 4, 2))
+        self.assertEqual(head["paths"], ["sheet.c", "poke.magnitude*"])
+        self.assertEqual(head["axes"], [{"count": 3, "paths": [0]}, {"count": 2, "paths": [1]}])
+        self.assertEqual([shape["take"] for shape in head["shapes"]["takes"]], [2, 3, 4, 5])
+        rows = self.run_pliant("sweep", "status", self.path("s"), code=1) and self.read("s/takes.csv").decode()
+        for shape, row in zip(head["shapes"]["takes"], rows.splitlines()[3:]):
+            peak, frame = row.split(",")[4:6]
+            self.assertEqual((shape["displaced"], shape["frame"]), (float(peak), int(frame)))
+
+    def test_a_page_is_the_same_whatever_made_it(self):
+        self.make("sheet.density=1:3:5", "sheet.columns=9,11")
+        pages = []
+        for threads in ("1", "3"):
+            self.view("-o", self.path("s.html"), "--threads", threads, "--quiet")
+            pages.append(self.read("s.html"))
+        self.assertEqual(pages[0], pages[1])
+
+    def test_all_pictures_are_at_one_frame(self):
+        self.make("sheet.density=1:3:5", options=("--frames", "2:7"))
+        self.view("-o", self.path("s.html"), "--frame", "7")
+        _, head, _ = read_page(self.path("s.html"))
+        self.assertEqual({shape["frame"] for shape in head["shapes"]["takes"]}, {7})
+        for frame in ("1", "8"):
+            message = self.refused("-o", self.path("none.html"), "--frame", frame)
+            self.assertIn(f"--frame {frame}: must be from 2 to 7", message)
+        self.assertIn("--frame", self.view("-o", self.path("none.html"), "--frame", "x", code=2).stderr)
+        self.assertFalse(os.path.exists(self.path("none.html")))
+
+    def test_takes_are_evenly_spread(self):
+        self.make("sheet.density=1..250", columns=5, end=2)
+        self.assertIn("100 of 250 takes", self.view("-o", self.path("s.html")).stdout)
+        _, head, _ = read_page(self.path("s.html"))
+        shown = [shape["take"] for shape in head["shapes"]["takes"]]
+        self.assertEqual((len(shown), shown[0], shown[-1]), (100, 0, 249))
+        self.assertLessEqual({after - before for before, after in zip(shown, shown[1:])}, {2, 3})
+
+    def test_a_sweep_without_a_take_that_is_done(self):
+        self.make("sheet.density=1,2", options=("--make-only",))
+        self.assertIn("0 of 2 takes", self.view("-o", self.path("s.html")).stdout)
+        self.assertIn("--frame 9: must be from 1 to 8", self.refused("-o", self.path("s.html"), "--frame", "9"))
+
+    def test_what_is_no_sweep_is_refused(self):
+        os.mkdir(self.path("empty"))
+        for name in ("empty", "missing"):
+            self.assertIn("sweep.json", self.refused("-o", self.path("s.html"), name=name))
+        self.assertFalse(os.path.exists(self.path("s.html")))
+
+    def test_outputs_that_are_refused(self):
+        self.make("sheet.density=1,2")
+        kept = {name: self.read(name) for name in ("s/sweep.json", "s/takes.csv", "scene.xml")}
+        self.assertIn("-o F.html or --png F is missing", self.refused())
+        for option in ("-o", "--png"):
+            for name, reason in (("s/sweep.json", "it is the sweep's"), ("s/takes.csv", "it is the sweep's"),
+                                 ("s/log/a.html", "its folder is the sweep's"), ("scene.xml", "it is the scene")):
+                self.assertIn(reason, self.refused(option, self.path(name)))
+        self.assertIn("it is that of -o", self.refused("-o", self.path("a"), "--png", self.path("a")))
+        self.assertIn("does not exist", self.view("-o", self.path("no/s.html"), code=1).stderr)
+        self.assertIn("--size", self.refused("--png", self.path("a.png"), "--size", "8x8"))
+        self.assertIn("the most is", self.refused("--png", self.path("a.png"), "--size", "8000x8000"))
+        self.view("-o", self.path("a.html"), "--size", "100x100", code=2)
+        self.assertEqual(kept, {name: self.read(name) for name in kept})
+
+    def test_a_mesh_that_was_changed_since_costs_its_pictures_only(self):
+        self.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 0 1\nv 1 0 1\nv 2 0 1\nv 0 0 2\nv 1 0 2\nv 2 0 2\n"
+                               "vt 0 0\nvt .5 0\nvt 1 0\nvt 0 .5\nvt .5 .5\nvt 1 .5\nvt 0 1\nvt .5 1\nvt 1 1\n"
+                               "f 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\nf 4/4 5/5 8/8 7/7\nf 5/5 6/6 9/9 8/8\n")
+        scene = self.write("mesh.xml", SCENE.format(columns=5, end=3).replace(
+            '<grid columns="5" rows="9" width="10" depth="10"/>', '<mesh file="flat.obj"/>'))
+        self.run_pliant("sweep", "run", scene, "-o", self.path("s"), "--vary", "sheet.density=1,2", "--quiet")
+        with open(self.path("flat.obj"), "a", encoding="utf-8") as file:
+            file.write("# changed\n")
+        result = self.view("-o", self.path("s.html"), code=1)
+        self.assertIn("take 0 (sheet.density=1): ", result.stderr)
+        self.assertIn("flat.obj", result.stderr)
+        self.assertIn("0 of 2 takes", result.stdout)
+        _, head, _ = read_page(self.path("s.html"))
+        self.assertEqual([failure["take"] for failure in head["failures"]], [0, 1])
+        self.assertEqual(head["done"], 2)
+        self.assertIn("it is a mesh of the scene", self.refused("-o", self.path("flat.obj")))
+
+    def test_an_interrupt_ends_within_a_second_and_leaves_nothing(self):
+        self.make("sheet.density=1..100", columns=5, end=2)
+        # Far longer than the takes of the log: as if they had been run on a farm.
+        with open(self.path("s/sweep.json"), encoding="utf-8") as file:
+            plan = file.read()
+        small = 'columns=\\"5\\" rows=\\"9\\"'
+        self.assertIn(small, plan)
+        with open(self.path("s/sweep.json"), "w", encoding="utf-8") as file:
+            file.write(plan.replace(small, 'columns=\\"801\\" rows=\\"801\\"'))
+        before = set(glob.glob(self.path("**"), recursive=True))
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with subprocess.Popen([PLIANT, "sweep", "view", self.path("s"), "-o", self.path("s.html"), "--frame", "2"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                time.sleep(3 if SANITIZED else 0.7)
+                process.send_signal(number)
+                begin = time.monotonic()
+                _, errors = process.communicate(timeout=300)
+            self.assertEqual(process.returncode, 1, errors)
+            self.assertIn("interrupted; nothing was written", errors)
+            if not SANITIZED:
+                self.assertLess(time.monotonic() - begin, 3)  # a second, on a machine that others use too
+            self.assertEqual(set(glob.glob(self.path("**"), recursive=True)), before)
+
+    def test_a_full_disk_leaves_the_last_page(self):
+        self.make("sheet.density=1,2")
+        self.write("s.html", "the last page")
+        result = self.view("-o", self.path("s.html"), code=1,
+                           preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)))
+        self.assertIn("cannot write", result.stderr)
+        self.assertEqual(self.read("s.html"), b"the last page")
+        self.assertFalse(glob.glob(self.path(".*")))
+
+    def test_names_are_data(self):
+        folder = "<img src=x onerror=alert(1)>"
+        self.make("sheet.density=1,2", name=folder)
+        self.view("-o", self.path("s.html"), name=folder)
+        page = self.read("s.html").decode()
+        self.assertNotIn("<img", page)
+        self.assertEqual(re.search("<title>(.*?)</title>", page).group(1), "&lt;img src=x onerror=alert(1)&gt; – pliant")
+        _, head, _ = read_page(self.path("s.html"))
+        self.assertEqual(head["folder"], self.path(folder))
+        self.assertEqual(head["paths"], ["sheet.density"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,214 @@
+// The page of a sweep: pictures of takes, plots of measures, the table; and what connects them.
+
+import { bytesOf, inflate } from "../bake";
+import { element } from "../element";
+import { showLegend, titles, type Legend } from "../legend";
+import { fetchPacked } from "../live";
+import { defined, readLook, type Look } from "../look";
+import { showMessages } from "../messages";
+import { numberText } from "../curve_plot";
+import { answerOrders, isPicture } from "../orders";
+import { displacementRamp } from "../ramp";
+import "../style.css";
+import { ThemeChoice } from "../theme";
+import { ContactSheet, type TileSize } from "./contact_sheet";
+import { Details } from "./details";
+import { drawSheet, type SheetJob } from "./picture";
+import { PlotGrid, type Kind } from "./plot_grid";
+import { Pointing } from "./pointing";
+import type { ScaleChoice } from "./scales";
+import { Studio } from "./studio";
+import "./style.css";
+import { Sweep } from "./sweep";
+import { TakeTable } from "./table";
+
+const themes = new ThemeChoice();
+const counted = (count: number, one: string) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
+
+function legendOf(studio: Studio): Legend {
+  return {
+    scale: { title: titles.displacement, css: displacementRamp.css(), at: (share) => displacementRamp.cssAt(share), high: numberText(studio.peak) },
+    inks: [],
+  };
+}
+
+function summaryOf({ head }: Sweep): string {
+  const missing = head.takes - head.done - head.failed;
+  return [counted(head.takes, "take"), `${head.done.toLocaleString("en")} done`, head.failed > 0 ? `${head.failed.toLocaleString("en")} failed` : "", missing > 0 ? `${missing.toLocaleString("en")} missing` : ""]
+    .filter(Boolean)
+    .join(" · ");
+}
+
+/** What the pictures do not show. */
+function sheetNote(sweep: Sweep, studio: Studio): string {
+  const notes: string[] = [];
+  const { head, shapes } = sweep;
+  if (shapes.length === 0) notes.push("No take is done that could be shown.");
+  else if (shapes.length < head.done) notes.push(`${counted(shapes.length, "take")} of the ${head.done.toLocaleString("en")} that are done, evenly spread.`);
+  const coarse = shapes.filter(({ shown, vertices }) => shown < vertices);
+  if (coarse.length > 0) {
+    const [one] = coarse;
+    notes.push(`${coarse.length === shapes.length ? "Meshes are" : `${coarse.length} meshes are`} drawn coarser than they are, take ${sweep.takes[one.row]} with ${one.shown.toLocaleString("en")} of ${one.vertices.toLocaleString("en")} vertices.`);
+  }
+  if (studio.outsiders > 0) notes.push(`${counted(studio.outsiders, "take")} so much larger than the rest ${studio.outsiders === 1 ? "is" : "are"} not fitted into the pictures.`);
+  return notes.join(" ");
+}
+
+function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet } {
+  const name = sweep.head.folder.replace(/\/+$/, "").split("/").pop() || sweep.head.folder;
+  document.title = `${name} – pliant`;
+  element("sweep-name").textContent = name;
+  element("summary").textContent = summaryOf(sweep);
+  const studio = new Studio(sweep);
+  const pointing = new Pointing();
+  const details = new Details(element("details"), sweep, studio, pointing, themes);
+  const sheet = new ContactSheet(element("tiles"), sweep, studio, pointing, themes);
+  const table = new TakeTable(element("table"), sweep, pointing);
+  const plots = new PlotGrid(element("plots"), element("plots-note"), sweep, pointing, themes);
+  const note = element<HTMLElement>("sheet-note");
+  note.textContent = sheetNote(sweep, studio);
+  note.hidden = note.textContent === "";
+  showMessages(element("messages"), sweep.head.failures.map(({ take, text }) => ({ kind: "error", line: 0, text: `take ${take} has no picture: ${text}` })));
+  element("table-note").textContent = sweep.hasAllTakes ? "" : `${sweep.rowCount.toLocaleString("en")} of ${counted(sweep.head.takes, "take")}, evenly spread; takes.csv has all.`;
+
+  const redrawTakes = () => {
+    showLegend(element("legend"), sweep.shapes.length > 0 ? legendOf(studio) : null);
+    sheet.redraw();
+    details.draw();
+  };
+  const peak = element<HTMLInputElement>("peak");
+  const setPeak = (value: number | null) => {
+    studio.setPeak(value);
+    peak.value = value === null ? "" : String(value);
+    peak.placeholder = numberText(studio.peak);
+    redrawTakes();
+  };
+  peak.addEventListener("change", () => setPeak(peak.valueAsNumber > 0 ? peak.valueAsNumber : null));
+  const size = (value: string) => (sheet.size = value as TileSize);
+  for (const radio of document.querySelectorAll<HTMLInputElement>('input[name="size"]')) radio.addEventListener("change", () => size(radio.value));
+  size("medium");
+
+  // Order of the table and of the pictures
+  const order = element<HTMLSelectElement>("order");
+  table.columns.forEach(({ title }, k) => {
+    for (const [value, text] of [[`${k}`, title], ...(k > 0 ? [[`-${k}`, `${title}, falling`]] : [])]) order.add(new Option(text, value));
+  });
+  order.addEventListener("change", () => table.sort(Math.abs(Number(order.value)), order.value.startsWith("-")));
+  table.onSort(() => {
+    order.value = `${table.isDescending ? "-" : ""}${table.sortedBy}`;
+    if (order.selectedIndex < 0) order.value = "0";
+    sheet.order(table.order);
+  });
+
+  // Plots
+  const kinds = [...document.querySelectorAll<HTMLInputElement>('input[name="kind"]')];
+  const fields = ["across", "up"] as const;
+  const build = () => {
+    plots.kind = (kinds.find((radio) => radio.checked)?.value ?? "lines") as Kind;
+    for (const field of fields) element<HTMLElement>(`${field}-field`).hidden = plots.kind !== "map";
+    for (const id of ["value-scale", "measure-scale"]) element(id).parentElement!.hidden = plots.kind === "map";
+    plots.build();
+  };
+  element<HTMLElement>("kind").hidden = !plots.hasMaps;
+  kinds.forEach((radio) => radio.addEventListener("change", build));
+  for (const field of fields) {
+    const select = element<HTMLSelectElement>(field);
+    for (const axis of plots.mapAxes) select.add(new Option(sweep.paths[sweep.head.axes[axis].paths[0]].title, String(axis)));
+    select.value = String(plots[field]);
+    select.addEventListener("change", () => {
+      const [chosen, other] = [Number(select.value), field === "up" ? "across" : "up"] as const;
+      if (plots[other] === chosen) {
+        plots[other] = plots[field];
+        element<HTMLSelectElement>(other).value = String(plots[other]);
+      }
+      plots[field] = chosen;
+      build();
+    });
+  }
+  for (const [id, set] of [["value-scale", (to: ScaleChoice) => (plots.valueScale = to)], ["measure-scale", (to: ScaleChoice) => (plots.measureScale = to)]] as const) {
+    const select = element<HTMLSelectElement>(id);
+    select.addEventListener("change", () => {
+      set(select.value as ScaleChoice);
+      build();
+    });
+  }
+  build();
+
+  // Buttons and keys
+  const frameAll = () => {
+    studio.look();
+    redrawTakes();
+  };
+  const help = element<HTMLDialogElement>("help");
+  element("frame-all").addEventListener("click", frameAll);
+  element("theme").addEventListener("click", () => themes.toggle());
+  element("help-toggle").addEventListener("click", () => help.showModal());
+  for (const link of document.querySelectorAll<HTMLElement>("nav a")) {
+    link.addEventListener("click", (event) => {
+      event.preventDefault(); // the address has the look
+      element(link.dataset.part!).scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth" });
+    });
+  }
+  const step = (by: number) => pointing.keep(table.beside(pointing.row, by), "keys");
+  const shortcuts: Record<string, () => void> = {
+    ArrowLeft: () => step(-1),
+    ArrowRight: () => step(1),
+    Escape: () => pointing.keep(null, "keys"),
+    c: () => void details.copy(),
+    f: frameAll,
+    t: () => themes.toggle(),
+    "?": () => help.showModal(),
+  };
+  document.addEventListener("keydown", (event) => {
+    const target = event.target as HTMLElement;
+    if (event.ctrlKey || event.metaKey || event.altKey || help.open || target.matches("input, select")) return;
+    const shortcut = shortcuts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!shortcut) return;
+    event.preventDefault();
+    shortcut();
+  });
+
+  const apply = (look: Look) => {
+    if (look.theme) themes.choose(look.theme);
+    if (look.turn !== undefined || look.tilt !== undefined) studio.look(look.turn, look.tilt);
+    setPeak(look.peak !== undefined && look.peak > 0 ? look.peak : null);
+  };
+  const take = Number(new URLSearchParams(location.hash.slice(1)).get("take") ?? NaN);
+  const row = sweep.row(take);
+  if (row !== undefined) pointing.keep(row, "address");
+  // For tests, and for inspecting a page from the console.
+  Object.assign(window, { pliant: { sweep, studio, pointing, table, plots, themes } });
+  return { apply, sheet };
+}
+
+/** `pliant sweep view --png` opens the page only for this. */
+async function sendPictures(): Promise<void> {
+  const sweep = new Sweep(await inflate(await fetchPacked()));
+  const studio = new Studio(sweep);
+  await answerOrders<SheetJob>((order) => {
+    const look = { theme: "light" as const, ...defined(readLook(order.look)) };
+    themes.choose(look.theme);
+    studio.look(look.turn, look.tilt);
+    if (look.peak !== undefined && look.peak > 0) studio.setPeak(look.peak);
+    return drawSheet(sweep, studio, legendOf(studio), themes.palette, order);
+  });
+}
+
+async function begin(): Promise<void> {
+  if (isPicture) return sendPictures();
+  const text = element<HTMLScriptElement>("bake").textContent ?? "";
+  const { apply, sheet } = load(new Sweep(await inflate(bytesOf(text))));
+  element("bake").remove();
+  apply(readLook(location.hash));
+  addEventListener("hashchange", () => apply(readLook(location.hash)));
+  await sheet.drawn(false);
+  document.documentElement.dataset.ready = "true";
+  performance.mark("ready");
+  await sheet.drawn(true);
+  document.documentElement.dataset.whole = "true";
+  performance.mark("whole");
+}
+
+begin().catch((error: Error) => {
+  showMessages(element("messages"), [{ kind: "error", line: 0, text: `This page cannot be shown: ${error.message}` }]);
+});
