@@ -1,12 +1,9 @@
 #include "ffmpeg.hpp"
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -14,10 +11,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "child.hpp"
 #include "interrupt.hpp"
 
 namespace pliant::cli {
@@ -31,67 +28,30 @@ constexpr auto poll_pause = 20ms;
 tl::unexpected<Error> missing(const std::string& reason) {
   return fail(
       ErrorCode::Unwritable,
-      fmt::format(
-          "--movie: cannot start ffmpeg, which writes the movie (Debian package ffmpeg): {}",
-          reason));
-}
-
-// Starts it in its own process group, so that Ctrl-C reaches only us.
-int spawn(std::vector<std::string> words, int input, const std::string& log, pid_t& id) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0600);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGPIPE);  // we ignore it, see `own_standard_streams`
-  posix_spawnattr_setsigdefault(&attributes, &signals);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-  const int failed =
-      posix_spawnp(&id, arguments.front(), &files, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  posix_spawnattr_destroy(&attributes);
-  return failed;
+      fmt::format("--movie needs ffmpeg to write the movie (Debian package ffmpeg): {}", reason));
 }
 
 }  // namespace
 
-bool is_on_path(std::string_view name) {
-  const char* const path = std::getenv("PATH");
-  std::string_view folders = path == nullptr ? "" : path;
-  while (!folders.empty()) {
-    const std::size_t end = std::min(folders.find(':'), folders.size());
-    const auto file = std::filesystem::path(folders.substr(0, end)) / name;
-    std::error_code ignored;
-    if (access(file.c_str(), X_OK) == 0 && !std::filesystem::is_directory(file, ignored)) {
-      return true;
-    }
-    folders.remove_prefix(std::min(end + 1, folders.size()));
-  }
-  return false;
-}
-
 Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const std::string& log) {
   std::vector<std::string> all = {program, "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
   all.insert(all.end(), words.begin(), words.end());
+  const int messages = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return missing(std::strerror(errno));
-  pid_t id = 0;
-  const int failed = spawn(std::move(all), ends[0], log, id);
+  if (messages < 0 || pipe2(ends, O_CLOEXEC) != 0) {
+    const int error = errno;
+    if (messages >= 0) close(messages);
+    return missing(std::strerror(error));
+  }
+  const auto id = start_child(std::move(all), {.input = ends[0], .errors = messages});
+  close(messages);
   close(ends[0]);
-  if (failed != 0) {
+  if (!id) {
     close(ends[1]);
-    return missing(std::strerror(failed));
+    return missing(id.error().message);
   }
   fcntl(ends[1], F_SETFL, fcntl(ends[1], F_GETFL) | O_NONBLOCK);
-  return Ffmpeg(id, ends[1], log);
+  return Ffmpeg(*id, ends[1], log);
 }
 
 Ffmpeg::Ffmpeg(Ffmpeg&& other) noexcept

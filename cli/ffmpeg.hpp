@@ -10,11 +10,7 @@
 
 namespace pliant::cli {
 
-/// Whether a program of that name is on the PATH.
-bool is_on_path(std::string_view program);
-
-/// A running ffmpeg, which reads bytes from its standard input; killed by the destructor. It is
-/// started with a list of arguments, never through a shell.
+/// A running ffmpeg, which reads bytes from its standard input; killed by the destructor.
 class Ffmpeg {
  public:
   /// `words` are arguments after those of all runs: no questions, errors only. Its messages are

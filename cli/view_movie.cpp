@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "ffmpeg.hpp"
+#include "child.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "movie_writer.hpp"

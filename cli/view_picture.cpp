@@ -12,14 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "ffmpeg.hpp"
+#include "child.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
@@ -61,7 +59,7 @@ class Browser {
     words.push_back(url);
     for (const char* program : browsers) {
       words.front() = program;
-      if (const auto id = spawn(words)) return Browser(*id);
+      if (const auto id = start_child(words, {})) return Browser(*id);
     }
     return no_browser("--png");
   }
@@ -76,27 +74,6 @@ class Browser {
 
  private:
   explicit Browser(pid_t id) : id_(id) {}
-
-  // Starts it in its own process group, with its child processes; without output.
-  static std::optional<pid_t> spawn(std::vector<std::string>& words) {
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    pid_t id = 0;
-    const int failed =
-        posix_spawnp(&id, arguments.front(), &files, &attributes, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    posix_spawnattr_destroy(&attributes);
-    if (failed != 0) return std::nullopt;
-    return id;
-  }
 
   void close() {
     if (id_ == 0) return;

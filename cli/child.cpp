@@ -1,0 +1,203 @@
+#include "child.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace pliant::cli {
+namespace {
+
+constexpr std::size_t most_kept = std::size_t{1} << 16U;  // of a line, and of messages [bytes]
+constexpr int tick = 100;                                 // [ms]
+
+tl::unexpected<Error> cannot_start(const std::string& program, int error) {
+  return fail(ErrorCode::Unwritable,
+              fmt::format("cannot start {}: {}", program, std::strerror(error)));
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::vector<char*> environment_without(std::string_view dropped) {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (dropped.empty() || !std::string_view(*variable).starts_with(dropped))
+      variables.push_back(*variable);
+  variables.push_back(nullptr);
+  return variables;
+}
+
+// One end of a pipe.
+class PipeEnd {
+ public:
+  PipeEnd() = default;
+  PipeEnd(const PipeEnd&) = delete;
+  PipeEnd& operator=(const PipeEnd&) = delete;
+  ~PipeEnd() { close(); }
+
+  void hold(int descriptor) { descriptor_ = descriptor; }
+  void close() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = -1;
+  }
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_ = -1;
+};
+
+struct Pipe {
+  PipeEnd reading, writing;
+
+  bool open() {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return false;
+    reading.hold(ends[0]);
+    writing.hold(ends[1]);
+    return true;
+  }
+};
+
+// Cuts bytes into lines.
+class Lines {
+ public:
+  explicit Lines(const std::function<void(std::string_view)>& take) : take_(take) {}
+
+  void add(std::string_view bytes) {
+    if (!take_) return;
+    for (std::size_t end; (end = bytes.find('\n')) != std::string_view::npos;
+         bytes.remove_prefix(end + 1)) {
+      keep(bytes.substr(0, end));
+      take_(line_);
+      line_.clear();
+    }
+    keep(bytes);
+  }
+
+  void finish() {
+    if (take_ && !line_.empty()) take_(line_);
+  }
+
+ private:
+  void keep(std::string_view bytes) { line_ += bytes.substr(0, most_kept - line_.size()); }
+
+  const std::function<void(std::string_view)>& take_;
+  std::string line_;
+};
+
+int code_of(pid_t id) {
+  int status = 0;
+  while (waitpid(id, &status, 0) < 0) {
+    if (errno != EINTR) return -1;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// Reads what is there. False at its end.
+bool read_some(PipeEnd& end, const std::function<void(std::string_view)>& take) {
+  char bytes[1 << 14];
+  const ssize_t count = read(end.get(), bytes, sizeof bytes);
+  if (count > 0) take({bytes, static_cast<std::size_t>(count)});
+  if (count > 0 || (count < 0 && errno == EINTR)) return true;
+  end.close();
+  return false;
+}
+
+}  // namespace
+
+bool is_on_path(std::string_view name) {
+  const char* const path = std::getenv("PATH");
+  std::string_view folders = path == nullptr ? "" : path;
+  while (!folders.empty()) {
+    const std::size_t end = std::min(folders.find(':'), folders.size());
+    const auto file = std::filesystem::path(folders.substr(0, end)) / name;
+    std::error_code ignored;
+    if (access(file.c_str(), X_OK) == 0 && !std::filesystem::is_directory(file, ignored)) {
+      return true;
+    }
+    folders.remove_prefix(std::min(end + 1, folders.size()));
+  }
+  return false;
+}
+
+Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
+                          std::string_view dropped) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  const auto connect = [&](int ours, int its, int access) {
+    if (ours < 0) {
+      posix_spawn_file_actions_addopen(&files, its, "/dev/null", access, 0);
+    } else {
+      posix_spawn_file_actions_adddup2(&files, ours, its);
+    }
+  };
+  connect(streams.input, STDIN_FILENO, O_RDONLY);
+  connect(streams.output, STDOUT_FILENO, O_WRONLY);
+  connect(streams.errors, STDERR_FILENO, O_WRONLY);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  sigfillset(&signals);  // we ignore some, see interrupt.hpp
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  std::vector<char*> arguments = pointers_to(words);
+  std::vector<char*> variables = environment_without(dropped);
+  pid_t id = 0;
+  const int failed =
+      posix_spawnp(&id, arguments.front(), &files, &attributes, arguments.data(), variables.data());
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (failed != 0) return cannot_start(words.front(), failed);
+  return id;
+}
+
+Result<ProgramEnd> run_program(const std::vector<std::string>& words, const ProgramRun& run) {
+  Pipe output, errors;
+  if (!output.open() || (!run.passes_errors && !errors.open()))
+    return cannot_start(words.front(), errno);
+  const int its_errors = run.passes_errors ? STDERR_FILENO : errors.writing.get();
+  const auto id =
+      start_child(words, {.output = output.writing.get(), .errors = its_errors}, run.dropped);
+  if (!id) return fail(id.error());
+  output.writing.close();  // otherwise the pipes would never end
+  errors.writing.close();
+  ProgramEnd end;
+  Lines lines(run.take_line);
+  const auto take_output = [&](std::string_view bytes) { lines.add(bytes); };
+  const auto take_errors = [&](std::string_view bytes) {
+    end.errors += bytes.substr(0, most_kept - end.errors.size());
+  };
+  while (output.reading.get() >= 0 || errors.reading.get() >= 0) {
+    if (run.should_stop && run.should_stop()) {
+      kill(-*id, SIGKILL);
+      code_of(*id);
+      return fail(ErrorCode::Interrupted, "interrupted");
+    }
+    // poll passes over descriptors that are closed.
+    pollfd ready[] = {{output.reading.get(), POLLIN, 0}, {errors.reading.get(), POLLIN, 0}};
+    if (poll(ready, 2, tick) <= 0) continue;
+    if (ready[0].revents != 0) read_some(output.reading, take_output);
+    if (ready[1].revents != 0) read_some(errors.reading, take_errors);
+  }
+  lines.finish();
+  end.code = code_of(*id);
+  return end;
+}
+
+}  // namespace pliant::cli

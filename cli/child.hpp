@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <sys/types.h>
+
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+
+namespace pliant::cli {
+
+/// Whether a program of that name is on the PATH.
+bool is_on_path(std::string_view program);
+
+/// The standard streams of a program that is started: open descriptors, or /dev/null.
+struct ChildStreams {
+  int input = -1;  ///< -1: /dev/null
+  int output = -1;
+  int errors = -1;
+};
+
+/// Starts a program of the PATH by a list of arguments, never through a shell, in its own process
+/// group, so that Ctrl-C reaches only us. It ignores no signal. It lacks variables whose name
+/// begins with `dropped`, if that is not empty. Errors: Unwritable, with the reason.
+Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
+                          std::string_view dropped = {});
+
+/// How a program is run to its end.
+struct ProgramRun {
+  std::string_view dropped = {};  ///< as in `start_child`
+  /// Called with each line of its output, without the line end; of one that is longer than 64 KiB,
+  /// only with so much.
+  std::function<void(std::string_view)> take_line = {};
+  bool passes_errors = false;    ///< its messages go to our stderr as they are
+  StopRequest should_stop = {};  ///< asked ten times a second; true: it is killed
+};
+
+/// How a program ended.
+struct ProgramEnd {
+  int code = 0;             ///< its exit code; -1: a signal ended it
+  std::string errors = {};  ///< what it wrote to stderr, unless passed on: the first 64 KiB
+};
+
+/// Runs a program to its end. Errors: those of `start_child`; Interrupted.
+Result<ProgramEnd> run_program(const std::vector<std::string>& words, const ProgramRun& run = {});
+
+}  // namespace pliant::cli
