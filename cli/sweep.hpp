@@ -9,6 +9,7 @@
 #include "pliant/sweep/folder.hpp"
 #include "resources.hpp"
 #include "scene_input.hpp"
+#include "sweep_slurm.hpp"
 
 namespace pliant::cli {
 
@@ -29,6 +30,7 @@ struct SweepRunOptions {
   bool is_dry = false;
   bool retries = false;
   bool is_quiet = false;
+  SlurmOptions slurm = {};
   ResourceOptions resources;
 };
 
@@ -82,6 +84,10 @@ int run_sweep_status(const std::string& folder);
 int run_sweep_verify(const SweepVerifyOptions& options);
 int run_sweep_bake(const SweepBakeOptions& options);
 int run_sweep_view(const SweepViewOptions& options);
+
+/// Writes the table of a sweep, counts its takes on stdout unless it is quiet, and names failures
+/// on stderr. Returns the exit code: 0 if all takes are done.
+int tell_status(const SweepFolder& folder, bool is_quiet = false);
 
 /// Prints conflicts of the log and the takes that failed on stderr, those of a part: ten of them,
 /// then their number.

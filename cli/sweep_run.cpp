@@ -31,7 +31,7 @@ constexpr std::string_view making_options[] = {"--out",   "--set",     "--vary",
                                                "--write", "--dry-run", "--make-only"};
 
 // The options that belong to running its takes.
-constexpr std::string_view running_options[] = {"--part", "--retry"};
+constexpr std::string_view running_options[] = {"--part", "--retry", "--engine"};
 
 tl::unexpected<Error> wrong_usage(std::string message) {
   return fail(ErrorCode::InvalidInput, std::move(message));
@@ -194,6 +194,24 @@ Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& optio
   return SweepFolder::make(*options.out, *request, &was_interrupted);
 }
 
+// What is wrong with a submission, before a sweep is made for it.
+Result<void> check_engine(const CLI::App& run, const SweepRunOptions& options) {
+  const std::string& folder = options.out ? *options.out : options.what.front();
+  if (auto ready = check_slurm(run, options.slurm, folder); !ready) return ready;
+  if (!options.slurm.parts || !options.out) return {};
+  const auto request = request_of(options);
+  if (!request) return fail(request.error());
+  const auto sweep = SweepFolder::plan(*request, &was_interrupted);
+  if (!sweep) return fail(sweep.error());
+  return check_slurm_parts(options.slurm, sweep->takes().count());
+}
+
+int submit_takes(const SweepFolder& folder, const SweepRunOptions& options) {
+  const auto fits = check_slurm_parts(options.slurm, folder.sweep().takes().count());
+  if (!fits) return report(fits.error());
+  return run_on_slurm(folder, options.slurm, options.resources, options.retries, options.is_quiet);
+}
+
 }  // namespace
 
 void add_sweep_run(CLI::App& sweep, SweepRunOptions& options) {
@@ -225,6 +243,7 @@ void add_sweep_run(CLI::App& sweep, SweepRunOptions& options) {
   run->add_option("--part", options.part,
                   "Run only takes t with t mod P = K, 0 <= K < P: one job of a batch engine")
       ->type_name("K/P");
+  add_slurm(*run, options.slurm);
   run->add_flag("--make-only", options.makes_only, "Make the sweep, and run no take");
   run->add_flag("--dry-run", options.is_dry, "Print the takes as a table; make and run nothing");
   run->add_flag("--retry", options.retries, "Run takes that failed again");
@@ -247,8 +266,10 @@ int run_sweep_run(const CLI::App& run, const SweepRunOptions& options) {
     const auto request = request_of(options);
     return request ? print_plan(*request) : report(request.error());
   }
+  if (const auto ready = check_engine(run, options); !ready) return report(ready.error());
   const auto folder = open_sweep(run, options);
   if (!folder) return report(folder.error());
+  if (options.slurm.engine) return submit_takes(*folder, options);
   if (!options.makes_only) return run_takes(*folder, options, *part);
   if (!options.is_quiet)
     print(stdout, fmt::format("{}: {}\n", printable(folder->folder()),

@@ -12,14 +12,19 @@ int run_sweep_status(const std::string& name) {
   const auto folder = SweepFolder::open(name, &was_interrupted);
   if (!folder) return report(folder.error());
   folder->remove_half_files(&was_interrupted);
-  const auto status = folder->status(&was_interrupted);
+  return tell_status(*folder);
+}
+
+int tell_status(const SweepFolder& folder, bool is_quiet) {
+  const auto status = folder.status(&was_interrupted);
   if (!status) return report(status.error());
-  if (auto written = folder->write_table(*status, &was_interrupted); !written)
+  if (auto written = folder.write_table(*status, &was_interrupted); !written)
     return report(written.error());
-  print(stdout, fmt::format("{}: {}, {} done, {} failed, {} missing\n", printable(name),
-                            counted(status->takes.size(), "take"), status->done, status->failed,
-                            status->missing()));
-  print_failures(*folder, *status);
+  if (!is_quiet)
+    print(stdout, fmt::format("{}: {}, {} done, {} failed, {} missing\n",
+                              printable(folder.folder()), counted(status->takes.size(), "take"),
+                              status->done, status->failed, status->missing()));
+  print_failures(folder, *status);
   return status->is_complete() ? exit_done : exit_failed;
 }
 

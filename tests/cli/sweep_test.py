@@ -108,7 +108,7 @@ class Sweeps(SweepCommand):
                 (["--vary", "sheet.density=1", "--write", "abc"], ["--write abc"]),
                 (["--vary", "sheet.density=1", "--sample", "0"], ["--sample 0"]),
                 (["--vary", "sheet.density=1", "--make-only", "--part", "0/2"], ["--part", "--make-only"]),
-                (["--vary", "sheet.density=1", "--engine", "slurm"], ["--engine"]),
+                (["--vary", "sheet.density=1", "--engine", "pbs"], ["--engine"]),
                 ([], ["nothing varies"])]:
             with self.subTest(options=options):
                 before = self.tree()

@@ -406,6 +406,21 @@ TEST_CASE("what a run takes is known before it is allocated", "[simulation][memo
   CHECK(Simulation::make(s, options).value().at(3));
 }
 
+TEST_CASE("what a run has reserved is what it needs", "[simulation][memory]") {
+  const Scene s = scene({sheet("s", 61)}, {poke("f", {0, 0, 0})}, 3);
+  SimulationOptions options{.solver = GENERATE(SolverChoice::Auto, SolverChoice::Eigen)};
+  auto simulation = Simulation::make(s, options).value();
+  const std::size_t at_first = simulation.reserved_memory();
+  CHECK(at_first >= simulation.surface_memory());
+  REQUIRE(simulation.at(3));
+  const std::size_t needed = simulation.reserved_memory();
+  CHECK(needed > at_first);  // by its solver
+  options.max_memory = needed;
+  CHECK(Simulation::make(s, options).value().at(3));
+  options.max_memory = needed - 1;
+  CHECK(Simulation::make(s, options).value().at(3).error().code == ErrorCode::OutOfMemory);
+}
+
 TEST_CASE("a scene is checked without being run", "[simulation][check]") {
   CHECK(Simulation::check(scene({}, {poke("f", {0, 0, 0})})));  // no surface: nothing to refuse
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0})});

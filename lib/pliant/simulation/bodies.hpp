@@ -76,6 +76,7 @@ class Bodies {
   std::span<const std::unique_ptr<Body>> all() const { return bodies_; }
   std::span<const RestShape> rest_shapes() const { return rest_shapes_; }
   MemoryBudget& memory() { return memory_; }
+  const MemoryBudget& memory() const { return memory_; }
   SolverChoice solver() const { return solver_; }
   std::size_t surface_memory() const;
   SolverCounts solver_counts() const;

@@ -118,6 +118,11 @@ std::vector<Warning> Simulation::warnings() const { return player_->warnings(); 
 
 std::size_t Simulation::surface_memory() const { return player_->bodies().surface_memory(); }
 
+std::size_t Simulation::reserved_memory() const {
+  const MemoryBudget& memory = player_->bodies().memory();
+  return memory.total() - memory.available();
+}
+
 SolverCounts Simulation::solver_counts() const { return player_->bodies().solver_counts(); }
 
 FrameCounts Simulation::frame_counts() const { return player_->frame_counts(); }

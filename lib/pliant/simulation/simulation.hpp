@@ -157,6 +157,10 @@ class Simulation {
   /// The memory of the surfaces and a frame of each, without their solvers' factors. [bytes]
   std::size_t surface_memory() const;
 
+  /// The memory that its surfaces and their solvers have reserved now, by the count that
+  /// `max_memory` limits. [bytes]
+  std::size_t reserved_memory() const;
+
   /// The work of all surfaces' solvers so far.
   SolverCounts solver_counts() const;
 

@@ -197,13 +197,14 @@ class Gathering {
       // Of several failures the last one counts.
       const bool is_later = std::tie(line.time, line.error) > std::tie(origin.time, record.error);
       if (record.status == TakeStatus::Done || !is_later) return;
-      record = {TakeStatus::Failed, {}, std::move(line.error), std::move(line.full_error)};
+      record = {
+          TakeStatus::Failed, {}, std::move(line.error), std::move(line.full_error), line.seconds};
       origin.time = std::move(line.time);
       return;
     }
     const int host = number_of(line.host);
     if (record.status != TakeStatus::Done) {
-      record = {TakeStatus::Done, line.measures, {}, {}};
+      record = {TakeStatus::Done, line.measures, {}, {}, line.seconds};
       origin = {host, {}};
     } else if (record.measures.hash != line.measures.hash) {
       // The same one stays, in whatever order they come.
@@ -404,9 +405,7 @@ Result<void> SweepFolder::run(const FolderRun& options) const {
   if (!now) return fail(now.error());
   std::vector<std::size_t> takes;
   for (std::size_t take = 0; take < now->takes.size(); ++take) {
-    const TakeStatus one = now->takes[take].status;
-    const bool is_due = one == TakeStatus::Missing || (one == TakeStatus::Failed && options.retry);
-    if (is_due && options.part.has(take)) takes.push_back(take);
+    if (now->takes[take].is_due(options.retry) && options.part.has(take)) takes.push_back(take);
   }
   if (options.begin) options.begin(takes.size());
   if (takes.empty()) return {};

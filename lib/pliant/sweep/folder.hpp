@@ -36,6 +36,12 @@ struct TakeRecord {
   Measures measures = {};  ///< of a take that is done
   std::string error = {};  ///< of a take that failed, with names of files without their folders
   std::string full_error = {};  ///< the same with the folders
+  double seconds = 0;           ///< that it took, by its line
+
+  /// Whether a run is to run it; with `retry` also a take that failed.
+  bool is_due(bool retry) const {
+    return status == TakeStatus::Missing || (retry && status == TakeStatus::Failed);
+  }
 };
 
 /// Two lines of the log of one take whose hashes differ.

@@ -1,0 +1,235 @@
+#include "slurm.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string_view>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "child.hpp"
+#include "interrupt.hpp"
+#include "pliant/core/text.hpp"
+#include "report.hpp"
+
+namespace pliant::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Variables by which a user narrows what squeue lists.
+constexpr std::string_view list_settings = "SQUEUE_";
+constexpr const char* queued_or_running = "--states=PENDING,RUNNING,SUSPENDED";
+
+template <class Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+// The last line is the reason; lines before it tell of attempts.
+tl::unexpected<Error> no_answer(std::string_view program, const ProgramEnd& end) {
+  std::string_view text = trim(end.errors, ascii_blanks);
+  text = text.substr(text.find_last_of('\n') + 1);
+  return fail(ErrorCode::Unwritable, text.empty()
+                                         ? fmt::format("{} ended with code {}", program, end.code)
+                                         : fmt::format("{}: {}", program, printable(text)));
+}
+
+bool names_no_job(const ProgramEnd& end) {
+  return end.errors.find("Invalid job id") != std::string::npos;
+}
+
+std::vector<std::string> squeue_of(const SlurmJob& job) {
+  std::vector<std::string> words = {"squeue", "--noheader", "--all", "--jobs=" + job.number};
+  if (!job.cluster.empty()) words.push_back("--clusters=" + job.cluster);
+  return words;
+}
+
+// NUMBER|FILE, as `--format=%F|%o` prints it.
+struct Listed {
+  std::string_view number, file;
+};
+
+std::optional<Listed> parse_listed(std::string_view line) {
+  const std::size_t bar = line.find('|');
+  if (bar == std::string_view::npos || !number_in<std::uint64_t>(line.substr(0, bar))) return {};
+  return Listed{line.substr(0, bar), line.substr(bar + 1)};
+}
+
+bool is_script_of_a_sweep(std::string_view file) { return file.ends_with("/slurm/job.sh"); }
+
+// Finds jobs by their script.
+class Search {
+ public:
+  explicit Search(const std::string& script) : script_(script) {}
+
+  void add(std::string_view line) {
+    const auto listed = parse_listed(line);
+    if (!listed || !is_script_of_a_sweep(listed->file) || !is_ours(listed->file)) return;
+    const auto number = number_in<std::uint64_t>(listed->number);
+    least_ = std::min(least_.value_or(*number), *number);
+  }
+
+  std::string least() const { return least_ ? std::to_string(*least_) : ""; }
+
+ private:
+  bool is_ours(std::string_view file) {
+    if (file == script_) return true;
+    const auto [known, is_new] = known_.try_emplace(std::string(file), false);
+    std::error_code ignored;
+    if (is_new) known->second = std::filesystem::equivalent(file, script_, ignored);
+    return known->second;
+  }
+
+  const std::string& script_;
+  std::map<std::string, bool> known_;
+  std::optional<std::uint64_t> least_;
+};
+
+// Whether a job is queued or running, and its script that of a sweep: its number may be used again.
+Result<bool> is_active(const SlurmJob& job) {
+  std::vector<std::string> words = squeue_of(job);
+  words.insert(words.end(), {queued_or_running, "--format=%F|%o"});
+  bool is_found = false;
+  const auto end = run_program(words, {.dropped = list_settings,
+                                       .take_line =
+                                           [&](std::string_view line) {
+                                             const auto listed = parse_listed(line);
+                                             is_found |=
+                                                 listed && is_script_of_a_sweep(listed->file);
+                                           },
+                                       .should_stop = &was_interrupted});
+  if (!end) return fail(end.error());
+  if (end->code != 0 && !names_no_job(*end)) return no_answer("squeue", *end);
+  return is_found;
+}
+
+enum class Presence { There, Gone, Unknown };
+
+Result<Presence> look_for(const SlurmJob& job) {
+  bool is_there = false;
+  const auto note = [&](std::string_view line) {
+    // With clusters, a line names the cluster.
+    const std::string_view state = trim(line, ascii_blanks);
+    is_there |= !state.empty() && state.find(':') == std::string_view::npos;
+  };
+  std::vector<std::string> words = squeue_of(job);
+  words.emplace_back("--format=%T");
+  const auto end = run_program(
+      words, {.dropped = list_settings, .take_line = note, .should_stop = &was_interrupted});
+  if (!end) return fail(end.error());
+  if (end->code != 0) return names_no_job(*end) ? Presence::Gone : Presence::Unknown;
+  return is_there ? Presence::There : Presence::Gone;
+}
+
+// False: interrupted.
+bool sleep_for(std::chrono::milliseconds time) {
+  for (auto slept = 0ms; slept < time; slept += 50ms) {
+    if (was_interrupted()) return false;
+    std::this_thread::sleep_for(50ms);
+  }
+  return !was_interrupted();
+}
+
+}  // namespace
+
+std::optional<SlurmJob> parse_slurm_job(std::string_view text) {
+  constexpr std::size_t longest = 200;
+  text = trim(text, ascii_blanks);
+  const std::size_t end = std::min(text.find(';'), text.size());
+  if (!number_in<std::uint64_t>(text.substr(0, end)) || text.size() > longest) return {};
+  const std::string_view cluster = text.substr(std::min(end + 1, text.size()));
+  if (printable(cluster) != cluster || cluster.find(' ') != std::string_view::npos) return {};
+  return SlurmJob{std::string(text.substr(0, end)), std::string(cluster)};
+}
+
+Result<std::size_t> max_array_size(std::chrono::seconds patience) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto should_stop = [&] {
+    return was_interrupted() || std::chrono::steady_clock::now() - begin > patience;
+  };
+  std::optional<std::size_t> size;
+  const auto take = [&](std::string_view line) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos ||
+        trim(line.substr(0, equals), ascii_blanks) != "MaxArraySize")
+      return;
+    size = number_in<std::size_t>(trim(line.substr(equals + 1), ascii_blanks));
+  };
+  const auto end =
+      run_program({"scontrol", "show", "config"}, {.take_line = take, .should_stop = should_stop});
+  if (!end && end.error().code == ErrorCode::Interrupted && !was_interrupted())
+    return fail(ErrorCode::Unwritable,
+                fmt::format("scontrol gives no answer within {} s", patience.count()));
+  if (!end) return fail(end.error());
+  if (end->code != 0) return no_answer("scontrol", *end);
+  if (!size) return fail(ErrorCode::Unwritable, "scontrol show config tells no MaxArraySize");
+  return *size;
+}
+
+Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known) {
+  Search search(script);
+  const auto end =
+      run_program({"squeue", "--noheader", "--all", queued_or_running, "--format=%F|%o"},
+                  {.dropped = list_settings,
+                   .take_line = [&](std::string_view line) { search.add(line); },
+                   .should_stop = &was_interrupted});
+  if (!end) return fail(end.error());
+  if (end->code != 0) return no_answer("squeue", *end);
+  if (!search.least().empty() || !known) return search.least();
+  const auto is_known_active = is_active(*known);
+  if (!is_known_active) return fail(is_known_active.error());
+  return *is_known_active ? known->number : std::string();
+}
+
+Result<SlurmJob> submit(const std::vector<std::string>& words) {
+  std::optional<SlurmJob> job;
+  std::string first;
+  const auto take = [&](std::string_view line) {
+    if (first.empty()) first = line;
+    if (!job) job = parse_slurm_job(line);
+  };
+  // It is not stopped: whether the job is submitted would be unknown.
+  const auto end = run_program(words, {.take_line = take, .passes_errors = true});
+  if (!end) return fail(end.error());
+  if (job) return *job;
+  if (end->code != 0)
+    return fail(ErrorCode::Unwritable,
+                fmt::format("sbatch ended with code {}; nothing is submitted", end->code));
+  return fail(ErrorCode::Unwritable,
+              first.empty() ? "sbatch printed no number of a job"
+                            : fmt::format("sbatch printed \"{}\" in place of the number of a job",
+                                          printable(first)));
+}
+
+void cancel(const SlurmJob& job) {
+  std::vector<std::string> words = {"scancel"};
+  if (!job.cluster.empty()) words.push_back("--clusters=" + job.cluster);
+  words.push_back(job.number);
+  // What remains is run twice, to the same bits.
+  (void)run_program(words, {.passes_errors = true});
+}
+
+Result<void> wait_for(const SlurmJob& job) {
+  constexpr auto longest_pause = 15'000ms;
+  constexpr int certain = 2;  // while a job is requeued it may be unseen for a moment
+  auto pause = 1'000ms;
+  for (int times_gone = 0;;) {
+    const auto presence = look_for(job);
+    if (!presence) return fail(presence.error());
+    times_gone = *presence == Presence::Gone ? times_gone + 1 : 0;
+    if (times_gone == certain) return {};
+    if (!sleep_for(times_gone > 0 ? 1'000ms : pause))
+      return fail(ErrorCode::Interrupted, "interrupted");
+    pause = std::min(pause * 3 / 2, longest_pause);
+  }
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pliant::cli {
+
+/// The word of a command line that bash reads as this text: itself if nothing in it is special.
+std::string bash_word(std::string_view text);
+
+/// A command line for bash.
+std::string bash_line(std::span<const std::string> words);
+
+/// Numbers as sbatch's `--array` takes them: `0-4,7,9-10`. Requires: ascending.
+std::string array_list(std::span<const std::size_t> numbers);
+
+/// The numbers below `end` of a list as sbatch's `--array` takes it, `0-4,7,8-20:4%5`, ascending.
+/// None: it is no such list.
+std::optional<std::vector<std::size_t>> read_array_list(std::string_view list, std::size_t end);
+
+/// A job array that runs the parts of a sweep.
+struct SlurmScript {
+  std::string executable;                  ///< absolute
+  std::string folder;                      ///< of the sweep, absolute
+  std::string name;                        ///< of the sweep
+  std::size_t parts = 1;                   ///< in all
+  int threads = 1;                         ///< of a part
+  std::optional<std::size_t> memory = {};  ///< of a part [bytes]; none: the cluster's default
+  std::optional<double> seconds = {};      ///< that a part takes; none: unknown
+  std::string array = {};                  ///< list of parts; empty: the command line has it
+  bool retries = false;                    ///< also takes that failed
+};
+
+/// Why a folder cannot be that of a SlurmScript; empty: it can.
+std::string_view wrong_slurm_folder(std::string_view folder);
+
+/// The text of its job.sh. Requires: the folder is not wrong.
+std::string job_script(const SlurmScript& script);
+
+}  // namespace pliant::cli
