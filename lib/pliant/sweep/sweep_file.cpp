@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <functional>
 #include <iterator>
@@ -170,10 +169,9 @@ class StoppingText {
 
   const char& operator*() const { return *at_; }
   StoppingText& operator++() {
-    constexpr std::uintptr_t bytes_between_stops = std::uintptr_t{1} << 18U;
+    constexpr std::ptrdiff_t bytes_between_stops = std::ptrdiff_t{1} << 18U;
     ++at_;
-    if (reinterpret_cast<std::uintptr_t>(at_) % bytes_between_stops == 0 && stops_->ask())
-      at_ = end_;
+    if ((end_ - at_) % bytes_between_stops == 0 && stops_->ask()) at_ = end_;
     return *this;
   }
   StoppingText operator++(int) {
