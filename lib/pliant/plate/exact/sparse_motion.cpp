@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t most_kept = 2;
 
 // In place of a step's length, for the factor that finds unknowns without a mass.
-constexpr double held = -1;
+constexpr double length_when_held = -1;
 
 template <class Number>
 bool are_same(const Number* a, const Number* b, Eigen::Index count) {
@@ -219,7 +219,7 @@ Result<void> SparseMotion::find_massless(const Field& force, Field& w) {
   if (!holding_) {
     const std::size_t bytes = memory_.bytes() + ComplexFactor::memory(*pattern_);
     if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
-    auto made = find_factors(held, 1, [&](ComplexFactors& factors) {
+    auto made = find_factors(length_when_held, 1, [&](ComplexFactors& factors) {
       const std::vector<Complex> shifts(matrix_->inertia.size(), Complex{hold, 0});
       return factors.front().factorize(*pattern_, matrix_->stiffness, shifts, context_.should_stop);
     });
