@@ -1261,7 +1261,7 @@ test("movies have the frames, the size and the rate of the scene", async () => {
 test("a movie that is interrupted leaves nothing", async () => {
   const [out, scratch] = [inFolder("never"), inFolder("scratch")];
   for (const each of [out, scratch]) mkdirSync(each);
-  const words = ["view", example("sheet"), "--movie", path.join(out, "never.mp4"), "--size", "96x60"];
+  const words = ["view", example("sheet"), "--movie", path.join(out, "never.mp4"), "--size", "640x400"];
   const command = spawn(pliant, words, { stdio: ["ignore", "ignore", "pipe"], env: { ...process.env, TMPDIR: scratch } });
   let errors = "";
   command.stderr.on("data", (text) => (errors += text));
