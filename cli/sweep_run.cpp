@@ -33,10 +33,6 @@ constexpr std::string_view making_options[] = {"--out",   "--set",     "--vary",
 // The options that belong to running its takes.
 constexpr std::string_view running_options[] = {"--part", "--retry", "--engine"};
 
-tl::unexpected<Error> wrong_usage(std::string message) {
-  return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
 // K/P
 Result<SweepPart> parse_part(const std::optional<std::string>& text) {
   if (!text) return SweepPart{};
@@ -46,8 +42,7 @@ Result<SweepPart> parse_part(const std::optional<std::string>& text) {
       slash == std::string::npos ? std::nullopt : to_integer(text->substr(slash + 1));
   if (part && count && *part >= 0 && *part < *count)
     return SweepPart{static_cast<std::size_t>(*part), static_cast<std::size_t>(*count)};
-  return wrong_usage(
-      fmt::format("--part {}: must be K/P with integers 0 <= K < P", printable(*text)));
+  return invalid(fmt::format("--part {}: must be K/P with integers 0 <= K < P", printable(*text)));
 }
 
 Result<SweepRequest> request_of(const SweepRunOptions& options) {
@@ -68,7 +63,7 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
   if (options.write) {
     request.write = options.write->starts_with('.') ? *options.write : "." + *options.write;
     if (auto known = check_ending("takes" + request.write); !known)
-      return wrong_usage("--write " + printable(*options.write) + ": " + known.error().message);
+      return invalid("--write " + printable(*options.write) + ": " + known.error().message);
     request.write = ending_of("takes" + request.write);
   }
   request.variation.scene_count = options.what.size();
@@ -77,7 +72,7 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
   if (options.sample) {
     const auto count = to_integer(*options.sample);
     if (!count || *count < 1)
-      return wrong_usage(
+      return invalid(
           fmt::format("--sample {}: must be an integer >= 1", printable(*options.sample)));
     request.variation.samples = static_cast<std::size_t>(*count);
   }
@@ -179,10 +174,10 @@ bool is_folder(const std::string& name) {
 Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& options) {
   if (!options.out) {
     if (options.what.size() != 1 || !is_folder(options.what.front()))
-      return wrong_usage("-o DIR is missing: the folder of the sweep");
+      return invalid("-o DIR is missing: the folder of the sweep");
     for (const std::string_view option : making_options) {
       if (run.count(std::string(option)) > 0)
-        return wrong_usage(
+        return invalid(
             fmt::format("{}: {} is a sweep already, whose arguments do not change; "
                         "make another one of a SCENE with -o DIR",
                         option, printable(options.what.front())));
@@ -258,8 +253,8 @@ int run_sweep_run(const CLI::App& run, const SweepRunOptions& options) {
   if (!part) return report(part.error());
   for (const std::string_view option : running_options) {
     if ((options.makes_only || options.is_dry) && run.count(std::string(option)) > 0)
-      return report(wrong_usage(fmt::format("{}: no take is run with {}", option,
-                                            options.is_dry ? "--dry-run" : "--make-only"))
+      return report(invalid(fmt::format("{}: no take is run with {}", option,
+                                        options.is_dry ? "--dry-run" : "--make-only"))
                         .value());
   }
   if (options.is_dry && options.out) {
