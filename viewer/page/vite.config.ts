@@ -2,6 +2,7 @@
 // system. Its policy allows only these. `--mode sweep` builds sweep.html, otherwise index.html.
 
 import { createHash } from "node:crypto";
+import { readFileSync } from "node:fs";
 
 import { defineConfig, type Plugin } from "vite";
 
@@ -19,6 +20,16 @@ function policy(scripts: string[], styles: string[]): string {
     "form-action 'none'",
   ];
   return `<meta http-equiv="Content-Security-Policy" content="${rules.join("; ")}">`;
+}
+
+// What both pages have: `<!-- include FILE -->`, alone on its line, becomes the text of the file.
+function included(): Plugin {
+  const line = /^ *<!-- include (\S+) -->\n/gm;
+  const textOf = (file: string) => readFileSync(new URL(file, import.meta.url), "utf8");
+  return {
+    name: "included",
+    transformIndexHtml: { order: "pre", handler: (html) => html.replace(line, (_, file: string) => textOf(file)) },
+  };
 }
 
 function inlined(): Plugin {
@@ -58,7 +69,7 @@ function inlined(): Plugin {
 
 export default defineConfig(({ mode }) => ({
   base: "./",
-  plugins: [inlined()],
+  plugins: [included(), inlined()],
   build: {
     target: "es2022", modulePreload: false, assetsInlineLimit: 0, reportCompressedSize: false, emptyOutDir: false,
     rollupOptions: { input: mode === "sweep" ? "sweep.html" : "index.html" },
