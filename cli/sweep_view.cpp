@@ -172,7 +172,7 @@ int run_sweep_view(const SweepViewOptions& options) {
   if (auto places = check_view_places(options); !places) return report(places.error());
   const auto page = viewer::sweep_page_template();
   if (!page) return report(page.error());
-  const auto folder = SweepFolder::open(options.folder);
+  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
   if (!folder) return report(folder.error());
   for (const auto& [option, file] :
        {std::pair("-o", options.out), std::pair("--png", options.png)}) {
