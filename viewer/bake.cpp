@@ -272,7 +272,7 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
                      {"forces", forces},
                      {"channels", view_channels(scene, frames)},
                      {"messages", messages_of(simulation)}};
-  auto packed = deflated(joined(head, arrays.take()));
+  auto packed = deflated(joined(head, arrays.take()), limits.should_stop);
   if (!packed) return fail(packed.error());
   bake.packed = *std::move(packed);
   return bake;

@@ -18,7 +18,7 @@ uInt portion(std::size_t bytes) {
 
 }  // namespace
 
-Result<std::string> deflated(std::string_view bytes) {
+Result<std::string> deflated(std::string_view bytes, const StopRequest& should_stop) {
   const auto no_memory = [] {
     return fail(ErrorCode::OutOfMemory, "the packed frames of the page do not fit in memory");
   };
@@ -31,7 +31,8 @@ Result<std::string> deflated(std::string_view bytes) {
   std::string packed;
   std::array<char, std::size_t{1} << 16> chunk;
   int status = Z_OK;
-  while (status == Z_OK) {
+  bool is_stopped = false;
+  while (status == Z_OK && !is_stopped) {
     const uInt given = portion(bytes.size());
     // zlib only reads the input, but its struct is not const.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -41,8 +42,10 @@ Result<std::string> deflated(std::string_view bytes) {
     status = deflate(&stream, given == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
     bytes.remove_prefix(given - stream.avail_in);
     packed.append(chunk.data(), chunk.size() - stream.avail_out);
+    is_stopped = should_stop && should_stop();
   }
   deflateEnd(&stream);
+  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
   if (status != Z_STREAM_END) return no_memory();
   return packed;
 }

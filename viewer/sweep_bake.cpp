@@ -104,7 +104,7 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
 
   const auto is_stopped = [&] { return run.should_stop && run.should_stop(); };
   Arrays arrays;
-  const std::vector<std::size_t> rows = table_rows(folder, status, plan.takes);
+  const std::vector<std::size_t> rows = table_rows(folder, status, plan.takes, run.should_stop);
   if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   Json failures = Json::array();
   for (const auto& [take, reason] : bake.failed)
@@ -120,7 +120,7 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
                      {"shapes", shapes.finish(arrays)},
                      {"failures", std::move(failures)}};
   if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-  auto packed = deflated(joined(head, arrays.take()));
+  auto packed = deflated(joined(head, arrays.take()), run.should_stop);
   if (!packed) return fail(packed.error());
   bake.packed = *std::move(packed);
   return bake;

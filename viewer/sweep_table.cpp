@@ -84,11 +84,13 @@ std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t most) {
 }
 
 std::vector<std::size_t> table_rows(const SweepFolder& folder, const SweepStatus& status,
-                                    const std::vector<std::size_t>& needed) {
+                                    const std::vector<std::size_t>& needed,
+                                    const StopRequest& should_stop) {
   constexpr std::size_t most_bytes = 13'000'000;
   std::size_t most = most_bytes / bytes_of_measures;
   for (;;) {
     std::vector<std::size_t> rows = merged(evenly_spread(status.takes.size(), most), needed);
+    if (should_stop && should_stop()) return rows;
     std::size_t bytes = rows.size() * bytes_of_measures;
     for (const Texts& column : texts_of(folder, status, rows)) bytes += column.byte_count();
     if (bytes <= most_bytes || most <= needed.size()) return rows;

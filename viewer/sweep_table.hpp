@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/sweep/folder.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/json.hpp"
@@ -14,9 +15,10 @@ namespace pliant::viewer {
 std::vector<std::size_t> evenly_spread(std::size_t count, std::size_t most);
 
 /// The takes whose rows a page has: all, or as many as fit into 13 MB, before they are packed,
-/// evenly spread, and those of `needed`.
+/// evenly spread, and those of `needed`. Any, if it is stopped.
 std::vector<std::size_t> table_rows(const SweepFolder& folder, const SweepStatus& status,
-                                    const std::vector<std::size_t>& needed);
+                                    const std::vector<std::size_t>& needed,
+                                    const StopRequest& should_stop = {});
 
 /// The rows of some takes for a page; docs/viewer.md.
 Json table_json(const SweepFolder& folder, const SweepStatus& status,

@@ -43,6 +43,21 @@ TEST_CASE("base 64 is that of RFC 4648", "[view]") {
   CHECK(base64(std::string("\xff\xfe\x00\xfb", 4)) == "//4A+w==");
 }
 
+TEST_CASE("deflating ends when asked", "[view]") {
+  std::mt19937 random(3);
+  std::string noise;
+  for (int k = 0; k < 1'000'000; ++k) noise.push_back(static_cast<char>(random()));
+  int asked = 0;
+  REQUIRE(deflated(noise, [&] { return ++asked < 0; }));
+  CHECK(asked > 10);
+  for (int moment = 1; moment <= asked; ++moment) {
+    int left = moment;
+    const auto ended = deflated(noise, [&] { return --left == 0; });
+    REQUIRE_FALSE(ended);
+    CHECK(ended.error().code == ErrorCode::Interrupted);
+  }
+}
+
 TEST_CASE("what is deflated inflates to what it was", "[view]") {
   std::mt19937 random(3);
   for (const std::size_t size :
