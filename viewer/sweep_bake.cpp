@@ -116,7 +116,7 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
                      {"failed", status.failed},
                      {"paths", titles_of(folder)},
                      {"axes", axes_of(folder)},
-                     {"table", table_json(folder, status, rows, arrays)},
+                     {"table", table_json(folder, status, rows, arrays, run.should_stop)},
                      {"shapes", shapes.finish(arrays)},
                      {"failures", std::move(failures)}};
   if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");

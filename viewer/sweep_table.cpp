@@ -39,14 +39,18 @@ class Texts {
   std::size_t byte_count_ = 0;
 };
 
-// The columns of texts: the scene, if there are several, and the paths; at last the errors.
+// The columns of texts: the scene, if there are several, and the paths; at last the errors. Of some
+// rows only, if it is stopped.
 std::vector<Texts> texts_of(const SweepFolder& folder, const SweepStatus& status,
-                            const std::vector<std::size_t>& rows) {
+                            const std::vector<std::size_t>& rows, const StopRequest& should_stop) {
+  constexpr std::size_t rows_between_stops = 4096;
   const Takes& takes = folder.sweep().takes();
   const std::vector<std::string>& scenes = folder.request().scenes;
   const std::size_t first = scenes.size() > 1 ? 1 : 0;
   std::vector<Texts> columns(first + takes.paths().size() + 1);
-  for (const std::size_t take : rows) {
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (row % rows_between_stops == 0 && should_stop && should_stop()) break;
+    const std::size_t take = rows[row];
     if (first > 0) columns.front().add(scenes[takes.scene_of(take)]);
     const auto texts = takes.texts(take);
     for (std::size_t k = 0; k < texts.size(); ++k) columns[first + k].add(texts[k]);
@@ -90,9 +94,9 @@ std::vector<std::size_t> table_rows(const SweepFolder& folder, const SweepStatus
   std::size_t most = most_bytes / bytes_of_measures;
   for (;;) {
     std::vector<std::size_t> rows = merged(evenly_spread(status.takes.size(), most), needed);
-    if (should_stop && should_stop()) return rows;
     std::size_t bytes = rows.size() * bytes_of_measures;
-    for (const Texts& column : texts_of(folder, status, rows)) bytes += column.byte_count();
+    for (const Texts& column : texts_of(folder, status, rows, should_stop))
+      bytes += column.byte_count();
     if (bytes <= most_bytes || most <= needed.size()) return rows;
     const double share = static_cast<double>(most_bytes) / static_cast<double>(bytes);
     most = std::min(most, rows.size());
@@ -102,7 +106,8 @@ std::vector<std::size_t> table_rows(const SweepFolder& folder, const SweepStatus
 }
 
 Json table_json(const SweepFolder& folder, const SweepStatus& status,
-                const std::vector<std::size_t>& rows, Arrays& arrays) {
+                const std::vector<std::size_t>& rows, Arrays& arrays,
+                const StopRequest& should_stop) {
   std::vector<std::uint32_t> takes;
   std::string states, hashes;
   for (const std::size_t take : rows) {
@@ -112,7 +117,7 @@ Json table_json(const SweepFolder& folder, const SweepStatus& status,
     for (const std::uint64_t half : {record.measures.hash.high, record.measures.hash.low})
       for (unsigned k = 8; k-- > 0;) hashes.push_back(static_cast<char>(half >> (8 * k) & 0xffU));
   }
-  std::vector<Texts> texts = texts_of(folder, status, rows);
+  std::vector<Texts> texts = texts_of(folder, status, rows, should_stop);
   Json paths = Json::array();
   for (std::size_t k = 0; k + 1 < texts.size(); ++k) paths.push_back(texts[k].finish(arrays));
   const auto real = [&](double Measures::*member) {

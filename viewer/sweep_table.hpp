@@ -20,8 +20,9 @@ std::vector<std::size_t> table_rows(const SweepFolder& folder, const SweepStatus
                                     const std::vector<std::size_t>& needed,
                                     const StopRequest& should_stop = {});
 
-/// The rows of some takes for a page; docs/viewer.md.
+/// The rows of some takes for a page; docs/viewer.md. Without some texts, if it is stopped.
 Json table_json(const SweepFolder& folder, const SweepStatus& status,
-                const std::vector<std::size_t>& rows, Arrays& arrays);
+                const std::vector<std::size_t>& rows, Arrays& arrays,
+                const StopRequest& should_stop = {});
 
 }  // namespace pliant::viewer
