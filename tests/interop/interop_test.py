@@ -13,11 +13,13 @@ import json
 import math
 import os
 import random
+import re
 import shutil
 import struct
 import subprocess
 import sys
 import tempfile
+import textwrap
 import unittest
 
 import numpy as np
@@ -422,6 +424,62 @@ class FromBlender(unittest.TestCase):
                 self.assertLess(np.abs(way[:, [0, 2]]).max(), 1e-9 * size)
 
 
+# The walk of docs/interchange.md, from a frame that is not 1.
+WALK = """<scene version="1" fps="24" start="{start}" end="{end}">
+  <surface name="tube">
+    <mesh file="character.obj" cache="walk.npy" cacheStart="{start}"/>
+    <material density="1" damping="4"/>
+    <solver region="all" integrator="newmark"/>
+  </surface>{force}
+</scene>
+"""
+
+
+class Walk(unittest.TestCase):
+    START = 5
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="pliant-walk-")
+        cls.addClassCleanup(cls.scratch.cleanup)
+        with open(os.path.join(HERE, "../../docs/interchange.md"), encoding="utf-8") as page:
+            (script,) = re.findall(r"```python\n(.*?walk\.npy.*?)```", page.read(), re.DOTALL)
+        script = textwrap.dedent(script)
+        assert script.count('"/tmp/walk.npy"') == 1
+        with open(cls.path("page.py"), "w", encoding="utf-8") as file:
+            file.write(script.replace("/tmp/walk.npy", cls.path("walk.npy")))
+        cls.blender("export", cls.path("page.py"), cls.scratch.name, str(cls.START))
+        for name, force in (("still", ""), ("jiggle", '\n  <inertia name="sway" forceRadius="1000"/>')):
+            with open(cls.path(f"{name}.xml"), "w", encoding="utf-8") as file:
+                file.write(WALK.format(start=cls.START, end=cls.START + 11, force=force))
+            for ending in ("pc2", "npy"):
+                run(PLIANT, "bake", cls.path(f"{name}.xml"), "-o", cls.path(f"{name}.{ending}"), "--space", "object",
+                    "--quiet")
+        cls.blender("home", cls.scratch.name, str(cls.START), "still.pc2", "jiggle.pc2")
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.scratch.name, name)
+
+    @classmethod
+    def blender(cls, *words):
+        run("blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P",
+            os.path.join(HERE, "blender_walk.py"), "--", *words)
+
+    def load(self, name):
+        return np.load(self.path(name)).astype(np.float64)
+
+    def test_a_walk_without_forces_comes_home_as_the_bones_made_it(self):
+        posed = self.load("posed.npy")
+        self.assertGreater(np.abs(posed - posed[0]).max(), 0.5)
+        self.assertLess(np.abs(self.load("walk.npy") - posed).max(), 1e-6)
+        self.assertLess(np.abs(self.load("still.pc2.npy") - posed).max(), 1e-6)
+
+    def test_a_jiggle_comes_home_as_it_was_baked(self):
+        baked = self.load("jiggle.npy")
+        self.assertGreater(np.abs(baked - self.load("posed.npy")).max(), 0.02)
+        self.assertLess(np.abs(self.load("jiggle.pc2.npy") - baked).max(), 1e-6)
+
 
 class Keys(unittest.TestCase):
     @classmethod
@@ -455,7 +513,7 @@ def main():
     with tempfile.TemporaryDirectory() as pictures:
         PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else pictures
         os.makedirs(PICTURES, exist_ok=True)
-        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender, Keys)))
+        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender, Walk, Keys)))
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     failed = len(result.failures) + len(result.errors)
     # A failure in the shared setup counts once; then no test has run.
