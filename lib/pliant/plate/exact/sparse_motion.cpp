@@ -310,6 +310,11 @@ Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& fo
   if (auto found = find_massless(forces.first, w); !found) return found;
   StepChoice choice(steps);
   Field next_w(size, 3), next_v(masses, 3);
+  Field first_w, first_v;  // to begin again, if the steps look ahead
+  double first_doubt = 0;
+  const auto size_of = [&](double squared, double squared_speed) {
+    return size_of_motion(std::sqrt(squared), swings ? std::sqrt(squared_speed) : 0, steps.length);
+  };
   for (int number = 0; number < choice.count(); ++number) {
     const SubStep step{choice.length()};
     const auto factors = factors_for(step.length);
@@ -340,16 +345,28 @@ Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& fo
         old_speed += v(row, c) * v(row, c);
       }
     }
+    const double at_start = size_of(before, old_speed), at_end = size_of(after, speed);
     if (number == 0) {
-      const double carried = swings ? std::sqrt(std::max(speed, old_speed)) : 0;
-      const double scale = std::max(std::sqrt(std::max(before, after)), carried * steps.length / 2);
-      if (!choice.accepts(std::sqrt(doubt), scale)) {
+      first_doubt = std::sqrt(doubt);
+      if (choice.looks_ahead(first_doubt, at_start, at_end)) {
+        first_w = w;
+        first_v = v;
+      } else if (!choice.accepts(first_doubt, std::max(at_start, at_end))) {
         number = -1;
         continue;
       }
     }
     w.swap(next_w);
     v.swap(next_v);
+    if (number + 1 == choice.count() && first_w.size() > 0) {
+      const bool is_accepted = choice.accepts(first_doubt, at_end);
+      if (!is_accepted) {
+        w.swap(first_w);
+        v.swap(first_v);
+        number = -1;
+      }
+      first_w.resize(0, 3);
+    }
   }
   moving = w.topRows(masses);
   return {};

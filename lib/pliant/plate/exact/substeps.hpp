@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "pliant/plate/exact/pade.hpp"
 #include "pliant/plate/time_steps.hpp"
 
@@ -22,7 +24,15 @@ struct SubStep {
   Complex to_doubt(int pole) const { return poles[pole].doubt * reciprocal(rate(pole)) * 2.0; }
 };
 
-/// How the steps of one interval are chosen: from what moves in it, and from nothing else.
+/// The size of a motion before or after a step: of the displacement, or of what the velocity adds
+/// to it in half the interval.
+inline double size_of_motion(double displacement, double speed, double interval) {
+  return std::max(displacement, speed * interval / 2);
+}
+
+/// How the steps of one interval are chosen: from what moves in it, and from nothing else. A motion
+/// that begins is small in the first step: the first choice then goes on to the end of the
+/// interval, to see how large it gets.
 class StepChoice {
  public:
   static constexpr int fewest = 3;
@@ -33,15 +43,20 @@ class StepChoice {
   int count() const { return count_ * (is_settled_ ? steps_.count : 1); }
   double length() const { return steps_.length / count(); }
 
-  /// After the first step: whether it is one of those that the interval is made of. If not, `count`
-  /// has grown, and the interval begins again. `doubt`: the size of G(hB) w; `scale`: that of the
-  /// motion.
+  /// After the first step: whether all steps have to be taken before `accepts` is asked. `doubt`:
+  /// the size of G(hB) w; the others: those of the motion before and after that step.
+  bool looks_ahead(double doubt, double before, double after) const {
+    return count_ == fewest && !is_settled_ && after > 2 * before && doubt > tolerance * after;
+  }
+
+  /// After the first step, or after all of them: whether these are the steps that the interval is
+  /// made of. If not, `count` has grown, and the interval begins again. `scale`: the largest size
+  /// of the motion so far.
   bool accepts(double doubt, double scale) {
-    // So that the errors of 250 frames, with a margin, stay below 1e-6.
-    constexpr double tolerance = 2.5e-7;
-    const double ratio = doubt / (tolerance * scale);
     if (is_settled_) return true;
-    if (!(doubt > tolerance * scale) || count_ >= most) {
+    scale_ = std::max(scale_, scale);
+    const double ratio = doubt / (tolerance * scale_);
+    if (!(doubt > tolerance * scale_) || count_ >= most) {
       is_settled_ = true;
       return steps_.count == 1;
     }
@@ -53,8 +68,12 @@ class StepChoice {
   }
 
  private:
+  // So that the errors of 250 frames, with a margin, stay below 1e-6.
+  static constexpr double tolerance = 2.5e-7;
+
   TimeSteps steps_;
   int count_ = fewest;
+  double scale_ = 0;
   bool is_settled_ = false;
 };
 

@@ -198,6 +198,39 @@ void SpectralMotion::step(std::size_t part, int number, const SubStep& step, con
   plate_.kernels_.exact_step(parity, shifts, factors, view);
 }
 
+// The sizes of the state that begins the next step (0), or that the last one made (1).
+void SpectralMotion::measure(std::size_t part, int at) {
+  const auto [k, component] = parts_.part[part];
+  PartWork& work = work_[k][component];
+  const ParityView parity = plate_.view_of(k);
+  work.sizes.w[at] = plate_.kernels_.exact_size(parity, work.w[at]);
+  work.sizes.v[at] = plate_.kernels_.exact_size(parity, work.v[at]);
+  if (at == 1) work.sizes.doubt = plate_.kernels_.exact_size(parity, work.doubt);
+}
+
+// The steps after the first one. False: stopped.
+bool SpectralMotion::finish(int count, const SubStep& length, const Tables& tables) {
+  std::atomic<bool> is_stopped = false;
+  plate_.for_each(parts_.count, [&](std::size_t part) {
+    const auto [k, component] = parts_.part[part];
+    PartWork& work = work_[k][component];
+    for (int number = 1; number <= count; ++number) {
+      std::swap(work.w[0], work.w[1]);
+      std::swap(work.v[0], work.v[1]);
+      if (number == count) break;
+      if (is_stopped) return;
+      const bool asks = static_cast<std::size_t>(number) % parts_.count == part;
+      if (asks && context_.is_stopped()) {
+        is_stopped = true;
+        return;
+      }
+      step(part, number, length, tables, false);
+    }
+  });
+  counts_.solves += 2L * pole_count * (count - 1);
+  return !is_stopped;
+}
+
 bool SpectralMotion::is_kept(const ConstNodesView& load, int component) const {
   const KeptLoad& kept = kept_[component];
   if (!kept.is_kept) return false;
@@ -270,9 +303,12 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     plate_.is_still_[component] =
         plate_.is_still_[component] && plate_.is_zero(first_load, component);
   }
-  plate_.to_sines(view(displacement), &SpectralPlate::Parity::displacement);
-  plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
-  carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
+  const auto take_state = [&] {
+    plate_.to_sines(view(displacement), &SpectralPlate::Parity::displacement);
+    plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
+    carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
+  };
+  take_state();
   const bool grows = take_loads(first_load, last_load);
   parts_ = plate_.moving_parts();
   if (parts_.count == 0) return {};
@@ -288,54 +324,45 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
   }
 
   StepChoice choice(steps);
-  bool is_accepted = false;
-  while (!is_accepted) {
-    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
-    const SubStep first{choice.length()};
-    const auto tables = tables_for(first.length);
-    if (!tables) return fail(tables.error());
-    plate_.for_each(parts_.count, [&](std::size_t part) {
-      step(part, 0, first, **tables, true);
-      const auto [k, component] = parts_.part[part];
-      PartWork& work = work_[k][component];
-      const double* const measured[] = {work.doubt, work.w[0], work.w[1], work.v[0], work.v[1]};
-      for (int n = 0; n < 5; ++n) {
-        work.sizes[n] = plate_.kernels_.exact_size(plate_.view_of(k), measured[n]);
-      }
-    });
-    counts_.solves += 2 * pole_count;
-    double sizes[5] = {};
+  // The size of the motion in a state of all parts.
+  const auto size_of = [&](int at) {
+    double displacement = 0, speed = 0;
     for (std::size_t part = 0; part < parts_.count; ++part) {
       const auto [k, component] = parts_.part[part];
-      for (int n = 0; n < 5; ++n) sizes[n] += work_[k][component].sizes[n];
+      displacement += work_[k][component].sizes.w[at];
+      speed += work_[k][component].sizes.v[at];
     }
-    const double speed = dynamics.density > 0 ? std::sqrt(std::max(sizes[3], sizes[4])) : 0;
-    const double scale =
-        std::max(std::sqrt(std::max(sizes[1], sizes[2])), speed * steps.length / 2);
-    is_accepted = choice.accepts(std::sqrt(sizes[0]), scale);
+    const bool swings = dynamics.density > 0;
+    return size_of_motion(std::sqrt(displacement), swings ? std::sqrt(speed) : 0, steps.length);
+  };
+  for (bool is_done = false; !is_done;) {
+    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    const SubStep length{choice.length()};
+    const auto tables = tables_for(length.length);
+    if (!tables) return fail(tables.error());
+    plate_.for_each(parts_.count, [&](std::size_t part) {
+      step(part, 0, length, **tables, true);
+      measure(part, 0);
+      measure(part, 1);
+    });
+    counts_.solves += 2 * pole_count;
+    double squared_doubt = 0;
+    for (std::size_t part = 0; part < parts_.count; ++part) {
+      const auto [k, component] = parts_.part[part];
+      squared_doubt += work_[k][component].sizes.doubt;
+    }
+    const double doubt = std::sqrt(squared_doubt), before = size_of(0), after = size_of(1);
+    const bool looks_ahead = choice.looks_ahead(doubt, before, after);
+    if (!looks_ahead && !choice.accepts(doubt, std::max(before, after))) continue;
+    if (!finish(choice.count(), length, **tables)) {
+      return fail(ErrorCode::Interrupted, "interrupted");
+    }
+    is_done = true;
+    if (!looks_ahead) continue;
+    plate_.for_each(parts_.count, [&](std::size_t part) { measure(part, 0); });
+    is_done = choice.accepts(doubt, size_of(0));
+    if (!is_done) take_state();
   }
-  const SubStep length{choice.length()};
-  const auto tables = tables_for(length.length);
-  if (!tables) return fail(tables.error());
-  std::atomic<bool> is_stopped = false;
-  plate_.for_each(parts_.count, [&](std::size_t part) {
-    const auto [k, component] = parts_.part[part];
-    PartWork& work = work_[k][component];
-    for (int number = 1; number <= choice.count(); ++number) {
-      std::swap(work.w[0], work.w[1]);
-      std::swap(work.v[0], work.v[1]);
-      if (number == choice.count()) break;
-      if (is_stopped) return;
-      const bool asks = static_cast<std::size_t>(number) % parts_.count == part;
-      if (asks && context_.is_stopped()) {
-        is_stopped = true;
-        return;
-      }
-      step(part, number, length, **tables, false);
-    }
-  });
-  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
-  counts_.solves += 2L * pole_count * (choice.count() - 1);
   // Read where the last step put them.
   const auto exchange_places = [&] {
     for (std::size_t part = 0; part < parts_.count; ++part) {

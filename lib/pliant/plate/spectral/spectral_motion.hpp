@@ -41,7 +41,9 @@ class SpectralMotion {
     double* growth = nullptr;
     double* doubt = nullptr;
     double* lack = nullptr;
-    double sizes[5] = {};  // of the doubt, w, next w, v, next v
+    struct {
+      double w[2] = {}, v[2] = {}, doubt = 0;
+    } sizes;  // squared
   };
 
   // One component of a load and its transform, which the next interval begins with if the load is
@@ -60,6 +62,8 @@ class SpectralMotion {
   std::size_t carve(double* block);
   void step(std::size_t part, int number, const SubStep& step, const Tables& tables,
             bool has_doubt);
+  void measure(std::size_t part, int at);
+  bool finish(int count, const SubStep& length, const Tables& tables);
   Result<void> reserve(std::size_t tables);
 
   SpectralPlate& plate_;
