@@ -5,6 +5,8 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import path from "node:path";
 
+import { sweepPlotTests } from "./sweep_plot_tests.mjs";
+
 const scene = (attributes = "", grid = 'columns="13" rows="13"') => `<scene version="1" start="1" end="12"><surface name="sheet"><grid ${grid} width="10" depth="10"/>
   <material damping="5" ${attributes}/></surface><point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2.5" magnitude="900"/></scene>`;
 
@@ -41,6 +43,8 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
   const whole = (view) => view.waitForFunction(() => document.documentElement.dataset.whole === "true");
   const settled = (view) => view.evaluate(() => new Promise((resume) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resume, 50)))));
 
+  sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage, page, small, readsPixels, whole, settled });
+
   test("a sweep of a hundred takes is one page below 20 MB, ready in 2 s", async () => {
     const url = sweepPage("hundred", example("sheet"), ["sheet.damping=5:100:10:log", "sheet.density=1:4:10"]);
     const { size } = statSync(url.slice("file://".length));
@@ -52,7 +56,6 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
         if (attempt > 0) return;
         await whole(view);
         await readsPixels(view);
-      await readsPixels(view);
         // No picture is blank, and two at the ends of the sweep differ.
         const sums = await view.locator(".tile canvas").evaluateAll((canvases) => canvases.map((canvas) => {
           const data = window.pixelsOf(canvas);

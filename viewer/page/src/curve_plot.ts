@@ -245,10 +245,10 @@ function range(curves: Curve[], first: number, last: number): [number, number] {
 }
 
 /** At most four digits. */
-export function numberText(value: number): string {
+export function numberText(value: number, digits = 4): string {
   const size = Math.abs(value);
-  if (size !== 0 && (size >= 1e5 || size < 1e-3)) return value.toExponential(1).replace("e+", "e");
-  return String(Number(value.toPrecision(4)));
+  if (size !== 0 && (size >= Math.max(1e5, 10 ** digits) || size < 1e-3)) return value.toExponential(digits - 3).replace("e+", "e");
+  return String(Number(value.toPrecision(digits)));
 }
 
 /** At most seven digits. */

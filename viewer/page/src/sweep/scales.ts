@@ -2,7 +2,7 @@
 
 import { scaleLinear, scaleLog } from "d3-scale";
 
-import { numberText } from "../curve_plot";
+import { textsThat } from "./numbers";
 import type { Path } from "./sweep";
 
 export type ScaleChoice = "auto" | "linear" | "log";
@@ -15,14 +15,18 @@ export interface Axis {
 
 /** Whether a logarithm spreads the numbers more evenly: values at equal ratios, or over decades. */
 function spreadsByLog(sorted: number[]): boolean {
-  if (sorted.length < 3 || sorted[0] <= 0) return false;
+  if (sorted.length < 3 || !hasOneSign(sorted)) return false;
   const widest = (values: number[]) => {
     let gap = 0;
     for (let k = 1; k < values.length; ++k) gap = Math.max(gap, values[k] - values[k - 1]);
     return gap / (values[values.length - 1] - values[0]);
   };
-  return widest(sorted.map(Math.log)) < widest(sorted) / 1.5;
+  const sizes = sorted[0] > 0 ? sorted : sorted.map((value) => -value).reverse();
+  return widest(sizes.map(Math.log)) < widest(sizes) / 1.5;
 }
+
+/** Whether a logarithmic axis can have all of the numbers. */
+const hasOneSign = (sorted: ArrayLike<number>) => sorted[0] > 0 || sorted[sorted.length - 1] < 0;
 
 function numberAxis(low: number, high: number, isLog: boolean, isWhole: boolean): Axis {
   if (low === high) {
@@ -32,22 +36,36 @@ function numberAxis(low: number, high: number, isLog: boolean, isWhole: boolean)
   }
   // A margin, so that marks at the ends are whole.
   const margin = 0.04;
+  const spread = isLog ? Math.exp(margin * (Math.log(Math.abs(high)) - Math.log(Math.abs(low)))) : 1;
+  const inside = (value: number) => Math.sign(low) * Math.min(Math.max(Math.abs(value), Number.MIN_VALUE), Number.MAX_VALUE);
   const scale = isLog
-    ? scaleLog().domain([low * (low / high) ** margin, high * (high / low) ** margin])
+    ? scaleLog().domain([inside(low / spread), inside(high * spread)])
     : scaleLinear().domain([low - margin * (high - low), high + margin * (high - low)]);
   return {
     at: (value) => scale(value),
     ticks: (most) => {
-      let ticks = scale.ticks(most).filter((value) => !isWhole || Number.isInteger(value));
+      const ticksFor = (wanted: number) => scale.ticks(wanted).filter((value) => !isWhole || Number.isInteger(value));
+      let ticks = ticksFor(most);
+      // Round numbers stay round with fewer ticks: not every second of 0.5, 1, 1.5.
+      for (let wanted = most - 1; wanted > 0 && ticks.length > most && !isLog; --wanted) ticks = ticksFor(wanted);
       for (const leading of isLog ? ["125", "1"] : []) {
         if (ticks.length <= most) break;
-        const few = ticks.filter((value) => leading.includes(value.toExponential()[0]));
+        const few = ticks.filter((value) => leading.includes(value.toExponential().replace("-", "")[0]));
         if (few.length >= 2) ticks = few;
       }
       const every = Math.ceil(ticks.length / Math.max(most, 1));
-      return ticks.filter((_, k) => k % every === 0).map((value) => ({ at: scale(value), text: numberText(value) }));
+      const few = ticks.filter((_, k) => k % every === 0);
+      const texts = tickTexts(few);
+      return few.map((value, k) => ({ at: scale(value), text: texts[k] }));
     },
   };
+}
+
+/** With as many digits as say where the ticks are; a tick may be off by rounding. */
+function tickTexts(ticks: number[]): string[] {
+  const size = ticks.reduce((most, tick) => Math.max(most, Math.abs(tick)), 0);
+  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : size;
+  return textsThat(ticks, (texts) => texts.every((text, k) => Math.abs(Number(text) - ticks[k]) <= Math.max(1e-3 * Math.min(step, Math.abs(ticks[k]) || step), 1e-12 * Math.abs(ticks[k]))));
 }
 
 function textAxis(texts: string[]): Axis {
@@ -66,7 +84,7 @@ export function pathAxis(path: Path, choice: ScaleChoice): Axis {
   const { numbers, shortTexts } = path;
   if (!numbers) return textAxis(shortTexts);
   const sorted = [...new Set(numbers)].sort((a, b) => a - b);
-  const isLog = choice === "log" ? sorted[0] > 0 : choice === "auto" && spreadsByLog(sorted);
+  const isLog = choice === "log" ? hasOneSign(sorted) : choice === "auto" && spreadsByLog(sorted);
   return numberAxis(sorted[0], sorted[sorted.length - 1], isLog, false);
 }
 

@@ -2,7 +2,7 @@
 // layout. A row is a take of the table on this page, which may have only some of all takes.
 
 import { split, unfolded, type ArrayPlace, type Vector } from "../bake";
-import { numberText } from "../curve_plot";
+import { distinctTexts } from "./numbers";
 
 interface TextsHead {
   texts: string[];
@@ -57,7 +57,7 @@ export interface Path extends Texts {
   name: string;
   /** Of each text; null: some are no numbers. */
   numbers: number[] | null;
-  /** Each text, short enough to read at a glance: a number with four digits, of files their names if these differ. */
+  /** Each text, short enough to read at a glance: a number with four digits or as many as tell it from the others, of files their names if these differ. */
   shortTexts: string[];
 }
 
@@ -132,7 +132,7 @@ export class Sweep {
     this.paths = table.paths.map(({ texts, rows }, k) => {
       const numbers = texts.every((text) => numberPattern.test(text)) ? texts.map(Number) : null;
       const ends = texts.map((text) => text.split("/").pop() || text);
-      const shortTexts = numbers ? numbers.map(numberText) : new Set(ends).size === texts.length ? ends : texts;
+      const shortTexts = numbers ? distinctTexts(numbers) : new Set(ends).size === texts.length ? ends : texts;
       return { title: head.paths[k], name: names[k], texts, rows: whole(rows), numbers, shortTexts };
     });
     this.measures = measureNames.map((name) => {
@@ -230,7 +230,11 @@ export const shortText = ({ shortTexts, rows }: Path, row: number) => shortTexts
 
 /** With six digits, as the command's summaries. */
 export function measureText({ values }: Measure, row: number): string {
-  return Number.isNaN(values[row]) ? "" : String(Number(values[row].toPrecision(6)));
+  const value = values[row];
+  if (Number.isNaN(value)) return "";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e6 || size < 1e-4)) return Number(value.toPrecision(6)).toExponential().replace("e+", "e");
+  return String(Number(value.toPrecision(6)));
 }
 
 /** The command that writes a take. */

@@ -1,0 +1,37 @@
+// Tests of what the page of a sweep says: numbers, axes, colours, reasons; a part of
+// sweep_tests.mjs.
+
+import assert from "node:assert/strict";
+
+export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage, page, small, readsPixels, whole, settled }) {
+  test("texts of values and ticks tell them apart", async () => {
+    const url = sweepPage("apart", small("apart"), ["sheet.damping=1000.01,1000.02,1000.03", "scene.seed=1000001..1000003", "poke.magnitude=0.5:2.5:5"]);
+    await withPage(url, {}, async (view) => {
+      assert.deepEqual(await view.evaluate(() => window.pliant.sweep.paths.map(({ shortTexts }) => shortTexts)), [
+        ["1000.01", "1000.02", "1000.03"], ["1000001", "1000002", "1000003"], ["0.5", "1", "1.5", "2", "2.5"]]);
+      for (const most of [2, 3, 4, 5, 8]) {
+        const axes = await view.evaluate((count) => window.pliant.plots.plots.map(({ spec }) => ["xAxis", "yAxis"].map((axis) =>
+          spec[axis].ticks(count).map(({ at, text }) => [at, Number(text)]))).flat(), most);
+        for (const ticks of axes) {
+          assert.ok(ticks.length > 0 && ticks.length <= most, `${ticks.length} of ${most}`);
+          // Places and numbers have one ratio.
+          for (let k = 2; k < ticks.length; ++k) near((ticks[k][1] - ticks[0][1]) / (ticks[1][1] - ticks[0][1]), (ticks[k][0] - ticks[0][0]) / (ticks[1][0] - ticks[0][0]), 1e-2, `${ticks}`);
+        }
+      }
+      // Fewer ticks are rounder ones.
+      assert.deepEqual(await view.evaluate(() => window.pliant.plots.plots[2].spec.xAxis.ticks(3).map(({ text }) => text)), ["1", "2"]);
+      assert.deepEqual(await view.locator(".tile .line b").evaluateAll((all) => all.slice(0, 2).map(({ textContent }) => textContent)), ["1000.01", "1000001"]);
+    });
+  });
+
+  test("values below zero at equal ratios have a logarithmic axis, and extreme ones an axis at all", async () => {
+    const url = sweepPage("negative", small("negative"), ["poke.magnitude=-1:-1000:4:log", "sheet.damping=1e-300,1e-150,1,1e10"]);
+    await withPage(url, {}, async (view) => {
+      const places = await view.evaluate(() => window.pliant.plots.plots.slice(0, 2).map(({ spec }, k) => [...new Set(spec.x)].map((value) => spec.xAxis.at(value))));
+      for (const each of places) for (const place of each) assert.ok(place > 0 && place < 1, `${place}`);
+      const [first, ...rest] = places[0];
+      rest.forEach((place, k) => near(place - first, (k + 1) * (rest[0] - first), 1e-9, "a step"));
+      assert.ok(first > 0.9);
+    });
+  });
+}
