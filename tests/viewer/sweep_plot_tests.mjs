@@ -34,4 +34,23 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       assert.ok(first > 0.9);
     });
   });
+
+  test("a take that burst hides no other, wherever it is in the sweep", async () => {
+    const url = sweepPage("burst", small("burst"), ["poke.magnitude=1e15,800,900,1000"]);
+    await withPage(url, {}, async (view) => {
+      assert.match(await view.locator("#sheet-note").textContent(), /1 take so much larger than the rest is not fitted/);
+      const [giant, ...others] = await view.evaluate(() => window.pliant.sweep.shapes.map(({ mostDisplaced }) => mostDisplaced));
+      assert.ok(giant > 1e6);
+      near(await view.evaluate(() => window.pliant.studio.peak), Math.max(...others), 0, "the top colour");
+      await whole(view);
+      await readsPixels(view);
+      const bright = await view.locator(".tile canvas").evaluateAll((canvases) => canvases.map((canvas) => {
+        const data = window.pixelsOf(canvas);
+        let count = 0;
+        for (let k = 0; k < data.length; k += 4) count += data[k] > data[k + 2] + 40 ? 1 : 0; // yellow
+        return count;
+      }));
+      for (const count of bright.slice(1)) assert.ok(count > 50, `${bright}`);
+    });
+  });
 }

@@ -40,7 +40,7 @@ function summaryOf({ head }: Sweep): string {
 }
 
 /** What the pictures do not show. */
-function sheetNote(sweep: Sweep, studio: Studio): string {
+function sheetNote(sweep: Sweep): string {
   const notes: string[] = [];
   const { head, shapes } = sweep;
   if (shapes.length === 0) notes.push("No take is done that could be shown.");
@@ -50,7 +50,8 @@ function sheetNote(sweep: Sweep, studio: Studio): string {
     const [one] = coarse;
     notes.push(`${coarse.length === shapes.length ? "Meshes are" : `${coarse.length} meshes are`} drawn coarser than they are, take ${sweep.takes[one.row]} with ${one.shown.toLocaleString("en")} of ${one.vertices.toLocaleString("en")} vertices.`);
   }
-  if (studio.outsiders > 0) notes.push(`${counted(studio.outsiders, "take")} so much larger than the rest ${studio.outsiders === 1 ? "is" : "are"} not fitted into the pictures.`);
+  const giants = shapes.filter(({ isGiant }) => isGiant).length;
+  if (giants > 0) notes.push(`${counted(giants, "take")} so much larger than the rest ${giants === 1 ? "is" : "are"} not fitted into the pictures and the colours.`);
   return notes.join(" ");
 }
 
@@ -66,7 +67,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   const table = new TakeTable(element("table"), sweep, pointing);
   const plots = new PlotGrid(element("plots"), element("plots-note"), sweep, pointing, themes);
   const note = element<HTMLElement>("sheet-note");
-  note.textContent = sheetNote(sweep, studio);
+  note.textContent = sheetNote(sweep);
   note.hidden = note.textContent === "";
   showMessages(element("messages"), sweep.head.failures.map(({ take, text }) => ({ kind: "error", line: 0, text: `take ${take} has no picture: ${text}` })));
   element("table-note").textContent = sweep.hasAllTakes ? "" : `${sweep.rowCount.toLocaleString("en")} of ${counted(sweep.head.takes, "take")}, evenly spread; takes.csv has all.`;

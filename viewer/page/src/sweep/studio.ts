@@ -9,9 +9,6 @@ import { paintNumbers, sizeOf, surfaceMaterial, turnNormals } from "../surface_l
 import type { Palette } from "../theme";
 import type { Sweep, TakeShape } from "./sweep";
 
-/** Takes whose box is larger than this many times the middle one are left out of the fit. */
-const farOut = 8;
-
 interface TakeMesh {
   mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   displaced: Float32Array;
@@ -20,8 +17,6 @@ interface TakeMesh {
 }
 
 export class Studio {
-  /** How many takes reach out of the picture. */
-  readonly outsiders: number;
   private readonly canvas = document.createElement("canvas");
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
@@ -41,15 +36,12 @@ export class Studio {
     // Otherwise the page waits for the shaders, which are those of the viewer.
     this.renderer.debug.checkShaderErrors = false;
     light(this.scene, this.camera);
-    const boxes = sweep.shapes.map(({ low, high }) => new THREE.Box3(new THREE.Vector3(...low), new THREE.Vector3(...high)));
-    const sizes = boxes.map((box) => box.getSize(new THREE.Vector3()).length());
-    const middle = [...sizes].sort((a, b) => a - b)[Math.floor((sizes.length - 1) / 2)] ?? 0;
-    const inside = boxes.filter((_, k) => sizes[k] <= farOut * middle);
-    this.outsiders = boxes.length - inside.length;
-    for (const box of inside) this.box.union(box);
+    // Giants reach out of the picture, and have the top colour.
+    const fitted = sweep.shapes.filter(({ isGiant }) => !isGiant);
+    for (const { low, high } of fitted) this.box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
     if (this.box.isEmpty()) this.box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
     bound(this.camera, this.box);
-    this.largest = Math.max(0, ...sweep.shapes.map(({ mostDisplaced }) => mostDisplaced));
+    this.largest = Math.max(0, ...fitted.map(({ mostDisplaced }) => mostDisplaced));
   }
 
   /** The number of the top colour. */
@@ -57,7 +49,7 @@ export class Studio {
     return this.chosenPeak ?? this.largest;
   }
 
-  /** null: the largest displacement of all takes. */
+  /** null: the largest displacement of the takes that are fitted into the pictures. */
   setPeak(peak: number | null): void {
     this.chosenPeak = peak;
   }

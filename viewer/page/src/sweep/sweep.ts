@@ -82,7 +82,12 @@ export interface TakeShape {
   mesh: number;
   low: Vector;
   high: Vector;
+  /** It is so much larger than the others that these would be dots beside it. */
+  isGiant: boolean;
 }
+
+/** A take is a giant if its box is larger than this many times that of the middle take. */
+const giantSize = 8;
 
 export const states = ["missing", "failed", "done"] as const;
 
@@ -109,7 +114,7 @@ export class Sweep {
   readonly measures: Measure[];
   readonly errors: Texts;
   readonly shapes: TakeShape[];
-  /** A point amid all shapes, world space. */
+  /** A point amid the shapes, giants not counted, world space. */
   readonly origin: Vector = [0, 0, 0];
   private readonly status: Uint8Array;
   private readonly hashes: Uint8Array;
@@ -144,8 +149,9 @@ export class Sweep {
       return { name, values: Float64Array.from(stored, (value, row) => (this.isDone(row) ? value : NaN)) };
     });
     const meshes = head.shapes.meshes.map((place) => joined(whole(place)));
-    const middle = head.shapes.takes[0]?.origin;
-    if (middle) this.origin = middle;
+    const sizeOf = ({ low, high }: ShapeHead) => Math.hypot(...high.map((each, k) => each - low[k]));
+    const middle = [...head.shapes.takes].sort((a, b) => sizeOf(a) - sizeOf(b))[Math.floor((head.shapes.takes.length - 1) / 2)];
+    if (middle) this.origin = middle.origin;
     this.shapes = head.shapes.takes.map((shape): TakeShape => {
       const relative = (place: Vector) => place.map((each, k) => each - this.origin[k]) as Vector;
       return {
@@ -169,6 +175,7 @@ export class Sweep {
         mesh: shape.mesh,
         low: relative(shape.low),
         high: relative(shape.high),
+        isGiant: sizeOf(shape) > giantSize * sizeOf(middle),
       };
     });
     for (const shape of this.shapes) this.shapeOf.set(shape.row, shape);
