@@ -69,8 +69,10 @@ Result<void> check_view_places(const SweepViewOptions& options) {
 struct SheetPicture {
   viewer::PictureSize tile;
   int columns = 1;
-  int label = 0;   // height of the text below each take [px]
-  int strip = 76;  // height of the colours' scale [px]
+  int text = 0;   // size of the letters [px]
+  int line = 0;   // height of a line of text [px]
+  int label = 0;  // height of the text below each take [px]
+  int strip = 0;  // height of the colours' scale [px]
   viewer::PictureSize whole = {};
 };
 
@@ -90,9 +92,13 @@ Result<SheetPicture> sheet_picture(const SweepViewOptions& options, const SweepF
   const double shape = static_cast<double>(tile->height) / tile->width;
   picture.columns =
       std::clamp(static_cast<int>(std::ceil(std::sqrt(1.3 * count * shape))), 1, count);
-  picture.label = 26 + 17 * static_cast<int>(std::min(varied, most_lines));
+  picture.text = std::clamp((tile->width + 12) / 25, 11, 48);
+  picture.line = (13 * picture.text + 5) / 10;
+  picture.label = 2 * picture.text + picture.line * static_cast<int>(std::min(varied, most_lines));
+  picture.strip = 6 * picture.text;
   const int rows = (count + picture.columns - 1) / picture.columns;
-  picture.whole = {picture.columns * tile->width,
+  // The scale of the colours is 15 letters wide, and has margins.
+  picture.whole = {std::max(picture.columns * tile->width, 18 * picture.text),
                    rows * (tile->height + picture.label) + picture.strip};
   if (std::max(picture.whole.width, picture.whole.height) <= longest_side) return picture;
   return fail(ErrorCode::InvalidInput,
@@ -108,8 +114,10 @@ Result<std::string> take_sheet(const SheetPicture& picture, const std::string& l
   taker->order({{"width", picture.tile.width},
                 {"height", picture.tile.height},
                 {"columns", picture.columns},
+                {"whole", {picture.whole.width, picture.whole.height}},
+                {"text", picture.text},
+                {"line", picture.line},
                 {"label", picture.label},
-                {"strip", picture.strip},
                 {"look", look}},
                picture.whole);
   return taker->take();

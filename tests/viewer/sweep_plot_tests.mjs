@@ -2,6 +2,25 @@
 // sweep_tests.mjs.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+
+/** The pixels of a PNG, and its size. */
+async function pixelsOfPng(view, png) {
+  const { data, ...size } = await view.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let text = "";
+    for (let k = 0; k < data.length; k += 1 << 14) text += String.fromCharCode(...data.subarray(k, k + (1 << 14)));
+    return { width: image.width, height: image.height, data: text };
+  }, png.toString("base64"));
+  return { ...size, data: Buffer.from(data, "latin1") };
+}
 
 export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage, page, small, readsPixels, whole, settled }) {
   test("texts of values and ticks tell them apart", async () => {
@@ -51,6 +70,32 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
         return count;
       }));
       for (const count of bright.slice(1)) assert.ok(count > 50, `${bright}`);
+    });
+  });
+
+  test("a picture of small takes has all of its scale, and one of large takes has large letters", async () => {
+    const url = sweepPage("lettered", small("lettered"), ["poke.magnitude=900"]);
+    await withPage(url, {}, async (view) => {
+      const inks = {};
+      for (const side of [32, 100, 1200]) {
+        run("sweep", "view", "lettered", "--png", inFolder("lettered.png"), "--size", `${side}x${side}`, "--quiet");
+        const { width, height, data } = await pixelsOfPng(view, readFileSync(inFolder("lettered.png")));
+        const at = (x, y) => [...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3)];
+        const text = side < 1000 ? 11 : 48;
+        assert.deepEqual([width, height], [Math.max(side, 18 * text), side + 2 * text + (side < 1000 ? 14 : 62) + 6 * text]);
+        // Both ends of the scale, and nothing in the margin.
+        const inRow = (x, colour) => Array.from({ length: 6 * text }, (_, k) => at(x, height - 1 - k)).filter((each) => each.every((part, k) => Math.abs(part - colour[k]) < 12)).length;
+        assert.ok(inRow(text + 1, [0x68, 0x77, 0x8c]) > 4, `the low end at ${side}`);
+        assert.ok(inRow(16 * text - 2, [0xff, 0xe0, 0x8a]) > 4, `the high end at ${side}`);
+        for (let k = 0; k < 6 * text; ++k) assert.deepEqual(at(width - 1, height - 1 - k), [255, 255, 255]);
+        // The rows that the number of the take has.
+        let [first, last] = [Infinity, -1];
+        for (let y = side; y < side + 2 * text; ++y) {
+          for (let x = 0; x < Math.min(side, 3 * text) - 1; ++x) if (at(x, y)[0] < 90) [first, last] = [Math.min(first, y), y];
+        }
+        inks[side] = last - first + 1;
+      }
+      assert.ok(inks[100] >= 7 && inks[100] <= 11 && inks[1200] > 3 * inks[100], JSON.stringify(inks));
     });
   });
 }

@@ -393,8 +393,8 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
     assert.ok(statSync(inFolder("both.html")).size > 500_000);
     const png = readFileSync(inFolder("sheet.png"));
     const [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)];
-    // Three columns, two rows with 60 pixels for a number and two values, 76 for the colours.
-    assert.deepEqual([width, height], [3 * 200, 2 * (150 + 60) + 76]);
+    // Three columns, two rows with 50 pixels for a number and two values, 66 for the colours.
+    assert.deepEqual([width, height], [3 * 200, 2 * (150 + 50) + 66]);
     await withPage(`file://${inFolder("both.html")}`, {}, async (view) => {
       const colours = await view.evaluate(async (base64) => {
         const image = new Image();
@@ -405,8 +405,8 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
         const context = canvas.getContext("2d", { willReadFrequently: true });
         context.drawImage(image, 0, 0);
         const count = (...box) => new Set(new Uint32Array(context.getImageData(...box).data.buffer)).size;
-        const tiles = [0, 1, 2, 3, 4, 5].map((k) => [count((k % 3) * 200, Math.floor(k / 3) * 210, 199, 150), count((k % 3) * 200, Math.floor(k / 3) * 210 + 150, 200, 60)]);
-        return { tiles, strip: count(0, 420, 250, 76) };
+        const tiles = [0, 1, 2, 3, 4, 5].map((k) => [count((k % 3) * 200, Math.floor(k / 3) * 200, 199, 150), count((k % 3) * 200, Math.floor(k / 3) * 200 + 150, 200, 50)]);
+        return { tiles, strip: count(0, 400, 250, 66) };
       }, png.toString("base64"));
       for (const [picture, words] of colours.tiles) assert.ok(picture > 200 && words > 10, `${picture}, ${words}`);
       assert.ok(colours.strip > 100);

@@ -32,6 +32,9 @@ function legendOf(studio: Studio): Legend {
   };
 }
 
+/** The last part of the folder's name. */
+const nameOf = ({ head }: Sweep) => head.folder.replace(/\/+$/, "").split("/").pop() || head.folder;
+
 function summaryOf({ head }: Sweep): string {
   const missing = head.takes - head.done - head.failed;
   return [counted(head.takes, "take"), `${head.done.toLocaleString("en")} done`, head.failed > 0 ? `${head.failed.toLocaleString("en")} failed` : "", missing > 0 ? `${missing.toLocaleString("en")} missing` : ""]
@@ -56,7 +59,7 @@ function sheetNote(sweep: Sweep): string {
 }
 
 function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet } {
-  const name = sweep.head.folder.replace(/\/+$/, "").split("/").pop() || sweep.head.folder;
+  const name = nameOf(sweep);
   document.title = `${name} – pliant`;
   element("sweep-name").textContent = name;
   element("summary").textContent = summaryOf(sweep);
@@ -191,7 +194,7 @@ async function sendPictures(): Promise<void> {
     themes.choose(look.theme);
     studio.look(look.turn, look.tilt);
     if (look.peak !== undefined && look.peak > 0) studio.setPeak(look.peak);
-    return drawSheet(sweep, studio, legendOf(studio), themes.palette, order);
+    return drawSheet(sweep, studio, legendOf(studio), `${nameOf(sweep)}: ${summaryOf(sweep)}`, themes.palette, order);
   });
 }
 

@@ -139,12 +139,14 @@ function line(context: CanvasRenderingContext2D, x0: number, y0: number, x1: num
   context.globalAlpha = 1;
 }
 
-/** The text, with its end left out if there is no room. [px] */
+/** The text, with some of its middle left out if there is no room: names often differ at the end. [px] */
 export function cut(context: CanvasRenderingContext2D, text: string, room: number): string {
   if (context.measureText(text).width <= room) return text;
-  let end = text.length - 1;
-  while (end > 1 && context.measureText(`${text.slice(0, end)}…`).width > room) --end;
-  return `${text.slice(0, end)}…`;
+  const letters = [...text];
+  const shortened = (count: number) => `${letters.slice(0, Math.ceil(count / 2)).join("")}…${letters.slice(letters.length - Math.floor(count / 2)).join("")}`;
+  let count = letters.length - 1;
+  while (count > 1 && context.measureText(shortened(count)).width > room) --count;
+  return shortened(count);
 }
 
 /** Rows that are joined by lines, in one colour. */
