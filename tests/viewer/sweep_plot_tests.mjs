@@ -98,4 +98,28 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       assert.ok(inks[100] >= 7 && inks[100] <= 11 && inks[1200] > 3 * inks[100], JSON.stringify(inks));
     });
   });
+
+  test("a browser without WebGL shows plots and table", async () => {
+    const url = sweepPage("blind", small("blind"), ["poke.magnitude=100,900", "sheet.damping=1,5"]);
+    const before = () => {
+      const { getContext } = HTMLCanvasElement.prototype;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+        return kind.includes("webgl") ? null : getContext.call(this, kind, ...more);
+      };
+    };
+    await withPage(url, { before, height: 900 }, async (view) => {
+      assert.match(await view.locator("#sheet-note").textContent(), /cannot draw the takes, since it has no WebGL 2/);
+      assert.equal(await view.locator(".tile canvas").first().isVisible(), false);
+      assert.equal(await view.locator("#legend").isVisible(), false);
+      await view.locator(".tile").nth(3).click();
+      assert.equal(await view.locator("#details .picture").isVisible(), false);
+      assert.match(await view.locator("#details code").textContent(), / 3 -o take3\.glb$/);
+      assert.equal(await view.locator("#table tr.kept td").first().textContent(), "3");
+      await readsPixels(view);
+      await view.locator(".plot").first().scrollIntoViewIfNeeded();
+      await settled(view);
+      const colours = await view.locator(".plot canvas").first().evaluate((canvas) => new Set(new Uint32Array(window.pixelsOf(canvas).buffer)).size);
+      assert.ok(colours > 20, `${colours} colours`);
+    });
+  });
 }

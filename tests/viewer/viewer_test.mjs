@@ -61,10 +61,11 @@ const browser = await chromium.launch({
 /**
  * Opens a page and checks that it is silent: nothing in its console, no requests to other servers.
  */
-async function open(url, { width = 900, height = 600, ...options } = {}) {
+async function open(url, { width = 900, height = 600, before, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: "dark", ...options });
   const page = await context.newPage();
   page.setDefaultTimeout(120_000); // the machine may be busy
+  if (before) await page.addInitScript(before); // runs ahead of the page
   page.complaints = [];
   page.on("pageerror", (error) => page.complaints.push(String(error)));
   page.on("console", (message) => {

@@ -35,6 +35,7 @@ export class ContactSheet {
     this.tiles = sweep.shapes.map((shape) => this.tile(shape));
     this.tiles.forEach((tile) => this.tileOf.set(tile.shape.row, tile));
     place.replaceChildren(...this.tiles.map(({ element }) => element));
+    place.classList.toggle("blind", !studio.canDraw);
     new ResizeObserver(() => this.redraw()).observe(place);
     const dress = () => {
       studio.colour(themes.palette);

@@ -27,8 +27,9 @@ export class Details {
   draw(): void {
     const { row } = this.pointing;
     const shape = row === null ? undefined : this.sweep.shape(row);
-    this.canvas.hidden = shape === undefined;
-    if (!shape) return;
+    const isSeen = shape !== undefined && this.studio.canDraw;
+    this.canvas.hidden = !isSeen;
+    if (!isSeen) return;
     const box = this.canvas.getBoundingClientRect();
     if (box.width === 0) return;
     const ratio = Math.min(devicePixelRatio, 2);

@@ -43,7 +43,8 @@ function summaryOf({ head }: Sweep): string {
 }
 
 /** What the pictures do not show. */
-function sheetNote(sweep: Sweep): string {
+function sheetNote(sweep: Sweep, studio: Studio): string {
+  if (!studio.canDraw) return "This browser cannot draw the takes, since it has no WebGL 2. Plots and table need none.";
   const notes: string[] = [];
   const { head, shapes } = sweep;
   if (shapes.length === 0) notes.push("No take is done that could be shown.");
@@ -70,13 +71,13 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   const table = new TakeTable(element("table"), sweep, pointing);
   const plots = new PlotGrid(element("plots"), element("plots-note"), sweep, pointing, themes);
   const note = element<HTMLElement>("sheet-note");
-  note.textContent = sheetNote(sweep);
+  note.textContent = sheetNote(sweep, studio);
   note.hidden = note.textContent === "";
   showMessages(element("messages"), sweep.head.failures.map(({ take, text }) => ({ kind: "error", line: 0, text: `take ${take} has no picture: ${text}` })));
   element("table-note").textContent = sweep.hasAllTakes ? "" : `${sweep.rowCount.toLocaleString("en")} of ${counted(sweep.head.takes, "take")}, evenly spread; takes.csv has all.`;
 
   const redrawTakes = () => {
-    showLegend(element("legend"), sweep.shapes.length > 0 ? legendOf(studio) : null);
+    showLegend(element("legend"), sweep.shapes.length > 0 && studio.canDraw ? legendOf(studio) : null);
     sheet.redraw();
     details.draw();
   };
@@ -189,6 +190,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
 async function sendPictures(): Promise<void> {
   const sweep = new Sweep(await inflate(await fetchPacked()));
   const studio = new Studio(sweep);
+  if (!studio.canDraw) throw new Error("the browser has no WebGL 2");
   await answerOrders<SheetJob>((order) => {
     const look = { theme: "light" as const, ...defined(readLook(order.look)) };
     themes.choose(look.theme);

@@ -18,7 +18,8 @@ interface TakeMesh {
 
 export class Studio {
   private readonly canvas = document.createElement("canvas");
-  private readonly renderer: THREE.WebGLRenderer;
+  /** null: the browser has no WebGL 2. */
+  private readonly renderer: THREE.WebGLRenderer | null;
   private readonly scene = new THREE.Scene();
   private readonly camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
   private readonly material = surfaceMaterial();
@@ -32,9 +33,10 @@ export class Studio {
   private tilted: number | undefined;
 
   constructor(sweep: Sweep) {
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    const context = this.canvas.getContext("webgl2", { antialias: true });
+    this.renderer = context && new THREE.WebGLRenderer({ canvas: this.canvas, context });
     // Otherwise the page waits for the shaders, which are those of the viewer.
-    this.renderer.debug.checkShaderErrors = false;
+    if (this.renderer) this.renderer.debug.checkShaderErrors = false;
     light(this.scene, this.camera);
     // Giants reach out of the picture, and have the top colour.
     const fitted = sweep.shapes.filter(({ isGiant }) => !isGiant);
@@ -42,6 +44,10 @@ export class Studio {
     if (this.box.isEmpty()) this.box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
     bound(this.camera, this.box);
     this.largest = Math.max(0, ...fitted.map(({ mostDisplaced }) => mostDisplaced));
+  }
+
+  get canDraw(): boolean {
+    return this.renderer !== null;
   }
 
   /** The number of the top colour. */
@@ -74,8 +80,9 @@ export class Studio {
     this.look(nowTurned + turn, Math.min(Math.max(nowTilted + tilt, -89), 89));
   }
 
-  /** Draws a take into a rectangle of a canvas. [px of the canvas] */
+  /** Draws a take into a rectangle of a canvas; nothing if it cannot draw. [px of the canvas] */
   draw(shape: TakeShape, context: CanvasRenderingContext2D, left: number, top: number, width: number, height: number): void {
+    if (!this.renderer) return;
     if (this.canvas.width !== width || this.canvas.height !== height) this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
