@@ -2,7 +2,7 @@
 // sweep_tests.mjs.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 
 /** The pixels of a PNG, and its size. */
 async function pixelsOfPng(view, png) {
@@ -120,6 +120,28 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       await settled(view);
       const colours = await view.locator(".plot canvas").first().evaluate((canvas) => new Set(new Uint32Array(window.pixelsOf(canvas).buffer)).size);
       assert.ok(colours > 20, `${colours} colours`);
+    });
+  });
+
+  test("takes that failed are told with their reasons, the most frequent first", async () => {
+    const url = sweepPage("reasons", small("reasons"), ["sheet.c=-5,0,-6", "poke.magnitude=1,2,1e200"], { code: 1 });
+    await withPage(url, { width: 820 }, async (view) => {
+      assert.deepEqual(await view.locator("#messages .message").evaluateAll((all) => all.map((each) => each.querySelector("span").textContent.replace(/:.*(c is|peak)/, ": $1").replace(/, but.*/, ""))),
+        ["take 0 and 2 more failed: c is -5", "take 6 and 2 more failed: c is -6", "take 5 failed: peak is too large for a number"]);
+      // How many there are is in the head of a narrow window too.
+      const summary = view.locator("#summary");
+      assert.equal(await summary.textContent(), "9 takes · 2 done · 7 failed");
+      assert.ok(await summary.evaluate((element) => element.clientWidth > 0 && element.scrollWidth <= element.clientWidth));
+      // Those without a picture are told once, not each.
+      run("sweep", "run", inFolder("reasons.xml"), "-o", inFolder("unseen"), "--vary", "sheet.damping=1..5", "--quiet");
+      const log = readdirSync(inFolder("unseen/log")).map((name) => inFolder(`unseen/log/${name}`));
+      for (const file of log) writeFileSync(file, readFileSync(file, "utf8").replace(/"peak":[^,]*/g, '"peak":0.5'));
+    });
+    await withPage(page("unseen", [], 1), {}, async (view) => {
+      const texts = await view.locator("#messages .message.error span").allTextContents();
+      assert.equal(texts.length, 4);
+      assert.match(texts[0], /^take 0 has no picture: its peak is /);
+      assert.equal(texts[3], "takes have no picture for 2 more reasons; point at one to see it");
     });
   });
 }

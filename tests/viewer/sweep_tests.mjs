@@ -21,9 +21,14 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
     }
     return page(name, viewOptions);
   }
-  function page(name, options = []) {
+  function page(name, options = [], code = 0) {
     const out = inFolder(`${name.replace(/\W/g, "")}.html`);
-    run("sweep", "view", name, "-o", out, "--quiet", ...options); // the name as typed: relative to the folder
+    try {
+      run("sweep", "view", name, "-o", out, "--quiet", ...options); // the name as typed: relative to the folder
+      assert.equal(code, 0);
+    } catch (error) {
+      assert.equal(error.status, code);
+    }
     return `file://${out}`;
   }
   function small(name, attributes, grid) {

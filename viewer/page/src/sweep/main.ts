@@ -1,6 +1,6 @@
 // The page of a sweep: pictures of takes, plots of measures, the table; and what connects them.
 
-import { bytesOf, inflate } from "../bake";
+import { bytesOf, inflate, type Message } from "../bake";
 import { element } from "../element";
 import { showLegend, titles, type Legend } from "../legend";
 import { fetchPacked } from "../live";
@@ -59,11 +59,38 @@ function sheetNote(sweep: Sweep, studio: Studio): string {
   return notes.join(" ");
 }
 
+const mostReasons = 3;
+
+/** Why takes have no picture or failed, the most frequent reasons first. */
+function failuresOf(sweep: Sweep): Message[] {
+  const { head, takes } = sweep;
+  const messages: Message[] = [];
+  const add = (kind: Message["kind"], failures: [take: number, text: string][], what: [one: string, more: string], hasAll: boolean) => {
+    const takesOf = new Map<string, number[]>();
+    for (const [take, text] of failures) {
+      const same = takesOf.get(text);
+      if (same) same.push(take);
+      else takesOf.set(text, [take]);
+    }
+    const reasons = [...takesOf].sort(([, a], [, b]) => b.length - a.length);
+    for (const [text, [first, ...more]] of reasons.slice(0, mostReasons)) {
+      const count = more.length === 0 ? "" : ` and ${hasAll ? "" : "at least "}${more.length.toLocaleString("en")} more`;
+      messages.push({ kind, line: 0, text: `take ${first}${count} ${what[more.length === 0 ? 0 : 1]}: ${text}` });
+    }
+    if (reasons.length > mostReasons) messages.push({ kind, line: 0, text: `takes ${what[1]} for ${counted(reasons.length - mostReasons, "more reason")}; point at one to see it` });
+  };
+  add("error", head.failures.map(({ take, text }) => [take, text]), ["has no picture", "have no picture"], true);
+  const failed = [...takes.keys()].filter((row) => sweep.stateOf(row) === "failed");
+  add("warning", failed.map((row) => [takes[row], sweep.errorOf(row)]), ["failed", "failed"], sweep.hasAllTakes);
+  return messages;
+}
+
 function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet } {
   const name = nameOf(sweep);
   document.title = `${name} – pliant`;
   element("sweep-name").textContent = name;
-  element("summary").textContent = summaryOf(sweep);
+  const summary = element<HTMLElement>("summary");
+  summary.textContent = summary.title = summaryOf(sweep);
   const studio = new Studio(sweep);
   const pointing = new Pointing();
   const details = new Details(element("details"), sweep, studio, pointing, themes);
@@ -73,7 +100,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   const note = element<HTMLElement>("sheet-note");
   note.textContent = sheetNote(sweep, studio);
   note.hidden = note.textContent === "";
-  showMessages(element("messages"), sweep.head.failures.map(({ take, text }) => ({ kind: "error", line: 0, text: `take ${take} has no picture: ${text}` })));
+  showMessages(element("messages"), failuresOf(sweep));
   element("table-note").textContent = sweep.hasAllTakes ? "" : `${sweep.rowCount.toLocaleString("en")} of ${counted(sweep.head.takes, "take")}, evenly spread; takes.csv has all.`;
 
   const redrawTakes = () => {
