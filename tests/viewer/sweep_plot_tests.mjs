@@ -144,4 +144,69 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       assert.equal(texts[3], "takes have no picture for 2 more reasons; point at one to see it");
     });
   });
+
+  test("keys alone choose takes, turn the camera, sort and copy", async () => {
+    const url = sweepPage("keyed", small("keyed"), ["sheet.damping=1:40:40"]);
+    await withPage(`${url}#take=3`, { width: 1000, height: 500 }, async (view) => {
+      const kept = () => view.evaluate(() => window.pliant.pointing.keptRow);
+      assert.equal(await kept(), 3);
+      await view.evaluate(() => (location.hash = "take=7"));
+      await view.waitForFunction(() => window.pliant.pointing.keptRow === 7);
+      await view.keyboard.press("ArrowRight");
+      assert.equal(await kept(), 8);
+      assert.match(await view.locator("#said").textContent(), /^take 8, damping 9, peak 0\.\d+, peakFrame \d+, .*settle \d+$/);
+      // The picture of a take that keys choose comes into the window.
+      for (let k = 0; k < 25; ++k) await view.keyboard.press("ArrowRight");
+      const box = await view.locator(".tile.pointed").boundingBox();
+      assert.ok(box.y > 0 && box.y + box.height < 501, `${box.y}`);
+      // In the table, arrows up and down do so, and the others show its other columns.
+      await view.locator("#table").focus();
+      await view.keyboard.press("ArrowUp");
+      assert.equal(await kept(), 32);
+      await view.keyboard.press("ArrowRight");
+      await view.waitForFunction(() => document.getElementById("table").scrollLeft > 0);
+      assert.equal(await kept(), 32);
+      const pictures = () => view.evaluate(() => [".tile.pointed canvas", "#details canvas"].map((each) => document.querySelector(each).toDataURL()));
+      await whole(view);
+      await settled(view);
+      let before = await pictures();
+      const turned = async (how) => {
+        await how();
+        await view.waitForTimeout(300);
+        const after = await pictures();
+        for (const k of [0, 1]) assert.notEqual(after[k], before[k], `${k}`);
+        before = after;
+      };
+      for (const key of ["ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"]) await turned(() => view.keyboard.press(`Shift+${key}`));
+      assert.equal(await kept(), 32);
+      // A drag turns both as well; one that ends elsewhere does not swallow the next click.
+      await view.locator(".tile").nth(32).scrollIntoViewIfNeeded();
+      const tile = await view.locator(".tile").nth(32).boundingBox();
+      await turned(async () => {
+        await view.mouse.move(tile.x + 30, tile.y + 30);
+        await view.mouse.down();
+        await view.mouse.move(20, 15, { steps: 5 });
+        await view.mouse.up();
+      });
+      await view.locator(".tile").nth(31).focus();
+      await view.keyboard.press("Enter");
+      assert.equal(await kept(), 31);
+      // Both orders of each column are in the list.
+      const head = view.locator("#table th button").first();
+      await head.focus();
+      await view.keyboard.press("Enter");
+      assert.equal(await view.locator("#order").evaluate((list) => list.selectedOptions[0].text), "take, falling");
+      await view.keyboard.press("Enter");
+      assert.equal(await view.locator("#order").evaluate((list) => list.selectedOptions[0].text), "take");
+      await view.keyboard.press("c");
+      await view.waitForFunction(() => /Copied|Press Ctrl/.test(document.getElementById("said").textContent));
+      // What has the focus shows it.
+      for (const place of ["#theme", ".tile", "#order", "#table", "#table th button"]) {
+        await view.locator(place).first().focus();
+        await view.keyboard.press("Tab");
+        const { width, style } = await view.evaluate(() => ({ width: parseFloat(getComputedStyle(document.activeElement).outlineWidth), style: getComputedStyle(document.activeElement).outlineStyle }));
+        assert.ok(width >= 2 && style === "solid", `after ${place}`);
+      }
+    });
+  });
 }

@@ -18,6 +18,8 @@ const mostValues = 3;
 const turnSpeed = 0.4;
 
 export class ContactSheet {
+  /** Called after a drag has turned the camera. */
+  onTurn = () => this.redraw();
   private readonly tiles: Tile[];
   private readonly tileOf = new Map<number, Tile>();
   private stale = new Set<Tile>();
@@ -43,7 +45,11 @@ export class ContactSheet {
     };
     themes.onChange(dress);
     dress();
-    pointing.onChange((row) => this.mark(row));
+    pointing.onChange((row, source) => {
+      this.mark(row);
+      // Keys go on to takes out of the window; plots and table stay where they are.
+      if (source === "keys" && isInWindow(place)) this.tileOf.get(row!)?.element.scrollIntoView({ block: "nearest" });
+    });
     this.turnByDragging();
   }
 
@@ -183,12 +189,17 @@ export class ContactSheet {
       isTurning = true;
       last = { x: event.clientX, y: event.clientY };
       this.studio.turnBy(-turnSpeed * x, turnSpeed * y);
-      this.redraw();
+      this.onTurn();
     });
-    addEventListener("pointerup", () => (last = null));
+    for (const end of ["pointerup", "pointercancel"]) {
+      addEventListener(end, () => {
+        last = null;
+        // After the click that the browser may make of it.
+        setTimeout(() => (isTurning = false));
+      });
+    }
     this.place.addEventListener("click", (event) => {
       if (!isTurning) return;
-      isTurning = false;
       event.stopPropagation();
       event.preventDefault();
     }, { capture: true });

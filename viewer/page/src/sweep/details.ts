@@ -38,13 +38,15 @@ export class Details {
     this.studio.draw(shape, this.canvas.getContext("2d")!, 0, 0, width, height);
   }
 
-  /** Copies the command of the take shown. */
-  async copy(): Promise<void> {
+  /** Copies the command of the take shown. Returns what came of it. */
+  async copy(): Promise<string> {
     const { row } = this.pointing;
-    if (row === null) return;
+    if (row === null) return "";
     const button = this.place.querySelector<HTMLButtonElement>(".copy");
     const isCopied = await copied(commandOf(this.sweep, row), this.place.querySelector("code"));
-    if (button) button.querySelector("span")!.textContent = isCopied ? "Copied" : "Press Ctrl+C";
+    const words = isCopied ? "Copied" : "Press Ctrl+C";
+    if (button) button.querySelector("span")!.textContent = words;
+    return words;
   }
 
   /** The least and the greatest of each measure, which lead to their takes. */

@@ -61,6 +61,9 @@ function sheetNote(sweep: Sweep, studio: Studio): string {
 
 const mostReasons = 3;
 
+/** By which a key turns the camera. [degrees] */
+const turnStep = 10;
+
 /** Why takes have no picture or failed, the most frequent reasons first. */
 function failuresOf(sweep: Sweep): Message[] {
   const { head, takes } = sweep;
@@ -108,6 +111,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
     sheet.redraw();
     details.draw();
   };
+  sheet.onTurn = redrawTakes;
   const peak = element<HTMLInputElement>("peak");
   const setPeak = (value: number | null) => {
     studio.setPeak(value);
@@ -123,12 +127,11 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   // Order of the table and of the pictures
   const order = element<HTMLSelectElement>("order");
   table.columns.forEach(({ title }, k) => {
-    for (const [value, text] of [[`${k}`, title], ...(k > 0 ? [[`-${k}`, `${title}, falling`]] : [])]) order.add(new Option(text, value));
+    for (const [value, text] of [[`${k}`, title], [`-${k}`, `${title}, falling`]]) order.add(new Option(text, value));
   });
   order.addEventListener("change", () => table.sort(Math.abs(Number(order.value)), order.value.startsWith("-")));
   table.onSort(() => {
     order.value = `${table.isDescending ? "-" : ""}${table.sortedBy}`;
-    if (order.selectedIndex < 0) order.value = "0";
     sheet.order(table.order);
   });
 
@@ -181,12 +184,25 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
       element(link.dataset.part!).scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth" });
     });
   }
-  const step = (by: number) => pointing.keep(table.beside(pointing.row, by), "keys");
+  const said = element("said");
+  const step = (by: number) => {
+    const row = table.beside(pointing.row, by);
+    pointing.keep(row, "keys");
+    said.textContent = sweep.inWords(row);
+  };
+  const turn = (by: number, tilt: number) => {
+    studio.turnBy(by, tilt);
+    redrawTakes();
+  };
   const shortcuts: Record<string, () => void> = {
     ArrowLeft: () => step(-1),
     ArrowRight: () => step(1),
+    "Shift+ArrowLeft": () => turn(-turnStep, 0),
+    "Shift+ArrowRight": () => turn(turnStep, 0),
+    "Shift+ArrowUp": () => turn(0, turnStep),
+    "Shift+ArrowDown": () => turn(0, -turnStep),
     Escape: () => pointing.keep(null, "keys"),
-    c: () => void details.copy(),
+    c: () => void details.copy().then((words) => (said.textContent = words)),
     f: frameAll,
     t: () => themes.toggle(),
     "?": () => help.showModal(),
@@ -194,7 +210,10 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   document.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || help.open || target.matches("input, select")) return;
-    const shortcut = shortcuts[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const isInTable = target.matches("#table") && !event.shiftKey;
+    const key = event.key.length === 1 ? event.key.toLowerCase() : `${event.shiftKey ? "Shift+" : ""}${event.key}`;
+    // The table's own arrows: up and down go on, left and right show its other columns.
+    const shortcut = isInTable && key.startsWith("Arrow") ? { ArrowUp: () => step(-1), ArrowDown: () => step(1) }[key] : shortcuts[key];
     if (!shortcut) return;
     event.preventDefault();
     shortcut();
@@ -204,10 +223,10 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
     if (look.theme) themes.choose(look.theme);
     if (look.turn !== undefined || look.tilt !== undefined) studio.look(look.turn, look.tilt);
     setPeak(look.peak !== undefined && look.peak > 0 ? look.peak : null);
+    const take = new URLSearchParams(location.hash.slice(1)).get("take");
+    const row = take ? sweep.row(Number(take)) : undefined;
+    if (row !== undefined) pointing.keep(row, "address");
   };
-  const take = Number(new URLSearchParams(location.hash.slice(1)).get("take") ?? NaN);
-  const row = sweep.row(take);
-  if (row !== undefined) pointing.keep(row, "address");
   // For tests, and for inspecting a page from the console.
   Object.assign(window, { pliant: { sweep, studio, pointing, table, plots, themes } });
   return { apply, sheet };

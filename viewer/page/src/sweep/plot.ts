@@ -189,7 +189,7 @@ export class Graph extends Plot {
     if (!spec.yAxis) {
       context.font = "12px system-ui, sans-serif";
       context.textAlign = "center";
-      context.fillStyle = palette.faint;
+      context.fillStyle = palette.ink;
       context.fillText("no take is done", width / 2, height / 2);
       return;
     }

@@ -217,6 +217,13 @@ export class Sweep {
     return Math.floor(this.takes[row] / stride) % this.head.axes[axis].count;
   }
 
+  /** A take for those who hear the page. */
+  inWords(row: number): string {
+    const state = this.stateOf(row);
+    const more = state === "done" ? this.measures.map((measure) => `${measure.name} ${measureText(measure, row)}`) : [state, this.errorOf(row)].filter(Boolean);
+    return [`take ${this.takes[row]}`, ...this.captions(row, Infinity).map((each) => each.join(" ")), ...more].join(", ");
+  }
+
   /** The names and values of what varies, short enough to read at a glance. */
   captions(row: number, most: number): [string, string][] {
     const all = this.paths.map((path): [string, string] => [path.name, shortText(path, row)]);
