@@ -209,4 +209,54 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       }
     });
   });
+
+  test("plots say what their axes and colours are", async () => {
+    const url = sweepPage("shaded", small("shaded"), ["poke.magnitude=1:1000:10:log", "sheet.damping=1:5:9"]);
+    await withPage(url, { width: 1000, height: 900 }, async (view) => {
+      assert.deepEqual(await view.locator(".plot figcaption small").allTextContents(),
+        ["scene units", "frame", "scene units", "scene units", "scene units/s", "scene units²/s²", "frame"].flatMap((unit) => [`[${unit}]`, `[${unit}]`]));
+      assert.equal(await view.locator(".plot canvas").nth(1).getAttribute("aria-label"), "peak [scene units]: the largest displacement, over sheet.damping");
+      assert.deepEqual(await view.locator(".plots .column span").allTextContents(), ["damping 1 5", "magnitude 1 1000"]);
+      // More lines than the palette has colours have shades in the order of their values, which stand out from the panel.
+      for (const theme of ["dark", "light"]) {
+        await view.evaluate((name) => window.pliant.themes.choose(name), theme);
+        const { shades, panel } = await view.evaluate(() => ({
+          shades: window.pliant.plots.plots[0].spec.lines.map(({ colour }) => colour(window.pliant.themes.palette)), panel: window.pliant.themes.palette.panel }));
+        const light = (parts) => parts.map((part) => part / 255).map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)).reduce((sum, part, k) => sum + part * [0.2126, 0.7152, 0.0722][k], 0);
+        const ground = light([1, 3, 5].map((k) => parseInt(panel.slice(k, k + 2), 16)));
+        const lights = shades.map((shade) => light(shade.match(/\d+/g).map(Number)));
+        assert.equal(new Set(shades).size, 9);
+        // Hues differ where the lightness hardly does.
+        for (let k = 2; k < 9; ++k) assert.ok(lights[k] > lights[k - 2], `${theme} ${lights}`);
+        for (const each of lights) assert.ok((Math.max(each, ground) + 0.05) / (Math.min(each, ground) + 0.05) >= 3, `${theme}: ${each} on ${ground}`);
+      }
+      // The line of the take that is pointed at is thicker.
+      await readsPixels(view);
+      await view.locator(".plot").first().scrollIntoViewIfNeeded();
+      await settled(view);
+      const inkOf = () => view.evaluate(() => {
+        const { spec, element } = window.pliant.plots.plots[0];
+        const [r, g, b] = spec.lines[8].colour(window.pliant.themes.palette).match(/\d+/g).map(Number);
+        const data = window.pixelsOf(element.querySelector("canvas"));
+        let count = 0;
+        for (let k = 0; k < data.length; k += 4) count += Math.abs(data[k] - r) + Math.abs(data[k + 1] - g) + Math.abs(data[k + 2] - b) < 20 ? 1 : 0;
+        return count;
+      });
+      const thin = await inkOf();
+      await view.evaluate(() => window.pliant.pointing.keep(8, "test"));
+      await settled(view);
+      assert.ok((await inkOf()) > 1.2 * thin, `${await inkOf()} and ${thin}`);
+      // Heat maps over decades have a logarithmic scale as well, which can be chosen.
+      await view.locator("#kind span").nth(1).click();
+      const shares = () => view.evaluate(() => {
+        const [map] = window.pliant.plots.plots;
+        return Array.from({ length: 10 }, (_, k) => map.shareOf(map.means[9 * k]));
+      });
+      (await shares()).forEach((share, k, all) => near(share - all[0], (k * (all[9] - all[0])) / 9, 1e-2, `step ${k}`));
+      await view.locator("#measure-scale").selectOption("linear");
+      const [, second, ...rest] = await shares();
+      assert.ok(second < 0.01 && rest[7] > 0.9);
+      assert.match(await view.locator(".plot canvas").first().getAttribute("aria-label"), /^peak \[scene units\]: .*, across sheet\.damping, up poke\.magnitude, from \S+ to \S+$/);
+    });
+  });
 }

@@ -1,7 +1,6 @@
 // Everything about the take that is pointed at, and the command that writes it.
 
 import type { ThemeChoice } from "../theme";
-import { aboutMeasures } from "./plot_grid";
 import type { Pointing } from "./pointing";
 import type { Studio } from "./studio";
 import { commandOf, measureText, textOf, type Sweep } from "./sweep";
@@ -59,7 +58,7 @@ export class Details {
       const ends = endsOf(measure.values);
       const line = part("tr", "");
       const name = part("th", measure.name);
-      name.title = aboutMeasures[measure.name];
+      name.title = `${measure.about} [${measure.unit}]`;
       line.append(name);
       for (const row of ends ?? []) {
         const button = part("button", measureText(measure, row));
@@ -98,7 +97,7 @@ export class Details {
       parts.push(part("p", `Drawn with ${shape.shown.toLocaleString("en")} of its ${shape.vertices.toLocaleString("en")} vertices.`, "quiet"));
     parts.push(list(sweep.paths.map((path) => [path.title, textOf(path, row), ""])));
     if (state === "done") {
-      parts.push(list(sweep.measures.map((measure) => [measure.name, measureText(measure, row), aboutMeasures[measure.name]])));
+      parts.push(list(sweep.measures.map((measure) => [measure.name, measureText(measure, row), `${measure.about} [${measure.unit}]`])));
     }
     const command = part("div", "", "command");
     const copy = document.createElement("button");

@@ -5,18 +5,21 @@ import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
 import { drawAxes, Plot, type Area } from "./plot";
 import type { Pointing } from "./pointing";
-import type { Axis } from "./scales";
+import { measureRange, type Axis, type ScaleChoice } from "./scales";
+import type { Measure } from "./sweep";
 
 export interface MapSpec {
-  title: string;
+  measure: Measure;
+  scale: ScaleChoice;
   about: string;
+  /** What the axes are. */
+  xName: string;
+  yName: string;
   /** Cells across and up, and the texts of their values. */
   across: string[];
   up: string[];
   /** The cell of each row. */
   cellOf: (row: number) => { x: number; y: number };
-  /** Of each row; NaN: none. */
-  values: Float64Array;
   text: (row: number) => string;
 }
 
@@ -33,20 +36,19 @@ export class HeatMap extends Plot {
   /** Of each cell: the mean of its takes, and these. */
   private readonly means: Float64Array;
   private readonly rows: number[][];
-  private readonly low: number;
-  private readonly high: number;
+  private readonly range: { low: number; high: number; isLog: boolean } | null;
 
   constructor(
     private readonly spec: MapSpec,
     pointing: Pointing,
     themes: ThemeChoice,
   ) {
-    super(spec.title, spec.about, pointing, themes);
+    super(spec.measure.name, spec.measure.unit, spec.about, pointing, themes);
     const count = spec.across.length * spec.up.length;
     this.rows = Array.from({ length: count }, () => []);
     const sums = new Float64Array(count);
     const counts = new Uint32Array(count);
-    spec.values.forEach((value, row) => {
+    spec.measure.values.forEach((value, row) => {
       const { x, y } = spec.cellOf(row);
       const cell = y * spec.across.length + x;
       this.rows[cell].push(row);
@@ -55,16 +57,16 @@ export class HeatMap extends Plot {
       ++counts[cell];
     });
     this.means = sums.map((sum, cell) => sum / counts[cell]);
-    const known = this.means.filter((mean) => !Number.isNaN(mean));
-    this.low = known.reduce((a, b) => Math.min(a, b), Infinity);
-    this.high = known.reduce((a, b) => Math.max(a, b), -Infinity);
-    this.label = `${spec.title}: ${spec.about}, from ${numberText(this.low)} to ${numberText(this.high)}`;
+    this.range = measureRange(this.means, spec.scale, spec.measure.isWhole);
+    const ends = this.range ? `, from ${numberText(this.range.low)} to ${numberText(this.range.high)}` : "";
+    this.label = `${spec.measure.name} [${spec.measure.unit}]: ${spec.about}${ends}`;
   }
 
   protected draw(context: CanvasRenderingContext2D, width: number, height: number, palette: Palette): void {
-    const { across, up } = this.spec;
+    const { across, up, xName, yName } = this.spec;
     context.clearRect(0, 0, width, height);
-    this.area = drawAxes(context, width, height, cells(across), cells(up), palette, false);
+    this.area = drawAxes(context, width, height, cells(across), cells(up), palette, { xName, yName, top: 24, hasGrid: false });
+    this.drawScale(context, palette);
     this.means.forEach((mean, cell) => {
       const { left, top, width: w, height: h } = this.cell(cell);
       if (Number.isNaN(mean)) {
@@ -78,11 +80,38 @@ export class HeatMap extends Plot {
         context.globalAlpha = 1;
         return;
       }
-      context.fillStyle = velocityRamp.cssAt(this.high > this.low ? (mean - this.low) / (this.high - this.low) : 0);
+      context.fillStyle = velocityRamp.cssAt(this.shareOf(mean));
       // Without gaps that would shimmer, and with none wider than a pixel.
       const gap = w > 6 && h > 6 ? 1 : 0;
       context.fillRect(left, top, w - gap, h - gap);
     });
+  }
+
+  /** Where a number is in the colours, 0 to 1. */
+  private shareOf(value: number): number {
+    const { low, high, isLog } = this.range!;
+    if (!(high > low)) return 0;
+    return isLog ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
+  }
+
+  // The colours' scale, above the cells.
+  private drawScale(context: CanvasRenderingContext2D, palette: Palette): void {
+    if (!this.range) return;
+    const { low, high, isLog } = this.range;
+    const { left, width } = this.area;
+    const [first, last] = [numberText(low), `${numberText(high)}${isLog ? " (log)" : ""}`];
+    context.fillStyle = palette.ink;
+    context.textBaseline = "middle";
+    context.textAlign = "left";
+    context.fillText(first, left, 10);
+    context.textAlign = "right";
+    context.fillText(last, left + width, 10);
+    const from = left + context.measureText(first).width + 6;
+    const to = left + width - context.measureText(last).width - 6;
+    for (let x = Math.round(from); x < to; ++x) {
+      context.fillStyle = velocityRamp.cssAt((x - from) / (to - from));
+      context.fillRect(x, 6, Math.min(2, to - x), 8); // no seams, since a pixel here is not quite one of the screen
+    }
   }
 
   protected drawMark(context: CanvasRenderingContext2D, { left, top, width, height }: Area, palette: Palette): void {
@@ -108,7 +137,7 @@ export class HeatMap extends Plot {
   }
 
   protected textAt(row: number | null): string {
-    if (row === null) return Number.isFinite(this.low) ? `${numberText(this.low)} … ${numberText(this.high)}` : "";
+    if (row === null) return "";
     const { x, y } = this.spec.cellOf(row);
     const cell = y * this.spec.across.length + x;
     if (this.rows[cell].length === 1) return this.spec.text(row);

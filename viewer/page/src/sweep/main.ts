@@ -141,7 +141,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
   const build = () => {
     plots.kind = (kinds.find((radio) => radio.checked)?.value ?? "lines") as Kind;
     for (const field of fields) element<HTMLElement>(`${field}-field`).hidden = plots.kind !== "map";
-    for (const id of ["value-scale", "measure-scale"]) element(id).parentElement!.hidden = plots.kind === "map";
+    element("value-scale").parentElement!.hidden = plots.kind === "map";
     plots.build();
   };
   element<HTMLElement>("kind").hidden = !plots.hasMaps;

@@ -26,6 +26,7 @@ export abstract class Plot {
 
   constructor(
     title: string,
+    unit: string,
     about: string,
     protected readonly pointing: Pointing,
     protected readonly themes: ThemeChoice,
@@ -33,8 +34,10 @@ export abstract class Plot {
     this.element.className = "plot";
     const name = document.createElement("span");
     name.textContent = title;
-    this.caption.title = about;
-    this.caption.append(name, this.value);
+    const measured = document.createElement("small");
+    measured.textContent = `[${unit}]`;
+    this.caption.title = `${about} [${unit}]`;
+    this.caption.append(name, measured, this.value);
     this.canvas.setAttribute("role", "img");
     this.element.append(this.caption, this.canvas);
     this.canvas.addEventListener("pointermove", (event) => {
@@ -83,19 +86,31 @@ export abstract class Plot {
     const row = this.pointing.row;
     this.value.textContent = this.textAt(row);
     const at = row === null ? null : this.placeAt(row);
-    if (at) this.drawMark(context, at, palette);
+    if (at) this.drawMark(context, at, palette, row!);
   }
 
   protected abstract draw(context: CanvasRenderingContext2D, width: number, height: number, palette: Palette): void;
-  protected abstract drawMark(context: CanvasRenderingContext2D, at: Area, palette: Palette): void;
+  protected abstract drawMark(context: CanvasRenderingContext2D, at: Area, palette: Palette, row: number): void;
   /** The place of a row's mark, as the last drawing has it. */
   protected abstract placeAt(row: number): Area | null;
   protected abstract rowAt(x: number, y: number): number | null;
   protected abstract textAt(row: number | null): string;
 }
 
-/** The frame of a plot with the ticks of both axes. Returns the area inside. */
-export function drawAxes(context: CanvasRenderingContext2D, width: number, height: number, x: Axis, y: Axis, palette: Palette, hasGrid: boolean): Area {
+/** What is around a plot. */
+interface Surroundings {
+  /** Names of the axes; empty: none. */
+  xName: string;
+  yName: string;
+  /** Pixels above it. */
+  top: number;
+  hasGrid: boolean;
+}
+
+const nameHeight = 15; // px
+
+/** The frame of a plot with the ticks and names of both axes. Returns the area inside. */
+export function drawAxes(context: CanvasRenderingContext2D, width: number, height: number, x: Axis, y: Axis, palette: Palette, { xName, yName, top, hasGrid }: Surroundings): Area {
   context.font = "11px system-ui, sans-serif";
   context.fillStyle = palette.ink;
   context.strokeStyle = palette.faint;
@@ -103,8 +118,15 @@ export function drawAxes(context: CanvasRenderingContext2D, width: number, heigh
   context.textBaseline = "middle";
   const yTicks = y.ticks(Math.max(2, Math.floor(height / 34)));
   const widest = Math.min(Math.max(0, ...yTicks.map(({ text }) => context.measureText(text).width)), 0.35 * width);
-  const area = { left: Math.ceil(widest) + 12, top: 6, width: 0, height: height - 6 - 22 };
+  const area = { left: Math.ceil(widest) + 12 + (yName === "" ? 0 : nameHeight), top, width: 0, height: height - top - 22 - nameHeight };
   area.width = width - area.left - 8;
+  context.textAlign = "center";
+  context.fillText(cut(context, xName, area.width), area.left + area.width / 2, height - nameHeight / 2);
+  context.save();
+  context.translate(nameHeight / 2, area.top + area.height / 2);
+  context.rotate(-Math.PI / 2);
+  context.fillText(cut(context, yName, area.height), 0, 0);
+  context.restore();
   for (const { at, text } of yTicks) {
     const place = Math.round(area.top + (1 - at) * area.height) + 0.5;
     line(context, area.left, place, area.left + area.width, place, hasGrid ? 0.25 : 0);
@@ -157,7 +179,10 @@ export interface Joined {
 
 export interface GraphSpec {
   title: string;
+  unit: string;
   about: string;
+  /** What the axis across is. */
+  over: string;
   /** Of each row, in the axes' units; NaN: none. */
   x: Float64Array;
   y: Float64Array;
@@ -178,9 +203,9 @@ export class Graph extends Plot {
     pointing: Pointing,
     themes: ThemeChoice,
   ) {
-    super(spec.title, spec.about, pointing, themes);
+    super(spec.title, spec.unit, spec.about, pointing, themes);
     this.places = new Float32Array(2 * spec.x.length).fill(NaN);
-    this.label = `${spec.title}: ${spec.about}`;
+    this.label = `${spec.title} [${spec.unit}]: ${spec.about}`;
   }
 
   protected draw(context: CanvasRenderingContext2D, width: number, height: number, palette: Palette): void {
@@ -193,7 +218,7 @@ export class Graph extends Plot {
       context.fillText("no take is done", width / 2, height / 2);
       return;
     }
-    const area = drawAxes(context, width, height, spec.xAxis, spec.yAxis, palette, true);
+    const area = drawAxes(context, width, height, spec.xAxis, spec.yAxis, palette, { xName: spec.over, yName: "", top: 6, hasGrid: true });
     let count = 0;
     for (let row = 0; row < spec.x.length; ++row) {
       places[2 * row] = area.left + spec.xAxis.at(spec.x[row]) * area.width;
@@ -205,15 +230,7 @@ export class Graph extends Plot {
     context.lineJoin = "round";
     for (const { rows, colour } of spec.lines) {
       context.strokeStyle = colour(palette);
-      context.beginPath();
-      let isDown = false; // a take without a result interrupts the line
-      for (const row of rows) {
-        const [x, y] = [places[2 * row], places[2 * row + 1]];
-        if (Number.isNaN(y)) isDown = false;
-        else if (isDown) context.lineTo(x, y);
-        else context.moveTo(x, y), (isDown = true);
-      }
-      context.stroke();
+      this.drawLine(context, rows);
     }
     context.globalAlpha = count > 20_000 ? 0.2 : count > 2000 ? 0.5 : count > 300 ? 0.8 : 1;
     let last = "";
@@ -234,7 +251,26 @@ export class Graph extends Plot {
     context.globalAlpha = 1;
   }
 
-  protected drawMark(context: CanvasRenderingContext2D, { left, top }: Area, palette: Palette): void {
+  private drawLine(context: CanvasRenderingContext2D, rows: number[]): void {
+    context.beginPath();
+    let isDown = false; // a take without a result interrupts the line
+    for (const row of rows) {
+      const [x, y] = [this.places[2 * row], this.places[2 * row + 1]];
+      if (Number.isNaN(y)) isDown = false;
+      else if (isDown) context.lineTo(x, y);
+      else context.moveTo(x, y), (isDown = true);
+    }
+    context.stroke();
+  }
+
+  // The line of the take stands out from others that it crosses.
+  protected drawMark(context: CanvasRenderingContext2D, { left, top }: Area, palette: Palette, row: number): void {
+    const line = this.spec.lines.length > 1 ? this.spec.lines.find(({ rows }) => rows.includes(row)) : undefined;
+    for (const [colour, width] of line ? [[palette.panel, 6], [line.colour(palette), 3]] as const : []) {
+      context.strokeStyle = colour;
+      context.lineWidth = width;
+      this.drawLine(context, line!.rows);
+    }
     for (const [colour, width] of [[palette.panel, 5], [palette.accent, 2.5]] as const) {
       context.strokeStyle = colour;
       context.lineWidth = width;

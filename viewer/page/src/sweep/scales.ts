@@ -3,7 +3,7 @@
 import { scaleLinear, scaleLog } from "d3-scale";
 
 import { textsThat } from "./numbers";
-import type { Path } from "./sweep";
+import type { Measure, Path } from "./sweep";
 
 export type ScaleChoice = "auto" | "linear" | "log";
 
@@ -93,13 +93,19 @@ export function placeOf(path: Path, row: number): number {
   return path.numbers ? path.numbers[path.rows[row]] : path.rows[row];
 }
 
-/** The axis of a measure: of the finite numbers among the values; null: there is none. */
-export function measureAxis(values: Float64Array, choice: ScaleChoice, isWhole: boolean): Axis | null {
+/** The ends of a measure's finite values, and whether it has a logarithmic scale; null: there is none. */
+export function measureRange(values: Float64Array, choice: ScaleChoice, isWhole: boolean): { low: number; high: number; isLog: boolean } | null {
   const sorted = values.filter(Number.isFinite).sort();
   if (sorted.length === 0) return null;
   const [low, high] = [sorted[0], sorted[sorted.length - 1]];
   // Over decades, but for a few takes.
   const share = (part: number) => sorted[Math.round(part * (sorted.length - 1))];
   const isWide = !isWhole && share(0.95) > 100 * share(0.05);
-  return numberAxis(low, high, low > 0 && (choice === "log" || (choice === "auto" && isWide)), isWhole);
+  return { low, high, isLog: low > 0 && (choice === "log" || (choice === "auto" && isWide)) };
+}
+
+/** The axis of a measure; null: it has no value. */
+export function measureAxis({ values, isWhole }: Measure, choice: ScaleChoice): Axis | null {
+  const range = measureRange(values, choice, isWhole);
+  return range && numberAxis(range.low, range.high, range.isLog, isWhole);
 }

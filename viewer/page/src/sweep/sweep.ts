@@ -41,7 +41,17 @@ interface Head {
 }
 
 export const measureNames = ["peak", "peakFrame", "final", "rms", "speed", "energy", "settle"] as const;
-const wholeMeasures: readonly string[] = ["peakFrame", "settle"];
+
+/** What each measure is, for a tooltip, docs/sweeps.md; and its unit, in those of the scene. */
+const aboutMeasures: Record<(typeof measureNames)[number], [about: string, unit: string]> = {
+  peak: ["the largest displacement", "scene units"],
+  peakFrame: ["the first frame with the largest displacement", "frame"],
+  final: ["the largest displacement at the last frame", "scene units"],
+  rms: ["the root mean square of displacements over frames and vertices", "scene units"],
+  speed: ["the largest speed of a vertex", "scene units/s"],
+  energy: ["the largest kinetic energy per mass", "scene units²/s²"],
+  settle: ["the frame after which nothing moves more than a thousandth of the peak", "frame"],
+};
 
 /** A column of texts: each once, and which of them a row has. */
 export interface Texts {
@@ -63,6 +73,10 @@ export interface Path extends Texts {
 
 export interface Measure {
   name: string;
+  about: string;
+  unit: string;
+  /** It is a frame. */
+  isWhole: boolean;
   /** Of each row; NaN: there is none. */
   values: Float64Array;
 }
@@ -142,11 +156,13 @@ export class Sweep {
     });
     this.measures = measureNames.map((name) => {
       const { begin, count } = table[name];
+      const [about, unit] = aboutMeasures[name];
+      const isWhole = unit === "frame";
       // Doubles must be aligned to eight bytes, but the arrays are to four.
-      const stored = wholeMeasures.includes(name)
+      const stored = isWhole
         ? new Int32Array(unpacked, start + begin, count)
         : new Float64Array(unpacked.slice(start + begin, start + begin + 8 * count));
-      return { name, values: Float64Array.from(stored, (value, row) => (this.isDone(row) ? value : NaN)) };
+      return { name, about, unit, isWhole, values: Float64Array.from(stored, (value, row) => (this.isDone(row) ? value : NaN)) };
     });
     const meshes = head.shapes.meshes.map((place) => joined(whole(place)));
     const sizeOf = ({ low, high }: ShapeHead) => Math.hypot(...high.map((each, k) => each - low[k]));
