@@ -30,13 +30,17 @@ int run_sweep(const CLI::App& app, const SweepOptions& options) {
   return run_sweep_bake(options.bake);
 }
 
-void print_failures(const SweepFolder& folder, const SweepStatus& status, const SweepPart& part) {
-  constexpr std::size_t most_named = 10;
+void print_conflicts(const SweepStatus& status, const SweepPart& part) {
   for (const HashConflict& conflict : status.conflicts) {
     if (!part.has(conflict.take)) continue;
     print(stderr, fmt::format("take {}: hash differs between {} and {}\n", conflict.take,
                               printable(conflict.host), printable(conflict.other_host)));
   }
+}
+
+void print_failures(const SweepFolder& folder, const SweepStatus& status, const SweepPart& part) {
+  constexpr std::size_t most_named = 10;
+  print_conflicts(status, part);
   std::size_t count = 0;
   for (std::size_t take = 0; take < status.takes.size(); ++take) {
     const TakeRecord& record = status.takes[take];

@@ -89,6 +89,9 @@ int run_sweep_view(const SweepViewOptions& options);
 /// on stderr. Returns the exit code: 0 if all takes are done.
 int tell_status(const SweepFolder& folder, bool is_quiet = false);
 
+/// Prints takes of which the log has two hashes on stderr, those of a part.
+void print_conflicts(const SweepStatus& status, const SweepPart& part = {});
+
 /// Prints conflicts of the log and the takes that failed on stderr, those of a part: ten of them,
 /// then their number.
 void print_failures(const SweepFolder& folder, const SweepStatus& status,

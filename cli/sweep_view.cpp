@@ -210,15 +210,18 @@ int run_sweep_view(const SweepViewOptions& options) {
                                   .take_done = [&] { progress->advance(); }});
   progress.reset();
   if (!bake) return report(with_kept(bake.error(), "nothing was written"));
+  print_conflicts(*status);
   for (const auto& [take, reason] : bake->failed)
     print(stderr, fmt::format("{}: {}\n", title_of(folder->sweep(), folder->request().scenes, take),
                               printable(reason)));
 
   std::optional<std::string> made, drawn;
   if (options.out) {
-    const std::string name = fs::path(options.folder).lexically_normal().filename().string();
-    made = viewer::page_with(*page, name.empty() ? options.folder : name, bake->packed);
+    made = viewer::page_with(*page, viewer::name_of_folder(options.folder), bake->packed);
   }
+  if (picture && bake->pictured == 0)
+    print(stderr,
+          fmt::format("{}: not written, since no take has a picture\n", printable(*options.png)));
   if (picture && bake->pictured > 0) {
     auto taken = take_sheet(*picture, options.look, *page, std::move(bake->packed));
     if (!taken) return report(with_kept(taken.error(), "nothing was written"));
@@ -237,7 +240,7 @@ int run_sweep_view(const SweepViewOptions& options) {
     if (made) summary(*options.out, made->size());
     if (drawn) summary(*options.png, drawn->size());
   }
-  return bake->failed.empty() ? exit_done : exit_failed;
+  return bake->failed.empty() && status->conflicts.empty() ? exit_done : exit_failed;
 }
 
 }  // namespace pliant::cli

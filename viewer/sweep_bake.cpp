@@ -1,10 +1,14 @@
 #include "viewer/sweep_bake.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/core/result.hpp"
 #include "viewer/bytes.hpp"
 #include "viewer/sweep_table.hpp"
 #include "viewer/take_shapes.hpp"
@@ -44,7 +48,55 @@ Json titles_of(const SweepFolder& folder) {
   return titles;
 }
 
+// The log has two hashes of these takes.
+Json conflicts_of(const SweepStatus& status) {
+  Json conflicts = Json::array();
+  for (const HashConflict& conflict : status.conflicts) {
+    conflicts.push_back({{"take", conflict.take},
+                         {"text", fmt::format("its hash differs between {} and {}", conflict.host,
+                                              conflict.other_host)}});
+  }
+  return conflicts;
+}
+
+// In bash and zsh alike: the three digits end each number.
+std::string ansi_word(std::string_view text) {
+  std::string word = "$'";
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte < 0x20 || byte >= 0x7f)
+      word += fmt::format("\\{:03o}", byte);
+    else if (letter == '\'' || letter == '\\')
+      word += fmt::format("\\{}", letter);
+    else
+      word += letter;
+  }
+  return word + "'";
+}
+
 }  // namespace
+
+std::string name_of_folder(const std::string& folder) {
+  std::error_code no_folder;
+  const std::filesystem::path whole =
+      std::filesystem::absolute(folder, no_folder).lexically_normal();
+  const std::filesystem::path name =
+      whole.has_filename() ? whole.filename() : whole.parent_path().filename();
+  return printable(name.empty() ? folder : name.string());
+}
+
+std::string shell_word(const std::string& text) {
+  if (printable(text) != text) return ansi_word(text);
+  constexpr std::string_view plain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
+  // A word that begins with = is the path of a program in zsh.
+  if (!text.empty() && text.front() != '=' && text.find_first_not_of(plain) == std::string::npos)
+    return text;
+  std::string word = "'";
+  for (const char letter : text)
+    word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return word + "'";
+}
 
 Result<SweepViewPlan> plan_sweep_view(const SweepFolder& folder, const SweepStatus& status,
                                       std::optional<int> frame) {
@@ -109,8 +161,12 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
   Json failures = Json::array();
   for (const auto& [take, reason] : bake.failed)
     failures.push_back({{"take", take}, {"text", reason}});
+  // A name that begins with - would be an option.
+  const std::string& typed = folder.folder();
+  const std::string argument = (typed.rfind('-', 0) == 0 ? "./" : "") + typed;
   const Json head = {{"version", 1},
-                     {"folder", folder.folder()},
+                     {"name", name_of_folder(folder.folder())},
+                     {"command", "pliant sweep bake " + shell_word(argument)},
                      {"takes", status.takes.size()},
                      {"done", status.done},
                      {"failed", status.failed},
@@ -118,7 +174,8 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
                      {"axes", axes_of(folder)},
                      {"table", table_json(folder, status, rows, arrays, run.should_stop)},
                      {"shapes", shapes.finish(arrays)},
-                     {"failures", std::move(failures)}};
+                     {"failures", std::move(failures)},
+                     {"conflicts", conflicts_of(status)}};
   if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
   auto packed = deflated(joined(head, arrays.take()), run.should_stop);
   if (!packed) return fail(packed.error());

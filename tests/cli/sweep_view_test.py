@@ -5,6 +5,8 @@ tested.
 """
 
 import glob
+import html
+import json
 import os
 import re
 import resource
@@ -132,6 +134,9 @@ class SweepPages(SweepViews):
         self.assertIn("0 of 2 takes", result.stdout)
         _, head, _ = read_page(self.path("s.html"))
         self.assertEqual([failure["take"] for failure in head["failures"]], [0, 1])
+        self.assertIn("s.png: not written, since no take has a picture",
+                      self.view("--png", self.path("s.png"), code=1).stderr)
+        self.assertFalse(os.path.exists(self.path("s.png")))
         self.assertEqual(head["done"], 2)
         self.assertIn("it is a mesh of the scene", self.refused("-o", self.path("flat.obj")))
 
@@ -175,8 +180,44 @@ class SweepPages(SweepViews):
         self.assertNotIn("<img", page)
         self.assertEqual(re.search("<title>(.*?)</title>", page).group(1), "&lt;img src=x onerror=alert(1)&gt; – pliant")
         _, head, _ = read_page(self.path("s.html"))
-        self.assertEqual(head["folder"], self.path(folder))
+        self.assertEqual(head["name"], folder)
         self.assertEqual(head["paths"], ["sheet.density"])
+
+    def test_a_shell_runs_the_command_of_the_page(self):
+        self.make("sheet.density=1,2", end=2)
+        names = [b"plain", b"two words", b"it's $HOME `x` \"y\"", b"-o", b"=ls", b"~", b"a\nb\x1b[31mc\x7f", b"caf\xe9 'x\\'", "a\u202eb".encode(),
+                 "caf\u00e9 \u540d".encode(), b"!!", b"#x", b"a;b&c|d", b"{a,b}", b"*"]
+        for name in names:
+            os.rename(self.path("s"), os.path.join(os.fsencode(self.folder), name))
+            word = os.fsdecode(name)
+            typed = "./" + word if word.startswith("-") else word
+            self.run_pliant("sweep", "view", typed, "-o", "s.html", "--quiet")
+            title, head, _ = read_page(self.path("s.html"))
+            command = head["command"]
+            self.assertTrue(all(letter.isprintable() and letter != "\N{REPLACEMENT CHARACTER}" for letter in command), command)
+            subprocess.run(["bash", "-c", command + " 1 -o take1.npy --quiet"], cwd=self.folder, check=True, timeout=120,
+                           env={**os.environ, "PATH": f"{os.path.dirname(PLIANT)}:{os.environ['PATH']}"})
+            os.remove(self.path("take1.npy"))
+            self.assertEqual(html.unescape(title), f"{head['name']} – pliant")
+            os.rename(os.path.join(os.fsencode(self.folder), name), self.path("s"))
+        for typed in (".", "./", "../s", "../s/."):
+            self.run_pliant("sweep", "view", typed, "-o", "../s.html", "--quiet", cwd=self.path("s"))
+            self.assertEqual(read_page(self.path("s.html"))[0], "s – pliant")
+
+    def test_a_broken_machine_is_told(self):
+        self.make("sheet.density=1,2")
+        [log] = glob.glob(self.path("s/log/*.jsonl"))
+        with open(log, encoding="utf-8") as file:
+            line = file.readline()
+        other = re.sub(r'"hash":"(.)', lambda hash: f'"hash":"{"1" if hash[1] == "0" else "0"}', line)
+        self.write("s/log/z.jsonl", re.sub(r'"host":"[^"]*"', '"host":"<b>other"', other))
+        take = json.loads(line)["take"]
+        result = self.view("-o", self.path("s.html"), code=1)
+        self.assertRegex(result.stderr, rf"^take {take}: hash differs between .*<b>other")
+        self.assertIn("2 of 2 takes", result.stdout)
+        [conflict] = read_page(self.path("s.html"))[1]["conflicts"]
+        self.assertEqual(conflict["take"], take)
+        self.assertIn("<b>other", conflict["text"])
 
 
 if __name__ == "__main__":

@@ -32,9 +32,6 @@ function legendOf(studio: Studio): Legend {
   };
 }
 
-/** The last part of the folder's name. */
-const nameOf = ({ head }: Sweep) => head.folder.replace(/\/+$/, "").split("/").pop() || head.folder;
-
 function summaryOf({ head }: Sweep): string {
   const missing = head.takes - head.done - head.failed;
   return [counted(head.takes, "take"), `${head.done.toLocaleString("en")} done`, head.failed > 0 ? `${head.failed.toLocaleString("en")} failed` : "", missing > 0 ? `${missing.toLocaleString("en")} missing` : ""]
@@ -82,6 +79,7 @@ function failuresOf(sweep: Sweep): Message[] {
     }
     if (reasons.length > mostReasons) messages.push({ kind, line: 0, text: `takes ${what[1]} for ${counted(reasons.length - mostReasons, "more reason")}; point at one to see it` });
   };
+  add("error", head.conflicts.map(({ take, text }) => [take, text]), ["was run twice", "were run twice"], true);
   add("error", head.failures.map(({ take, text }) => [take, text]), ["has no picture", "have no picture"], true);
   const failed = [...takes.keys()].filter((row) => sweep.stateOf(row) === "failed");
   add("warning", failed.map((row) => [takes[row], sweep.errorOf(row)]), ["failed", "failed"], sweep.hasAllTakes);
@@ -89,7 +87,7 @@ function failuresOf(sweep: Sweep): Message[] {
 }
 
 function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet } {
-  const name = nameOf(sweep);
+  const { name } = sweep.head;
   document.title = `${name} – pliant`;
   element("sweep-name").textContent = name;
   const summary = element<HTMLElement>("summary");
@@ -242,7 +240,7 @@ async function sendPictures(): Promise<void> {
     themes.choose(look.theme);
     studio.look(look.turn, look.tilt);
     if (look.peak !== undefined && look.peak > 0) studio.setPeak(look.peak);
-    return drawSheet(sweep, studio, legendOf(studio), `${nameOf(sweep)}: ${summaryOf(sweep)}`, themes.palette, order);
+    return drawSheet(sweep, studio, legendOf(studio), `${sweep.head.name}: ${summaryOf(sweep)}`, themes.palette, order);
   });
 }
 

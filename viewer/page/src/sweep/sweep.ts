@@ -29,7 +29,8 @@ interface ShapeHead {
 
 interface Head {
   version: number;
-  folder: string;
+  name: string;
+  command: string;
   takes: number;
   done: number;
   failed: number;
@@ -38,6 +39,7 @@ interface Head {
   table: { takes: ArrayPlace; status: ArrayPlace; paths: TextsHead[]; hash: ArrayPlace; errors: TextsHead } & Record<(typeof measureNames)[number], ArrayPlace>;
   shapes: { meshes: ArrayPlace[]; takes: ShapeHead[] };
   failures: { take: number; text: string }[];
+  conflicts: { take: number; text: string }[];
 }
 
 export const measureNames = ["peak", "peakFrame", "final", "rms", "speed", "energy", "settle"] as const;
@@ -268,11 +270,6 @@ export function measureText({ values }: Measure, row: number): string {
 }
 
 /** The command that writes a take. */
-export function commandOf(sweep: Sweep, row: number): string {
-  const take = sweep.takes[row];
-  const { folder } = sweep.head;
-  const isPlain = /^[\w@%+=:,./][\w@%+=:,./-]*$/.test(folder);
-  const name = folder.startsWith("-") ? `./${folder}` : folder;
-  const quoted = isPlain ? name : `'${name.replaceAll("'", "'\\''")}'`;
-  return `pliant sweep bake ${quoted} ${take} -o take${take}.glb`;
+export function commandOf({ takes, head }: Sweep, row: number): string {
+  return `${head.command} ${takes[row]} -o take${takes[row]}.glb`;
 }
