@@ -23,13 +23,24 @@ export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingCo
   const { width, height } = canvas.getBoundingClientRect();
   const context = canvas.getContext("2d");
   if (!context || width === 0 || height === 0) return null;
-  const ratio = devicePixelRatio || 1;
-  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  const [w, h] = pixelsOf(width, height);
   if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
   // Not the device's ratio: the sizes in the window are not integers.
   context.setTransform(w / width, 0, 0, h / height, 0, 0);
   context.clearRect(0, 0, width, height);
   return { context, width, height };
+}
+
+/** Whether it still has the pixels that `prepare` gave it. */
+export function isAsLargeAsSeen(canvas: HTMLCanvasElement): boolean {
+  const { width, height } = canvas.getBoundingClientRect();
+  const [w, h] = pixelsOf(width, height);
+  return canvas.width === w && canvas.height === h;
+}
+
+function pixelsOf(width: number, height: number): [number, number] {
+  const ratio = devicePixelRatio || 1;
+  return [Math.round(width * ratio), Math.round(height * ratio)];
 }
 
 export function diamond(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {

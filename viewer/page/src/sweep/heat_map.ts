@@ -3,7 +3,7 @@
 import { numberText } from "../curve_plot";
 import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
-import { drawAxes, Plot, type Area } from "./plot";
+import { drawAxes, Plot, type Area, type Mark } from "./plot";
 import type { Pointing } from "./pointing";
 import { measureRange, type Axis, type ScaleChoice } from "./scales";
 import type { Measure } from "./sweep";
@@ -114,12 +114,8 @@ export class HeatMap extends Plot {
     }
   }
 
-  protected drawMark(context: CanvasRenderingContext2D, { left, top, width, height }: Area, palette: Palette): void {
-    for (const [colour, line] of [[palette.panel, 4], [palette.accent, 2]] as const) {
-      context.strokeStyle = colour;
-      context.lineWidth = line;
-      context.strokeRect(left, top, width, height);
-    }
+  protected marksOf({ left, top, width, height }: Area, palette: Palette): Mark[] {
+    return [{ shape: "rect", at: { x: left, y: top, width, height }, colour: palette.accent, width: 2, ground: 4 }];
   }
 
   protected placeAt(row: number): Area {

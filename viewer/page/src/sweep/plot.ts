@@ -1,7 +1,7 @@
 // A plot on a canvas whose marks are takes: a measure over a PATH, or a map over two of them.
 
 import type { Palette, ThemeChoice } from "../theme";
-import { prepare } from "../timeline";
+import { isAsLargeAsSeen, prepare } from "../timeline";
 import type { Pointing } from "./pointing";
 import type { Axis } from "./scales";
 
@@ -14,13 +14,25 @@ export interface Area {
 
 const nearest = 28; // px from a mark to the pointer
 
-/** Draws when it is seen; keeps its drawing and puts the mark of the take pointed at over it. */
+/** A mark over a plot: a shape of SVG, its ground in the colour of the panel, and itself. */
+export interface Mark {
+  shape: "circle" | "path" | "rect";
+  at: Record<string, string | number>;
+  colour: string;
+  /** Width of the line, and of its ground. [px] */
+  width: number;
+  ground: number;
+}
+
+const svg = <K extends keyof SVGElementTagNameMap>(name: K) => document.createElementNS("http://www.w3.org/2000/svg", name);
+
+/** Draws when it is seen. The marks of the take pointed at are above the drawing, which stays. */
 export abstract class Plot {
   readonly element = document.createElement("figure");
   protected readonly canvas = document.createElement("canvas");
   private readonly caption = document.createElement("figcaption");
   private readonly value = document.createElement("b");
-  private readonly kept = document.createElement("canvas");
+  private readonly marks = svg("svg");
   private isSeen = false;
   private isStale = true;
 
@@ -39,7 +51,12 @@ export abstract class Plot {
     this.caption.title = `${about} [${unit}]`;
     this.caption.append(name, measured, this.value);
     this.canvas.setAttribute("role", "img");
-    this.element.append(this.caption, this.canvas);
+    // In the processor's memory: a hundred thousand points are no work for graphics.
+    this.canvas.getContext("2d", { willReadFrequently: true });
+    this.marks.setAttribute("aria-hidden", "true");
+    const both = document.createElement("div");
+    both.append(this.canvas, this.marks);
+    this.element.append(this.caption, both);
     this.canvas.addEventListener("pointermove", (event) => {
       const box = this.canvas.getBoundingClientRect();
       this.pointing.point(this.rowAt(event.clientX - box.left, event.clientY - box.top), this);
@@ -68,29 +85,32 @@ export abstract class Plot {
   show(): void {
     if (!this.isSeen) return;
     const { palette } = this.themes;
-    const place = prepare(this.canvas);
-    if (!place) return;
-    const { context, width, height } = place;
-    if (this.isStale || this.kept.width !== this.canvas.width || this.kept.height !== this.canvas.height) {
-      [this.kept.width, this.kept.height] = [this.canvas.width, this.canvas.height];
-      // In the processor's memory: a hundred thousand points are no work for graphics.
-      const lasting = this.kept.getContext("2d", { willReadFrequently: true })!;
-      lasting.setTransform(context.getTransform());
-      this.draw(lasting, width, height, palette);
+    if (this.isStale || !isAsLargeAsSeen(this.canvas)) {
+      const place = prepare(this.canvas);
+      if (!place) return;
+      this.draw(place.context, place.width, place.height, palette);
       this.isStale = false;
     }
-    context.save();
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(this.kept, 0, 0);
-    context.restore();
+    this.mark();
+  }
+
+  /** Marks the take pointed at, if it is seen. */
+  mark(): void {
+    if (!this.isSeen || this.isStale) return;
+    const { palette } = this.themes;
     const row = this.pointing.row;
     this.value.textContent = this.textAt(row);
     const at = row === null ? null : this.placeAt(row);
-    if (at) this.drawMark(context, at, palette, row!);
+    this.marks.replaceChildren(...(at ? this.marksOf(at, palette, row!) : []).flatMap(({ shape, at, colour, width, ground }) =>
+      ([[palette.panel, ground], [colour, width]] as const).map(([stroke, wide]) => {
+        const one = svg(shape);
+        for (const [name, value] of Object.entries({ ...at, stroke, "stroke-width": wide, fill: "none" })) one.setAttribute(name, String(value));
+        return one;
+      })));
   }
 
   protected abstract draw(context: CanvasRenderingContext2D, width: number, height: number, palette: Palette): void;
-  protected abstract drawMark(context: CanvasRenderingContext2D, at: Area, palette: Palette, row: number): void;
+  protected abstract marksOf(at: Area, palette: Palette, row: number): Mark[];
   /** The place of a row's mark, as the last drawing has it. */
   protected abstract placeAt(row: number): Area | null;
   protected abstract rowAt(x: number, y: number): number | null;
@@ -230,7 +250,9 @@ export class Graph extends Plot {
     context.lineJoin = "round";
     for (const { rows, colour } of spec.lines) {
       context.strokeStyle = colour(palette);
-      this.drawLine(context, rows);
+      context.beginPath();
+      this.trace(rows, (x, y) => context.moveTo(x, y), (x, y) => context.lineTo(x, y));
+      context.stroke();
     }
     context.globalAlpha = count > 20_000 ? 0.2 : count > 2000 ? 0.5 : count > 300 ? 0.8 : 1;
     let last = "";
@@ -251,33 +273,26 @@ export class Graph extends Plot {
     context.globalAlpha = 1;
   }
 
-  private drawLine(context: CanvasRenderingContext2D, rows: number[]): void {
-    context.beginPath();
+  private trace(rows: number[], moveTo: (x: number, y: number) => void, lineTo: (x: number, y: number) => void): void {
     let isDown = false; // a take without a result interrupts the line
     for (const row of rows) {
       const [x, y] = [this.places[2 * row], this.places[2 * row + 1]];
       if (Number.isNaN(y)) isDown = false;
-      else if (isDown) context.lineTo(x, y);
-      else context.moveTo(x, y), (isDown = true);
+      else if (isDown) lineTo(x, y);
+      else moveTo(x, y), (isDown = true);
     }
-    context.stroke();
   }
 
   // The line of the take stands out from others that it crosses.
-  protected drawMark(context: CanvasRenderingContext2D, { left, top }: Area, palette: Palette, row: number): void {
+  protected marksOf({ left, top }: Area, palette: Palette, row: number): Mark[] {
+    const marks: Mark[] = [];
     const line = this.spec.lines.length > 1 ? this.spec.lines.find(({ rows }) => rows.includes(row)) : undefined;
-    for (const [colour, width] of line ? [[palette.panel, 6], [line.colour(palette), 3]] as const : []) {
-      context.strokeStyle = colour;
-      context.lineWidth = width;
-      this.drawLine(context, line!.rows);
+    if (line) {
+      const words: string[] = [];
+      this.trace(line.rows, (x, y) => words.push(`M${x} ${y}`), (x, y) => words.push(`L${x} ${y}`));
+      marks.push({ shape: "path", at: { d: words.join("") }, colour: line.colour(palette), width: 3, ground: 6 });
     }
-    for (const [colour, width] of [[palette.panel, 5], [palette.accent, 2.5]] as const) {
-      context.strokeStyle = colour;
-      context.lineWidth = width;
-      context.beginPath();
-      context.arc(left, top, 5.5, 0, 2 * Math.PI);
-      context.stroke();
-    }
+    return [...marks, { shape: "circle", at: { cx: left, cy: top, r: 5.5 }, colour: palette.accent, width: 2.5, ground: 5 }];
   }
 
   protected placeAt(row: number): Area | null {

@@ -55,7 +55,7 @@ export class PlotGrid {
       for (const { target, isIntersecting } of entries) byElement(target)?.see(isIntersecting);
     }, { root: place.closest(".flow"), rootMargin: "300px" });
     themes.onChange(() => this.redraw());
-    pointing.onChange(() => this.plots.forEach((plot) => plot.show()));
+    pointing.onChange(() => this.plots.forEach((plot) => plot.mark()));
     // A plot draws anew if its own size has changed.
     new ResizeObserver(() => this.plots.forEach((plot) => plot.show())).observe(place);
   }
