@@ -89,6 +89,11 @@ int run_sweep_view(const SweepViewOptions& options);
 /// on stderr. Returns the exit code: 0 if all takes are done.
 int tell_status(const SweepFolder& folder, bool is_quiet = false);
 
+/// Whether a file is no part of a sweep, so that a command may write it. Errors: InvalidInput,
+/// naming the option.
+Result<void> check_no_part(std::string_view option, const std::string& file,
+                           const SweepFolder& folder);
+
 /// Prints takes of which the log has two hashes on stderr, those of a part.
 void print_conflicts(const SweepStatus& status, const SweepPart& part = {});
 

@@ -27,6 +27,9 @@ int run_sweep_bake(const SweepBakeOptions& options) {
          .message = fmt::format("TAKE {}: {} has the takes 0 to {}", printable(options.take),
                                 printable(options.folder), sweep.takes().count() - 1)});
   }
+  // With some frames or surfaces only, a file would no longer be what the log says.
+  if (auto no_part = check_no_part("-o", options.bake.out, *folder); !no_part)
+    return report(no_part.error());
   const auto take = static_cast<std::size_t>(*number);
   const auto status = folder->status(&was_interrupted);
   if (!status) return report(status.error());

@@ -34,15 +34,7 @@ tl::unexpected<Error> refuse_output(std::string_view option, const std::string& 
 // Whether a file may be written, ahead of all work: it is no part of the sweep and no input of it.
 Result<void> check_view_output(std::string_view option, const std::string& file,
                                const SweepFolder& folder) {
-  const fs::path root(folder.folder());
-  for (const char* part : {"sweep.json", "takes.csv"}) {
-    if (name_one_file(file, root / part)) return refuse_output(option, file, "it is the sweep's");
-  }
-  const fs::path parent = fs::path(file).parent_path();
-  for (const char* part : {"log", "takes", "slurm"}) {
-    if (!parent.empty() && name_one_file(parent, root / part))
-      return refuse_output(option, file, "its folder is the sweep's");
-  }
+  if (auto no_part = check_no_part(option, file, folder); !no_part) return no_part;
   return folder.sweep().for_each_variant([&](const Scene& scene) -> Result<void> {
     const std::string input = input_named(file, scene);
     return input.empty() ? Result<void>() : refuse_output(option, file, input);
@@ -152,6 +144,21 @@ Result<void> write_view(const SweepViewOptions& options, const std::optional<std
 }
 
 }  // namespace
+
+Result<void> check_no_part(std::string_view option, const std::string& file,
+                           const SweepFolder& folder) {
+  const fs::path root(folder.folder());
+  for (const char* part : {"sweep.json", "takes.csv"}) {
+    if (name_one_file(file, root / part)) return refuse_output(option, file, "it is the sweep's");
+  }
+  const fs::path parent = fs::path(file).parent_path();
+  for (const char* part : {"log", "takes", "slurm"}) {
+    const bool is_there =
+        parent.empty() ? name_one_file(".", root / part) : name_one_file(parent, root / part);
+    if (is_there) return refuse_output(option, file, "its folder is the sweep's");
+  }
+  return {};
+}
 
 void add_sweep_view(CLI::App& sweep, SweepViewOptions& options) {
   CLI::App* view = sweep.add_subcommand(

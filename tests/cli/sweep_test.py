@@ -407,6 +407,18 @@ class Sweeps(SweepCommand):
         self.assertIn("2 frames", self.sweep("bake", self.path("s"), "3", "-o", self.path("x.npy"),
                                              "--frames", "1:2").stdout)
 
+    def test_bake_writes_into_no_folder_of_the_sweep(self):
+        self.make("s", "--write", "npy")
+        kept = self.read("s/takes/00003.npy")
+        for name in ("s/takes/00003.npy", "s/takes/other.obj", "s/log/x.npy", "s/../s/takes/00003.npy"):
+            message = self.sweep("bake", self.path("s"), "3", "-o", self.path(name), "--frames", "2", code=2).stderr
+            self.assertIn("its folder is the sweep's", message)
+        self.assertIn("its folder is the sweep's", self.sweep("bake", "..", "3", "-o", "00003.npy", code=2,
+                                                              cwd=self.path("s/takes")).stderr)
+        self.assertEqual(self.read("s/takes/00003.npy"), kept)
+        self.sweep("bake", self.path("s"), "3", "-o", self.path("s/take3.npy"))
+        self.assertEqual(self.read("s/take3.npy"), kept)
+
     def test_threads_and_memory_change_nothing(self):
         wanted = self.undisturbed()
         for options in (["--threads", "7"], ["--threads", "2", "--max-memory", "0.002"]):
