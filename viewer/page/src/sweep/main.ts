@@ -45,7 +45,7 @@ function sheetNote(sweep: Sweep, studio: Studio): string {
   const notes: string[] = [];
   const { head, shapes } = sweep;
   if (shapes.length === 0) notes.push("No take is done that could be shown.");
-  else if (shapes.length < head.done) notes.push(`${counted(shapes.length, "take")} of the ${head.done.toLocaleString("en")} that are done, evenly spread.`);
+  else if (shapes.length + head.failures.length < head.done) notes.push(`${counted(shapes.length, "take")} of the ${head.done.toLocaleString("en")} that are done, evenly spread.`);
   const coarse = shapes.filter(({ shown, vertices }) => shown < vertices);
   if (coarse.length > 0) {
     const [one] = coarse;
