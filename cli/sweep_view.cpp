@@ -11,6 +11,7 @@
 #include "counted.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "look.hpp"
 #include "output_file.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "progress.hpp"
@@ -51,6 +52,7 @@ Result<void> check_view_places(const SweepViewOptions& options) {
   }
   if (options.png) {
     if (auto place = check_output_file("--png", *options.png); !place) return place;
+    if (auto look = check_look(options.look); !look) return look;
     return check_browser("--png");
   }
   return {};

@@ -7,6 +7,7 @@
 #include "child.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "look.hpp"
 #include "movie_writer.hpp"
 #include "output_file.hpp"
 #include "pliant/core/memory_budget.hpp"
@@ -94,6 +95,7 @@ struct Movie {
 Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
   // All checks that do not need a run come first.
   if (auto format = movie_format(*options.movie); !format) return fail(format.error());
+  if (auto look = check_look(options.look); !look) return fail(look.error());
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return fail(scene.error());
   const auto plan = make_plan(options, *scene);

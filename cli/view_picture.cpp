@@ -20,6 +20,7 @@
 #include "child.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "look.hpp"
 #include "output_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
@@ -122,6 +123,7 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto size = parse_size(options.size);
   if (!size) return fail(size.error());
+  if (auto look = check_look(options.look); !look) return look;
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return fail(scene.error());
   if (const auto input = input_named(*options.png, *scene); !input.empty()) {

@@ -117,6 +117,14 @@ class SweepPages(SweepViews):
         self.assertIn("--size", self.refused("--png", self.path("a.png"), "--size", "8x8"))
         self.assertIn("the most is", self.refused("--png", self.path("a.png"), "--size", "8000x8000"))
         self.view("-o", self.path("a.html"), "--size", "100x100", code=2)
+        for look, reason in (("tunr=3", 'did you mean "turn"'), ("turn=3&theme=drak", 'did you mean "dark"'), ("turn=x", "a number"),
+                             ("peak=0", "above 0"), ("turn", "a number"), ("legend=yes", "allowed: on, off")):
+            message = self.refused("--png", self.path("a.png"), "--look", look)
+            self.assertIn(f"--look {look.split('&')[-1]}: ", message)
+            self.assertIn(reason, message)
+            for option in ("--png", "--movie"):
+                self.assertIn(reason, self.run_pliant("view", self.path("scene.xml"), option, self.path("a.mp4"),
+                                                      "--look", look, code=2).stderr)
         self.assertEqual(kept, {name: self.read(name) for name in kept})
 
     def test_a_mesh_that_was_changed_since_costs_its_pictures_only(self):
