@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 
 /** The pixels of a PNG, and its size. */
-async function pixelsOfPng(view, png) {
+export async function pixelsOfPng(view, png) {
   const { data, ...size } = await view.evaluate(async (base64) => {
     const image = new Image();
     image.src = `data:image/png;base64,${base64}`;

@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import path from "node:path";
 
-import { sweepPlotTests } from "./sweep_plot_tests.mjs";
+import { pixelsOfPng, sweepPlotTests } from "./sweep_plot_tests.mjs";
 
 const scene = (attributes = "", grid = 'columns="13" rows="13"') => `<scene version="1" start="1" end="12"><surface name="sheet"><grid ${grid} width="10" depth="10"/>
   <material damping="5" ${attributes}/></surface><point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2.5" magnitude="900"/></scene>`;
@@ -398,18 +398,10 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
     // Three columns, two rows with 50 pixels for a number and two values, 66 for the colours.
     assert.deepEqual([width, height], [3 * 200, 2 * (150 + 50) + 66]);
     await withPage(`file://${inFolder("both.html")}`, {}, async (view) => {
-      const colours = await view.evaluate(async (base64) => {
-        const image = new Image();
-        image.src = `data:image/png;base64,${base64}`;
-        await image.decode();
-        const canvas = document.createElement("canvas");
-        [canvas.width, canvas.height] = [image.width, image.height];
-        const context = canvas.getContext("2d", { willReadFrequently: true });
-        context.drawImage(image, 0, 0);
-        const count = (...box) => new Set(new Uint32Array(context.getImageData(...box).data.buffer)).size;
-        const tiles = [0, 1, 2, 3, 4, 5].map((k) => [count((k % 3) * 200, Math.floor(k / 3) * 200, 199, 150), count((k % 3) * 200, Math.floor(k / 3) * 200 + 150, 200, 50)]);
-        return { tiles, strip: count(0, 400, 250, 66) };
-      }, png.toString("base64"));
+      const { data } = await pixelsOfPng(view, png);
+      const count = (left, top, across, up) => new Set(Array.from({ length: across * up }, (_, k) => data.readUInt32LE(4 * ((top + Math.floor(k / across)) * width + left + (k % across))))).size;
+      const tiles = [0, 1, 2, 3, 4, 5].map((k) => [count((k % 3) * 200, Math.floor(k / 3) * 200, 199, 150), count((k % 3) * 200, Math.floor(k / 3) * 200 + 150, 200, 50)]);
+      const colours = { tiles, strip: count(0, 400, 250, 66) };
       for (const [picture, words] of colours.tiles) assert.ok(picture > 200 && words > 10, `${picture}, ${words}`);
       assert.ok(colours.strip > 100);
     });
