@@ -257,4 +257,25 @@ export function sweepPlotTests({ test, withPage, near, run, inFolder, sweepPage,
       assert.match(await view.locator(".plot canvas").first().getAttribute("aria-label"), /^peak \[scene units\]: .*, across sheet\.damping, up poke\.magnitude, from \S+ to \S+$/);
     });
   });
+
+  test("a take that does not move hides no decades of the others", async () => {
+    const url = sweepPage("still", small("still"), ["poke.magnitude=0,1,10,100,1000", "sheet.damping=1,5"]);
+    await withPage(url, { height: 900 }, async (view) => {
+      assert.match(await view.locator("#plots-note").textContent(), /Logarithmic axes have no place for zeros\.$/);
+      const places = await view.evaluate(() => {
+        const { spec } = window.pliant.plots.plots[0];
+        return [0, 2, 4, 6, 8].map((row) => spec.yAxis.at(spec.y[row]));
+      });
+      assert.ok(Number.isNaN(places[0]));
+      for (let k = 2; k < 5; ++k) near(places[k] - places[k - 1], places[2] - places[1], 1e-3, "a decade");
+      await view.locator("#plots-part").scrollIntoViewIfNeeded();
+      await view.evaluate(() => window.pliant.pointing.keep(0, "test"));
+      await settled(view);
+      assert.equal(await view.locator(".plot").first().locator("svg circle").count(), 0);
+      assert.equal(await view.locator(".plot").first().locator("figcaption b").textContent(), "0");
+      await view.locator("#measure-scale").selectOption("linear");
+      assert.ok(await view.evaluate(() => window.pliant.plots.plots[0].spec.yAxis.at(0)) > 0);
+      assert.doesNotMatch(await view.locator("#plots-note").textContent(), /zeros/);
+    });
+  });
 }

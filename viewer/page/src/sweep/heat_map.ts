@@ -5,7 +5,7 @@ import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
 import { drawAxes, Plot, type Area, type Mark } from "./plot";
 import type { Pointing } from "./pointing";
-import { measureRange, type Axis, type ScaleChoice } from "./scales";
+import { measureRange, type Axis, type Range, type ScaleChoice } from "./scales";
 import type { Measure } from "./sweep";
 
 export interface MapSpec {
@@ -36,7 +36,7 @@ export class HeatMap extends Plot {
   /** Of each cell: the mean of its takes, and these. */
   private readonly means: Float64Array;
   private readonly rows: number[][];
-  private readonly range: { low: number; high: number; isLog: boolean } | null;
+  private readonly range: Range | null;
 
   constructor(
     private readonly spec: MapSpec,

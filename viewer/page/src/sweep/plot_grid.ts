@@ -5,7 +5,7 @@ import type { Palette, ThemeChoice } from "../theme";
 import { HeatMap } from "./heat_map";
 import { Graph, type Joined, type Plot } from "./plot";
 import type { Pointing } from "./pointing";
-import { measureAxis, pathAxis, placeOf, type ScaleChoice } from "./scales";
+import { measureAxis, measureRange, pathAxis, placeOf, type ScaleChoice } from "./scales";
 import { measureText, shortText, type Path, type Sweep } from "./sweep";
 
 /** More lines are drawn as points only. */
@@ -88,9 +88,10 @@ export class PlotGrid {
     const heads = columns.map(({ path, colours }) => this.head(path, colours));
     const axes = columns.map(({ path }) => pathAxis(path, this.valueScale));
     const places = columns.map(({ path }) => Float64Array.from({ length: sweep.rowCount }, (_, row) => placeOf(path, row)));
-    const parts = columns.some(({ lines }) => lines.length > 0) ? "Lines join takes that differ in this value only." : "";
-    this.note.textContent = parts;
-    this.note.hidden = parts === "";
+    const notes = columns.some(({ lines }) => lines.length > 0) ? ["Lines join takes that differ in this value only."] : [];
+    if (sweep.measures.some(({ values, isWhole }) => measureRange(values, this.measureScale, isWhole)?.isLog && values.includes(0))) notes.push("Logarithmic axes have no place for zeros.");
+    this.note.textContent = notes.join(" ");
+    this.note.hidden = notes.length === 0;
     const graphs = sweep.measures.flatMap((measure) => {
       const yAxis = measureAxis(measure, this.measureScale);
       return columns.map(({ path, lines, colourOf }, k) => new Graph({

@@ -42,7 +42,7 @@ function numberAxis(low: number, high: number, isLog: boolean, isWhole: boolean)
     ? scaleLog().domain([inside(low / spread), inside(high * spread)])
     : scaleLinear().domain([low - margin * (high - low), high + margin * (high - low)]);
   return {
-    at: (value) => scale(value),
+    at: (value) => (isLog && value === 0 ? NaN : scale(value)),
     ticks: (most) => {
       const ticksFor = (wanted: number) => scale.ticks(wanted).filter((value) => !isWhole || Number.isInteger(value));
       let ticks = ticksFor(most);
@@ -93,15 +93,26 @@ export function placeOf(path: Path, row: number): number {
   return path.numbers ? path.numbers[path.rows[row]] : path.rows[row];
 }
 
-/** The ends of a measure's finite values, and whether it has a logarithmic scale; null: there is none. */
-export function measureRange(values: Float64Array, choice: ScaleChoice, isWhole: boolean): { low: number; high: number; isLog: boolean } | null {
+/** Ends of a measure's values. */
+export interface Range {
+  low: number;
+  high: number;
+  /** The scale is logarithmic; zeros are not on it. */
+  isLog: boolean;
+}
+
+/** The range of the finite values, of those above zero if the scale is logarithmic; null: there is none. */
+export function measureRange(values: Float64Array, choice: ScaleChoice, isWhole: boolean): Range | null {
   const sorted = values.filter(Number.isFinite).sort();
   if (sorted.length === 0) return null;
-  const [low, high] = [sorted[0], sorted[sorted.length - 1]];
+  // A take without any motion, as with a force of 0, must not hide the decades of the others.
+  const above = sorted.filter((value) => value > 0);
+  const high = sorted[sorted.length - 1];
   // Over decades, but for a few takes.
-  const share = (part: number) => sorted[Math.round(part * (sorted.length - 1))];
+  const share = (part: number) => above[Math.round(part * (above.length - 1))];
   const isWide = !isWhole && share(0.95) > 100 * share(0.05);
-  return { low, high, isLog: low > 0 && (choice === "log" || (choice === "auto" && isWide)) };
+  const isLog = sorted[0] >= 0 && above[0] < high && (choice === "log" || (choice === "auto" && isWide));
+  return { low: isLog ? above[0] : sorted[0], high, isLog };
 }
 
 /** The axis of a measure; null: it has no value. */
