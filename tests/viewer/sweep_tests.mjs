@@ -239,6 +239,9 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
       near(maps[0].means[4 + 1], peaks.reduce((a, b) => a + b) / 5, 1e-12, "the mean of a cell");
       await view.locator("#up").selectOption({ label: "sheet.damping" });
       assert.deepEqual(await view.evaluate(() => window.pliant.plots.plots[0].spec.up), ["1", "3.162", "10", "31.62", "100"]);
+      // Each cell of the first map has a colour: those of 20 means, and of text and frame.
+      await readsPixels(view);
+      await view.waitForFunction(() => new Set(new Uint32Array(window.pixelsOf(document.querySelector(".plot canvas")).buffer)).size > 20);
       await view.screenshot({ path: path.join(pictures, "sweep-maps.png") });
       // Another theme draws all that is seen anew: frames on a lighter ground are darker.
       await view.locator("#kind span").first().click();
