@@ -18,6 +18,10 @@ TEST_CASE("curves of every kind go through each format", "[exchange][round_trip]
     const CurveKeys<1> keys = whim.keys(6);
     const auto curve = Curve<1>::make(keys);
     if (!curve) continue;
+    // Keys so close that a repeated curve has thousands of copies: of 30 seeds two, which take
+    // thirty times as long as all others, by the same code.
+    const bool is_dense = keys.keys.back().frame - keys.keys.front().frame < 0.1;
+    if (is_sanitized && is_dense && keys.keys.size() > 1) continue;
     check_round_trip(*curve, format, -30, 60, shown_tolerance, gap_of(format));
   }
 }
