@@ -5,6 +5,7 @@
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/read_gltf.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -320,16 +321,16 @@ TEST_CASE("coordinates of a glTF that are not finite are refused", "[mesh][read_
 TEST_CASE("no prefix or mutation of a glTF does harm", "[mesh][read_gltf]") {
   std::mt19937 random(1);
   for (const std::string& whole : {whole_gltf(), small_glb()}) {
-    for (std::size_t length = 0; length < whole.size(); ++length)
+    for (std::size_t length = 0; length < whole.size(); length += is_sanitized ? 3 : 1)
       check_harmless(whole.substr(0, length));
-    for (int trial = 0; trial < 3000; ++trial) {
+    for (int trial = 0; trial < rounds(3000); ++trial) {
       std::string mutant = whole;
       for (int k = 0; k < 2; ++k) mutant[random() % mutant.size()] = static_cast<char>(random());
       check_harmless(mutant);
     }
     // Changes that keep it JSON: digits replaced by digits, and whole pieces moved elsewhere.
     const std::string digits = "0123456789";
-    for (int trial = 0; trial < 3000; ++trial) {
+    for (int trial = 0; trial < rounds(3000); ++trial) {
       std::string mutant = whole;
       for (int k = 0; k < 2; ++k) {
         const std::size_t at = mutant.find_first_of(digits, random() % mutant.size());
@@ -339,7 +340,7 @@ TEST_CASE("no prefix or mutation of a glTF does harm", "[mesh][read_gltf]") {
         mutant.insert(mutant.find_first_of(digits), std::string(random() % 20, '9'));
       check_harmless(mutant);
     }
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < rounds(1000); ++trial) {
       const std::size_t from = random() % whole.size(), size = random() % 40;
       std::string mutant = whole;
       check_harmless(mutant.insert(random() % mutant.size(), whole.substr(from, size)));

@@ -10,6 +10,7 @@
 
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
+#include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace pliant::testing {
@@ -544,19 +545,20 @@ TEST_CASE("limits of expansion end with one error", "[scene][expand]") {
     REQUIRE(problems.size() == 1);
     CHECK_THAT(problems[0], contains_text("<define> value=\"$a16$a16\": is longer than 64 KiB"));
   }
-  SECTION("definitions that are many and long") {
-    std::string body = define("a", std::string(xml::longest_value, 'x'));
-    for (int k = 0; k < 5000; ++k) body += define(fmt::format("b{}", k), "$a");
-    const Lines problems = Shot(body).problems();
-    REQUIRE(problems.size() == 1);
-    CHECK_THAT(problems[0], contains_text("is larger than 256 MiB"));
-  }
   SECTION("text that is included often") {
     std::string body;
     for (int k = 0; k < 300; ++k) body += "<include file=\"a.xml\"/>";
     Shot shot(body);
     shot.fragment("a.xml", "<!--" + std::string(1 << 20, ' ') + "-->");
     const Lines problems = shot.problems();
+    REQUIRE(problems.size() == 1);
+    CHECK_THAT(problems[0], contains_text("is larger than 256 MiB"));
+  }
+  if (is_sanitized) return;  // two other ways to the same error, each with 256 MiB of values
+  SECTION("definitions that are many and long") {
+    std::string body = define("a", std::string(xml::longest_value, 'x'));
+    for (int k = 0; k < 5000; ++k) body += define(fmt::format("b{}", k), "$a");
+    const Lines problems = Shot(body).problems();
     REQUIRE(problems.size() == 1);
     CHECK_THAT(problems[0], contains_text("is larger than 256 MiB"));
   }

@@ -14,6 +14,7 @@
 #include "pliant/scene/text.hpp"
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
+#include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace pliant::testing {
@@ -204,10 +205,12 @@ std::string spread(std::string_view text, unsigned seed) {
   return result;
 }
 
+const auto seeds = static_cast<unsigned>(rounds(150));
+
 TEST_CASE("a scene that is cut at random is the same scene", "[scene][sharing]") {
   const std::string uncut = to_xml(scene_of(rich_scene), "shots").value();
   int files = 0, definitions = 0;
-  for (unsigned seed = 0; seed < 150; ++seed) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
     CAPTURE(seed);
     Cutter cutter(spread(rich_scene, seed), seed);
     cutter.cut(1 + cutter.upto(25));
@@ -232,8 +235,8 @@ TEST_CASE("a scene that is cut at random is the same scene", "[scene][sharing]")
     for (const auto& [name, text] : cutter.files())
       for (std::size_t at = 0; (at = text.find("<define", at)) != text.npos; ++at) ++definitions;
   }
-  CHECK(files > 500);
-  CHECK(definitions > 500);
+  CHECK(files > rounds(500));
+  CHECK(definitions > rounds(500));
 }
 
 /// The names of the files, and the lines of their includes, from a file out to the scene.
@@ -254,7 +257,7 @@ std::string chain_of(std::string name, const Cutter& cutter, const std::string& 
 
 TEST_CASE("a problem is told where it is after any cut", "[scene][sharing]") {
   int included = 0;
-  for (unsigned seed = 0; seed < 150; ++seed) {
+  for (unsigned seed = 0; seed < seeds; ++seed) {
     CAPTURE(seed);
     std::string text = spread(rich_scene, seed);
     std::mt19937 random(seed);
@@ -286,7 +289,7 @@ TEST_CASE("a problem is told where it is after any cut", "[scene][sharing]") {
     CHECK((errors[0].message.find("included by") == std::string::npos) == chain.empty());
     if (!chain.empty()) ++included;
   }
-  CHECK(included > 60);
+  CHECK(included > rounds(60));
 }
 
 }  // namespace
