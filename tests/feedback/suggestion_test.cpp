@@ -4,6 +4,7 @@
 
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
+#include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
@@ -87,6 +88,7 @@ TEST_CASE("the animation has the peak, and only magnitudes change", "[feedback][
   scenes.emplace_back("tangents", s);
   for (const auto& [name, before] : scenes) {
     for (const double peak : {0.05, 1.7}) {
+      if (is_sanitized && peak > 1) continue;  // the same code again
       CAPTURE(name, peak);
       const Suggestion one = suggestion_of(before, {.peak = peak});
       CHECK(one.meets_goals());

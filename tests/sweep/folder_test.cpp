@@ -12,6 +12,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/sweep/log.hpp"
 #include "support/catch.hpp"
+#include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace pliant;
@@ -151,7 +152,7 @@ void stop_at_every_moment(const Work& work, const Look& look, int least_asked) {
   REQUIRE(work([&] { return ++asked < 0; }));
   CHECK(asked >= least_asked);
   const int all = asked;
-  for (int moment = 1; moment <= all; moment += 1 + all / 23) {
+  for (int moment = 1; moment <= all; moment += 1 + all / (is_sanitized ? 3 : 23)) {
     CAPTURE(moment, all);
     asked = 0;
     const auto ended = work([&] { return ++asked >= moment; });
