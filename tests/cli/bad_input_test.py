@@ -183,7 +183,8 @@ class BadInput(Command):
         text = SCENE.format(end=2).replace("magnitude=", 'falloff="smooth" magnitude=')
         text = text.replace(POINT.replace("magnitude=", 'falloff="smooth" magnitude='), "")
         whole = text.rstrip()
-        for length in range(len(whole)):
+        # With a sanitizer, tests/scene has every prefix, without a process for each.
+        for length in range(0, len(whole), 17 if SANITIZED else 1):
             lines = self.refused(self.write("s.xml", whole[:length]))
             self.assertEqual(len(lines), 1, (length, lines))
             self.assertRegex(lines[0], r"^\S*s\.xml:\d+: error: ")

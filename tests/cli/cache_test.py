@@ -254,7 +254,7 @@ class Trouble(Cache):
 
 class Kill(Cache):
     def test_a_bake_that_is_killed_goes_on_where_it_was(self):
-        kills = 20 if SANITIZED else 200
+        kills, checks = (6, 2) if SANITIZED else (200, 10)
         self.scene(end=1201, count=13)
         expected = self.expected()
         generator = random.Random(11)
@@ -271,7 +271,7 @@ class Kill(Cache):
             timer.cancel()
             self.assertIn(run.returncode, (0, -signal.SIGKILL))
             self.assertEqual(errors, "")
-            if kill % (kills // 10) == 0:
+            if kill % (kills // checks) == 0:
                 # The stored files are complete, and none is lost: read them in a copy.
                 copy = self.path("copy")
                 shutil.copytree(self.cache, copy) if os.path.exists(self.cache) else os.mkdir(copy)
