@@ -10,6 +10,7 @@
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "support/moving_scene.hpp"
+#include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
@@ -111,9 +112,10 @@ TEST_CASE("no frame of a yielding body depends on the way to it",
   const auto expected = all_states(s);
   Scene elastic = s;
   for (Surface& surface : elastic.surfaces) surface.material.yield = {};
-  CHECK(baked(s, "first").back() != baked(elastic, "first").back());
+  if (!is_sanitized) CHECK(baked(s, "first").back() != baked(elastic, "first").back());
   auto simulation = Simulation::make(s, {.threads = 3}).value();
   for (const int frame : {20, 3, 28, 4, 11, 10, 27}) {
+    if (is_sanitized && frame > 20) break;  // there and back once
     CAPTURE(frame);
     CHECK(state_at(simulation, frame) == expected[static_cast<std::size_t>(frame - s.start)]);
   }
