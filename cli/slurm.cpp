@@ -23,7 +23,6 @@ using namespace std::chrono_literals;
 
 // Variables by which a user narrows what squeue lists.
 constexpr std::string_view list_settings = "SQUEUE_";
-constexpr const char* queued_or_running = "--states=PENDING,RUNNING,SUSPENDED";
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
@@ -52,15 +51,23 @@ std::vector<std::string> squeue_of(const SlurmJob& job) {
   return words;
 }
 
-// NUMBER|FILE, as `--format=%F|%o` prints it.
+// A line of squeue: the number of a job, its state and its script. Without `--states` all jobs are
+// listed that have not ended; with it, those are not whose node is being made ready (CONFIGURING).
+constexpr const char* listed_format = "--format=%F|%T|%o";
+
 struct Listed {
-  std::string_view number, file;
+  std::string_view number, state, file;
+
+  // What is cancelled has this state while its processes end.
+  bool is_queued_or_running() const { return state != "COMPLETING"; }
 };
 
 std::optional<Listed> parse_listed(std::string_view line) {
-  const std::size_t bar = line.find('|');
-  if (bar == std::string_view::npos || !number_in<std::uint64_t>(line.substr(0, bar))) return {};
-  return Listed{line.substr(0, bar), line.substr(bar + 1)};
+  const std::size_t first = line.find('|'), second = line.find('|', first + 1);
+  if (second == std::string_view::npos || !number_in<std::uint64_t>(line.substr(0, first)))
+    return {};
+  return Listed{line.substr(0, first), line.substr(first + 1, second - first - 1),
+                line.substr(second + 1)};
 }
 
 bool is_script_of_a_sweep(std::string_view file) { return file.ends_with("/slurm/job.sh"); }
@@ -72,7 +79,9 @@ class Search {
 
   void add(std::string_view line) {
     const auto listed = parse_listed(line);
-    if (!listed || !is_script_of_a_sweep(listed->file) || !is_ours(listed->file)) return;
+    if (!listed || !listed->is_queued_or_running() || !is_script_of_a_sweep(listed->file) ||
+        !is_ours(listed->file))
+      return;
     const auto number = number_in<std::uint64_t>(listed->number);
     least_ = std::min(least_.value_or(*number), *number);
   }
@@ -96,14 +105,14 @@ class Search {
 // Whether a job is queued or running, and its script that of a sweep: its number may be used again.
 Result<bool> is_active(const SlurmJob& job) {
   std::vector<std::string> words = squeue_of(job);
-  words.insert(words.end(), {queued_or_running, "--format=%F|%o"});
+  words.emplace_back(listed_format);
   bool is_found = false;
   const auto end = run_program(words, {.dropped = list_settings,
                                        .take_line =
                                            [&](std::string_view line) {
                                              const auto listed = parse_listed(line);
-                                             is_found |=
-                                                 listed && is_script_of_a_sweep(listed->file);
+                                             is_found |= listed && listed->is_queued_or_running() &&
+                                                         is_script_of_a_sweep(listed->file);
                                            },
                                        .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
@@ -177,7 +186,7 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience) {
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known) {
   Search search(script);
   const auto end =
-      run_program({"squeue", "--noheader", "--all", queued_or_running, "--format=%F|%o"},
+      run_program({"squeue", "--noheader", "--all", listed_format},
                   {.dropped = list_settings,
                    .take_line = [&](std::string_view line) { search.add(line); },
                    .should_stop = &was_interrupted});

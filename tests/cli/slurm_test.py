@@ -264,7 +264,7 @@ class Slurm(Command):
     def test_nothing_is_submitted_if_no_take_is_missing(self):
         self.submit("--parts", "1", "--no-submit")
         self.log("s", range(12))
-        self.write("bin/squeue.text", f"7|{self.path('s/slurm/job.sh')}\n")  # its last task is about to end
+        self.write("bin/squeue.text", f"7|COMPLETING|{self.path('s/slurm/job.sh')}\n")  # its last task is about to end
         out = self.sweep("run", self.path("s"), "--engine", "slurm", "--wait").stdout
         self.assertIn("12 takes, 12 done", out)
         self.assertEqual(self.read("s/takes.csv").count(b",done,"), 12)
@@ -306,7 +306,8 @@ class Slurm(Command):
     def test_a_job_that_is_queued_or_running_refuses_another(self):
         self.submit("--parts", "3")
         script = self.path("s/slurm/job.sh")
-        listed = f"5|/elsewhere/slurm/job.sh\nnonsense\n7|{script}\n6|/x\n41|{script}\n"
+        listed = f"5|RUNNING|/elsewhere/slurm/job.sh\nnonsense\n3|COMPLETING|{script}\n7|CONFIGURING|{script}\n6|PENDING|/x\n" \
+                 f"41|RUNNING|{script}\n9|RUNNING\n"
         for known in (b"123\n", b"", b"12", b"99;no such\x1b\n", None):
             if known is None:
                 os.remove(self.path("s/slurm/job"))
@@ -320,11 +321,11 @@ class Slurm(Command):
         self.assertIn("job 7 ", self.submit("--parts", "3", code=1).stderr)
         # By another name of the folder.
         os.symlink(self.path("s"), self.path("t"))
-        self.write("bin/squeue.text", f"8|{self.path('t/slurm/job.sh')}\n")
+        self.write("bin/squeue.text", f"8|REQUEUE_HOLD|{self.path('t/slurm/job.sh')}\n")
         self.assertIn("job 8 ", self.submit("--parts", "3", code=1).stderr)
         # Settings of the user do not hide it.
         self.environment["SQUEUE_USERS"] = "nobody"
-        self.write("bin/squeue", "#!/bin/bash\nenv | grep -q SQUEUE_ || echo '9|" + script + "'\n")
+        self.write("bin/squeue", "#!/bin/bash\nenv | grep -q SQUEUE_ || echo '9|PENDING|" + script + "'\n")
         self.assertIn("job 9 ", self.submit("--parts", "3", code=1).stderr)
         self.assertEqual(len(self.runs("sbatch")), 1)
 
@@ -332,11 +333,12 @@ class Slurm(Command):
         self.submit("--parts", "3")
         self.write("s/slurm/job", "77;far\n")
         os.remove(self.path("bin/squeue.turn"))
-        self.write("bin/squeue.2", "echo 'CLUSTER: far'; echo '77|/mounted/there/s/slurm/job.sh'")
+        self.write("bin/squeue.2", "echo 'CLUSTER: far'; echo '77|SUSPENDED|/mounted/there/s/slurm/job.sh'")
         self.assertIn("job 77 ", self.submit("--parts", "3", code=1).stderr)
         self.assertTrue({"--jobs=77", "--clusters=far"} <= set(self.runs("squeue")[-1]))
         # That number is by now of another job, or of none.
-        for text in ("echo '77|/home/x/run.sh'", "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1"):
+        for text in ("echo '77|RUNNING|/home/x/run.sh'", "echo '77|COMPLETING|/mounted/there/s/slurm/job.sh'",
+                     "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1"):
             os.remove(self.path("bin/squeue.turn"))
             self.write("bin/squeue.2", text)
             self.submit("--parts", "3")
@@ -355,11 +357,11 @@ class Slurm(Command):
 
     def test_of_two_submissions_at_once_one_stays(self):
         script = self.path("s/slurm/job.sh")
-        self.write("bin/squeue.2", f"echo '122|{script}'; echo '123|{script}'")
+        self.write("bin/squeue.2", f"echo '122|PENDING|{script}'; echo '123|PENDING|{script}'")
         failed = self.submit("--parts", "3", code=1)
         self.assertIn("job 122 ", failed.stderr)
         self.assertEqual((failed.stdout, self.runs("scancel")), ("", [["123"]]))
-        self.write("bin/squeue.4", f"echo '124|{script}'; echo '123|{script}'")
+        self.write("bin/squeue.4", f"echo '124|PENDING|{script}'; echo '123|PENDING|{script}'")
         self.assertIn("submitted 123", self.submit("--parts", "3").stdout)
         self.assertEqual(len(self.runs("scancel")), 1)
         self.write("bin/sbatch.3", f"sed -i s,/3,/5, {script}; echo 125")  # which sbatch may have read

@@ -1,5 +1,5 @@
 """`pliant sweep run --engine slurm` on a real Slurm of three nodes: tests/sweep/slurm_loopback.sh, as script/test --slurm
-starts it with --max-array 10. usage: slurm_test.py PLIANT SHIM [arguments of unittest]
+starts it with --max-array 10 and its PrologSlurmctld. usage: slurm_test.py PLIANT SHIM [arguments of unittest]
 
 The shim (node_shim.cpp) gives each process of a job the name of its node, makes takes last, and computes wrongly on one
 node.
@@ -158,6 +158,11 @@ class Slurm(unittest.TestCase):
         # What is cancelled refuses nothing, though its processes are ending.
         run("scancel", number)
         self.assertIn("submitted ", run(*command).stdout)
+
+    def test_a_job_whose_node_is_made_ready_refuses_another(self):
+        number = self.number(self.submit("--parts", "3", "--sbatch=--job-name=slow-prolog"))
+        wait_until(lambda: "CONFIGURING" in run("squeue", "-h", "-j", number, "-o", "%T").stdout)
+        self.assertIn(f"job {number} of this sweep is queued or running", self.submit("--parts", "3", code=1).stderr)
 
     def test_an_interrupt_ends_the_waiting_only(self):
         with subprocess.Popen(self.command("--engine", "slurm", "--parts", "3", "--wait", shim(700)), stdout=subprocess.PIPE,
