@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -34,11 +35,14 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
-std::vector<char*> environment_without(std::string_view dropped) {
+std::vector<char*> environment_without(std::span<const std::string_view> dropped) {
   std::vector<char*> variables;
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (dropped.empty() || !std::string_view(*variable).starts_with(dropped))
-      variables.push_back(*variable);
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const auto begins = [&](std::string_view text) {
+      return std::string_view(*variable).starts_with(text);
+    };
+    if (std::ranges::none_of(dropped, begins)) variables.push_back(*variable);
+  }
   variables.push_back(nullptr);
   return variables;
 }
@@ -101,12 +105,18 @@ class Lines {
   std::string line_;
 };
 
-int code_of(pid_t id) {
-  int status = 0;
-  while (waitpid(id, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
+// Waits until a process has ended, and returns its code; null: it was asked to stop.
+std::optional<int> code_of(pid_t id, const StopRequest& should_stop) {
+  constexpr useconds_t shortest = 100, longest = 1000 * tick;  // [µs]
+  for (useconds_t pause = shortest;; pause = std::min(2 * pause, longest)) {
+    int status = 0;
+    const pid_t ended = waitpid(id, &status, should_stop ? WNOHANG : 0);
+    if (ended == id) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (ended < 0 && errno != EINTR) return -1;
+    if (!should_stop) continue;
+    if (should_stop()) return {};
+    usleep(pause);
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 // Reads what is there. False at its end.
@@ -137,7 +147,7 @@ bool is_on_path(std::string_view name) {
 }
 
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
-                          std::string_view dropped) {
+                          std::span<const std::string_view> dropped) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   const auto connect = [&](int ours, int its, int access) {
@@ -183,12 +193,13 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
   const auto take_errors = [&](std::string_view bytes) {
     end.errors += bytes.substr(0, most_kept - end.errors.size());
   };
+  const auto stop = [&] {
+    kill(-*id, SIGKILL);
+    (void)code_of(*id, {});
+    return fail(ErrorCode::Interrupted, "interrupted");
+  };
   while (output.reading.get() >= 0 || errors.reading.get() >= 0) {
-    if (run.should_stop && run.should_stop()) {
-      kill(-*id, SIGKILL);
-      code_of(*id);
-      return fail(ErrorCode::Interrupted, "interrupted");
-    }
+    if (run.should_stop && run.should_stop()) return stop();
     // poll passes over descriptors that are closed.
     pollfd ready[] = {{output.reading.get(), POLLIN, 0}, {errors.reading.get(), POLLIN, 0}};
     if (poll(ready, 2, tick) <= 0) continue;
@@ -196,7 +207,9 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
     if (ready[1].revents != 0) read_some(errors.reading, take_errors);
   }
   lines.finish();
-  end.code = code_of(*id);
+  const auto code = code_of(*id, run.should_stop);  // it may have closed its streams before
+  if (!code) return stop();
+  end.code = *code;
   return end;
 }
 

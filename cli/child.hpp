@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,14 +24,14 @@ struct ChildStreams {
 };
 
 /// Starts a program of the PATH by a list of arguments, never through a shell, in its own process
-/// group, so that Ctrl-C reaches only us. It ignores no signal. It lacks variables whose name
-/// begins with `dropped`, if that is not empty. Errors: Unwritable, with the reason.
+/// group, so that Ctrl-C reaches only us. It ignores no signal. It lacks variables, NAME=VALUE,
+/// that begin with a text of `dropped`. Errors: Unwritable, with the reason.
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
-                          std::string_view dropped = {});
+                          std::span<const std::string_view> dropped = {});
 
 /// How a program is run to its end.
 struct ProgramRun {
-  std::string_view dropped = {};  ///< as in `start_child`
+  std::span<const std::string_view> dropped = {};  ///< as in `start_child`
   /// Called with each line of its output, without the line end; of one that is longer than 64 KiB,
   /// only with so much.
   std::function<void(std::string_view)> take_line = {};

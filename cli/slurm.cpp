@@ -21,8 +21,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Variables by which a user narrows what squeue lists.
-constexpr std::string_view list_settings = "SQUEUE_";
+// Variables by which a user narrows what squeue lists and what scancel cancels.
+constexpr std::string_view list_settings[] = {"SQUEUE_"}, cancel_settings[] = {"SCANCEL_"};
+
+// Variables that sbatch does not get: those that would have it wait for the array, or replace the
+// list of parts in a script; and, of a job in which we run, what it may use, which Slurm does not
+// replace in the new job if that one has its memory by another option.
+constexpr std::string_view submit_settings[] = {
+    "SBATCH_WAIT=", "SBATCH_ARRAY_INX=", "SLURM_MEM_PER_"};
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
@@ -70,6 +76,12 @@ std::optional<Listed> parse_listed(std::string_view line) {
                 line.substr(second + 1)};
 }
 
+bool is_another_here(std::string_view file, const std::string& script) {
+  std::error_code ignored;
+  return file != script && std::filesystem::exists(file, ignored) &&
+         !std::filesystem::equivalent(file, script, ignored);
+}
+
 bool is_script_of_a_sweep(std::string_view file) { return file.ends_with("/slurm/job.sh"); }
 
 // Finds jobs by their script.
@@ -103,7 +115,9 @@ class Search {
 };
 
 // Whether a job is queued or running, and its script that of a sweep: its number may be used again.
-Result<bool> is_active(const SlurmJob& job) {
+// A script that is here and another than `script` is that of another sweep: of the one that this
+// folder is a copy of.
+Result<bool> is_active(const SlurmJob& job, const std::string& script) {
   std::vector<std::string> words = squeue_of(job);
   words.emplace_back(listed_format);
   bool is_found = false;
@@ -112,7 +126,8 @@ Result<bool> is_active(const SlurmJob& job) {
                                            [&](std::string_view line) {
                                              const auto listed = parse_listed(line);
                                              is_found |= listed && listed->is_queued_or_running() &&
-                                                         is_script_of_a_sweep(listed->file);
+                                                         is_script_of_a_sweep(listed->file) &&
+                                                         !is_another_here(listed->file, script);
                                            },
                                        .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
@@ -185,15 +200,14 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience) {
 
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known) {
   Search search(script);
-  const auto end =
-      run_program({"squeue", "--noheader", "--all", listed_format},
-                  {.dropped = list_settings,
-                   .take_line = [&](std::string_view line) { search.add(line); },
-                   .should_stop = &was_interrupted});
+  const auto end = run_program({"squeue", "--noheader", "--all", listed_format},
+                               {.dropped = list_settings,
+                                .take_line = [&](std::string_view line) { search.add(line); },
+                                .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
   if (end->code != 0) return no_answer("squeue", *end);
   if (!search.least().empty() || !known) return search.least();
-  const auto is_known_active = is_active(*known);
+  const auto is_known_active = is_active(*known, script);
   if (!is_known_active) return fail(is_known_active.error());
   return *is_known_active ? known->number : std::string();
 }
@@ -205,10 +219,25 @@ Result<SlurmJob> submit(const std::vector<std::string>& words) {
     if (first.empty()) first = line;
     if (!job) job = parse_slurm_job(line);
   };
-  // It is not stopped: whether the job is submitted would be unknown.
-  const auto end = run_program(words, {.take_line = take, .passes_errors = true});
-  if (!end) return fail(end.error());
+  // After an interrupt it has a moment to say whether the job is submitted.
+  constexpr auto patience = 3s;
+  std::optional<std::chrono::steady_clock::time_point> interrupted;
+  const auto should_stop = [&] {
+    if (!was_interrupted()) return false;
+    const auto now = std::chrono::steady_clock::now();
+    if (!interrupted) interrupted = now;
+    return now - *interrupted > patience;
+  };
+  const auto end = run_program(words, {.dropped = submit_settings,
+                                       .take_line = take,
+                                       .passes_errors = true,
+                                       .should_stop = should_stop});
   if (job) return *job;
+  if (!end && end.error().code == ErrorCode::Interrupted)
+    return fail(ErrorCode::Unwritable,
+                "interrupted while sbatch gave no answer; squeue tells whether there is a job, and "
+                "while there is one, none is submitted beside it");
+  if (!end) return fail(end.error());
   if (end->code != 0)
     return fail(ErrorCode::Unwritable,
                 fmt::format("sbatch ended with code {}; nothing is submitted", end->code));
@@ -223,7 +252,7 @@ void cancel(const SlurmJob& job) {
   if (!job.cluster.empty()) words.push_back("--clusters=" + job.cluster);
   words.push_back(job.number);
   // What remains is run twice, to the same bits.
-  (void)run_program(words, {.passes_errors = true});
+  (void)run_program(words, {.dropped = cancel_settings, .passes_errors = true});
 }
 
 Result<void> wait_for(const SlurmJob& job) {
