@@ -139,8 +139,9 @@ std::string job_script(const SlurmScript& script) {
   if (!script.array.empty()) add("--array=" + script.array);
   text += fmt::format(
       "exec {} sweep run {} --part $SLURM_ARRAY_TASK_ID/{} --threads $SLURM_CPUS_PER_TASK "
-      "--quiet{}\n",
+      "--quiet{}{}\n",
       bash_word(script.executable), bash_word(script.folder), script.parts,
+      script.max_memory > 0 ? fmt::format(" --max-memory {}", script.max_memory) : "",
       script.retries ? " --retry" : "");
   return text;
 }

@@ -32,6 +32,7 @@ struct SlurmScript {
   std::optional<std::size_t> memory = {};  ///< of a part [bytes]; none: the cluster's default
   std::optional<double> seconds = {};      ///< that a part takes; none: unknown
   std::string array = {};                  ///< list of parts; empty: the command line has it
+  double max_memory = 0;                   ///< `--max-memory` of a part [GB]; 0: its default
   bool retries = false;                    ///< also takes that failed
 };
 

@@ -93,6 +93,7 @@ Due due_of(const SweepStatus& status, std::size_t parts, bool retries) {
 struct UserOptions {
   std::string array = {};  // list of parts
   bool has_memory_per_other = false;
+  bool waits = false;
 };
 
 UserOptions read_user_options(const std::vector<std::string>& sbatch) {
@@ -107,6 +108,7 @@ UserOptions read_user_options(const std::vector<std::string>& sbatch) {
       found.array = word.substr(2);
     }
     found.has_memory_per_other |= word.starts_with("--mem-per-");
+    found.waits |= word == "--wait" || word == "-W";
   }
   return found;
 }
@@ -128,6 +130,7 @@ class Submission {
         resources_(simulation_options(resources)),
         user_(read_user_options(options.sbatch)),
         threads_(std::max(1, resources.threads)),
+        max_memory_(resources.max_memory),
         retries_(retries),
         is_quiet_(is_quiet) {}
 
@@ -169,7 +172,11 @@ class Submission {
     if (!options_.waits) return exit_done;
     if (auto waited = wait_for(job_); !waited) return fail(waited.error());
     for (const char* name : {"log", "takes"}) see_anew(fs::path(name_) / name);
-    return tell_status(folder_, is_quiet_);
+    const int code = tell_status(folder_, is_quiet_);
+    if (code != exit_done)
+      print(stderr, fmt::format("job {} has ended; what its parts said is in {}/slurm/{}_*.log\n",
+                                job_.number, printable(folder_.folder()), job_.number));
+    return code;
   }
 
   bool has_due(const SweepStatus& status) const {
@@ -226,6 +233,7 @@ class Submission {
     const std::size_t most = std::min(takes, *largest);
     parts_ = options_.parts ? static_cast<std::size_t>(*to_integer(*options_.parts))
                             : parts_of(takes, take_seconds, most);
+    if (auto fits = check_user_array(*largest); !fits) return fail(fits.error());
     due_ = due_of(status, parts_, retries_);
     std::string list = array_list(due_.parts);
     const auto executable = own_executable();
@@ -235,6 +243,8 @@ class Submission {
                      .name = fs::path(name_).filename().string(),
                      .parts = parts_,
                      .threads = threads_,
+                     .array = {},
+                     .max_memory = max_memory_,
                      .retries = retries_};
     if (!user_.has_memory_per_other) {
       const auto memory = memory_of_part(folder_.sweep(), threads_, resources_);
@@ -253,6 +263,14 @@ class Submission {
     text_ = job_script(text);
     if (auto written = write("job.sh", text_); !written) return fail(written.error());
     return words;
+  }
+
+  // A task without a part would only fail.
+  Result<void> check_user_array(std::size_t largest) const {
+    const auto chosen = read_array_list(user_.array, largest);
+    if (!chosen || chosen->empty() || chosen->back() < parts_) return {};
+    return invalid(fmt::format("--sbatch --array={}: there is no part {}; the parts are 0 to {}",
+                               printable(user_.array), chosen->back(), parts_ - 1));
   }
 
   // The takes that a thread of a part runs one after the other, at most.
@@ -318,6 +336,7 @@ class Submission {
   SimulationOptions resources_;
   UserOptions user_;
   int threads_;
+  double max_memory_;  // as typed [GB]; 0: not
   bool retries_;
   bool is_quiet_;
   std::string name_;  // of the folder, absolute
@@ -359,6 +378,8 @@ Result<void> check_slurm(const CLI::App& run, const SlurmOptions& options,
     return invalid("--part: --engine slurm divides the takes into parts by itself");
   if (options.writes_only && options.waits)
     return invalid("--wait: nothing is submitted with --no-submit");
+  if (read_user_options(options.sbatch).waits)
+    return invalid("--sbatch --wait: to wait for the array, give --wait of pliant");
   if (options.parts) {
     const auto parts = to_integer(*options.parts);
     if (!parts || *parts < 1)

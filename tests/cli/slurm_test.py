@@ -171,10 +171,35 @@ class Slurm(Command):
     def test_options_of_the_user_win(self):
         self.submit("--parts", "6", "--sbatch=--mem-per-cpu=2G")  # which sbatch takes only without --mem
         self.assertNotIn("--mem", self.job())
-        out = self.submit("--parts", "6", "--sbatch=--array=0-1,5,9%2", "--quiet").stdout
+        out = self.submit("--parts", "6", "--sbatch=--array=0-1,5%2", "--quiet").stdout
         self.assertIn("submitted 123: 3 parts, 6 takes\n", out)
         line = self.runs("sbatch")[-1]
-        self.assertLess(line.index("--array=0-5"), line.index("--array=0-1,5,9%2"))
+        self.assertLess(line.index("--array=0-5"), line.index("--array=0-1,5%2"))
+
+    def test_a_list_of_the_user_names_parts_that_are_there(self):
+        for listed, part in [("1-3", 3), ("0,7", 7), ("0-9:4%2", 8)]:
+            for words in ([f"--sbatch=--array={listed}"], ["--sbatch=--array", f"--sbatch={listed}"], [f"--sbatch=-a{listed}"]):
+                errors = self.submit("--parts", "3", *words, code=2).stderr
+                self.assertIn(f"--array={listed}: there is no part {part}; the parts are 0 to 2", errors)
+        self.submit("--parts", "3", "--sbatch=--array=0-2:2%1")
+        self.assertEqual(len(self.runs("sbatch")), 1)
+
+    def test_a_limit_of_memory_is_that_of_the_parts_too(self):
+        self.submit("--parts", "3", "--no-submit", "--max-memory", "0.75")
+        self.assertTrue(self.job().endswith(" --quiet --max-memory 0.75\n"), self.job())
+
+    def test_settings_of_the_shell_do_not_disturb(self):
+        # Of a shell within another job, too.
+        self.environment.update({"SBATCH_WAIT": "1", "SBATCH_ARRAY_INX": "7", "SLURM_MEM_PER_NODE": "7", "SLURM_MEM_PER_CPU": "7",
+                                 "SBATCH_PARTITION": "mine", "SCANCEL_INTERACTIVE": "1"})
+        for program in ("sbatch", "scancel"):
+            self.write(f"bin/{program}", PROGRAM.replace("here=", f"env >{self.path(program + '.env')}; here=", 1))
+        self.write("bin/squeue.2", f"echo '122|PENDING|{self.path('s/slurm/job.sh')}'")  # so that it is cancelled
+        self.submit("--parts", "3", code=1)
+        names = {line.split("=")[0] for line in self.read("sbatch.env").decode().splitlines()}
+        self.assertIn("SBATCH_PARTITION", names)
+        self.assertFalse(names & {"SBATCH_WAIT", "SBATCH_ARRAY_INX", "SLURM_MEM_PER_NODE", "SLURM_MEM_PER_CPU"})
+        self.assertNotIn(b"SCANCEL_", self.read("scancel.env"))
 
     def test_memory_grows_with_takes_and_threads(self):
         def memory(*options, vary):
@@ -242,7 +267,9 @@ class Slurm(Command):
                 (["--parts", "3"], ["--parts: needs --engine slurm"]),
                 (["--sbatch=--nice"], ["--sbatch: needs --engine slurm"]),
                 (["--no-submit"], ["--no-submit: needs --engine slurm"]),
-                (["--wait"], ["--wait: needs --engine slurm"])]:
+                (["--wait"], ["--wait: needs --engine slurm"]),
+                (["--engine", "slurm", "--sbatch=--wait"], ["--sbatch --wait: "]),
+                (["--engine", "slurm", "--sbatch=-W"], ["--sbatch --wait: "])]:
             with self.subTest(options=options):
                 scene = self.write("scene.xml", SCENE.format(columns=11, c=2))
                 errors = self.sweep("run", scene, "-o", self.path("s"), "--vary", "sheet.c=1,2", *options, code=2).stderr
@@ -343,6 +370,15 @@ class Slurm(Command):
             self.write("bin/squeue.2", text)
             self.submit("--parts", "3")
 
+    def test_the_copy_of_a_folder_is_another_sweep(self):
+        self.submit("--parts", "3")
+        subprocess.run(["cp", "-r", self.path("s"), self.path("t")], check=True)
+        self.write("bin/squeue.text", f"123|RUNNING|{self.path('s/slurm/job.sh')}\n")
+        self.assertIn("submitted 123", self.submit("--parts", "3", name="t").stdout)
+        # One that was moved is the same.
+        os.rename(self.path("s"), self.path("u"))
+        self.assertIn("job 123 ", self.submit("--parts", "3", name="u", code=1).stderr)
+
     def test_a_list_that_is_not_known_submits_nothing(self):
         self.write("bin/squeue.errors", "slurm_load_jobs error: Unable to contact slurm controller (connect failure)\n")
         self.write("bin/squeue.code", "1")
@@ -384,8 +420,9 @@ class Slurm(Command):
         self.assertEqual(len(list(csv.DictReader(io.StringIO(self.read("s/takes.csv").decode())))), 12)
 
     def test_an_array_that_ended_early_is_told(self):
-        out = self.submit("--wait", "--parts", "3", code=1).stdout
-        self.assertIn("12 takes, 0 done, 0 failed, 12 missing", out)
+        ended = self.submit("--wait", "--parts", "3", code=1)
+        self.assertIn("12 takes, 0 done, 0 failed, 12 missing", ended.stdout)
+        self.assertEqual(ended.stderr, f"job 123 has ended; what its parts said is in {self.path('s')}/slurm/123_*.log\n")
 
     def test_an_interrupt_ends_the_waiting_only(self):
         self.write("bin/squeue.1", ":")
@@ -404,6 +441,25 @@ class Slurm(Command):
         self.assertIn("job 123 goes on", errors)
         self.assertLess(time.monotonic() - begin, 10)
         self.assertEqual(self.runs("scancel"), [])
+
+    def test_an_interrupt_ends_what_does_not_answer(self):
+        # sbatch waits for a controller that is away; squeue closes its output, and stays.
+        for program, text in [("sbatch", "sleep 60"), ("squeue", "exec >&- 2>&-; sleep 60")]:
+            with self.subTest(program=program):
+                self.write(f"bin/{program}", f"#!/bin/bash\ntouch {self.path(program + '.runs')}; {text}")
+                scene = self.write("scene.xml", SCENE.format(columns=11, c=2))
+                with subprocess.Popen([PLIANT, "sweep", "run", scene, "-o", self.path(program), "--vary", "sheet.c=1..4", "--engine",
+                                       "slurm", "--parts", "2"], env=self.environment, stdout=subprocess.PIPE,
+                                      stderr=subprocess.PIPE, text=True) as process:
+                    while process.poll() is None and not os.path.exists(self.path(program + ".runs")):
+                        time.sleep(0.05)
+                    time.sleep(0.2)
+                    process.send_signal(signal.SIGINT)
+                    begin = time.monotonic()
+                    out, errors = process.communicate(timeout=60)
+                self.assertEqual((process.returncode, out), (1, ""))
+                self.assertIn("squeue tells whether there is a job" if program == "sbatch" else "nothing is submitted", errors)
+                self.assertLess(time.monotonic() - begin, 10)
 
     def test_output_without_end_is_bounded(self):
         self.write("bin/squeue.1", "head -c 300000000 /dev/zero | tr '\\0' x; head -c 300000000 /dev/zero >&2; exit 1")
