@@ -7,7 +7,8 @@
 namespace pliant::cli {
 
 /// From now on the first Ctrl-C, SIGTERM or SIGHUP sets a flag instead of ending the program, so
-/// that it can remove incomplete files; a second one ends it. A file that exceeds the size limit
+/// that it can remove incomplete files; a second one ends it. Under nohup a SIGHUP does nothing. A
+/// file that exceeds the size limit
 /// causes a write error instead of ending the program.
 void catch_interrupts();
 

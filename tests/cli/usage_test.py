@@ -131,6 +131,20 @@ class Errors(Command):
                                      r"--cache DIR would keep the solved frames for the next run\n$")
             self.assertEqual(self.files(), ["scene.xml"])
 
+    def test_a_run_under_nohup_outlives_its_terminal(self):
+        scene = self.scene(end=900000)
+        with subprocess.Popen(["nohup", PLIANT, "bake", scene, "-o", self.path("a.npy")], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT) as process:
+            deadline = time.monotonic() + 60
+            while not self.holds_hidden_files(process) and self.files() == ["scene.xml"] and time.monotonic() < deadline:
+                time.sleep(0.01)
+            process.send_signal(signal.SIGHUP)
+            with self.assertRaises(subprocess.TimeoutExpired):
+                process.wait(timeout=1)
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(process.wait(timeout=60), 1)
+        self.assertEqual(self.files(), ["scene.xml"])
+
     def test_interrupt_within_a_frame_of_many_steps(self):
         scene = self.write("slow.xml", SCENE.format(end=9).replace('"13"', '"301"').replace(
             '"11"', '"301"').replace("</surface>", '<solver dt="5e-7"/></surface>'))
