@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <fstream>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <thread>
@@ -12,24 +12,25 @@
 #include <unistd.h>
 
 #include "interrupt.hpp"
+#include "memory_limit.hpp"
 #include "pliant/core/text.hpp"
 
 namespace pliant::cli {
 namespace {
 
-// The machine's memory, or the limit of the container. [bytes]
 std::size_t machine_memory() {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const long page = sysconf(_SC_PAGESIZE);
-  std::size_t memory = pages > 0 && page > 0
-                           ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(page)
-                           : std::numeric_limits<std::size_t>::max();
-  for (const char* file :
-       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    std::size_t limit = 0;
-    if (std::ifstream(file) >> limit && limit > 0) memory = std::min(memory, limit);
-  }
-  return memory;
+  return pages > 0 && page > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(page)
+                               : std::numeric_limits<std::size_t>::max();
+}
+
+std::size_t memory_by_default(std::size_t own) {
+  const auto of_job = memory_of_slurm_job([](const char* name) { return std::getenv(name); });
+  const auto of_groups = memory_of_groups();
+  const auto limit =
+      of_job && of_groups ? std::min(*of_job, *of_groups) : (of_job ? of_job : of_groups);
+  return default_memory(machine_memory(), limit, own);
 }
 
 }  // namespace
@@ -65,15 +66,16 @@ void add_memory(CLI::App& command, ResourceOptions& options) {
   command
       .add_option("--max-memory", options.max_memory,
                   "Most memory to use, in GB; a run that needs more is refused before it "
-                  "allocates; three quarters of the machine's memory by default")
+                  "allocates; three quarters of the machine's memory by default, or what the limit "
+                  "of a container or a Slurm job leaves")
       ->check(number_from(least));
 }
 
-SimulationOptions simulation_options(const ResourceOptions& options) {
+SimulationOptions simulation_options(const ResourceOptions& options, std::size_t own) {
   const auto machine_threads = static_cast<int>(std::thread::hardware_concurrency());
   return {.checkpoint_bytes = 0,
           .max_memory = options.max_memory > 0 ? static_cast<std::size_t>(options.max_memory * 1e9)
-                                               : machine_memory() / 4 * 3,
+                                               : memory_by_default(own),
           .threads = options.threads > 0 ? options.threads : std::max(1, machine_threads),
           .should_stop = &was_interrupted};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "command_line.hpp"
@@ -10,7 +11,7 @@ namespace pliant::cli {
 /// Limits on the machine's resources for a command.
 struct ResourceOptions {
   int threads = 0;        ///< 0: the number of hardware threads
-  double max_memory = 0;  ///< [GB of 10^9 bytes]; 0: three quarters of the machine's memory
+  double max_memory = 0;  ///< [GB of 10^9 bytes]; 0: `default_memory`
 };
 
 /// For an option with a number from `least` to 10^9.
@@ -20,7 +21,8 @@ void add_threads(CLI::App& command, ResourceOptions& options);
 void add_memory(CLI::App& command, ResourceOptions& options);
 
 /// Options of a command's simulation: these resources, and Ctrl-C stops it. Commands request frames
-/// in order, so no states are kept for going back.
-SimulationOptions simulation_options(const ResourceOptions& options);
+/// in order, so no states are kept for going back. `own` is what the command itself has beside, as
+/// far as it grows with its input. [bytes]
+SimulationOptions simulation_options(const ResourceOptions& options, std::size_t own = 0);
 
 }  // namespace pliant::cli

@@ -6,10 +6,11 @@
 #include <set>
 #include <utility>
 
+#include "memory_limit.hpp"
+
 namespace pliant::cli {
 namespace {
 
-constexpr std::size_t of_the_program = std::size_t{64} << 20U;
 constexpr std::size_t of_a_record = 512;  // what a sweep and its log cost for each take
 
 Result<Simulation> simulation_of(const Sweep& sweep, std::size_t take,
@@ -44,6 +45,8 @@ std::set<std::size_t> chosen_takes(std::size_t count, std::size_t scenes) {
 
 }  // namespace
 
+std::size_t memory_of_records(const Sweep& sweep) { return of_a_record * sweep.takes().count(); }
+
 Result<std::size_t> memory_of_part(const Sweep& sweep, int threads,
                                    const SimulationOptions& options) {
   constexpr auto patience = std::chrono::seconds(2);
@@ -68,10 +71,11 @@ Result<std::size_t> memory_of_part(const Sweep& sweep, int threads,
   deadline = std::chrono::steady_clock::now() + patience;
   const std::size_t of_take = largest ? most_reserved(*largest) : 0;
   if (is_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
-  const auto at_once = static_cast<std::size_t>(threads);
   const std::size_t of_takes =
-      is_short || of_take > options.max_memory / at_once ? options.max_memory : of_take * at_once;
-  return of_the_program + of_a_record * count + of_takes;
+      is_short ? options.max_memory
+               : std::min(options.max_memory,
+                          memory_of_takes(static_cast<std::size_t>(threads), of_take));
+  return memory_of_program + memory_of_records(sweep) + of_takes;
 }
 
 }  // namespace pliant::cli

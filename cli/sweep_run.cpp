@@ -18,6 +18,7 @@
 #include "report.hpp"
 #include "solver_option.hpp"
 #include "sweep.hpp"
+#include "sweep_memory.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -125,7 +126,8 @@ void tell_memory(std::size_t count, const SimulationOptions& resources) {
 
 int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const SweepPart& part) {
   folder.remove_half_files(&was_interrupted);
-  const SimulationOptions resources = simulation_options(options.resources);
+  const SimulationOptions resources =
+      simulation_options(options.resources, memory_of_records(folder.sweep()));
   std::optional<Progress> progress;
   std::size_t failures = 0;
   const auto ran =

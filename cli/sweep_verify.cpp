@@ -10,6 +10,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sweep.hpp"
+#include "sweep_memory.hpp"
 
 namespace pliant::cli {
 
@@ -40,7 +41,8 @@ int run_sweep_verify(const SweepVerifyOptions& options) {
   std::map<std::size_t, std::string> differences;  // of takes, in their order
   std::optional<Progress> progress(std::in_place, static_cast<int>(takes.size()), options.is_quiet,
                                    "takes");
-  const SimulationOptions resources = simulation_options(options.resources);
+  const SimulationOptions resources =
+      simulation_options(options.resources, memory_of_records(folder->sweep()));
   const auto ran = folder->sweep().run(
       takes,
       {.threads = resources.threads,

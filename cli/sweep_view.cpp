@@ -17,6 +17,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "sweep.hpp"
+#include "sweep_memory.hpp"
 #include "view_picture.hpp"
 #include "viewer/page.hpp"
 #include "viewer/sweep_bake.hpp"
@@ -208,7 +209,8 @@ int run_sweep_view(const SweepViewOptions& options) {
     picture = *sheet;
   }
 
-  const SimulationOptions resources = simulation_options(options.resources);
+  const SimulationOptions resources =
+      simulation_options(options.resources, memory_of_records(folder->sweep()));
   std::optional<Progress> progress;
   if (!plan->takes.empty())
     progress.emplace(static_cast<int>(plan->takes.size()), options.is_quiet, "takes");

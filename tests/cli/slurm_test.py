@@ -190,6 +190,22 @@ class Slurm(Command):
 
     def test_settings_of_the_shell_do_not_disturb(self):
         # Of a shell within another job, too.
+    def test_a_part_stays_within_the_memory_of_its_job(self):
+        self.submit("--parts", "12", "--no-submit")
+        megabytes = {}
+        for variables in [{}, {"SLURM_MEM_PER_NODE": "400"}, {"SLURM_MEM_PER_CPU": "200", "SLURM_CPUS_ON_NODE": "2"},
+                          {"SLURM_MEM_PER_NODE": "82"}]:
+            told = self.run_pliant("sweep", "run", self.path("s"), "--part", f"{len(megabytes)}/12", "--threads", "1",
+                                   env={**self.environment, "SLURM_JOB_ID": "1", **variables}).stderr
+            amount, unit = re.match(r"1 take at once, up to ([\d.]+) (MB|GB) each\n", told).groups()
+            megabytes[tuple(variables.values())] = float(amount) * {"MB": 1, "GB": 1000}[unit]
+        of_job = 0.875 * (0.8 * 400 - 64) * 1.048576
+        self.assertAlmostEqual(megabytes["400",], of_job, delta=2)
+        self.assertAlmostEqual(megabytes["200", "2"], of_job, delta=2)
+        self.assertLess(megabytes["82",], 40)
+        if not SANITIZED:
+            self.assertGreater(megabytes[()], of_job)
+
         self.environment.update({"SBATCH_WAIT": "1", "SBATCH_ARRAY_INX": "7", "SLURM_MEM_PER_NODE": "7", "SLURM_MEM_PER_CPU": "7",
                                  "SBATCH_PARTITION": "mine", "SCANCEL_INTERACTIVE": "1"})
         for program in ("sbatch", "scancel"):

@@ -212,6 +212,16 @@ class Slurm(unittest.TestCase):
         for fact in (f"MinMemoryNode={asked}M", "TimeLimit=00:30:00", "CPUs/Task=1", "Requeue=1", "JobName=pliant-s\n"):
             self.assertIn(fact, told)
 
+    def test_a_run_keeps_to_the_memory_of_its_job(self):
+        run(*self.command("--make-only"))
+        for part, option in enumerate(("--mem=400", "--mem-per-cpu=200")):
+            told = self.path(f"told{part}")
+            run("sbatch", option, "--cpus-per-task=2", f"--output={told}", "--wrap",
+                f"{PLIANT} sweep run {self.path('s')} --part {part}/6 --threads 1")
+            wait_until(lambda file=told: os.path.exists(file) and "done" in open(file, encoding="utf-8").read())
+            with open(told, encoding="utf-8") as file:
+                self.assertIn("1 take at once, up to 235 MB each\n", file.read())
+
     def test_a_wrong_node_is_found(self):
         line = self.submit("--parts", "1", "--no-submit", shim(300, broken="n2")).stdout
         for node in ("n1", "n2"):  # the same takes twice, as on a node that was thought dead

@@ -231,6 +231,11 @@ TakesAtOnce takes_at_once(std::size_t takes, int threads, std::size_t max_memory
   return {count, share_of(count, max_memory)};
 }
 
+std::size_t memory_of_takes(std::size_t count, std::size_t each) {
+  const std::size_t of_takes = count * each;
+  return of_takes + (of_takes + 6) / 7;  // shelf_part is an eighth of the whole
+}
+
 TakeOutcome Sweep::run(std::size_t take, const TakeRun& options) const {
   const auto begin = std::chrono::steady_clock::now();
   TakeOutcome outcome{.take = take, .measures = Measures()};

@@ -78,6 +78,9 @@ struct TakesAtOnce {
 };
 TakesAtOnce takes_at_once(std::size_t takes, int threads, std::size_t max_memory);
 
+/// The least memory with which so many takes at once may use so much each. [bytes]
+std::size_t memory_of_takes(std::size_t count, std::size_t each);
+
 /// A scene that is run many times, each take with other values. Immutable: several threads may use
 /// one. The bits of a take are those of a simulation of the scene edited so by hand. SWEEP.
 class Sweep {
