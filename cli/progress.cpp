@@ -31,8 +31,8 @@ Progress::~Progress() {
   if (is_shown_) draw("");
 }
 
-void Progress::advance() {
-  ++done_;
+void Progress::reach(int done) {
+  done_ = done;
   const auto now = Clock::now();
   if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < count_)) return;
   drawn_ = now;
@@ -44,11 +44,14 @@ void Progress::draw_bar(Clock::time_point now) const {
   const int filled = static_cast<int>(static_cast<long>(width) * done_ / count_);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double rate = elapsed > 0 ? done_ / elapsed : 0;
-  const double seconds_left = rate > 0 ? std::min((count_ - done_) / rate, 359'999.0) : 0;
-  const long left = std::lround(seconds_left);
-  draw(fmt::format("[{}{}] {}/{} {}, {:.1f} {}/s, {}:{:02} left{}", std::string(filled, '#'),
-                   std::string(width - filled, '.'), done_, count_, unit_, rate, unit_, left / 60,
-                   left % 60, note_));
+  std::string time;
+  if (done_ > 0) {
+    const double seconds_left = rate > 0 ? std::min((count_ - done_) / rate, 359'999.0) : 0;
+    const long left = std::lround(seconds_left);
+    time = fmt::format(", {:.1f} {}/s, {}:{:02} left", rate, unit_, left / 60, left % 60);
+  }
+  draw(fmt::format("[{}{}] {}/{} {}{}{}", std::string(filled, '#'),
+                   std::string(width - filled, '.'), done_, count_, unit_, time, note_));
 }
 
 std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {

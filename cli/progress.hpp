@@ -17,8 +17,16 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();  ///< erases the bar
 
+  bool is_shown() const { return is_shown_; }
+
   /// Counts one more frame. Draws at most ten times a second.
-  void advance();
+  void advance() { reach(done_ + 1); }
+
+  /// So many frames are done. Draws at most ten times a second.
+  void reach(int done);
+
+  /// The time by which frames per second and the time left are told begins now.
+  void begin_again() { begin_ = Clock::now(); }
 
   /// What stands at the end of the bar from now on.
   void add_note(std::string note) { note_ = std::move(note); }

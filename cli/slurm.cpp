@@ -137,12 +137,13 @@ Result<bool> is_active(const SlurmJob& job, const std::string& script) {
 
 enum class Presence { There, Gone, Unknown };
 
-Result<Presence> look_for(const SlurmJob& job) {
+Result<Presence> look_for(const SlurmJob& job, bool& has_run) {
   bool is_there = false;
   const auto note = [&](std::string_view line) {
     // With clusters, a line names the cluster.
     const std::string_view state = trim(line, ascii_blanks);
     is_there |= !state.empty() && state.find(':') == std::string_view::npos;
+    has_run |= state == "RUNNING";
   };
   std::vector<std::string> words = squeue_of(job);
   words.emplace_back("--format=%T");
@@ -154,9 +155,11 @@ Result<Presence> look_for(const SlurmJob& job) {
 }
 
 // False: interrupted.
-bool sleep_for(std::chrono::milliseconds time) {
-  for (auto slept = 0ms; slept < time; slept += 50ms) {
+bool sleep_for(std::chrono::milliseconds time, const std::function<void()>& meanwhile) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) {
     if (was_interrupted()) return false;
+    meanwhile();
     std::this_thread::sleep_for(50ms);
   }
   return !was_interrupted();
@@ -255,16 +258,17 @@ void cancel(const SlurmJob& job) {
   (void)run_program(words, {.dropped = cancel_settings, .passes_errors = true});
 }
 
-Result<void> wait_for(const SlurmJob& job) {
+Result<void> wait_for(const SlurmJob& job, const std::function<void(bool)>& meanwhile) {
   constexpr auto longest_pause = 15'000ms;
   constexpr int certain = 2;  // while a job is requeued it may be unseen for a moment
   auto pause = 1'000ms;
+  bool has_run = false;
   for (int times_gone = 0;;) {
-    const auto presence = look_for(job);
+    const auto presence = look_for(job, has_run);
     if (!presence) return fail(presence.error());
     times_gone = *presence == Presence::Gone ? times_gone + 1 : 0;
     if (times_gone == certain) return {};
-    if (!sleep_for(times_gone > 0 ? 1'000ms : pause))
+    if (!sleep_for(times_gone > 0 ? 1'000ms : pause, [&] { meanwhile(has_run); }))
       return fail(ErrorCode::Interrupted, "interrupted");
     pause = std::min(pause * 3 / 2, longest_pause);
   }

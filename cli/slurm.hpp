@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,7 +41,8 @@ Result<SlurmJob> submit(const std::vector<std::string>& words);
 void cancel(const SlurmJob& job);
 
 /// Waits until no task of a job is queued, running or completing. As long as Slurm does not answer
-/// the job counts as running. Errors: Interrupted; Unwritable: there is no squeue.
-Result<void> wait_for(const SlurmJob& job);
+/// the job counts as running. `meanwhile` is called some twenty times a second, with whether a task
+/// was seen to run. Errors: Interrupted; Unwritable: there is no squeue.
+Result<void> wait_for(const SlurmJob& job, const std::function<void(bool has_run)>& meanwhile);
 
 }  // namespace pliant::cli

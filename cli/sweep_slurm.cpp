@@ -19,6 +19,7 @@
 #include "slurm_script.hpp"
 #include "sweep.hpp"
 #include "sweep_memory.hpp"
+#include "sweep_wait.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -168,9 +169,17 @@ class Submission {
       print(stdout, bash_line(*words) + '\n');
       return exit_done;
     }
+    std::optional<WaitingBar> bar;  // from before the job may run
+    if (options_.waits) {
+      std::vector<bool> takes = submitted_takes(*status);
+      const auto count = static_cast<std::size_t>(std::ranges::count(takes, true));
+      bar.emplace(name_, std::move(takes), count, is_quiet_);
+    }
     if (auto sent = send(*words); !sent) return fail(sent.error());
     if (!options_.waits) return exit_done;
-    if (auto waited = wait_for(job_); !waited) return fail(waited.error());
+    const auto waited = wait_for(job_, [&](bool has_run) { bar->look(has_run); });
+    bar.reset();
+    if (!waited) return fail(waited.error());
     for (const char* name : {"log", "takes"}) see_anew(fs::path(name_) / name);
     const int code = tell_status(folder_, is_quiet_);
     if (code != exit_done)
@@ -325,6 +334,15 @@ class Submission {
     const std::string known = job_.cluster.empty() ? job_.number : job_.number + ';' + job_.cluster;
     (void)write("job", known + '\n');
     return {};
+  }
+
+  std::vector<bool> submitted_takes(const SweepStatus& status) const {
+    const auto chosen = read_array_list(user_.array, parts_).value_or(due_.parts);
+    std::vector<bool> takes(status.takes.size());
+    for (std::size_t take = 0; take < takes.size(); ++take)
+      takes[take] =
+          status.takes[take].is_due(retries_) && std::ranges::binary_search(chosen, take % parts_);
+    return takes;
   }
 
   static bool is_less(const std::string& one, const std::string& other) {

@@ -1,10 +1,12 @@
 """`pliant sweep run --engine slurm` against programs that stand for Slurm's; tests/sweep/slurm_test.py has the real ones."""
 
+import contextlib
 import csv
 import glob
 import io
 import json
 import os
+import pty
 import re
 import shlex
 import signal
@@ -188,8 +190,6 @@ class Slurm(Command):
         self.submit("--parts", "3", "--no-submit", "--max-memory", "0.75")
         self.assertTrue(self.job().endswith(" --quiet --max-memory 0.75\n"), self.job())
 
-    def test_settings_of_the_shell_do_not_disturb(self):
-        # Of a shell within another job, too.
     def test_a_part_stays_within_the_memory_of_its_job(self):
         self.submit("--parts", "12", "--no-submit")
         megabytes = {}
@@ -206,6 +206,8 @@ class Slurm(Command):
         if not SANITIZED:
             self.assertGreater(megabytes[()], of_job)
 
+    def test_settings_of_the_shell_do_not_disturb(self):
+        # Of a shell within another job, too.
         self.environment.update({"SBATCH_WAIT": "1", "SBATCH_ARRAY_INX": "7", "SLURM_MEM_PER_NODE": "7", "SLURM_MEM_PER_CPU": "7",
                                  "SBATCH_PARTITION": "mine", "SCANCEL_INTERACTIVE": "1"})
         for program in ("sbatch", "scancel"):
@@ -434,6 +436,34 @@ class Slurm(Command):
         self.assertIn("12 takes, 12 done, 0 failed, 0 missing", out)
         self.assertEqual(len(self.runs("squeue")), len(answers))
         self.assertEqual(len(list(csv.DictReader(io.StringIO(self.read("s/takes.csv").decode())))), 12)
+
+    def test_a_terminal_shows_how_far_the_takes_are(self):
+        try:
+            main_end, terminal = pty.openpty()
+        except OSError as error:  # a container without /dev/pts
+            self.skipTest(f"no pseudo-terminal: {error}")
+        self.submit("--parts", "2", "--no-submit")
+        self.log("s", [4])  # is not submitted
+        self.log("s", [5], status="failed")
+        answers = [":", ":", "echo PENDING", "echo RUNNING", "echo RUNNING", "echo RUNNING", ":", ":"]
+        for turn, text in enumerate(answers, 1):
+            self.write(f"bin/squeue.{turn}", text)
+        command = [PLIANT, "sweep", "run", self.path("s"), "--engine", "slurm", "--parts", "2", "--retry", "--wait"]
+        shown = b""
+        with subprocess.Popen(command, env=self.environment, stdout=subprocess.DEVNULL, stderr=terminal) as process:
+            os.close(terminal)
+            with contextlib.suppress(OSError):  # a terminal ends its output with this error
+                while piece := os.read(main_end, 100000):
+                    shown += piece
+                    if b"queued" in shown and not os.path.exists(self.path("told")):
+                        self.write("told", "")
+                        self.log("s", [0, 1, 2])
+                        self.log("s", [5], status="failed")
+        os.close(main_end)
+        self.assertEqual(process.returncode, 1)
+        lines = shown.decode().split("\r\x1b[K")
+        self.assertIn("[..............................] 0/11 takes, queued", lines)
+        self.assertRegex(shown.decode(), r"\[#{10}\.{20}\] 4/11 takes, [\d.]+ takes/s, 0:\d\d left, 1 failed\r")
 
     def test_an_array_that_ended_early_is_told(self):
         ended = self.submit("--wait", "--parts", "3", code=1)

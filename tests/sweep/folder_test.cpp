@@ -11,6 +11,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/sweep/log.hpp"
+#include "pliant/sweep/watch.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
@@ -323,4 +324,41 @@ TEST_CASE("half files are removed after an hour", "[sweep]") {
   folder.remove_half_files();
   CHECK_FALSE(fs::exists(old));
   CHECK(fs::exists(place.folder().file("sweep/.takes.csv.2-0.part")));
+}
+
+TEST_CASE("takes that end in other processes are counted by what is added to the log", "[sweep]") {
+  const ScratchFolder scratch;
+  fs::create_directory(scratch.file("log"));
+  const auto add = [&](const char* file, std::string_view text) {
+    std::ofstream(scratch.file("log") / file, std::ios::app | std::ios::binary) << text;
+  };
+  const auto done = [](std::size_t take) {
+    return to_line({.take = take, .measures = Measures()});
+  };
+  const auto failed = [](std::size_t take) {
+    return to_line({.take = take, .measures = fail(ErrorCode::Unwritable, "it failed")});
+  };
+  add("a.jsonl", done(0) + failed(1) + R"({"take":2,"st)");
+  auto watch =
+      SweepWatch::begin(scratch.path().string(), {false, true, true, true, true, true}).value();
+  const auto counts = [&] {
+    REQUIRE(watch.look());
+    return std::vector<std::size_t>{watch.ended(), watch.failed()};
+  };
+  CHECK(counts() == std::vector<std::size_t>{0, 0});  // what was there before
+  add("a.jsonl", "nonsense\n" + done(2));
+  add("b.jsonl", done(3) + done(0) + done(99));  // 0 is not waited for, 99 is none
+  CHECK(counts() == std::vector<std::size_t>{2, 0});
+  CHECK(counts() == std::vector<std::size_t>{2, 0});
+  const std::string line = failed(4);
+  add("b.jsonl", line.substr(0, 20));
+  CHECK(counts() == std::vector<std::size_t>{2, 0});
+  add("b.jsonl", line.substr(20) + done(3));
+  CHECK(counts() == std::vector<std::size_t>{3, 1});
+  fs::remove(scratch.file("log") / "a.jsonl");  // and another of its name
+  add("a.jsonl", done(1));
+  CHECK(counts() == std::vector<std::size_t>{4, 1});
+  add("c.jsonl", done(5));
+  CHECK_FALSE(watch.look([] { return true; }));
+  CHECK(counts() == std::vector<std::size_t>{5, 1});
 }

@@ -377,9 +377,8 @@ const SweepRequest& SweepFolder::request() const { return parts_->request; }
 
 Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
   Gathering gathering(sweep().takes().count());
-  auto read = read_log(
-      fs::path(folder()) / "log", [&](LogLine line) { gathering.add(std::move(line)); },
-      should_stop);
+  auto read = LogReader(fs::path(folder()) / "log")
+                  .read([&](LogLine line) { gathering.add(std::move(line)); }, should_stop);
   if (!read) return fail(read.error());
   SweepStatus status = gathering.finish();
   if (!request().write.empty()) {

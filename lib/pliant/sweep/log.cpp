@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -52,6 +53,44 @@ std::string in_json(const std::string& text) {
 tl::unexpected<Error> cannot_write_log(const std::string& name, int error) {
   return fail(ErrorCode::Unwritable, std::string("cannot write the log: ") + std::strerror(error),
               name);
+}
+
+Result<std::vector<fs::path>> files_of_log(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code unknown;
+    if (entry->path().extension() == ".jsonl" && entry->is_regular_file(unknown))
+      files.push_back(entry->path());
+  }
+  if (error && error != std::errc::no_such_file_or_directory)
+    return fail(ErrorCode::Unreadable, error.message(), folder.string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// 0: unknown.
+std::uintmax_t size_of(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return error ? 0 : size;
+}
+
+// Passes the bytes of a file from there on to `take`, in pieces, until it returns false.
+Result<void> read_from(const fs::path& file, std::uintmax_t begin,
+                       const std::function<bool(std::string_view)>& take) {
+  if (auto readable = check_readable(file); !readable) return readable;
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(begin));
+  std::string piece(std::size_t{1} << 20U, '\0');
+  do {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto count = static_cast<std::size_t>(stream.gcount());
+    if (count > 0 && !take(std::string_view(piece).substr(0, count))) return {};
+  } while (stream);
+  if (!stream.eof()) return fail(ErrorCode::Unreadable, std::strerror(errno), file.string());
+  return {};
 }
 
 // Reads a member; false: it is missing or of another type.
@@ -185,27 +224,33 @@ Result<void> LogFile::append(std::string_view line) {
   }
 }
 
-Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>& take_line,
-                      const StopRequest& should_stop) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    std::error_code unknown;
-    if (entry->path().extension() == ".jsonl" && entry->is_regular_file(unknown))
-      files.push_back(entry->path());
+Result<void> LogReader::skip() {
+  const auto files = files_of_log(folder_);
+  if (!files) return fail(files.error());
+  for (const fs::path& file : *files) {
+    const std::uintmax_t size = size_of(file);
+    places_[file] = {size, size};
   }
-  if (error == std::errc::no_such_file_or_directory) return {};
-  if (error) return fail(ErrorCode::Unreadable, error.message(), folder.string());
-  std::sort(files.begin(), files.end());
+  return {};
+}
+
+Result<void> LogReader::read(const std::function<void(LogLine)>& take_line,
+                             const StopRequest& should_stop) {
+  const auto files = files_of_log(folder_);
+  if (!files) return fail(files.error());
   const auto take = [&](std::string_view text) {
     LogLine line;
     if (read_line(text, line)) take_line(std::move(line));
   };
-  for (const fs::path& file : files) {
-    std::string rest;  // of a line that is not complete yet
+  for (const fs::path& file : *files) {
+    Place& place = places_[file];
+    const std::uintmax_t size = size_of(file);
+    if (size == place.size) continue;
+    if (size < place.size) place = {};  // another file by now
+    std::string rest;                   // of a line that is not complete yet
+    std::uintmax_t position = place.next;
     bool is_stopped = false;
-    auto read = read_pieces(file, [&](std::string_view piece) {
+    auto read = read_from(file, position, [&](std::string_view piece) {
       for (std::size_t end; (end = piece.find('\n')) != std::string_view::npos;
            piece.remove_prefix(end + 1)) {
         if (rest.empty()) {
@@ -215,7 +260,10 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
           take(rest);
           rest.clear();
         }
+        position += end + 1;
+        place.next = position;
       }
+      position += piece.size();
       rest += piece;
       // No line of ours; whatever follows on it is none either.
       if (rest.size() > longest_line) rest = "?";
@@ -224,6 +272,7 @@ Result<void> read_log(const fs::path& folder, const std::function<void(LogLine)>
     });
     if (!read) return read;
     if (is_stopped) return interrupted();
+    place.size = position;
   }
   return {};
 }

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
@@ -62,10 +65,28 @@ class LogFile {
   std::string name_;
 };
 
-/// Calls `take_line` for each whole line of all files of the folder, which may be missing. Errors:
-/// Unreadable; Interrupted.
-Result<void> read_log(const std::filesystem::path& folder,
-                      const std::function<void(LogLine)>& take_line,
-                      const StopRequest& should_stop = {});
+/// Reads a log while others write it.
+class LogReader {
+ public:
+  explicit LogReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Passes over all that is there. Errors: Unreadable.
+  Result<void> skip();
+
+  /// Calls `take_line` for each whole line of all files of the folder, which may be missing, that
+  /// was not read before. Costs a look at each file, and what was added. Errors: Unreadable;
+  /// Interrupted.
+  Result<void> read(const std::function<void(LogLine)>& take_line,
+                    const StopRequest& should_stop = {});
+
+ private:
+  struct Place {
+    std::uintmax_t next = 0;  // where the next line begins
+    std::uintmax_t size = 0;  // of the file, when it was read
+  };
+
+  std::filesystem::path folder_;
+  std::map<std::filesystem::path, Place> places_;  // of each file
+};
 
 }  // namespace pliant
