@@ -24,11 +24,10 @@ using namespace std::chrono_literals;
 // Variables by which a user narrows what squeue lists and what scancel cancels.
 constexpr std::string_view list_settings[] = {"SQUEUE_"}, cancel_settings[] = {"SCANCEL_"};
 
-// Variables that sbatch does not get: those that would have it wait for the array, or replace the
-// list of parts in a script; and, of a job in which we run, what it may use, which Slurm does not
-// replace in the new job if that one has its memory by another option.
-constexpr std::string_view submit_settings[] = {
-    "SBATCH_WAIT=", "SBATCH_ARRAY_INX=", "SLURM_MEM_PER_"};
+// Variables that sbatch does not get: one that would have it wait for the array; and, of a job in
+// which we run, what it may use, which Slurm does not replace in the new job if that one has its
+// memory by another option.
+constexpr std::string_view submit_settings[] = {"SBATCH_WAIT=", "SLURM_MEM_PER_"};
 
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {

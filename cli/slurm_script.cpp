@@ -50,6 +50,20 @@ std::string job_name(std::string_view sweep) {
   return "pliant-" + name;
 }
 
+// A list of ranges, of numbers that are at most so far from the one before.
+std::string ranges_of(std::span<const std::size_t> numbers, std::size_t gap) {
+  std::string list;
+  for (std::size_t k = 0; k < numbers.size();) {
+    std::size_t last = k;
+    while (last + 1 < numbers.size() && numbers[last + 1] - numbers[last] <= gap) ++last;
+    if (!list.empty()) list += ',';
+    list += std::to_string(numbers[k]);
+    if (last > k) list += '-' + std::to_string(numbers[last]);
+    k = last + 1;
+  }
+  return list;
+}
+
 // Reads a number off the front.
 std::optional<std::size_t> take_number(std::string_view& text) {
   std::size_t number = 0;
@@ -72,17 +86,14 @@ std::string bash_line(std::span<const std::string> words) {
   return line;
 }
 
-std::string array_list(std::span<const std::size_t> numbers) {
-  std::string list;
-  for (std::size_t k = 0; k < numbers.size();) {
-    std::size_t last = k;
-    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
-    if (!list.empty()) list += ',';
-    list += std::to_string(numbers[k]);
-    if (last > k) list += '-' + std::to_string(numbers[last]);
-    k = last + 1;
-  }
-  return list;
+std::string array_list(std::span<const std::size_t> numbers, std::size_t most) {
+  std::vector<std::size_t> gaps = {1};  // between neighbours
+  for (std::size_t k = 1; k < numbers.size(); ++k) gaps.push_back(numbers[k] - numbers[k - 1]);
+  std::ranges::sort(gaps);
+  gaps.erase(std::unique(gaps.begin(), gaps.end()), gaps.end());
+  const auto is_too_long = [&](std::size_t gap) { return ranges_of(numbers, gap).size() > most; };
+  const auto least = std::ranges::partition_point(gaps, is_too_long);
+  return ranges_of(numbers, least == gaps.end() ? gaps.back() : *least);
 }
 
 std::optional<std::vector<std::size_t>> read_array_list(std::string_view list, std::size_t end) {
@@ -136,7 +147,6 @@ std::string job_script(const SlurmScript& script) {
   if (script.seconds)
     add(fmt::format("--time={:.0f}",
                     std::max(least_minutes, std::ceil(*script.seconds * time_margin / 60))));
-  if (!script.array.empty()) add("--array=" + script.array);
   text += fmt::format(
       "exec {} sweep run {} --part $SLURM_ARRAY_TASK_ID/{} --threads $SLURM_CPUS_PER_TASK "
       "--quiet{}{}\n",

@@ -15,8 +15,13 @@ std::string bash_word(std::string_view text);
 /// A command line for bash.
 std::string bash_line(std::span<const std::string> words);
 
-/// Numbers as sbatch's `--array` takes them: `0-4,7,9-10`. Requires: ascending.
-std::string array_list(std::span<const std::size_t> numbers);
+/// The most characters of a list that Slurm takes for an array: 22.05 refuses one more.
+inline constexpr std::size_t longest_array_list = 4096;
+
+/// Numbers as sbatch's `--array` takes them: `0-4,7,9-10`. If that is longer than `most`, it has
+/// the numbers between those that are nearest to each other too. Requires: ascending; two of them
+/// fit.
+std::string array_list(std::span<const std::size_t> numbers, std::size_t most = longest_array_list);
 
 /// The numbers below `end` of a list as sbatch's `--array` takes it, `0-4,7,8-20:4%5`, ascending.
 /// None: it is no such list.
@@ -31,7 +36,6 @@ struct SlurmScript {
   int threads = 1;                         ///< of a part
   std::optional<std::size_t> memory = {};  ///< of a part [bytes]; none: the cluster's default
   std::optional<double> seconds = {};      ///< that a part takes; none: unknown
-  std::string array = {};                  ///< list of parts; empty: the command line has it
   double max_memory = 0;                   ///< `--max-memory` of a part [GB]; 0: its default
   bool retries = false;                    ///< also takes that failed
 };

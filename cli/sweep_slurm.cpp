@@ -30,9 +30,6 @@ using namespace std::chrono_literals;
 constexpr std::size_t usual_array_size = 1001;  // Slurm's default
 constexpr double part_seconds = 600;            // that a part should take
 
-// The most bytes of a list of parts on a command line; one word may have 128 KiB.
-constexpr std::size_t longest_argument = std::size_t{1} << 16U;
-
 // Absolute, without "." and "/" at its end. A name is not resolved unless it must be: the nodes may
 // know a folder by the link only.
 Result<std::string> absolute_folder(const std::string& folder) {
@@ -244,7 +241,6 @@ class Submission {
                             : parts_of(takes, take_seconds, most);
     if (auto fits = check_user_array(*largest); !fits) return fail(fits.error());
     due_ = due_of(status, parts_, retries_);
-    std::string list = array_list(due_.parts);
     const auto executable = own_executable();
     if (!executable) return fail(executable.error());
     SlurmScript text{.executable = *executable,
@@ -252,7 +248,6 @@ class Submission {
                      .name = fs::path(name_).filename().string(),
                      .parts = parts_,
                      .threads = threads_,
-                     .array = {},
                      .max_memory = max_memory_,
                      .retries = retries_};
     if (!user_.has_memory_per_other) {
@@ -261,12 +256,10 @@ class Submission {
       text.memory = *memory;
     }
     if (is_timed) text.seconds = static_cast<double>(takes_of_thread(takes)) * take_seconds;
-    std::vector<std::string> words = {"sbatch", "--parsable"};
-    if (list.size() <= longest_argument) {
-      words.push_back("--array=" + list);
-    } else {
-      text.array = std::move(list);
-    }
+    const std::string list = array_list(due_.parts);
+    submitted_ = read_array_list(user_.array.empty() ? list : user_.array, parts_)
+                     .value_or(due_.parts);  // a user's list that is none is for sbatch to refuse
+    std::vector<std::string> words = {"sbatch", "--parsable", "--array=" + list};
     words.insert(words.end(), options_.sbatch.begin(), options_.sbatch.end());
     words.push_back(script());
     text_ = job_script(text);
@@ -323,13 +316,8 @@ class Submission {
                               job->number));
     }
     job_ = *job;
-    std::size_t parts = due_.parts.size(), takes = due_.take_count(due_.parts);
-    if (const auto chosen = read_array_list(user_.array, parts_)) {
-      parts = chosen->size();
-      takes = due_.take_count(*chosen);
-    }
-    print(stdout, fmt::format("submitted {}: {} parts, {} takes\n{}\n", job_.number, parts, takes,
-                              bash_line(words)));
+    print(stdout, fmt::format("submitted {}: {} parts, {} takes\n{}\n", job_.number,
+                              submitted_.size(), due_.take_count(submitted_), bash_line(words)));
     // For a job that the list does not show. Without this file the list is all there is.
     const std::string known = job_.cluster.empty() ? job_.number : job_.number + ';' + job_.cluster;
     (void)write("job", known + '\n');
@@ -337,11 +325,10 @@ class Submission {
   }
 
   std::vector<bool> submitted_takes(const SweepStatus& status) const {
-    const auto chosen = read_array_list(user_.array, parts_).value_or(due_.parts);
     std::vector<bool> takes(status.takes.size());
     for (std::size_t take = 0; take < takes.size(); ++take)
-      takes[take] =
-          status.takes[take].is_due(retries_) && std::ranges::binary_search(chosen, take % parts_);
+      takes[take] = status.takes[take].is_due(retries_) &&
+                    std::ranges::binary_search(submitted_, take % parts_);
     return takes;
   }
 
@@ -361,6 +348,7 @@ class Submission {
   std::string text_;  // of job.sh
   std::size_t parts_ = 1;
   Due due_;
+  std::vector<std::size_t> submitted_;  // parts
   SlurmJob job_ = {};
 };
 

@@ -28,6 +28,11 @@ TEST_CASE("a list of an array has ranges, and is read back", "[cli][slurm]") {
   CHECK(array_list({}).empty());
   CHECK(array_list(std::vector<std::size_t>{0}) == "0");
   CHECK(array_list(std::vector<std::size_t>{3, 4}) == "3-4");
+  const std::vector<std::size_t> scattered = {0, 5, 7, 9, 20, 21};
+  CHECK(array_list(scattered, 13) == "0,5,7,9,20-21");
+  CHECK(array_list(scattered, 12) == "0,5-9,20-21");
+  CHECK(array_list(scattered, 10) == "0-9,20-21");
+  CHECK(array_list(scattered, 8) == "0-21");
   CHECK(array_list(std::vector<std::size_t>{0, 1, 2, 5, 7, 8, 9}) == "0-2,5,7-9");
   for (unsigned pattern = 1; pattern < 1024; ++pattern) {
     std::vector<std::size_t> numbers;

@@ -160,15 +160,17 @@ class Slurm(Command):
         self.assertIn("11 done, 1 failed, 0 missing", failed.stdout)
         self.assertIn("it failed", failed.stderr)
 
-    def test_a_long_list_of_parts_is_in_the_script(self):
+    def test_a_list_of_parts_is_no_longer_than_slurm_takes(self):
         self.write("bin/scontrol.text", "MaxArraySize            = 4000001\n")
         vary = ("--vary", "sheet.density=1..50000")
         self.submit("--parts", "50000", "--no-submit", vary=vary)
-        self.log("s", range(0, 50000, 2))
-        self.sweep("run", self.path("s"), "--engine", "slurm", "--parts", "50000")
-        self.assertEqual(self.runs("sbatch")[-1], ["--parsable", self.path("s/slurm/job.sh")])
-        listed = next(line for line in self.job().splitlines() if line.startswith("#SBATCH --array="))
-        self.assertEqual(listed, "#SBATCH --array=" + ",".join(map(str, range(1, 50000, 2))))
+        missing = {*range(0, 20000, 2), *range(20000, 50000, 500)}
+        self.log("s", [take for take in range(50000) if take not in missing])
+        out = self.sweep("run", self.path("s"), "--engine", "slurm", "--parts", "50000").stdout
+        # What is near each other is joined, what is not stands alone.
+        listed = "0-20000," + ",".join(map(str, range(20500, 50000, 500)))
+        self.assertEqual(self.array(), listed)
+        self.assertIn("submitted 123: 20060 parts, 10060 takes\n", out)
 
     def test_options_of_the_user_win(self):
         self.submit("--parts", "6", "--sbatch=--mem-per-cpu=2G")  # which sbatch takes only without --mem
@@ -208,7 +210,7 @@ class Slurm(Command):
 
     def test_settings_of_the_shell_do_not_disturb(self):
         # Of a shell within another job, too.
-        self.environment.update({"SBATCH_WAIT": "1", "SBATCH_ARRAY_INX": "7", "SLURM_MEM_PER_NODE": "7", "SLURM_MEM_PER_CPU": "7",
+        self.environment.update({"SBATCH_WAIT": "1", "SLURM_MEM_PER_NODE": "7", "SLURM_MEM_PER_CPU": "7",
                                  "SBATCH_PARTITION": "mine", "SCANCEL_INTERACTIVE": "1"})
         for program in ("sbatch", "scancel"):
             self.write(f"bin/{program}", PROGRAM.replace("here=", f"env >{self.path(program + '.env')}; here=", 1))
@@ -216,7 +218,7 @@ class Slurm(Command):
         self.submit("--parts", "3", code=1)
         names = {line.split("=")[0] for line in self.read("sbatch.env").decode().splitlines()}
         self.assertIn("SBATCH_PARTITION", names)
-        self.assertFalse(names & {"SBATCH_WAIT", "SBATCH_ARRAY_INX", "SLURM_MEM_PER_NODE", "SLURM_MEM_PER_CPU"})
+        self.assertFalse(names & {"SBATCH_WAIT", "SLURM_MEM_PER_NODE", "SLURM_MEM_PER_CPU"})
         self.assertNotIn(b"SCANCEL_", self.read("scancel.env"))
 
     def test_memory_grows_with_takes_and_threads(self):

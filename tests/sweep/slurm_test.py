@@ -8,6 +8,7 @@ node.
 import glob
 import json
 import os
+import pathlib
 import re
 import shutil
 import signal
@@ -218,9 +219,8 @@ class Slurm(unittest.TestCase):
             told = self.path(f"told{part}")
             run("sbatch", option, "--cpus-per-task=2", f"--output={told}", "--wrap",
                 f"{PLIANT} sweep run {self.path('s')} --part {part}/6 --threads 1")
-            wait_until(lambda file=told: os.path.exists(file) and "done" in open(file, encoding="utf-8").read())
-            with open(told, encoding="utf-8") as file:
-                self.assertIn("1 take at once, up to 235 MB each\n", file.read())
+            wait_until(lambda file=told: os.path.exists(file) and "done" in pathlib.Path(file).read_text(encoding="utf-8"))
+            self.assertIn("1 take at once, up to 235 MB each\n", pathlib.Path(told).read_text(encoding="utf-8"))
 
     def test_a_wrong_node_is_found(self):
         line = self.submit("--parts", "1", "--no-submit", shim(300, broken="n2")).stdout
@@ -239,7 +239,7 @@ class Slurm(unittest.TestCase):
 
     def test_z_a_node_lost_in_the_middle(self):
         wanted = self.wanted()
-        with subprocess.Popen(self.command("--engine", "slurm", "--parts", "6", "--wait", shim(2000)), stdout=subprocess.PIPE,
+        with subprocess.Popen(self.command("--engine", "slurm", "--parts", "6", "--wait", shim(3000)), stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True) as process:
             number = re.match(r"submitted (\d+): ", process.stdout.readline())[1]
             wait_until(lambda: "n2" in {line["host"] for line in self.lines()})
