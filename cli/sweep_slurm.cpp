@@ -135,11 +135,12 @@ class Submission {
   int run() {
     const auto ran = run_steps();
     if (ran) return *ran;
-    const bool is_after_submission = !job_.number.empty();
-    return report(with_kept(
-        ran.error(), is_after_submission ? "job " + job_.number +
-                                               " goes on; pliant sweep status tells how far it is"
-                                         : "nothing is submitted; takes that ended are kept"));
+    if (job_.number.empty())
+      return report(with_kept(ran.error(), "nothing is submitted; takes that ended are kept"));
+    Error error = ran.error();
+    error.message +=
+        fmt::format("; job {} goes on; pliant sweep status tells how far it is", job_.number);
+    return report(error);
   }
 
  private:

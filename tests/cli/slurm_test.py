@@ -9,6 +9,7 @@ import os
 import pty
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import time
@@ -438,6 +439,16 @@ class Slurm(Command):
         self.assertIn("12 takes, 12 done, 0 failed, 0 missing", out)
         self.assertEqual(len(self.runs("squeue")), len(answers))
         self.assertEqual(len(list(csv.DictReader(io.StringIO(self.read("s/takes.csv").decode())))), 12)
+
+    def test_a_job_goes_on_if_it_cannot_be_waited_for(self):
+        self.write("bin/squeue.3", f"rm {self.path('bin/squeue')}; echo RUNNING")
+        self.environment["PATH"] = f"{self.path('bin')}:{self.path('tools')}"
+        os.mkdir(self.path("tools"))
+        for tool in ("basename", "bash", "cat", "dirname", "rm"):  # but for a squeue that may be installed
+            os.symlink(shutil.which(tool), self.path(f"tools/{tool}"))
+        errors = self.submit("--parts", "3", "--wait", code=1).stderr
+        self.assertIn("cannot start squeue: ", errors)
+        self.assertIn("; job 123 goes on", errors)
 
     def test_a_terminal_shows_how_far_the_takes_are(self):
         try:
