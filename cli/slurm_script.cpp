@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "shell_word.hpp"
+
 namespace pliant::cli {
 namespace {
 
@@ -75,17 +77,6 @@ std::optional<std::size_t> take_number(std::string_view& text) {
 
 }  // namespace
 
-std::string bash_word(std::string_view text) {
-  if (is_plain(text, "_@%+=:,./-")) return std::string(text);
-  return '\'' + replaced(text, '\'', "'\\''") + '\'';
-}
-
-std::string bash_line(std::span<const std::string> words) {
-  std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + bash_word(word);
-  return line;
-}
-
 std::string array_list(std::span<const std::size_t> numbers, std::size_t most) {
   std::vector<std::size_t> gaps = {1};  // between neighbours
   for (std::size_t k = 1; k < numbers.size(); ++k) gaps.push_back(numbers[k] - numbers[k - 1]);
@@ -150,7 +141,7 @@ std::string job_script(const SlurmScript& script) {
   text += fmt::format(
       "exec {} sweep run {} --part $SLURM_ARRAY_TASK_ID/{} --threads $SLURM_CPUS_PER_TASK "
       "--quiet{}{}\n",
-      bash_word(script.executable), bash_word(script.folder), script.parts,
+      shell_word(script.executable), shell_word(script.folder), script.parts,
       script.max_memory > 0 ? fmt::format(" --max-memory {}", script.max_memory) : "",
       script.retries ? " --retry" : "");
   return text;

@@ -9,12 +9,6 @@
 
 namespace pliant::cli {
 
-/// The word of a command line that bash reads as this text: itself if nothing in it is special.
-std::string bash_word(std::string_view text);
-
-/// A command line for bash.
-std::string bash_line(std::span<const std::string> words);
-
 /// The most characters of a list that Slurm takes for an array: 22.05 refuses one more.
 inline constexpr std::size_t longest_array_list = 4096;
 

@@ -15,6 +15,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "report.hpp"
+#include "shell_word.hpp"
 #include "slurm.hpp"
 #include "slurm_script.hpp"
 #include "sweep.hpp"
@@ -164,7 +165,7 @@ class Submission {
     const auto words = prepare(*status);
     if (!words) return fail(words.error());
     if (options_.writes_only) {
-      print(stdout, bash_line(*words) + '\n');
+      print(stdout, shell_line(*words) + '\n');
       return exit_done;
     }
     std::optional<WaitingBar> bar;  // from before the job may run
@@ -318,7 +319,7 @@ class Submission {
     }
     job_ = *job;
     print(stdout, fmt::format("submitted {}: {} parts, {} takes\n{}\n", job_.number,
-                              submitted_.size(), due_.take_count(submitted_), bash_line(words)));
+                              submitted_.size(), due_.take_count(submitted_), shell_line(words)));
     // For a job that the list does not show. Without this file the list is all there is.
     const std::string known = job_.cluster.empty() ? job_.number : job_.number + ';' + job_.cluster;
     (void)write("job", known + '\n');

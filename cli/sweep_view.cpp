@@ -16,6 +16,7 @@
 #include "pliant/output/atomic_file.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "shell_word.hpp"
 #include "sweep.hpp"
 #include "sweep_memory.hpp"
 #include "view_picture.hpp"
@@ -146,6 +147,14 @@ Result<void> write_view(const SweepViewOptions& options, const std::optional<std
   return {};
 }
 
+// What bakes a take, without its number.
+std::string bake_command(const std::string& folder) {
+  // A name that begins with - would be an option.
+  const std::string name = (folder.starts_with('-') ? "./" : "") + folder;
+  const std::string words[] = {"pliant", "sweep", "bake", name};
+  return shell_line(words);
+}
+
 }  // namespace
 
 Result<void> check_no_part(std::string_view option, const std::string& file,
@@ -218,6 +227,7 @@ int run_sweep_view(const SweepViewOptions& options) {
                                  {.threads = resources.threads,
                                   .max_memory = resources.max_memory,
                                   .should_stop = resources.should_stop,
+                                  .command = bake_command(folder->folder()),
                                   .take_done = [&] { progress->advance(); }});
   progress.reset();
   if (!bake) return report(with_kept(bake.error(), "nothing was written"));

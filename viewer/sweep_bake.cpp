@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -59,21 +58,6 @@ Json conflicts_of(const SweepStatus& status) {
   return conflicts;
 }
 
-// In bash and zsh alike: the three digits end each number.
-std::string ansi_word(std::string_view text) {
-  std::string word = "$'";
-  for (const char letter : text) {
-    const auto byte = static_cast<unsigned char>(letter);
-    if (byte < 0x20 || byte >= 0x7f)
-      word += fmt::format("\\{:03o}", byte);
-    else if (letter == '\'' || letter == '\\')
-      word += fmt::format("\\{}", letter);
-    else
-      word += letter;
-  }
-  return word + "'";
-}
-
 }  // namespace
 
 std::string name_of_folder(const std::string& folder) {
@@ -83,19 +67,6 @@ std::string name_of_folder(const std::string& folder) {
   const std::filesystem::path name =
       whole.has_filename() ? whole.filename() : whole.parent_path().filename();
   return printable(name.empty() ? folder : name.string());
-}
-
-std::string shell_word(const std::string& text) {
-  if (printable(text) != text) return ansi_word(text);
-  constexpr std::string_view plain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-  // A word that begins with = is the path of a program in zsh.
-  if (!text.empty() && text.front() != '=' && text.find_first_not_of(plain) == std::string::npos)
-    return text;
-  std::string word = "'";
-  for (const char letter : text)
-    word += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  return word + "'";
 }
 
 Result<SweepViewPlan> plan_sweep_view(const SweepFolder& folder, const SweepStatus& status,
@@ -161,12 +132,9 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
   Json failures = Json::array();
   for (const auto& [take, reason] : bake.failed)
     failures.push_back({{"take", take}, {"text", reason}});
-  // A name that begins with - would be an option.
-  const std::string& typed = folder.folder();
-  const std::string argument = (typed.rfind('-', 0) == 0 ? "./" : "") + typed;
   const Json head = {{"version", 1},
                      {"name", name_of_folder(folder.folder())},
-                     {"command", "pliant sweep bake " + shell_word(argument)},
+                     {"command", run.command},
                      {"takes", status.takes.size()},
                      {"done", status.done},
                      {"failed", status.failed},

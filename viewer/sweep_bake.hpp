@@ -38,16 +38,13 @@ struct SweepViewRun {
   int threads = 1;
   std::size_t max_memory = 0;  ///< [bytes]
   StopRequest should_stop = {};
+  std::string command = {};              ///< that bakes a take, without its number
   std::function<void()> take_done = {};  ///< called for each, one call at a time
 };
 
 /// The name of a folder, printable, without those that it is in, also of `.` and `a/..`; the whole,
 /// if it has none.
 std::string name_of_folder(const std::string& folder);
-
-/// The text as one word of a command line of bash or zsh. If it is not printable, it is
-/// `$'…'` of ASCII only, so that it can be copied out of a page.
-std::string shell_word(const std::string& text);
 
 /// Runs the takes of the plan up to their frames, and packs their shapes and the table. Errors:
 /// Interrupted; OutOfMemory.

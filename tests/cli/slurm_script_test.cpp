@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "shell_word.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant::cli;
@@ -75,9 +76,9 @@ TEST_CASE("memory has a quarter more, and time four times the estimate", "[cli][
 }
 
 TEST_CASE("names go through bash and sbatch as they are", "[cli][slurm]") {
-  CHECK(bash_word("/a/b-c_d.e") == "/a/b-c_d.e");
-  CHECK(bash_word("") == "''");
-  CHECK(bash_word("it's $x") == "'it'\\''s $x'");
+  CHECK(shell_word("/a/b-c_d.e") == "/a/b-c_d.e");
+  CHECK(shell_word("") == "''");
+  CHECK(shell_word("it's $x") == "'it'\\''s $x'");
   const SlurmScript script{
       .executable = "/bin/pliant", .folder = "/a b/50%\"x\"$y", .name = "50%\"x\"$y \xc3\xa4"};
   CHECK(lines_of(script, "#SBATCH --job-name") == "#SBATCH --job-name=pliant-50__x__y___\n");
