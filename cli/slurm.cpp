@@ -63,8 +63,8 @@ constexpr const char* listed_format = "--format=%F|%T|%o";
 struct Listed {
   std::string_view number, state, file;
 
-  // What is cancelled has this state while its processes end.
-  bool is_queued_or_running() const { return state != "COMPLETING"; }
+  // Its processes end: of a job that is cancelled, or of one that is queued again afterwards.
+  bool is_ending() const { return state == "COMPLETING"; }
 };
 
 std::optional<Listed> parse_listed(std::string_view line) {
@@ -90,14 +90,17 @@ class Search {
 
   void add(std::string_view line) {
     const auto listed = parse_listed(line);
-    if (!listed || !listed->is_queued_or_running() || !is_script_of_a_sweep(listed->file) ||
-        !is_ours(listed->file))
+    if (!listed || !is_script_of_a_sweep(listed->file) || !is_ours(listed->file)) return;
+    if (listed->is_ending()) {
+      has_ending_ = true;
       return;
+    }
     const auto number = number_in<std::uint64_t>(listed->number);
     least_ = std::min(least_.value_or(*number), *number);
   }
 
   std::string least() const { return least_ ? std::to_string(*least_) : ""; }
+  bool has_ending() const { return has_ending_; }
 
  private:
   bool is_ours(std::string_view file) {
@@ -111,27 +114,32 @@ class Search {
   const std::string& script_;
   std::map<std::string, bool> known_;
   std::optional<std::uint64_t> least_;
+  bool has_ending_ = false;
 };
 
-// Whether a job is queued or running, and its script that of a sweep: its number may be used again.
-// A script that is here and another than `script` is that of another sweep: of the one that this
-// folder is a copy of.
-Result<bool> is_active(const SlurmJob& job, const std::string& script) {
+enum class Activity { None, Ending, Active };
+
+// Of a job whose script is that of a sweep: its number may be used again. A script that is here and
+// another than `script` is that of another sweep: of the one that this folder is a copy of.
+Result<Activity> activity_of(const SlurmJob& job, const std::string& script) {
   std::vector<std::string> words = squeue_of(job);
   words.emplace_back(listed_format);
-  bool is_found = false;
-  const auto end = run_program(words, {.dropped = list_settings,
-                                       .take_line =
-                                           [&](std::string_view line) {
-                                             const auto listed = parse_listed(line);
-                                             is_found |= listed && listed->is_queued_or_running() &&
-                                                         is_script_of_a_sweep(listed->file) &&
-                                                         !is_another_here(listed->file, script);
-                                           },
-                                       .should_stop = &was_interrupted});
+  Activity found = Activity::None;
+  const auto end = run_program(
+      words, {.dropped = list_settings,
+              .take_line =
+                  [&](std::string_view line) {
+                    const auto listed = parse_listed(line);
+                    if (!listed || !is_script_of_a_sweep(listed->file) ||
+                        is_another_here(listed->file, script))
+                      return;
+                    found =
+                        std::max(found, listed->is_ending() ? Activity::Ending : Activity::Active);
+                  },
+              .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
   if (end->code != 0 && !names_no_job(*end)) return no_answer("squeue", *end);
-  return is_found;
+  return found;
 }
 
 enum class Presence { There, Gone, Unknown };
@@ -154,11 +162,11 @@ Result<Presence> look_for(const SlurmJob& job, bool& has_run) {
 }
 
 // False: interrupted.
-bool sleep_for(std::chrono::milliseconds time, const std::function<void()>& meanwhile) {
+bool sleep_for(std::chrono::milliseconds time, const std::function<void()>& meanwhile = {}) {
   const auto end = std::chrono::steady_clock::now() + time;
   while (std::chrono::steady_clock::now() < end) {
     if (was_interrupted()) return false;
-    meanwhile();
+    if (meanwhile) meanwhile();
     std::this_thread::sleep_for(50ms);
   }
   return !was_interrupted();
@@ -201,17 +209,27 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience) {
 }
 
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known) {
-  Search search(script);
-  const auto end = run_program({"squeue", "--noheader", "--all", listed_format},
-                               {.dropped = list_settings,
-                                .take_line = [&](std::string_view line) { search.add(line); },
-                                .should_stop = &was_interrupted});
-  if (!end) return fail(end.error());
-  if (end->code != 0) return no_answer("squeue", *end);
-  if (!search.least().empty() || !known) return search.least();
-  const auto is_known_active = is_active(*known, script);
-  if (!is_known_active) return fail(is_known_active.error());
-  return *is_known_active ? known->number : std::string();
+  constexpr auto patience = 5s;  // a node that hangs may be ending a job for hours
+  const auto begin = std::chrono::steady_clock::now();
+  for (;;) {
+    Search search(script);
+    const auto end = run_program({"squeue", "--noheader", "--all", listed_format},
+                                 {.dropped = list_settings,
+                                  .take_line = [&](std::string_view line) { search.add(line); },
+                                  .should_stop = &was_interrupted});
+    if (!end) return fail(end.error());
+    if (end->code != 0) return no_answer("squeue", *end);
+    if (!search.least().empty()) return search.least();
+    bool has_ending = search.has_ending();
+    if (known) {
+      const auto activity = activity_of(*known, script);
+      if (!activity) return fail(activity.error());
+      if (*activity == Activity::Active) return known->number;
+      has_ending |= *activity == Activity::Ending;
+    }
+    if (!has_ending || std::chrono::steady_clock::now() - begin > patience) return std::string();
+    if (!sleep_for(500ms)) return fail(ErrorCode::Interrupted, "interrupted");
+  }
 }
 
 Result<SlurmJob> submit(const std::vector<std::string>& words) {

@@ -30,7 +30,8 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience);
 /// The number of a job with this script that is queued or running, the least if there are several;
 /// empty: there is none. Jobs are told by the file of their script; `known` is asked for by its
 /// number too, for jobs that the user does not see in the list, or whose file has another name
-/// here. Errors: Unwritable, with Slurm's message; Interrupted.
+/// here. For a job that is ending it waits, five seconds at most: it may be queued again. Errors:
+/// Unwritable, with Slurm's message; Interrupted.
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known);
 
 /// Submits a job by this command line of sbatch, whose messages go to stderr as they are. Errors:

@@ -400,6 +400,33 @@ class Slurm(Command):
         os.rename(self.path("s"), self.path("u"))
         self.assertIn("job 123 ", self.submit("--parts", "3", name="u", code=1).stderr)
 
+    def test_a_job_that_ends_may_be_queued_again(self):
+        # squeue calls a job COMPLETING while its processes end, cancelled or preempted.
+        script = self.path("s/slurm/job.sh")
+        self.submit("--parts", "3")
+        os.remove(self.path("s/slurm/job"))
+        for turn, state in enumerate(["COMPLETING", "COMPLETING", "PENDING"], 1):
+            self.write(f"bin/squeue.{turn}", f"echo '7|{state}|{script}'")
+        os.remove(self.path("bin/squeue.turn"))
+        self.assertIn("job 7 of this sweep is queued or running", self.submit("--parts", "3", code=1).stderr)
+        # Known by its number only.
+        self.write("s/slurm/job", "77;far\n")
+        for turn, text in enumerate(["", "77|COMPLETING|/far/s/slurm/job.sh", "", "77|PENDING|/far/s/slurm/job.sh"], 1):
+            self.write(f"bin/squeue.{turn}", f"echo '{text}'")
+        os.remove(self.path("bin/squeue.turn"))
+        self.assertIn("job 77 of this sweep is queued or running", self.submit("--parts", "3", code=1).stderr)
+        # It was cancelled.
+        os.remove(self.path("s/slurm/job"))
+        for turn, text in enumerate([f"7|COMPLETING|{script}", "", ""], 1):
+            self.write(f"bin/squeue.{turn}", f"echo '{text}'")
+        os.remove(self.path("bin/squeue.turn"))
+        self.assertIn("submitted 123", self.submit("--parts", "3").stdout)
+        # A node that hangs ends it for hours.
+        self.write("bin/squeue.text", f"7|COMPLETING|{script}\n")
+        begin = time.monotonic()
+        self.assertIn("submitted 123", self.submit("--parts", "3").stdout)
+        self.assertTrue(4 < time.monotonic() - begin < 30)
+
     def test_a_list_that_is_not_known_submits_nothing(self):
         self.write("bin/squeue.errors", "slurm_load_jobs error: Unable to contact slurm controller (connect failure)\n")
         self.write("bin/squeue.code", "1")
