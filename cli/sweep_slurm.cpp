@@ -112,6 +112,22 @@ UserOptions read_user_options(const std::vector<std::string>& sbatch) {
   return found;
 }
 
+// Errors: InvalidInput: a word that is no option, nor the value of the one before it. For sbatch it
+// would be the script to submit.
+Result<void> check_are_options(const std::vector<std::string>& sbatch) {
+  bool may_be_value = false;
+  for (const std::string& word : sbatch) {
+    const bool is_option = word.starts_with('-') && word != "-" && word != "--";
+    if (!is_option && !may_be_value)
+      return invalid(fmt::format("--sbatch {}: is no option of sbatch, such as --partition=short",
+                                 printable(word)));
+    const bool has_value = word.starts_with("--") ? word.find('=') != std::string::npos
+                                                  : word.size() > std::string_view("-p").size();
+    may_be_value = is_option && !has_value;
+  }
+  return {};
+}
+
 // Over NFS a folder may be seen as it was up to a minute ago, until it is changed from here.
 void see_anew(const fs::path& folder) {
   std::error_code ignored;
@@ -388,6 +404,7 @@ Result<void> check_slurm(const CLI::App& run, const SlurmOptions& options,
     return invalid("--wait: nothing is submitted with --no-submit");
   if (read_user_options(options.sbatch).waits)
     return invalid("--sbatch --wait: to wait for the array, give --wait of pliant");
+  if (auto are = check_are_options(options.sbatch); !are) return are;
   if (options.parts) {
     const auto parts = to_integer(*options.parts);
     if (!parts || *parts < 1)

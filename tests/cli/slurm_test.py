@@ -176,6 +176,8 @@ class Slurm(Command):
     def test_options_of_the_user_win(self):
         self.submit("--parts", "6", "--sbatch=--mem-per-cpu=2G")  # which sbatch takes only without --mem
         self.assertNotIn("--mem", self.job())
+        self.submit("--parts", "6", "--sbatch", "-p", "--sbatch", "short", "--sbatch", "--qos", "--sbatch", "low")
+        self.assertEqual(self.runs("sbatch")[-1][2:6], ["-p", "short", "--qos", "low"])
         out = self.submit("--parts", "6", "--sbatch=--array=0-1,5%2", "--quiet").stdout
         self.assertIn("submitted 123: 3 parts, 6 takes\n", out)
         line = self.runs("sbatch")[-1]
@@ -290,7 +292,11 @@ class Slurm(Command):
                 (["--no-submit"], ["--no-submit: needs --engine slurm"]),
                 (["--wait"], ["--wait: needs --engine slurm"]),
                 (["--engine", "slurm", "--sbatch=--wait"], ["--sbatch --wait: "]),
-                (["--engine", "slurm", "--sbatch=-W"], ["--sbatch --wait: "])]:
+                (["--engine", "slurm", "--sbatch=-W"], ["--sbatch --wait: "]),
+                # sbatch would submit that file.
+                (["--engine", "slurm", "--sbatch", "short"], ["--sbatch short: is no option of sbatch"]),
+                (["--engine", "slurm", "--sbatch=-pshort", "--sbatch", "x"], ["--sbatch x: is no option"]),
+                (["--engine", "slurm", "--sbatch=--", "--sbatch", "x"], ["--sbatch --: is no option"])]:
             with self.subTest(options=options):
                 scene = self.write("scene.xml", SCENE.format(columns=11, c=2))
                 errors = self.sweep("run", scene, "-o", self.path("s"), "--vary", "sheet.c=1,2", *options, code=2).stderr
