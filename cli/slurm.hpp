@@ -34,8 +34,8 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience);
 /// Unwritable, with Slurm's message; Interrupted.
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known);
 
-/// Submits a job by this command line of sbatch, whose messages go to stderr as they are. Errors:
-/// Unwritable: sbatch refused it.
+/// Submits a job by this command line of sbatch, the script last. Messages of sbatch go to stderr
+/// as they are. Errors: Unwritable: sbatch refused it.
 Result<SlurmJob> submit(const std::vector<std::string>& words);
 
 /// Cancels a job, if that is possible.

@@ -353,6 +353,11 @@ class Slurm(Command):
         self.assertIn("sbatch printed no number", self.submit("--parts", "3", code=1).stderr)
         self.write("bin/sbatch.text", "hello\n")
         self.assertIn('printed "hello"', self.submit("--parts", "3", code=1).stderr)
+        # It submits, and prints no number: with --quiet, or as a program of the site.
+        os.remove(self.path("bin/squeue.turn"))
+        self.write("bin/squeue.2", f"echo '12|PENDING|{self.path('s/slurm/job.sh')}'")
+        self.assertIn("submitted 12: 3 parts, 12 takes\n", self.submit("--parts", "3").stdout)
+        self.assertEqual(self.read("s/slurm/job"), b"12\n")
         self.write("bin/sbatch.text", "5;other\n")
         self.assertIn("submitted 5: 3 parts, 12 takes\n", self.submit("--parts", "3").stdout)
         self.assertEqual(self.read("s/slurm/job"), b"5;other\n")
