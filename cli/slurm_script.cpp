@@ -16,7 +16,7 @@ constexpr std::string_view letters_and_digits =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 constexpr double memory_margin = 1.25;
 constexpr double time_margin = 4;
-constexpr double least_minutes = 30;
+constexpr double least_minutes = 30, most_minutes = 365 * 24 * 60;
 
 bool is_plain(std::string_view text, std::string_view signs) {
   return !text.empty() && std::ranges::all_of(text, [&](char c) {
@@ -136,8 +136,8 @@ std::string job_script(const SlurmScript& script) {
     add(fmt::format("--mem={:.0f}M",
                     std::ceil(static_cast<double>(*script.memory) * memory_margin / (1 << 20U))));
   if (script.seconds)
-    add(fmt::format("--time={:.0f}",
-                    std::max(least_minutes, std::ceil(*script.seconds * time_margin / 60))));
+    add(fmt::format("--time={:.0f}", std::clamp(std::ceil(*script.seconds * time_margin / 60),
+                                                least_minutes, most_minutes)));
   text += fmt::format(
       "exec {} sweep run {} --part $SLURM_ARRAY_TASK_ID/{} --threads $SLURM_CPUS_PER_TASK "
       "--quiet{}{}\n",

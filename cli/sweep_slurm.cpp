@@ -252,7 +252,7 @@ class Submission {
     if (!largest) return fail(largest.error());
     const std::size_t takes = status.takes.size();
     const TakeRecord& first = status.takes.front();
-    const bool is_timed = first.status == TakeStatus::Done;
+    const bool is_timed = first.status == TakeStatus::Done && first.seconds >= 0;
     const double take_seconds = is_timed ? first.seconds : 0;
     const std::size_t most = std::min(takes, *largest);
     parts_ = options_.parts ? static_cast<std::size_t>(*to_integer(*options_.parts))

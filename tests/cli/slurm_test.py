@@ -109,6 +109,14 @@ class Slurm(Command):
                 self.assertIn(f"\n#SBATCH --time={minutes}\n", self.job(name))
                 self.assertIn(f"\n#SBATCH --cpus-per-task={threads}\n", self.job(name))
 
+    def test_a_time_that_cannot_be(self):
+        for seconds, time_limit in [(-5, None), (-1e300, None), (1e300, 525600)]:
+            name = f"s{seconds}"
+            self.submit("--no-submit", "--parts", "1", name=name)
+            self.log(name, [0], seconds)  # by a clock that was set back, or by nobody's
+            self.sweep("run", self.path(name), "--engine", "slurm", "--no-submit")
+            self.assertEqual(re.findall(r"--time=(\d+)", self.job(name)), [str(time_limit)] if time_limit else [])
+
     def test_arrays_end_where_slurm_ends_them(self):
         self.write("bin/scontrol.text", "MaxArraySize            = 5\n")
         errors = self.submit("--parts", "6", code=2).stderr
