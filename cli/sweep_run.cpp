@@ -204,8 +204,10 @@ Result<void> check_engine(const CLI::App& run, const SweepRunOptions& options) {
 }
 
 int submit_takes(const SweepFolder& folder, const SweepRunOptions& options) {
-  const auto fits = check_slurm_parts(options.slurm, folder.sweep().takes().count());
-  if (!fits) return report(fits.error());
+  if (!options.out) {  // otherwise `check_engine` has asked
+    const auto fits = check_slurm_parts(options.slurm, folder.sweep().takes().count());
+    if (!fits) return report(fits.error());
+  }
   return run_on_slurm(folder, options.slurm, options.resources, options.retries, options.is_quiet);
 }
 

@@ -419,6 +419,16 @@ class Slurm(Command):
         os.rename(self.path("s"), self.path("u"))
         self.assertIn("job 123 ", self.submit("--parts", "3", name="u", code=1).stderr)
 
+    def test_slurm_is_asked_little(self):
+        for options in ([], ["--parts", "3"]):
+            self.submit(*options)  # a new one, then one that is there, with a job that has ended
+            self.submit(*options)
+            self.sweep("run", self.path("s"), "--engine", "slurm", *options)
+            self.assertLessEqual(len(self.runs("scontrol")), 3 * 2)
+            self.assertLessEqual(len(self.runs("squeue")), 3 * 3)
+            for program in ("scontrol", "squeue"):
+                os.remove(self.path(f"bin/{program}.arguments"))
+
     def test_a_job_that_ends_may_be_queued_again(self):
         # squeue calls a job COMPLETING while its processes end, cancelled or preempted.
         script = self.path("s/slurm/job.sh")
