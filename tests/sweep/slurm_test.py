@@ -1,5 +1,5 @@
 """`pliant sweep run --engine slurm` on a real Slurm of three nodes: tests/sweep/slurm_loopback.sh, as script/test --slurm
-starts it with --max-array 10 and its PrologSlurmctld. usage: slurm_test.py PLIANT SHIM [arguments of unittest]
+starts it with --max-array 10000 and its PrologSlurmctld. usage: slurm_test.py PLIANT SHIM [arguments of unittest]
 
 The shim (node_shim.cpp) gives each process of a job the name of its node, makes takes last, and computes wrongly on one
 node.
@@ -188,11 +188,29 @@ class Slurm(unittest.TestCase):
         self.assertIn(f"{TAKES} done", self.submit("--parts", "3", "--wait").stdout)
 
     def test_an_array_is_no_larger_than_slurm_allows(self):
-        self.assertIn("at most 10, Slurm's MaxArraySize", self.submit("--parts", "11", code=2).stderr)
+        vary = ("--vary", "sheet.density=1..20000")
+        refused = run(*self.command("--engine", "slurm", "--parts", "10001", vary=vary), code=2)
+        self.assertIn("at most 10000, Slurm's MaxArraySize", refused.stderr)
         self.assertFalse(os.path.exists(self.path("s")))
-        done = self.submit("--parts", "10", "--wait")
-        self.assertIn(": 10 parts, ", done.stdout)
-        self.assertIn(f"{TAKES} done", done.stdout)
+        done = run(*self.command("--engine", "slurm", "--parts", "10000", "--sbatch=--hold", vary=vary)).stdout
+        self.assertIn(": 10000 parts, 20000 takes\n", done)
+
+    def test_a_list_is_no_longer_than_slurm_accepts(self):
+        run(*self.command("--make-only", vary=("--vary", "sheet.density=1..10000")))
+        os.mkdir(self.path("s/log"))
+        line = {"status": "failed", "error": "no", "seconds": 1, "host": "n1", "time": "2026-11-24T10:45:00.123Z"}
+        with open(self.path("s/log/n1.jsonl"), "w", encoding="utf-8") as log:
+            log.writelines(json.dumps({"take": take, **line}) + "\n" for take in range(0, 10000, 2))
+        done = run(PLIANT, "sweep", "run", self.path("s"), "--engine", "slurm", "--parts", "10000", "--sbatch=--hold")
+        self.assertIn(": 9999 parts, 5000 takes\n", done.stdout)
+        told = run("squeue", "-h", "-j", self.number(done), "-o", "%F %T").stdout
+        self.assertEqual(told, f"{self.number(done)} PENDING\n")
+
+    def test_a_job_that_is_queued_again_refuses_another(self):
+        number = self.number(self.submit("--parts", "1", shim(1500)))
+        wait_until(lambda: self.active(number) == ["0 RUNNING"])
+        run("scontrol", "requeue", number)  # COMPLETING at first
+        self.assertIn(f"job {number} of this sweep is queued or running", self.submit("--parts", "1", code=1).stderr)
 
     def test_options_of_the_user_win(self):
         done = self.submit("--parts", "2", "--threads", "1", "--sbatch", "--time=5", "--sbatch=--cpus-per-task=2",
