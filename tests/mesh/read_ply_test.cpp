@@ -170,16 +170,16 @@ TEST_CASE("a bad PLY file says what is wrong, and where", "[mesh][read_ply]") {
        "m.ply:16: error: the file is truncated: it ends within \"face\" 0 of 1, counted from 0"},
       {both + points + "200 0 1 2\n",
        "m.ply:15: error: the file is truncated: it ends within \"face\" 0 of 1, counted from 0"},
-      {both + "0 0 nan\n" + points, "m.ply:11: error: vertex 0: \"z\" is not a finite number"},
-      {both + "0 1,5 0\n" + points, "m.ply:11: error: vertex 0: \"y\" is not a finite number"},
+      {both + "0 0 nan\n" + points, "m.ply:11: error: \"vertex\" 0: \"z\" is not a finite number"},
+      {both + "0 1,5 0\n" + points, "m.ply:11: error: \"vertex\" 0: \"y\" is not a finite number"},
       {both + points + "4 0 1 2 x\n",
-       "m.ply:15: error: face 0: \"vertex_indices\" is not a finite number"},
+       "m.ply:15: error: \"face\" 0: \"vertex_indices\" is not a finite number"},
       {"ply\nformat ascii 1.0\nelement vertex 1\nelement vertex 2\n",
        "m.ply:4: error: the element \"vertex\" is given twice"},
       {"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty double x\n",
        "m.ply:5: error: the property \"x\" is given twice"},
       {both + points + "-4 0 1 2\n",
-       "m.ply:15: error: face 0: \"vertex_indices\" is not a finite number"},
+       "m.ply:15: error: \"face\" 0: \"vertex_indices\" is not a finite number"},
       {both + points + "4 0 1 2 3\n4 0 1 2 3\n",
        "m.ply:15: error: the file has data after its last"},
       {both + points + "4 0 1 2 4\n",
@@ -196,12 +196,26 @@ TEST_CASE("a bad PLY file says what is wrong, and where", "[mesh][read_ply]") {
       {binary_header + std::string(90, '\0'),
        "m.ply: error: the file is truncated: it ends within \"vertex\" 3 of 4, counted from 0"},
       {binary_header + std::string(96, '\xff'),
-       "m.ply: error: vertex 0: \"x\" is not a finite number"},
+       "m.ply: error: \"vertex\" 0: \"x\" is not a finite number"},
       {binary_header + std::string(96, '\0') + "\xff",
        "m.ply: error: the file is truncated: it ends within \"face\""}};
   for (const Case& c : cases) {
     CAPTURE(c.bytes);
     CHECK_THAT(ply_complaint(c.bytes), StartsWith(c.expected));
+  }
+}
+
+TEST_CASE("a message about a PLY file is short, however long its names are", "[mesh][read_ply]") {
+  const std::string name(3000, '\xff');
+  const std::string start = "element " + name + " 1\nproperty float x\n";
+  for (const std::string& rest : {start + "end_header\nx\n", start + "end_header\n", start + start,
+                                  "element " + name + " 1\nend_header\n",
+                                  start + "property float " + name + "\nend_header\n0 x\n",
+                                  "element vertex 1\nproperty " + name + " x\n", name + "\n"}) {
+    const std::string complaint = ply_complaint("ply\nformat ascii 1.0\n" + rest);
+    CAPTURE(complaint);
+    CHECK(complaint != "none");
+    CHECK(complaint.size() < 500);
   }
 }
 

@@ -375,7 +375,7 @@ class PlyReader {
   tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
                                   std::size_t property) const {
     if (numbers_.has_run_out()) return ends_within(element, index);
-    return invalid(fmt::format("{} {}: {} is not a finite number", element.name, index,
+    return invalid(fmt::format("{} {}: {} is not a finite number", in_quotes(element.name), index,
                                in_quotes(element.properties[property].name)),
                    line());
   }
