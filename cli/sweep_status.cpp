@@ -18,13 +18,13 @@ int run_sweep_status(const std::string& name) {
 int tell_status(const SweepFolder& folder, bool is_quiet) {
   const auto status = folder.status(&was_interrupted);
   if (!status) return report(status.error());
-  if (auto written = folder.write_table(*status, &was_interrupted); !written)
-    return report(written.error());
+  const auto written = folder.write_table(*status, &was_interrupted);
   if (!is_quiet)
     print(stdout, fmt::format("{}: {}, {} done, {} failed, {} missing\n",
                               printable(folder.folder()), counted(status->takes.size(), "take"),
                               status->done, status->failed, status->missing()));
   print_failures(folder, *status);
+  if (!written) return report(written.error());
   return status->is_complete() ? exit_done : exit_failed;
 }
 

@@ -343,6 +343,14 @@ class Sweeps(SweepCommand):
                 if other != file:
                     os.remove(other)
 
+    def test_status_counts_though_it_cannot_write_the_table(self):
+        self.make("s")
+        os.remove(self.path("s/takes.csv"))
+        os.mkdir(self.path("s/takes.csv"))
+        result = self.sweep("status", self.path("s"), code=2)
+        self.assertIn("8 takes, 8 done, 0 failed, 0 missing", result.stdout)
+        self.assertIn("takes.csv: error: ", result.stderr)
+
     def test_a_take_without_its_files_is_run_again(self):
         self.make("s", "--write", "obj")
         kept = self.read("s/takes/00002.0003.obj")
