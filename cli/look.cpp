@@ -15,11 +15,11 @@
 namespace pliant::cli {
 namespace {
 
-enum class Value { Number, Positive, Word, Names };
+enum class Kind { Number, Positive, Word, Names };
 
 struct LookWord {
   std::string_view name;
-  Value value = Value::Number;
+  Kind kind = Kind::Number;
   std::vector<std::string_view> allowed = {};
 };
 
@@ -30,34 +30,34 @@ const std::vector<LookWord>& look_words() {
       {"frame"},
       {"turn"},
       {"tilt"},
-      {"style", Value::Word, {"shaded", "lines", "wireframe"}},
-      {"colour", Value::Word, {"plain", "displacement", "velocity"}},
-      {"theme", Value::Word, {"light", "dark"}},
-      {"gizmos", Value::Word, on_or_off},
-      {"labels", Value::Word, on_or_off},
-      {"regions", Value::Word, on_or_off},
-      {"boxes", Value::Word, on_or_off},
-      {"floor", Value::Word, on_or_off},
-      {"legend", Value::Word, on_or_off},
-      {"hide", Value::Names},
-      {"solo", Value::Names},
-      {"peak", Value::Positive},
+      {"style", Kind::Word, {"shaded", "lines", "wireframe"}},
+      {"colour", Kind::Word, {"plain", "displacement", "velocity"}},
+      {"theme", Kind::Word, {"light", "dark"}},
+      {"gizmos", Kind::Word, on_or_off},
+      {"labels", Kind::Word, on_or_off},
+      {"regions", Kind::Word, on_or_off},
+      {"boxes", Kind::Word, on_or_off},
+      {"floor", Kind::Word, on_or_off},
+      {"legend", Kind::Word, on_or_off},
+      {"hide", Kind::Names},
+      {"solo", Kind::Names},
+      {"peak", Kind::Positive},
   };
   return words;
 }
 
 // What is wrong with a value; empty: nothing.
 std::string complaint_of(const LookWord& word, std::string_view value) {
-  switch (word.value) {
-    case Value::Number:
+  switch (word.kind) {
+    case Kind::Number:
       return to_number(value) ? "" : "must be a number";
-    case Value::Positive:
+    case Kind::Positive:
       return to_number(value).value_or(0) > 0 ? "" : "must be a number above 0";
-    case Value::Word:
+    case Kind::Word:
       if (std::find(word.allowed.begin(), word.allowed.end(), value) != word.allowed.end())
         return "";
       return "unknown value" + xml::hint(value, word.allowed);
-    case Value::Names:
+    case Kind::Names:
       break;
   }
   return "";

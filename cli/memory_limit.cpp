@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "pliant/core/text.hpp"
 
 namespace pliant::cli {
@@ -97,7 +99,8 @@ std::optional<std::size_t> memory_of_groups(const std::string& root) {
     const char* const name = groups->is_first_version ? "/memory.limit_in_bytes" : "/memory.max";
     // Each group around it limits it too.
     for (std::string path = path_within(*groups, *group);;) {
-      limit = least(limit, number_in_file(root + groups->place + path + name));
+      limit =
+          least(limit, number_in_file(fmt::format("{}{}{}{}", root, groups->place, path, name)));
       if (path.empty()) break;
       path.resize(path.find_last_of('/'));
     }
