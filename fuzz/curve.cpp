@@ -212,7 +212,9 @@ void check_values(const Curve<D>& curve, const std::vector<double>& frames) {
     for (const double frame : {frames[k - 1], frames[k]}) {
       const Value<D> value = curve.value(frame);
       for (int c = 0; c < D; ++c) {
-        const double slack = 1e-12 * std::max(std::fabs(range.low[c]), std::fabs(range.high[c]));
+        // Values beyond the keys may be infinite.
+        const double most = std::max(std::fabs(range.low[c]), std::fabs(range.high[c]));
+        const double slack = 1e-12 * std::min(most, std::numeric_limits<double>::max());
         require(range.low[c] <= range.high[c]);
         require(value[c] >= range.low[c] - slack && value[c] <= range.high[c] + slack);
       }
