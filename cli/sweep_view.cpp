@@ -54,8 +54,7 @@ Result<void> check_view_places(const SweepViewOptions& options) {
   }
   if (options.png) {
     if (auto place = check_output_file("--png", *options.png); !place) return place;
-    if (auto look = check_look(options.look); !look) return look;
-    return check_browser("--png");
+    return check_look(options.look);
   }
   return {};
 }
@@ -216,6 +215,7 @@ int run_sweep_view(const SweepViewOptions& options) {
     const auto sheet = sheet_picture(options, *folder, plan->takes.size());
     if (!sheet) return report(sheet.error());
     picture = *sheet;
+    if (auto browser = check_browser("--png"); !browser) return report(browser.error());
   }
 
   const SimulationOptions resources =

@@ -36,7 +36,8 @@ class SweepViews(Command):
         return self.run_pliant("sweep", "view", self.path(name), *options, code=code, **more)
 
     def refused(self, *options, name="s"):
-        result = self.view(*options, name=name, code=2)
+        # Bad input is told first, whatever programs are missing.
+        result = self.view(*options, name=name, code=2, env={"PATH": self.folder})
         self.assertEqual(result.stdout, "")
         self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
         return result.stderr
@@ -104,6 +105,12 @@ class SweepPages(SweepViews):
             self.assertIn("sweep.json", self.refused("-o", self.path("s.html"), name=name))
         self.assertFalse(os.path.exists(self.path("s.html")))
 
+    def test_a_picture_without_chromium_fails_ahead_of_the_run(self):
+        self.make("sheet.density=1,2")
+        result = self.view("-o", self.path("s.html"), "--png", self.path("s.png"), code=1, env={"PATH": self.folder})
+        self.assertRegex(result.stderr, r"\Apliant: error: --png needs Chromium.*\n\Z")
+        self.assertEqual(self.files(), ["s", "scene.xml"])
+
     def test_outputs_that_are_refused(self):
         self.make("sheet.density=1,2")
         kept = {name: self.read(name) for name in ("s/sweep.json", "s/takes.csv", "scene.xml")}
@@ -142,8 +149,11 @@ class SweepPages(SweepViews):
         self.assertIn("0 of 2 takes", result.stdout)
         _, head, _ = read_page(self.path("s.html"))
         self.assertEqual([failure["take"] for failure in head["failures"]], [0, 1])
+        os.mkdir(self.path("bin"))
+        self.write("bin/chromium", "#!/bin/sh\n")  # never started
+        os.chmod(self.path("bin/chromium"), 0o755)
         self.assertIn("s.png: not written, since no take has a picture",
-                      self.view("--png", self.path("s.png"), code=1).stderr)
+                      self.view("--png", self.path("s.png"), code=1, env={"PATH": self.path("bin")}).stderr)
         self.assertFalse(os.path.exists(self.path("s.png")))
         self.assertEqual(head["done"], 2)
         self.assertIn("it is a mesh of the scene", self.refused("-o", self.path("flat.obj")))
