@@ -48,13 +48,6 @@ Result<void> tell_losses(const std::vector<CurveLoss>& losses, const std::string
   return fail(as_one(std::move(errors), file));
 }
 
-Result<void> write_whole(const std::string& file, std::string_view bytes) {
-  auto output = AtomicFile::create(file);
-  if (!output) return fail(output.error());
-  if (auto written = output->write(bytes); !written) return written;
-  return output->commit();
-}
-
 std::string unit_name(CurveUnit unit) {
   if (unit == CurveUnit::Length) return ", a length";
   return unit == CurveUnit::Degrees ? ", in degrees" : "";
@@ -211,7 +204,7 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
       with_curves(*text, options.out, std::filesystem::path(options.out).parent_path().string(),
                   root->string(), *placed);
   if (!changed) return fail(changed.error());
-  if (auto written = write_whole(options.out, *changed); !written) return written;
+  if (auto written = write_file(options.out, *changed); !written) return written;
   if (!options.is_quiet) {
     std::vector<std::string> names;
     for (const PlacedCurve& curve : placed->curves) names.push_back(curve.channel);
@@ -247,7 +240,7 @@ Result<void> export_curves(const CurveExchangeOptions& options) {
   const auto text = write_curves(*curves, *format, writing);
   if (!text) return fail(text.error());
   if (auto told = tell_losses(text->losses, options.out, options.is_strict); !told) return told;
-  if (auto written = write_whole(options.out, text->bytes); !written) return written;
+  if (auto written = write_file(options.out, text->bytes); !written) return written;
   if (!options.is_quiet) {
     print(stdout, fmt::format("{}: {}\n", printable(options.out),
                               counted(static_cast<std::int64_t>(curves->size()), "channel")));

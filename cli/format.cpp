@@ -8,6 +8,7 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
+#include "pliant/document/document.hpp"
 #include "pliant/document/format_scene.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/scene/read.hpp"
@@ -16,15 +17,7 @@
 namespace pliant::cli {
 namespace {
 
-Result<void> write_file(const std::string& file, const std::string& text) {
-  auto output = AtomicFile::create(file);
-  if (!output) return fail(output.error());
-  if (auto written = output->write(text); !written) return written;
-  return output->commit();
-}
-
 Result<void> check_out(const FormatOptions& options, const Scene& scene) {
-  if (options.out.empty()) return {};
   const std::string input = input_named(options.out, scene);
   if (input.empty()) return {};
   const bool is_scene = name_one_file(options.out, options.scene);
@@ -60,8 +53,10 @@ int run_format(const FormatOptions& options) {
   if (!source) return report(source.error());
   const auto scene = parse_source(*source, options.root);
   if (!scene) return report(scene.error());
-  if (!options.is_in_place) {
+  if (!options.is_in_place && !target.empty()) {
     if (auto free = check_out(options, *scene); !free) return report(free.error());
+    auto place = check_scene_place(source->text, source->name, source->folder, target);
+    if (!place) return report(place.error());
   }
   const auto text = format_scene(source->text, source->name);
   if (!text) return report(text.error());

@@ -310,10 +310,7 @@ class Submission {
   // A file in the folder `slurm` of the sweep.
   Result<void> write(const std::string& name, std::string_view text) const {
     if (auto made = folder_.make_inner_folder("slurm"); !made) return made;
-    auto file = AtomicFile::create(fs::path(name_) / "slurm" / name);
-    if (!file) return fail(file.error());
-    if (auto written = file->write(text); !written) return written;
-    return file->commit();
+    return write_file(fs::path(name_) / "slurm" / name, text);
   }
 
   Result<void> send(const std::vector<std::string>& words) {

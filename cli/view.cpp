@@ -33,10 +33,7 @@ Result<void> write_page(const std::filesystem::path& file, const std::string& pa
                             "choose fewer frames with --frames A:B",
                             bytes_text(page.size()), bytes_text(longest_page)));
   }
-  auto output = AtomicFile::create(file);
-  if (!output) return fail(output.error());
-  if (auto written = output->write(page); !written) return written;
-  return output->commit();
+  return write_file(file, page);
 }
 
 std::string page_file(const ViewOptions& options) { return options.out.value_or("view.html"); }

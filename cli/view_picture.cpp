@@ -143,10 +143,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   taker->order(*frames, *size, options.look);
   const auto picture = taker->take();
   if (!picture) return fail(picture.error());
-  auto file = AtomicFile::create(*options.png);
-  if (!file) return fail(file.error());
-  if (auto written = file->write(*picture); !written) return written;
-  return file->commit();
+  return write_file(*options.png, *picture);
 }
 
 }  // namespace

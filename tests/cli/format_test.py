@@ -32,6 +32,22 @@ class Format(Command):
         self.assertEqual(self.read("a.xml"), FORMATTED.encode())
         self.assertEqual(self.files(), ["a.xml", "b.xml"])
 
+    def test_a_replaced_file_keeps_its_permissions(self):
+        scene = self.write("a.xml", TEXT)
+        os.chmod(scene, 0o600)
+        self.run_pliant("format", scene, "--in-place")
+        self.assertEqual(os.stat(scene).st_mode & 0o777, 0o600)
+
+    def test_a_scene_that_names_files_stays_in_its_folder(self):
+        self.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n")
+        scene = self.write("a.xml", TEXT.replace("<grid rows=\"5\" columns='5'/>", '<mesh file="a.obj"/>'))
+        os.mkdir(self.path("b"))
+        result = self.run_pliant("format", scene, "-o", "b/a.xml", code=2)
+        self.assertIn("relative to its own folder", result.stderr)
+        self.assertEqual(os.listdir(self.path("b")), [])
+        self.run_pliant("format", scene, "-o", "b.xml")
+        self.run_pliant("validate", "b.xml")
+
     def test_a_scene_in_this_layout_is_not_touched(self):
         scene = self.write("a.xml", FORMATTED)
         os.utime(scene, (1000, 1000))

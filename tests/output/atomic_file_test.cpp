@@ -78,6 +78,18 @@ TEST_CASE("a new file has the permissions of any other", "[output][atomic_file]"
   CHECK(ours.st_mode == plain.st_mode);
 }
 
+TEST_CASE("a file keeps the permissions of the one that it replaces", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  const std::string name = folder.write("a.txt", "old").string();
+  for (const mode_t mode : {0600U, 0664U, 0755U}) {
+    REQUIRE(chmod(name.c_str(), mode) == 0);
+    REQUIRE(write_file(name, "new"));
+    struct stat now = {};
+    stat(name.c_str(), &now);
+    CHECK((now.st_mode & 0777U) == mode);
+  }
+}
+
 TEST_CASE("what cannot be written is an error that names the file", "[output][atomic_file]") {
   const ScratchFolder folder;
   const auto missing = AtomicFile::create(folder.file("no/such/a.txt"));

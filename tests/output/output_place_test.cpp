@@ -59,6 +59,19 @@ TEST_CASE("what is no regular file is not replaced", "[output][output_place]") {
   CHECK(folder.entry_count() == 5);
 }
 
+TEST_CASE("a file that may not be written is not replaced", "[output][output_place]") {
+  const ScratchFolder folder;
+  const auto file = folder.write("published", "as it was");
+  REQUIRE(chmod(file.c_str(), 0444) == 0);
+  REQUIRE(chmod(folder.path().c_str(), 0777) == 0);
+  // Root may write any file.
+  const uid_t user = geteuid();
+  if (user == 0) REQUIRE(seteuid(65534) == 0);
+  check_refused(file, "it may not be written");
+  if (user == 0) REQUIRE(seteuid(user) == 0);
+  CHECK(read_file(file).value() == "as it was");
+}
+
 TEST_CASE("names go as far as the folder allows", "[output][output_place]") {
   const ScratchFolder folder;
   for (const char* letter : {"n", "\xc3\xbc", "\xf0\x9f\x8c\x8a"}) {

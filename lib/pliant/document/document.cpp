@@ -18,14 +18,6 @@
 namespace pliant {
 namespace {
 
-Result<void> write(std::string_view text, const std::string& file) {
-  auto output = AtomicFile::create(file);
-  if (!output) return fail(output.error());
-  if (auto kept = output->keep_permissions(); !kept) return kept;
-  if (auto written = output->write(text); !written) return written;
-  return output->commit();
-}
-
 std::string folder_of_file(const std::string& file) {
   return std::filesystem::path(file).parent_path().string();
 }
@@ -146,37 +138,19 @@ const std::string& SceneDocument::redo_name() const {
 }
 
 Result<void> SceneDocument::save() {
-  if (auto written = write(text_, file_); !written) return written;
+  if (auto written = write_file(file_, text_); !written) return written;
   saved_ = text_;
   return {};
 }
 
 Result<void> SceneDocument::save_as(const std::string& file) {
-  namespace fs = std::filesystem;
-  const std::string folder = folder_of_file(file);
-  std::error_code unknown;
-  const auto or_here = [](const std::string& name) { return fs::path(name.empty() ? "." : name); };
-  const bool is_same = fs::equivalent(or_here(folder), or_here(folder_), unknown) && !unknown;
-  if (!is_same && names_files())
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("the scene names files relative to its own folder {}; save it there",
-                            or_here(folder_).string()),
-                file);
-  if (auto written = write(text_, file); !written) return written;
+  if (auto place = check_scene_place(text_, file_, folder_, file); !place) return place;
+  if (auto written = write_file(file, text_); !written) return written;
   file_ = file;
-  folder_ = folder;
+  folder_ = folder_of_file(file);
   scene_.origin.file = file;
   saved_ = text_;
   return {};
-}
-
-/// Whether the scene names a file by a relative path.
-bool SceneDocument::names_files() const {
-  const auto draft = edit::Draft::make(text_, file_);
-  PLIANT_EXPECTS(draft);
-  return draft->any_attribute([](std::string_view name, const std::string& value) {
-    return (name == "file" || name == "cache") && std::filesystem::path(value).is_relative();
-  });
 }
 
 Result<bool> SceneDocument::has_file_changed() const {
@@ -185,10 +159,30 @@ Result<bool> SceneDocument::has_file_changed() const {
   return *bytes != saved_;
 }
 
+Result<void> check_scene_place(const std::string& text, const std::string& name,
+                               const std::string& folder, const std::string& file) {
+  namespace fs = std::filesystem;
+  const auto or_here = [](const std::string& name) { return fs::path(name.empty() ? "." : name); };
+  std::error_code unknown;
+  if (fs::equivalent(or_here(folder_of_file(file)), or_here(folder), unknown) && !unknown)
+    return {};
+  const auto draft = edit::Draft::make(text, name);
+  if (!draft) return fail(draft.error());
+  const bool names_files = draft->any_attribute([](std::string_view attribute,
+                                                   const std::string& value) {
+    return (attribute == "file" || attribute == "cache") && fs::path(value).is_relative();
+  });
+  if (!names_files) return {};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("the scene names files relative to its own folder {}; save it there",
+                          or_here(folder).string()),
+              file);
+}
+
 Result<void> save_scene(const Scene& scene, const std::string& file) {
   const auto text = to_xml(scene, folder_of_file(file));
   if (!text) return fail(text.error());
-  return write(*text, file);
+  return write_file(file, *text);
 }
 
 }  // namespace pliant

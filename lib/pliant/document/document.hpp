@@ -80,7 +80,6 @@ class SceneDocument {
   Result<Scene> checked(const std::string& text) const;
   Result<Change> take(std::string text, const Step& step,
                       const std::vector<edit::EditBatch>& batches);
-  bool names_files() const;
 
   std::string file_;
   std::string folder_;
@@ -91,6 +90,12 @@ class SceneDocument {
   std::vector<Step> steps_;
   std::size_t done_ = 0;  // steps that are not undone
 };
+
+/// Whether the text of a scene, whose files are relative to `folder`, means the same as the text of
+/// `file`. `name`: its own file in messages. Errors: InvalidInput for another folder, if it names
+/// files by relative paths; those of `scan_markup`.
+Result<void> check_scene_place(const std::string& text, const std::string& name,
+                               const std::string& folder, const std::string& file);
 
 /// Writes a scene made in code to a file, which appears whole or not at all; files that it names
 /// are written relative to the file's folder. Errors: those of `to_xml`; Unwritable.

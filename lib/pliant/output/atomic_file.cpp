@@ -65,6 +65,11 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file, Flush f
     folder.remove(part);
     return cannot_write(file, error_number);
   }
+  struct stat old = {};
+  if (lstat(file.c_str(), &old) == 0) {
+    // A file system without permissions may refuse this, and needs none.
+    (void)fchmod(descriptor, old.st_mode & 0777U);
+  }
   return AtomicFile(file, part, std::move(stream), flush);
 }
 
@@ -79,14 +84,6 @@ Result<void> AtomicFile::write(std::string_view bytes) {
 Result<void> AtomicFile::write(std::span<const double> numbers) { return write(bytes_of(numbers)); }
 
 Result<void> AtomicFile::write(std::span<const float> numbers) { return write(bytes_of(numbers)); }
-
-Result<void> AtomicFile::keep_permissions() {
-  PLIANT_EXPECTS(stream_);
-  struct stat old = {};
-  if (::stat(file_.c_str(), &old) != 0) return {};
-  if (fchmod(fileno(stream_.get()), old.st_mode & 07777U) != 0) return unwritable(errno);
-  return {};
-}
 
 Result<void> AtomicFile::commit() { return commit_as(file_); }
 
@@ -135,6 +132,13 @@ Result<void> AtomicFile::finish_bytes() {
 
 tl::unexpected<Error> AtomicFile::unwritable(int error_number) const {
   return cannot_write(file_, error_number);
+}
+
+Result<void> write_file(const std::filesystem::path& file, std::string_view bytes) {
+  auto output = AtomicFile::create(file);
+  if (!output) return fail(output.error());
+  if (auto written = output->write(bytes); !written) return written;
+  return output->commit();
 }
 
 Result<void> flush_folder(const std::filesystem::path& file) {

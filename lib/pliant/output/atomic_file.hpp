@@ -19,7 +19,8 @@ enum class Flush {
 };
 
 /// A file that appears whole under its name or not at all: written beside it under another name,
-/// then renamed by `commit`. Without a commit nothing is left behind and an older file stays.
+/// then renamed by `commit`. Without a commit nothing is left behind and an older file stays. It has
+/// the permissions of the file that it replaces.
 class AtomicFile {
  public:
   /// Errors: those of `check_output_place`; Unwritable, naming the file and the reason.
@@ -33,10 +34,6 @@ class AtomicFile {
   Result<void> write(std::string_view bytes);
   Result<void> write(std::span<const double> numbers);  ///< little-endian
   Result<void> write(std::span<const float> numbers);   ///< little-endian
-
-  /// Gives it the permissions of the file that it will replace, if there is one. Errors:
-  /// Unwritable.
-  Result<void> keep_permissions();
 
   /// Gives the file its name. Errors: Unwritable. Requires: not committed before.
   Result<void> commit();
@@ -65,6 +62,9 @@ class AtomicFile {
   Stream stream_;
   Flush flush_;
 };
+
+/// Writes a whole file at once. Errors: those of `AtomicFile`.
+Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// Flushes the names in the folder of `file` to the disk; does nothing on file systems without that
 /// operation. Errors: Unwritable, naming the file.

@@ -1,7 +1,9 @@
 #include "pliant/output/output_place.hpp"
 
+#include <cerrno>
 #include <climits>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,6 +19,9 @@ std::string_view obstacle(const std::filesystem::path& file) {
   if (lstat(file.c_str(), &status) != 0) return {};  // no such file, or creating it fails too
   switch (status.st_mode & S_IFMT) {
     case S_IFREG:
+      // The folder may allow to replace it all the same.
+      if (faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) != 0 && errno == EACCES)
+        return "it may not be written; change its permissions, or choose another name";
       return {};
     case S_IFDIR:
       return "it is a folder";

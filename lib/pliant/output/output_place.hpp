@@ -10,8 +10,8 @@ namespace pliant {
 /// Whether a file may be written under this name: it must be unused or the name of a regular file,
 /// which will be replaced. A link, a pipe or a device would be replaced too, instead of being
 /// written to, which no user intends. Errors, naming the file: InvalidInput for an empty name, a
-/// folder, a link (also a broken one), a pipe, a socket, a device, and for a name that is longer
-/// than the folder allows. Reads the disk, but writes nothing.
+/// folder, a link (also a broken one), a pipe, a socket, a device, a file that may not be written,
+/// and for a name that is longer than the folder allows. Reads the disk, but writes nothing.
 Result<void> check_output_place(const std::filesystem::path& file);
 
 // Internal to output.

@@ -10,10 +10,7 @@ namespace pliant {
 Result<void> write_state(const std::string& file, Simulation& simulation, int frame) {
   const auto bytes = simulation.state_bytes(frame);
   if (!bytes) return fail(bytes.error());
-  auto out = AtomicFile::create(file);
-  if (!out) return fail(out.error());
-  if (auto written = out->write(*bytes); !written) return written;
-  return out->commit();
+  return write_file(file, *bytes);
 }
 
 Result<int> read_state(const std::string& file, Simulation& simulation) {
