@@ -238,6 +238,52 @@ TEST_CASE("a plate that yields moves as the dense fixed point", "[plate][plastic
   }
 }
 
+// On a single line of nodes, forces of what is held may cancel while it makes its rim flow.
+TEST_CASE("a narrow plate flows by what is held alone", "[plate][plastic]") {
+  struct Narrow {
+    int columns, rows;
+    bool is_bent_by_its_rim;
+  };
+  for (const Narrow& one : {Narrow{3, 9, false}, Narrow{9, 3, false}, Narrow{3, 3, false},
+                            Narrow{3, 9, true}, Narrow{9, 3, true}}) {
+    for (const bool is_pushed : {false, true}) {
+      CAPTURE(one.columns, one.rows, one.is_bent_by_its_rim, is_pushed);
+      const Grid grid = unit_grid(one.columns, one.rows);
+      PlateProblem problem{{grid}, {1, 1, 2}, {0.02, 0.05}, {}, Field::Zero(grid.node_count(), 3)};
+      problem.law = PlasticLaw{0.5, 0.2};
+      PlateState state = at_rest(problem);
+      const bool is_along_u = one.columns == 3;
+      if (one.is_bent_by_its_rim) {
+        for (int j = 0; j < grid.rows; ++j) {
+          for (int i = 0; i < grid.columns; ++i) {
+            const int across = is_along_u ? i : j;
+            state.displacement.row(grid.node(i, j)) = (across - 1) * Eigen::RowVector3d(0.2, 0.1, 0);
+          }
+        }
+      } else if (is_along_u) {
+        problem.tangents.su0 = problem.tangents.su1 = {2, 0, -1};
+      } else {
+        problem.tangents.sv0 = problem.tangents.sv1 = {2, 0, -1};
+      }
+      if (is_pushed) problem.load.col(1).array() += 200;
+      const DensePlate dense(problem);
+      const auto solver = make_plate_solver();
+      PlateState expected = state;
+      for (int frame = 0; frame < 3; ++frame) {
+        auto next = solver->advance(problem, {2, 0.02}, state);
+        REQUIRE(next.has_value());
+        state = *std::move(next);
+        for (int step = 0; step < 2; ++step) dense.step(expected, 0.02);
+        CHECK(expected.plastic.cwiseAbs().maxCoeff() > 0.01);
+        CHECK((state.displacement - expected.displacement).cwiseAbs().maxCoeff() <
+              1e-8 * expected.displacement.cwiseAbs().maxCoeff() + 1e-12);
+        CHECK((state.plastic - expected.plastic).cwiseAbs().maxCoeff() <
+              1e-6 * expected.plastic.cwiseAbs().maxCoeff());
+      }
+    }
+  }
+}
+
 TEST_CASE("a plate that yields nowhere has the elastic bits", "[plate][plastic]") {
   for (const Case& one : cases()) {
     for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {

@@ -14,21 +14,6 @@ namespace {
 
 bool is_elastic(const PlasticField& plastic) { return plastic.isZero(0); }
 
-// The components that are not 0, and stay so.
-std::vector<int> components_at_work(const PlateProblem& problem, const PlateState& state) {
-  const EdgeTangents& t = problem.tangents;
-  std::vector<int> components;
-  for (int k = 0; k < 3; ++k) {
-    const bool is_still = problem.load.col(k).isZero(0) && state.displacement.col(k).isZero(0) &&
-                          state.velocity.col(k).isZero(0) && state.plastic.col(k).isZero(0) &&
-                          state.plastic.col(3 + k).isZero(0) &&
-                          state.plastic.col(6 + k).isZero(0) && t.su0[k] == 0 && t.su1[k] == 0 &&
-                          t.sv0[k] == 0 && t.sv1[k] == 0;
-    if (!is_still) components.push_back(k);
-  }
-  return components;
-}
-
 // The way of a plate from step to step, on all nodes.
 struct Progress {
   Field displacement, velocity;
@@ -149,7 +134,7 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   PlasticField plastic = state.plastic;
   FlowingGrid flowing(solver, plate, outline, state.displacement);
   const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
-                                      problem.law->hardening, steps, motion, plastic);
+                                      problem.law->hardening, steps, plate.components(), plastic);
   if (is_expected) all->expect(motion.displacement + dt * motion.velocity, plastic);
   auto flowed = all->step(motion, plastic);
   if (!flowed || (is_expected && !*flowed)) return flowed;
@@ -167,7 +152,10 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
                                    const TimeSteps& steps, PlateState state) {
   PLIANT_EXPECTS(problem.law && state.plastic.rows() == problem.load.rows());
   clear_rim(problem.outline, state.velocity);
-  const PlasticPlate plate(problem, components_at_work(problem, state));
+  const EdgeTangents& t = problem.tangents;
+  const PlasticPlate plate(problem, components_at_work({t.su0, t.su1, t.sv0, t.sv1}, problem.load,
+                                                       state.displacement, state.velocity,
+                                                       state.plastic));
   // A plate that goes on as it moves and yields then is not tried elastically.
   const Field next = state.displacement + steps.solved_length() * state.velocity;
   if (plate.yields(next, state.plastic)) {

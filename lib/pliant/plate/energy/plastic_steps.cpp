@@ -253,27 +253,29 @@ class SettlingSteps final : public PlasticSteps {
   Field on_places_, solution_;  // 0 but while it is solved for; its solution
 };
 
-// The components that are not 0 and stay so.
-std::vector<int> moving_components(const StepTerms& terms, const Motion& motion,
-                                   const PlasticField& plastic) {
+}  // namespace
+
+std::vector<int> components_at_work(const std::array<Vector3d, 4>& slopes, const Field& load,
+                                    const Field& displacement, const Field& velocity,
+                                    const PlasticField& plastic) {
   std::vector<int> components;
   for (int k = 0; k < 3; ++k) {
-    const bool is_still = terms.known.col(k).isZero(0) && motion.displacement.col(k).isZero(0) &&
-                          motion.velocity.col(k).isZero(0) && plastic.col(k).isZero(0) &&
-                          plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0);
+    const bool is_still =
+        load.col(k).isZero(0) && displacement.col(k).isZero(0) && velocity.col(k).isZero(0) &&
+        plastic.col(k).isZero(0) && plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0) &&
+        std::ranges::all_of(slopes, [&](const Vector3d& slope) { return slope[k] == 0; });
     if (!is_still) components.push_back(k);
   }
   return components;
 }
 
-}  // namespace
-
 std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunContext& context,
                                                  StepTerms terms, double hardening,
-                                                 const TimeSteps& steps, const Motion& motion,
+                                                 const TimeSteps& steps,
+                                                 std::vector<int> components,
                                                  const PlasticField& plastic) {
   return std::make_unique<SettlingSteps>(plate, context, std::move(terms), hardening, steps,
-                                         moving_components(terms, motion, plastic), plastic);
+                                         std::move(components), plastic);
 }
 
 Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,

@@ -66,11 +66,19 @@ class PlasticSteps {
   virtual Result<bool> step(Motion& motion, PlasticField& plastic) = 0;
 };
 
-/// `terms.known` is without the plastic curvatures; `motion` and `plastic` are those before the
-/// first step. Refers to `plate` and `context`.
+/// The components of a plate that do not stay 0: all but those in which all of these are 0, on what
+/// is held too. Where the forces of what is held cancel on the unknowns, its curvatures do not, and
+/// flow belongs to all components of a place together.
+std::vector<int> components_at_work(const std::array<Vector3d, 4>& slopes, const Field& load,
+                                    const Field& displacement, const Field& velocity,
+                                    const PlasticField& plastic);
+
+/// `terms.known` is without the plastic curvatures; `plastic` are those before the first step.
+/// Refers to `plate` and `context`.
 std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunContext& context,
                                                  StepTerms terms, double hardening,
-                                                 const TimeSteps& steps, const Motion& motion,
+                                                 const TimeSteps& steps,
+                                                 std::vector<int> components,
                                                  const PlasticField& plastic);
 
 /// Runs so many steps. Errors: those of a step.

@@ -373,6 +373,8 @@ Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& prob
   PLIANT_EXPECTS(state.plastic.rows() == static_cast<Eigen::Index>(triangles_.size()));
   InnerUnknowns& inner = plasticity_->inner;
   PlasticTriangles& triangles = plasticity_->triangles;
+  std::vector<int> components = components_at_work(problem.slopes, problem.load, state.displacement,
+                                                   state.velocity, state.plastic);
   triangles.set_law(*problem.law, factors_.get());
   triangles.hold(cells_, problem.slopes, state.displacement);
   Field known = held_forces(problem.bending, problem.slopes, state.displacement);
@@ -402,7 +404,8 @@ Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& prob
     motion = *std::move(before);
     FlowingTriangles flowing(*this);
     const auto all = make_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
-                                        problem.law->hardening, steps, motion, state.plastic);
+                                        problem.law->hardening, steps, std::move(components),
+                                        state.plastic);
     auto ran = run_plastic_steps(*all, steps.count - done, motion, state.plastic);
     if (!ran) return fail(ran.error());
   }
