@@ -344,7 +344,7 @@ class Triangles(unittest.TestCase):
             even = {name: np.full(len(mesh.triangles), ISOTROPIC[name]) for name in "bcd"}
             nowhere = np.zeros_like(mesh.rest)
             steps = triangle_plate.Steps(nowhere, region, load, {
-                **ISOTROPIC, **even, "poisson": 0.3, "has map": False, "dampingRatio": None}, FLAT)
+                **ISOTROPIC, **even, "poisson": 0.3, "dampingRatio": None}, FLAT)
             w, _, _ = steps(nowhere, nowhere, None, 1, 0.01)
             middle = nodes[nodes.index((count // 2) * (count + 2))]
             near = mesh.rest[middle, [0, 2]] - 0.5

@@ -22,10 +22,7 @@ def given_slope(normal, tangents, unit):
 
 def form_of(b, c, d, mesh, unit, material):
     """The quadratic form of H in one triangle."""
-    if mesh.border == "free" or material["has map"]:
-        poisson = material["poisson"]
-    else:
-        poisson = min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
+    poisson = material["poisson"] if mesh.border == "free" else min(0.0, c / (4 * math.sqrt(b * d)) - 0.5)
     b, c, d = b * unit[0]**4, c * unit[0]**2 * unit[1]**2, d * unit[1]**4
     both = poisson * math.sqrt(b * d)
     return np.array([[b, both, 0], [both, d, 0], [0, 0, c - 2 * both]])
@@ -41,7 +38,6 @@ def triangle_material(surface, frame):
         if name not in surface.maps:
             material[name][:] = surface.sample(name, frame)
     material["poisson"] = surface.sample("poisson", frame)
-    material["has map"] = surface.has_stiffness_map
     if surface.yields:
         check_yield(surface.material(frame), surface.sample("timeScale", frame))
     if surface.has_stiffness_map:

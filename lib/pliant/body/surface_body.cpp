@@ -39,10 +39,9 @@ SolverChoice factor_of(SolverChoice choice) {
 
 }  // namespace
 
-Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border,
-                   const NodeFactors* factors) {
-  const bool acts = border == Border::Free || (factors && factors->have_stiffness());
-  return bending_of(inputs.stiffness, unit, acts ? std::optional(inputs.poisson) : std::nullopt);
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border) {
+  const bool is_free = border == Border::Free;
+  return bending_of(inputs.stiffness, unit, is_free ? std::optional(inputs.poisson) : std::nullopt);
 }
 
 std::vector<double> means_on_triangles(const TriangleSurface& surface,
@@ -308,7 +307,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     const SurfacePiece& piece = selection.pieces[k];
     if (!piece.moves()) continue;
     PieceSolve& one = solves_[place++];
-    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border, factors_.get());
+    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
     const auto dynamics = dynamics_of(inputs, piece, one);
     if (!dynamics) return fail(dynamics.error());
     if (!piece.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {

@@ -15,8 +15,7 @@ namespace pliant {
 
 /// The bending form of a surface's plates, without the factors; `unit` is that of its
 /// `TriangleSurface`.
-Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border,
-                   const NodeFactors* factors = nullptr);
+Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border);
 
 /// Factors at the nodes of a surface as means over the corners of each of its triangles
 /// (#triangles); a centre has the mean of its face's corners. None stay none.

@@ -237,7 +237,7 @@ Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, con
     TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), context_,
                         factors_of(*shape_.surface, plan.surface->level_set, piece, factors));
     const Border border = body_settings(surface_, false).border;
-    return smallest_eigenvalue(plate, bending_of(inputs, shape_.surface->unit, border, factors),
+    return smallest_eigenvalue(plate, bending_of(inputs, shape_.surface->unit, border),
                                piece.is_held());
   };
   const auto lambda = smallest();
@@ -309,7 +309,7 @@ Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
                           factors_of(*shape_.surface, selection.level_set, piece, factors));
   const Border border = body_settings(surface_, false).border;
-  const Bending bending = bending_of(inputs, shape_.surface->unit, border, factors);
+  const Bending bending = bending_of(inputs, shape_.surface->unit, border);
   const auto plate = vibrating(triangles, bending);
   if (!plate) return fail(plate.error());
   const double drag = factors ? drag_of(maps_of(*factors, nodes), ways) : 1;

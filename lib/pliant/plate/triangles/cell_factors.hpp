@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "pliant/plate/plate_problem.hpp"
@@ -22,10 +21,7 @@ struct CellFactors {
 
   /// The form of a cell for that of the whole plate.
   Bending of_cell(const Bending& bending, int cell) const {
-    const double of_b = factor_at(b, cell), of_d = factor_at(d, cell);
-    const double coupling = bending.coupling * std::sqrt(of_b * of_d);
-    const double mixed = (bending.uv + 2 * bending.coupling) * factor_at(c, cell);
-    return {bending.uu * of_b, bending.vv * of_d, coupling, mixed - 2 * coupling};
+    return scaled(bending, factor_at(b, cell), factor_at(c, cell), factor_at(d, cell));
   }
 
   friend bool operator==(const CellFactors&, const CellFactors&) = default;

@@ -4,14 +4,33 @@
 
 namespace pliant {
 
+namespace {
+
+// For a mixed stiffness and the root of the two others: positive for all that are elliptic.
+double ratio_of_held(double mixed, double root) { return std::min(0.0, mixed / (4 * root) - 0.5); }
+
+}  // namespace
+
 Bending bending_of(const Stiffness& stiffness, const std::array<double, 2>& unit,
                    std::optional<double> poisson) {
   const auto& [b, c, d] = stiffness;
   const double root = std::sqrt(b * d);
-  const double ratio = poisson.value_or(std::min(0.0, c / (4 * root) - 0.5));
+  const double ratio = poisson ? *poisson : ratio_of_held(c, root);
   const double u2 = unit[0] * unit[0], v2 = unit[1] * unit[1];
   const double coupling = ratio * root * u2 * v2;
-  return {b * u2 * u2, d * v2 * v2, coupling, c * u2 * v2 - 2 * coupling};
+  return {b * u2 * u2, d * v2 * v2, coupling, c * u2 * v2 - 2 * coupling, poisson.has_value()};
+}
+
+Bending scaled(const Bending& bending, double b, double c, double d) {
+  Bending form = bending;
+  form.uu *= b;
+  form.vv *= d;
+  const double mixed = (bending.uv + 2 * bending.coupling) * c;
+  const double root = std::sqrt(form.uu * form.vv);
+  form.coupling =
+      bending.is_free ? bending.coupling * std::sqrt(b * d) : ratio_of_held(mixed, root) * root;
+  form.uv = mixed - 2 * form.coupling;
+  return form;
 }
 
 MorleyCell::MorleyCell(const FlatTriangle& shape) {

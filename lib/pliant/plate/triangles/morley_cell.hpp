@@ -20,6 +20,7 @@ struct Bending {
   double vv = 1;
   double coupling = 0;
   double uv = 2;
+  bool is_free = false;  ///< has a free edge: the coupling is by Poisson's ratio
 
   friend bool operator==(const Bending&, const Bending&) = default;
 };
@@ -29,6 +30,10 @@ struct Bending {
 /// positive for every elliptic stiffness.
 Bending bending_of(const Stiffness& stiffness, const std::array<double, 2>& unit,
                    std::optional<double> poisson = {});
+
+/// The form where b, c and d are that many times those of `bending`, with the same ratio or, without
+/// a free edge, the one of these.
+Bending scaled(const Bending& bending, double b, double c, double d);
 
 /// H_uu, H_vv and H_uv of a cell. [1/length]
 using Curvature = std::array<double, 3>;
