@@ -203,6 +203,29 @@ TEST_CASE("what flies away has no cycle, and the error tells the gap", "[simulat
   CHECK(frames[0] == frames[8]);
 }
 
+// Where the acceleration excites stiff vibrations, which only going round damps.
+TEST_CASE("what going round finds is found", "[simulation][loop]") {
+  const Edge pinned = Edge::Pinned, free_edge = Edge::Free;
+  const Edges edges = GENERATE_COPY(Edges{}, Edges{Edge::Clamped, pinned, free_edge, free_edge});
+  if (is_sanitized && edges.are_clamped()) return;
+  Scene s = scene({sheet("s", 8)}, {poke("p", {0, 0, 0}, 1)}, 14);
+  s.surfaces[0].shape = GridSheet{.columns = 8, .rows = 9, .width = 1, .depth = 1};
+  s.forces[0].kind = UniformChannels{};
+  CurveKeys<1> keys;
+  keys.keys = {{.frame = 1, .value = {0}},
+               {.frame = 4, .value = {300}},
+               {.frame = 8, .value = {-200}},
+               {.frame = 11, .value = {0}}};
+  for (Key<1>& key : keys.keys) key.next.kind = Interpolation::Kind::Linear;
+  keys.after = {Extrapolation<1>::Kind::Repeat};
+  s.forces[0].magnitude = Curve<1>::make(keys).value();
+  s.surfaces[0].material.density = 0.02;
+  s.surfaces[0].material.damping = 0.3;
+  s.surfaces[0].solver = {
+      .loop = 10, .integrator = Integrator::Newmark, .region = SolvedRegion::All, .edges = edges};
+  CHECK(gap_of(s) <= 1e-6);
+}
+
 TEST_CASE("a plate whose many vibrations are not damped does not close", "[simulation][loop]") {
   if (is_sanitized) return;  // a thousand rounds
   Scene s = to_and_fro(Integrator::Newmark);

@@ -22,10 +22,12 @@ constexpr double wanted_gap = 1e-10;  // at little cost
 constexpr double largest_part = 1e-2;
 constexpr int most_rounds_for_more = 20;
 
-// The acceleration starts anew if the gap grows by this factor, and rests for a while if it has not
-// halved the gap for a while.
+// The acceleration starts anew if the gap grows by this factor, and rests if it has not halved the
+// gap for a while. What it did to stiff modes may take plain rounds long to forget, so these begin
+// where the gap was shortest, and each rest is twice as long as the one before.
 constexpr double growth = 10;
 constexpr int patience = 40;
+constexpr int first_rest = 80;
 
 // Fewer on a large surface; 96 bytes for a node each.
 std::size_t depth_of(const BodyState& state) {
@@ -78,6 +80,7 @@ class Search {
       if (is_better) {
         if (gap_.length < best_gap_.length / 2) last_gain_ = round;
         best_gap_ = gap_;
+        best_image_ = image_;
         if (is_closed(gap_)) best_ = state_;
       }
       if (is_closed(best_gap_)) {
@@ -130,10 +133,15 @@ class Search {
     const bool has_grown = !(gap_.length <= growth * before_);
     before_ = gap_.length;
     if (has_grown) mixing_.clear();
-    if (round >= last_gain_ + patience) {
+    if (round >= std::max(last_gain_ + patience, rest_end_)) {
       mixing_.clear();
       last_gain_ = round;
       is_plain_ = !is_plain_;
+      if (is_plain_) {
+        image_ = best_image_;
+        rest_end_ = round + rest_;
+        rest_ *= 2;
+      }
     }
     if (is_plain_) {
       state_ = std::move(image_);
@@ -152,10 +160,12 @@ class Search {
   double rounding_ = 0;  // of positions [length]
   double first_gap_ = 0;
   BodyState state_, image_, best_;
+  BodyState best_image_;            // what the shortest gap led to
   std::optional<BodyState> plain_;  // what the last round led to, if state_ is not that
   Gap gap_, best_gap_;
   double before_ = std::numeric_limits<double>::infinity();
   int last_gain_ = 0, rounds_for_more_ = 0;
+  int rest_ = first_rest, rest_end_ = 0;  // of the acceleration; the round in which it ends
   bool is_plain_ = false;
 };
 
@@ -163,9 +173,9 @@ class Search {
 
 Result<BodyState> find_cycle(Body& body, const CycleRound& round) {
   PLIANT_EXPECTS(round.frames >= 1 && round.frame_time > 0 && round.advance);
-  // Five states, and the past.
+  // Six states, and the past.
   const std::size_t bytes =
-      number_count(body.state()) * sizeof(double) * (2 * depth_of(body.state()) + 10);
+      number_count(body.state()) * sizeof(double) * (2 * depth_of(body.state()) + 12);
   MemoryShare share(round.memory);
   if (!share.try_resize(bytes)) {
     return fail(ErrorCode::OutOfMemory, "looking for its cycle " + share.complaint(bytes));
