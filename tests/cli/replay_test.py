@@ -114,6 +114,22 @@ class Replay(Command):
                     self.assertEqual(told.stderr.count("\n"), 1)
         self.assertIn("missing.replay", self.replay("verify", "missing.replay", code=2).stderr)
 
+    def test_the_scene_of_a_log_is_within_the_root(self):
+        for folder in ("in", "secret"):
+            os.mkdir(self.path(folder))
+        scene = self.read("scene.xml").decode()
+        self.write("secret/s.xml", scene)
+        self.replay("record", "secret/s.xml", "-o", "in/x.replay")
+        self.replay("verify", "in/x.replay")
+        self.write("secret/s.xml", scene.replace("<point", "<point password='hunter2'"))
+        told = self.replay("verify", "in/x.replay", "--root", "in", code=2)
+        self.assertIn("outside", told.stderr)
+        self.assertNotIn("password", told.stderr)
+        # Nor does it tell whether such a file is there.
+        os.remove(self.path("secret/s.xml"))
+        self.assertEqual(self.replay("verify", "in/x.replay", "--root", "in", code=2).stderr, told.stderr)
+        self.replay("verify", "in/x.replay", "--root", ".")
+
     def test_wrong_usage_is_exit_code_2(self):
         for arguments in (["record"], ["record", "scene.xml"], ["verify"], ["diff", "a"],
                           ["record", "scene.xml", "-o", "a.replay", "--states", "0"],

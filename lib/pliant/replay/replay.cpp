@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/mesh/file_reference.hpp"
 #include "pliant/replay/digest.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/run_header.hpp"
@@ -48,6 +49,10 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
   }
   const std::filesystem::path file =
       given ? std::filesystem::path(*given) : folder / header.scene_file;
+  // The log may be a stranger's, whose scene tells nothing of what is outside.
+  if (!given) {
+    if (auto below = check_below(file, root); !below) return fail(below.error());
+  }
   std::error_code ignored;
   if (!given && !std::filesystem::exists(file, ignored)) {
     return FoundScene{
