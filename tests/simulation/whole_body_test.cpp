@@ -210,6 +210,32 @@ TEST_CASE("edges need a whole grid, tangents a clamped edge", "[simulation][all]
   const auto made = Simulation::make(scene({mesh}, {}));
   REQUIRE_FALSE(made);
   CHECK_THAT(made.error().message, Contains("edges are those of a grid"));
+  mesh.solver.edges = {};
+  mesh.tangents.su1 = TangentChannel(Channel<1>(0.5));
+  for (const Border border : {Border::Clamped, Border::Pinned, Border::Free}) {
+    mesh.reading.border = border;
+    mesh.solver.region = SolvedRegion::Forces;  // its rim is clamped
+    CHECK(Simulation::make(scene({mesh}, {})));
+    mesh.solver.region = SolvedRegion::All;
+    const auto whole = Simulation::make(scene({mesh}, {}));
+    CHECK(whole.has_value() == (border == Border::Clamped));
+    if (!whole) CHECK_THAT(whole.error().message, Contains("su1 is 0.5") && Contains("border"));
+  }
+}
+
+TEST_CASE("edges are given with a whole grid only", "[simulation][all]") {
+  const auto complaint = [](const std::string& solver) {
+    const auto read = parse_scene(
+        "<scene version='1' start='1' end='2'><surface name='s'>"
+        "<grid columns='5' rows='5'/><solver " +
+            solver + "/></surface></scene>",
+        "a.xml", ".");
+    return read ? std::string() : read.error().message;
+  };
+  CHECK(complaint("region='all' edges='clamped'") == "");
+  CHECK_THAT(complaint("edges='clamped'"), Contains("s.edges") && Contains("s.region"));
+  CHECK_THAT(complaint("region='forces' edges='free'"),
+             Contains("s.edges") && Contains("s.region"));
 }
 
 TEST_CASE("a force that never reaches a whole body is told", "[simulation][all]") {

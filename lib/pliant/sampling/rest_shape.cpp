@@ -265,7 +265,7 @@ class ShapeMaker {
       return refuse("reference",
                     "reference=\"none\" needs a grid, whose sides determine the shape at rest");
     }
-    if (!solver.edges.are_clamped()) {
+    if (!solver.edges.are_clamped() || origin_.gives(surface_.name, "edges")) {
       return refuse("edges",
                     "edges are those of a grid, and border=\"free\" or \"pinned\" those "
                     "of a surface");

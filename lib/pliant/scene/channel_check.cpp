@@ -122,6 +122,10 @@ class ChannelChecker {
       return fmt::format("is {}, but must be 0 {}", fmt::join(slopes, " "), reason);
     };
     if (surface.solver.release == Release::Recover) return refused("with release=\"recover\"");
+    const Border border = surface.reading.border.value_or(Border::Clamped);
+    if (surface.solver.region == SolvedRegion::All && border != Border::Clamped)
+      return refused(fmt::format("at a border that is {}, as region=\"all\" leaves it",
+                                 border_words[static_cast<std::size_t>(border)]));
     const auto& [u0, u1, v0, v1] = surface.solver.edges;
     const Edge edge = name == "su0" ? u0 : name == "su1" ? u1 : name == "sv0" ? v0 : v1;
     if (edge == Edge::Clamped) return {};

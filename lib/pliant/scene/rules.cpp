@@ -151,10 +151,10 @@ class WholeChecker {
   void check_whole_body(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
     if (solver.region != SolvedRegion::All) {
-      if (!solver.edges.are_clamped())
+      if (!solver.edges.are_clamped() || scene_.origin.gives(surface.name, "edges"))
         findings_.add_problem(
             scene_.origin.last_line_of(surface.name, {"region", "edges"}),
-            fmt::format("{0}.edges: edges that are not clamped need region=\"all\", but "
+            fmt::format("{0}.edges: edges need region=\"all\", but "
                         "{0}.region is \"forces\": the edges of a force's region are clamped",
                         surface.name));
       return;

@@ -257,7 +257,8 @@ TEST_CASE("a narrow plate flows by what is held alone", "[plate][plastic]") {
         for (int j = 0; j < grid.rows; ++j) {
           for (int i = 0; i < grid.columns; ++i) {
             const int across = is_along_u ? i : j;
-            state.displacement.row(grid.node(i, j)) = (across - 1) * Eigen::RowVector3d(0.2, 0.1, 0);
+            state.displacement.row(grid.node(i, j)) =
+                (across - 1) * Eigen::RowVector3d(0.2, 0.1, 0);
           }
         }
       } else if (is_along_u) {
