@@ -19,8 +19,8 @@ enum class Flush {
 };
 
 /// A file that appears whole under its name or not at all: written beside it under another name,
-/// then renamed by `commit`. Without a commit nothing is left behind and an older file stays. It has
-/// the permissions of the file that it replaces.
+/// then renamed by `commit`. Without a commit nothing is left behind and an older file stays. It
+/// has the permissions of the file that it replaces.
 class AtomicFile {
  public:
   /// Errors: those of `check_output_place`; Unwritable, naming the file and the reason.
