@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/expansion_rules.hpp"
 #include "pliant/scene/format.hpp"
 #include "pliant/scene/schema_types.hpp"
 
@@ -208,7 +209,9 @@ void SchemaWriter::write_attributes(const ElementFormat& format, const Context& 
   for (const AttributeFormat& each : format.attributes) {
     const bool is_of_group = context.is_in_group && each.name == "deformationRadius";
     if (is_of_group || each.need == Need::Later) continue;
-    write_attribute(each, types_.of(each, KeyValues::Numbers));
+    AttributeFormat written = each;  // a definition may be empty
+    if (format.name == define_name && each.name == "value") written.type = "any text";
+    write_attribute(each, types_.of(written, KeyValues::Numbers));
   }
 }
 
