@@ -120,12 +120,11 @@ int suggest(const SuggestOptions& options, Scene scene, SceneDocument* document)
                      .force = options.force,
                      .fps = fps,
                      .suggestion = *std::move(suggestion)};
-  if (document) {
-    const auto written = write(*document, facts.suggestion);
-    if (!written) return report(written.error());
-    facts.is_written = *written;
-  }
+  Result<bool> written = false;
+  if (document) written = write(*document, facts.suggestion);
+  facts.is_written = written && *written;
   print(stdout, options.is_json ? suggest_json(facts) : suggest_text(facts));
+  if (!written) return report(written.error());
   return facts.suggestion.meets_goals() ? exit_done : exit_failed;
 }
 

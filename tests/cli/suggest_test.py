@@ -166,6 +166,15 @@ class Suggest(Command):
             found = told["frequency"]["found"]
             self.assertLess(abs(measured / found - 1), 0.02, (measured, found))
 
+    def test_what_was_found_is_printed_though_it_cannot_be_written(self):
+        self.write("rig.xml", '<fragment><point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2"'
+                              ' magnitude="900"/></fragment>')
+        scene = self.write("scene.xml", '<scene version="1" start="1" end="12"><surface name="sheet"><grid columns="21" '
+                                        'rows="21" width="10" depth="10"/></surface><include file="rig.xml"/></scene>')
+        result = self.run_pliant("suggest", scene, "--peak", "1", "--write", code=2)
+        self.assertIn("poke.magnitude", result.stdout)
+        self.assertRegex(result.stderr, r'"poke" does not stand in this file, but in .*rig\.xml:1; edit that file')
+
     def test_only_numbers_change(self):
         scene = self.write("scene.xml", "")
         with open(scene, "wb") as file:

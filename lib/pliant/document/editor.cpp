@@ -59,11 +59,14 @@ Result<Element> Editor::object(std::string_view name) const {
   }
   if (name == "scene") return Draft::root;
   const auto is_it = [&](const auto& thing) { return thing.name == name; };
-  if (std::ranges::any_of(scene_.surfaces, is_it) || std::ranges::any_of(scene_.forces, is_it) ||
-      std::ranges::any_of(scene_.groups, is_it))
-    return draft_.refuse(
-        fmt::format("{} does not stand in this file, but in one that it includes; edit that file",
-                    in_quotes(name)));
+  const bool is_included = std::ranges::any_of(scene_.surfaces, is_it) ||
+                           std::ranges::any_of(scene_.forces, is_it) ||
+                           std::ranges::any_of(scene_.groups, is_it);
+  if (is_included) {
+    const ScenePlace place = scene_.origin.place_of(std::string(name));
+    return draft_.refuse(fmt::format("{} does not stand in this file, but in {}:{}; edit that file",
+                                     in_quotes(name), place.file, place.line));
+  }
   return draft_.refuse(fmt::format("no surface, force or group is named {}{}", in_quotes(name),
                                    hint_of(name, names)));
 }
