@@ -144,6 +144,8 @@ std::string scene_around(const std::string& element, const std::string& attribut
   const std::string part = element == "map"
                                ? fmt::format("<material>{}/></material>",
                                              begin("map", " channel=\"b\" file=\"soft.png\""))
+                           // Edges are those of a whole grid.
+                           : attribute == "edges"    ? begin(element, " region=\"all\"") + "/>"
                            : parts.contains(element) ? begin(element, "") + "/>"
                                                      : "";
   const std::string path =

@@ -168,10 +168,10 @@ Result<void> check_scene_place(const std::string& text, const std::string& name,
     return {};
   const auto draft = edit::Draft::make(text, name);
   if (!draft) return fail(draft.error());
-  const bool names_files = draft->any_attribute([](std::string_view attribute,
-                                                   const std::string& value) {
-    return (attribute == "file" || attribute == "cache") && fs::path(value).is_relative();
-  });
+  const bool names_files =
+      draft->any_attribute([](std::string_view attribute, const std::string& value) {
+        return (attribute == "file" || attribute == "cache") && fs::path(value).is_relative();
+      });
   if (!names_files) return {};
   return fail(ErrorCode::InvalidInput,
               fmt::format("the scene names files relative to its own folder {}; save it there",

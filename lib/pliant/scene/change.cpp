@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/change_texts.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
@@ -120,7 +121,19 @@ bool may_change(const Slot& slot) {
          slot.attribute.need != Need::Later;
 }
 
-std::string no_attribute(const Table& table, const ValuePath& path) {
+// The elements whose attributes an object has, those that artists name most first.
+std::vector<std::string_view> elements_of(const Scene& scene, std::string_view name) {
+  for (const Force& force : scene.forces)
+    if (force.name == name) return {kind_of(force)};
+  for (const Group& group : scene.groups)
+    if (group.name == name) return {Description<Group>::element};
+  for (const Surface& surface : scene.surfaces)
+    if (surface.name == name)
+      return {"material", "solver", "transform", "grid", "mesh", Description<Surface>::element};
+  return {Description<Scene>::element};
+}
+
+std::string no_attribute(const Scene& scene, const Table& table, const ValuePath& path) {
   std::vector<std::string_view> names;
   for (const Slot& slot : table)
     if (may_change(slot)) names.push_back(slot.attribute.name);
@@ -130,8 +143,12 @@ std::string no_attribute(const Table& table, const ValuePath& path) {
                        slot.attribute.need == Need::Later ? not_supported(slot.attribute.instead)
                                                           : "cannot be changed");
   }
+  std::string meant;
+  std::vector<std::string_view> own;
+  for (const std::string_view element : elements_of(scene, path.name))
+    if (own.empty()) meant = attribute_hint(element, path.attribute, names, own);
   return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
-                     hint(path.attribute, names));
+                     meant);
 }
 
 // Adjusts the channel of a slot, or a component of it.
@@ -250,7 +267,7 @@ Result<void> make_change(Scene& scene, const SceneChange& change, const std::str
   const auto found = std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
     return slot.attribute.name == path->attribute && may_change(slot);
   });
-  if (found == table.end()) return refuse(no_attribute(table, *path));
+  if (found == table.end()) return refuse(no_attribute(scene, table, *path));
   if (!path->part.empty() &&
       std::find(std::begin(part_words), std::end(part_words), path->part) == std::end(part_words))
     return refuse(fmt::format("{} has no part {}{}", path->title(), in_quotes(path->part),

@@ -31,8 +31,8 @@ struct Bending {
 Bending bending_of(const Stiffness& stiffness, const std::array<double, 2>& unit,
                    std::optional<double> poisson = {});
 
-/// The form where b, c and d are that many times those of `bending`, with the same ratio or, without
-/// a free edge, the one of these.
+/// The form where b, c and d are that many times those of `bending`, with the same ratio or,
+/// without a free edge, the one of these.
 Bending scaled(const Bending& bending, double b, double c, double d);
 
 /// H_uu, H_vv and H_uv of a cell. [1/length]

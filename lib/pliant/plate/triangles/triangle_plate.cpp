@@ -403,9 +403,9 @@ Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& prob
   if (before) {
     motion = *std::move(before);
     FlowingTriangles flowing(*this);
-    const auto all = make_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
-                                        problem.law->hardening, steps, std::move(components),
-                                        state.plastic);
+    const auto all =
+        make_plastic_steps(flowing, context_, elastic.terms(std::move(known)),
+                           problem.law->hardening, steps, std::move(components), state.plastic);
     auto ran = run_plastic_steps(*all, steps.count - done, motion, state.plastic);
     if (!ran) return fail(ran.error());
   }
