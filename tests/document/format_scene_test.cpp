@@ -97,6 +97,18 @@ TEST_CASE("a canonical layout", "[document][format]") {
   CHECK_FALSE(format_scene("<scene>", "shot.xml"));
 }
 
+// `<?>` begins a declaration that goes on to the next `?>`, as `<!-->` begins a comment.
+TEST_CASE("a layout takes marks whose beginnings look like ends", "[document][format]") {
+  const std::string scene = "<scene version=\"1\" start=\"1\" end=\"1\"/>\n";
+  for (const std::string mark : {"<?><![CDATA[<scene ?>", "<?><!-- ?>", "<!--><?-->", "<?>?>"}) {
+    CAPTURE(mark);
+    REQUIRE(parse_scene(mark + scene, "shot.xml", "."));
+    const std::string laid_out = formatted(mark + scene);
+    CHECK(laid_out == mark + "\n" + scene);
+    CHECK(formatted(laid_out) == laid_out);
+  }
+}
+
 TEST_CASE("a layout keeps the scene and is kept", "[document][format]") {
   for (int seed = 0; seed < rounds(1500); ++seed) {
     const std::string text = RandomScene(seed).text();

@@ -65,14 +65,22 @@ class Formatter {
         at = draft_.place(*element++).end;
         continue;
       }
-      // Only these stand between elements.
-      const std::string_view closing = rest.starts_with("<!--")        ? "-->"
-                                       : rest.starts_with("<![CDATA[") ? "]]>"
-                                       : rest.starts_with("<?")        ? "?>"
-                                                                       : ">";
-      at = std::min(text_.find(closing, next + (closing == "-->" ? 4 : 0)) + closing.size(), end);
+      at = std::min(end_of_mark(next), end);
       write_lines(text_.substr(next, at - next), margin_at(next), margin);
     }
+  }
+
+  /// Where the mark that begins at a place ends: the signs of its beginning are not those of its
+  /// end. Only these stand between elements.
+  std::size_t end_of_mark(std::size_t begin) const {
+    constexpr std::pair<std::string_view, std::string_view> marks[] = {
+        {"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}, {"<!", ">"}};
+    for (const auto& [opening, closing] : marks) {
+      if (!text_.substr(begin).starts_with(opening)) continue;
+      const std::size_t end = text_.find(closing, begin + opening.size());
+      return end == std::string_view::npos ? text_.size() : end + closing.size();
+    }
+    return text_.size();
   }
 
   void begin_line(const std::string& margin, bool has_blank_line) {
@@ -113,7 +121,7 @@ class Formatter {
       if (child != children.end() && at == draft_.place(*child).whole().begin) {
         at = draft_.place(*child++).end;
       } else if (text_.substr(at).starts_with("<!--")) {
-        at = text_.find("-->", at + 4) + 3;
+        at = end_of_mark(at);
       } else {
         return true;
       }

@@ -37,7 +37,7 @@ std::string_view bare_text(std::string_view content) {
     if (!before.empty() || content.find('<') == std::string_view::npos) return before;
     content.remove_prefix(content.find('<'));
     if (!content.starts_with("<!--")) return content;
-    content.remove_prefix(content.find("-->") + 3);
+    content.remove_prefix(content.find("-->", 4) + 3);
   }
   return {};
 }
