@@ -32,7 +32,7 @@ struct Pole {
 /// R = P/Q is the quotient of degrees 7 and 8 that agrees with e^z best at 0, to z^15: one step of
 /// the Radau IIA method of 8 stages. |R| < 1 wherever Re z < 0 and on the imaginary axis but for 0,
 /// and R(infinity) = 0. G(z) = 8 c z^8/Q(z), with c such that G(infinity) = 8, is small where R is
-/// good, and bounds 750 |R(iy) - e^(iy)| from y = 3 on. docs/model.md, eq. (8c) to (8e). Internal
+/// good, and bounds 750 |R(iy) - e^(iy)| from y = 3 on. docs/model.md, eq. (8m) to (8o). Internal
 /// to plate.
 inline constexpr int pole_count = 4;
 inline constexpr double doubt_at_infinity = 8;

@@ -11,7 +11,7 @@ namespace pliant {
 ///
 ///   (K + (rho s^2 + eta s) M) x = (K w - f)/h - f'/p - (rho s/h) M v
 ///
-/// and then w' = w + 2 Re sum of (r/s) x, v' = 2 Re sum of r x. docs/model.md, eq. (8d).
+/// and then w' = w + 2 Re sum of (r/s) x, v' = 2 Re sum of r x. docs/model.md, eq. (8n).
 struct SubStep {
   double length;  ///< h [s]
 
