@@ -60,6 +60,9 @@ class Changes(Command):
         scene = self.scene_with("plain.xml")
         for change, parts in [
                 ("poke.magnitud=2", ["--set poke.magnitud=2: ", 'did you mean "magnitude"']),
+                ("poke.strength=2", ["--set poke.strength=2: ", 'did you mean "magnitude"?']),
+                ("sheet.mass=2", ["--set sheet.mass=2: ", 'did you mean "density"?']),
+                ("sheet.stiffness=2", ["--set sheet.stiffness=2: ", 'did you mean "b", "c" and "d"?']),
                 ("pok.magnitude=2", ["--set pok.magnitude=2: ", 'did you mean "poke"']),
                 ("sheet.density=-1", ["--set sheet.density=-1: ", "must be at least 0"]),
                 ("sheet.columns=2", ["--set sheet.columns=2: ", "3"]),
