@@ -140,9 +140,10 @@ std::string job_script(const SlurmScript& script) {
                                                 least_minutes, most_minutes)));
   text += fmt::format(
       "exec {} sweep run {} --part $SLURM_ARRAY_TASK_ID/{} --threads $SLURM_CPUS_PER_TASK "
-      "--quiet{}{}\n",
+      "--quiet{}{}{}\n",
       shell_word(script.executable), shell_word(script.folder), script.parts,
       script.max_memory > 0 ? fmt::format(" --max-memory {}", script.max_memory) : "",
+      script.root.empty() ? "" : " --root " + shell_word(script.root),
       script.retries ? " --retry" : "");
   return text;
 }

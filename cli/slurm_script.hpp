@@ -31,6 +31,7 @@ struct SlurmScript {
   std::optional<std::size_t> memory = {};  ///< of a part [bytes]; none: the cluster's default
   std::optional<double> seconds = {};      ///< that a part takes; none: unknown
   double max_memory = 0;                   ///< `--max-memory` of a part [GB]; 0: its default
+  std::string root = {};                   ///< `--root` of a part, absolute; empty: none
   bool retries = false;                    ///< also takes that failed
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "counted.hpp"
+#include "interrupt.hpp"
 #include "report.hpp"
 
 namespace pliant::cli {
@@ -15,7 +16,8 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
   add_sweep_run(*sweep, options.run);
   CLI::App* status = sweep->add_subcommand(
       "status", "Write the table takes.csv anew, and count the takes that are done");
-  status->add_option("DIR", options.folder, "Folder of a sweep")->required();
+  status->add_option("DIR", options.status.folder, "Folder of a sweep")->required();
+  add_root(*status, options.status.root);
   add_sweep_verify(*sweep, options.verify);
   add_sweep_bake(*sweep, options.bake);
   add_sweep_view(*sweep, options.view);
@@ -24,10 +26,16 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
 int run_sweep(const CLI::App& app, const SweepOptions& options) {
   const CLI::App& sweep = *app.get_subcommand("sweep");
   if (sweep.got_subcommand("run")) return run_sweep_run(*sweep.get_subcommand("run"), options.run);
-  if (sweep.got_subcommand("status")) return run_sweep_status(options.folder);
+  if (sweep.got_subcommand("status")) return run_sweep_status(options.status);
   if (sweep.got_subcommand("verify")) return run_sweep_verify(options.verify);
   if (sweep.got_subcommand("view")) return run_sweep_view(options.view);
   return run_sweep_bake(options.bake);
+}
+
+Result<SweepFolder> open_sweep(const std::string& folder, const Root& root) {
+  const auto confined = folder_of(root);
+  if (!confined) return fail(confined.error());
+  return SweepFolder::open(folder, &was_interrupted, confined->string());
 }
 
 void print_conflicts(const SweepStatus& status, const SweepPart& part) {

@@ -34,10 +34,17 @@ struct SweepRunOptions {
   ResourceOptions resources;
 };
 
+/// Options of `pliant sweep status`.
+struct SweepStatusOptions {
+  std::string folder;
+  Root root = {};
+};
+
 /// Options of `pliant sweep verify`.
 struct SweepVerifyOptions {
   std::string folder;
   int every = 1;
+  Root root = {};
   bool is_quiet = false;
   ResourceOptions resources;
 };
@@ -55,8 +62,9 @@ struct SweepViewOptions {
   std::optional<std::string> out = {};  ///< the page
   std::optional<std::string> png = {};  ///< a picture of the contact sheet
   std::optional<int> frame = {};        ///< of all pictures; null: that of each take's peak
-  std::string size = "320x240";         ///< of each take in the picture [px]
-  std::string look;                     ///< of the picture, in the syntax of the page's address
+  Root root = {};
+  std::string size = "320x240";  ///< of each take in the picture [px]
+  std::string look;              ///< of the picture, in the syntax of the page's address
   bool is_quiet = false;
   ResourceOptions resources;
 };
@@ -64,7 +72,7 @@ struct SweepViewOptions {
 /// Options of `pliant sweep`.
 struct SweepOptions {
   SweepRunOptions run;
-  std::string folder;  ///< of `status`
+  SweepStatusOptions status;
   SweepVerifyOptions verify;
   SweepBakeOptions bake;
   SweepViewOptions view;
@@ -80,10 +88,13 @@ void add_sweep_view(CLI::App& sweep, SweepViewOptions& options);
 
 int run_sweep(const CLI::App& app, const SweepOptions& options);
 int run_sweep_run(const CLI::App& run, const SweepRunOptions& options);
-int run_sweep_status(const std::string& folder);
+int run_sweep_status(const SweepStatusOptions& options);
 int run_sweep_verify(const SweepVerifyOptions& options);
 int run_sweep_bake(const SweepBakeOptions& options);
 int run_sweep_view(const SweepViewOptions& options);
+
+/// `SweepFolder::open`. Errors: also those of `folder_of`.
+Result<SweepFolder> open_sweep(const std::string& folder, const Root& root);
 
 /// Writes the table of a sweep, counts its takes on stdout unless it is quiet, and names failures
 /// on stderr. Returns the exit code: 0 if all takes are done.

@@ -13,11 +13,12 @@ void add_sweep_bake(CLI::App& sweep, SweepBakeOptions& options) {
   bake->add_option("DIR", options.folder, "Folder of a sweep")->required();
   bake->add_option("TAKE", options.take, "Number of the take")->required();
   add_bake_options(*bake, options.bake);
+  add_root(*bake, options.bake.root);
 }
 
 int run_sweep_bake(const SweepBakeOptions& options) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
+  const auto folder = open_sweep(options.folder, options.bake.root);
   if (!folder) return report(folder.error());
   const Sweep& sweep = folder->sweep();
   const auto number = to_integer(options.take);

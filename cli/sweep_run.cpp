@@ -27,9 +27,9 @@ namespace {
 constexpr std::size_t largest_table = std::size_t{1} << 30U;
 
 // The options that belong to making a sweep.
-constexpr std::string_view making_options[] = {"--out",   "--set",     "--vary",     "--sample",
-                                               "--takes", "--frames",  "--solver",   "--root",
-                                               "--write", "--dry-run", "--make-only"};
+constexpr std::string_view making_options[] = {"--out",     "--set",      "--vary",   "--sample",
+                                               "--takes",   "--frames",   "--solver", "--write",
+                                               "--dry-run", "--make-only"};
 
 // The options that belong to running its takes.
 constexpr std::string_view running_options[] = {"--part", "--retry", "--engine"};
@@ -173,7 +173,7 @@ bool is_folder(const std::string& name) {
 }
 
 // The sweep of the folder given, or made of the scenes given.
-Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& options) {
+Result<SweepFolder> sweep_of(const CLI::App& run, const SweepRunOptions& options) {
   if (!options.out) {
     if (options.what.size() != 1 || !is_folder(options.what.front()))
       return invalid("-o DIR is missing: the folder of the sweep");
@@ -184,7 +184,7 @@ Result<SweepFolder> open_sweep(const CLI::App& run, const SweepRunOptions& optio
                         "make another one of a SCENE with -o DIR",
                         option, printable(options.what.front())));
     }
-    return SweepFolder::open(options.what.front(), &was_interrupted);
+    return open_sweep(options.what.front(), options.root);
   }
   const auto request = request_of(options);
   if (!request) return fail(request.error());
@@ -208,7 +208,9 @@ int submit_takes(const SweepFolder& folder, const SweepRunOptions& options) {
     const auto fits = check_slurm_parts(options.slurm, folder.sweep().takes().count());
     if (!fits) return report(fits.error());
   }
-  return run_on_slurm(folder, options.slurm, options.resources, options.retries, options.is_quiet);
+  SlurmOptions slurm = options.slurm;
+  if (!options.out && options.root) slurm.root = folder.request().root;
+  return run_on_slurm(folder, slurm, options.resources, options.retries, options.is_quiet);
 }
 
 }  // namespace
@@ -266,7 +268,7 @@ int run_sweep_run(const CLI::App& run, const SweepRunOptions& options) {
     return request ? print_plan(*request) : report(request.error());
   }
   if (const auto ready = check_engine(run, options); !ready) return report(ready.error());
-  const auto folder = open_sweep(run, options);
+  const auto folder = sweep_of(run, options);
   if (!folder) return report(folder.error());
   if (options.slurm.engine) return submit_takes(*folder, options);
   if (!options.makes_only) return run_takes(*folder, options, *part);

@@ -267,6 +267,7 @@ class Submission {
                      .parts = parts_,
                      .threads = threads_,
                      .max_memory = max_memory_,
+                     .root = options_.root,
                      .retries = retries_};
     if (!user_.has_memory_per_other) {
       const auto memory = memory_of_part(folder_.sweep(), threads_, resources_);

@@ -19,6 +19,7 @@ struct SlurmOptions {
   std::vector<std::string> sbatch = {};  ///< options of sbatch
   bool writes_only = false;              ///< submits nothing
   bool waits = false;
+  std::string root = {};  ///< `--root` of the parts; empty: the sweep's own
 };
 
 void add_slurm(CLI::App& run, SlurmOptions& options);

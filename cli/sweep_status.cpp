@@ -7,9 +7,9 @@
 
 namespace pliant::cli {
 
-int run_sweep_status(const std::string& name) {
+int run_sweep_status(const SweepStatusOptions& options) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(name, &was_interrupted);
+  const auto folder = open_sweep(options.folder, options.root);
   if (!folder) return report(folder.error());
   folder->remove_half_files(&was_interrupted);
   return tell_status(*folder);

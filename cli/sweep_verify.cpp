@@ -22,6 +22,7 @@ void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options) {
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("K")
       ->capture_default_str();
+  add_root(*verify, options.root);
   add_threads(*verify, options.resources);
   add_memory(*verify, options.resources);
   verify->add_flag("--quiet", options.is_quiet, "No progress and no summary");
@@ -29,7 +30,7 @@ void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options) {
 
 int run_sweep_verify(const SweepVerifyOptions& options) {
   catch_interrupts();
-  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
+  const auto folder = open_sweep(options.folder, options.root);
   if (!folder) return report(folder.error());
   const auto status = folder->status(&was_interrupted);
   if (!status) return report(status.error());

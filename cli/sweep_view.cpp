@@ -187,6 +187,7 @@ void add_sweep_view(CLI::App& sweep, SweepViewOptions& options) {
                    "Look of the picture, written as in the page's address: "
                    "\"turn=30&tilt=20&peak=2&theme=dark\"")
       ->needs(png);
+  add_root(*view, options.root);
   add_threads(*view, options.resources);
   add_memory(*view, options.resources);
   view->add_flag("--quiet", options.is_quiet, "No progress and no summary");
@@ -198,7 +199,7 @@ int run_sweep_view(const SweepViewOptions& options) {
   if (auto places = check_view_places(options); !places) return report(places.error());
   const auto page = viewer::sweep_page_template();
   if (!page) return report(page.error());
-  const auto folder = SweepFolder::open(options.folder, &was_interrupted);
+  const auto folder = open_sweep(options.folder, options.root);
   if (!folder) return report(folder.error());
   for (const auto& [option, file] :
        {std::pair("-o", options.out), std::pair("--png", options.png)}) {

@@ -47,6 +47,12 @@ TEST_CASE("a list of an array has ranges, and is read back", "[cli][slurm]") {
   CHECK(array_list(all) == "0-4000000");
 }
 
+TEST_CASE("a part has the root of its command", "[cli][slurm]") {
+  const SlurmScript script{
+      .executable = "/pliant", .folder = "/s", .name = "s", .root = "/my shots", .retries = true};
+  CHECK(lines_of(script, "exec ").ends_with(" --quiet --root '/my shots' --retry\n"));
+}
+
 TEST_CASE("lists of an array as users write them", "[cli][slurm]") {
   using List = std::vector<std::size_t>;
   CHECK(read_array_list("0-9:4", 100) == List{0, 4, 8});

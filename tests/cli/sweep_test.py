@@ -57,6 +57,24 @@ class Sweeps(SweepCommand):
             late = [frame for frame in range(len(steps)) if steps[frame].max() > away.max() / 1000]
             self.assertEqual(int(row["settle"]), 2 + (late[-1] + 1 if late else 0))
 
+    def test_a_root_confines_a_sweep_of_a_stranger(self):
+        os.makedirs(self.path("in"))
+        self.write("sheet.obj", "v 0 0 0\nv 9 0 0\nv 9 0 9\nv 0 0 9\nf 1 2 3 4\n")
+        scene = self.write("in/scene.xml", edited().replace('<grid columns="11" rows="9" width="10" depth="10"/>',
+                                                            '<mesh file="../sheet.obj" border="pinned"/>'))
+        self.make("s", scene=scene, vary=("--vary", "sheet.density=1,3"))
+        commands = (("run", "s"), ("run", "s", "--part", "0/2"), ("status", "s"), ("verify", "s"),
+                    ("bake", "s", "0", "-o", "a.npy"), ("view", "s", "-o", "a.html"))
+        for command in commands:
+            with self.subTest(command):
+                told = self.sweep(*command, "--root", "in", code=2)
+                self.assertRegex(told.stderr, r'^\S+scene\.xml:2: error: <mesh> file="\.\./sheet\.obj": '
+                                              r"it is outside \S+, the folder of --root\n$")
+                self.assertRegex(self.sweep(*command, "--root", "none", code=2).stderr, "--root none: is not a folder")
+        self.assertFalse(os.path.exists(self.path("a.npy")) or os.path.exists(self.path("a.html")))
+        for command in commands:
+            self.sweep(*command, "--root", ".")
+
     def test_a_table_from_elsewhere(self):
         takes = self.write("design.csv", 'sheet.density,poke.magnitude*,"poke.center"\n1,2,0 0 0\n7,0.5,"1 0 0"\n')
         self.make("s", vary=("--takes", takes))

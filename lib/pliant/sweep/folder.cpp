@@ -343,9 +343,15 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
                                              *std::move(sweep), std::move(asked->file.inputs)));
 }
 
-Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopRequest& should_stop) {
+Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopRequest& should_stop,
+                                      const std::string& root) {
   auto file = read_sweep_file(file_of_sweep(folder), should_stop);
   if (!file) return fail(file.error());
+  if (!root.empty()) {
+    auto path = absolute_path(root);
+    if (!path) return fail(path.error());
+    file->request.root = *std::move(path);
+  }
   if (file->engine != engine_name())
     return fail(ErrorCode::InvalidInput,
                 fmt::format("{}: the sweep has engine {} of pliant {}, not {} of pliant {}, so "

@@ -94,9 +94,11 @@ class SweepFolder {
   static Result<SweepFolder> make(const std::string& folder, const SweepRequest& request,
                                   const StopRequest& should_stop = {});
 
-  /// Opens a sweep. Errors: InvalidInput, Unreadable: it is none; it has another engine.
-  /// Interrupted.
-  static Result<SweepFolder> open(const std::string& folder, const StopRequest& should_stop = {});
+  /// Opens a sweep. `root`, as in `load_scene`, takes the place of the sweep's own, for a sweep of
+  /// a stranger. Errors: InvalidInput, Unreadable: it is none; it has another engine; its scenes
+  /// lead to a file outside the root. Interrupted.
+  static Result<SweepFolder> open(const std::string& folder, const StopRequest& should_stop = {},
+                                  const std::string& root = {});
 
   /// The sweep of a request without a folder. Errors: as `make`.
   static Result<Sweep> plan(const SweepRequest& request, const StopRequest& should_stop = {});
