@@ -13,6 +13,7 @@
 #include "materials.hpp"
 #include "output_file.hpp"
 #include "own_mesh.hpp"
+#include "pliant/core/read_file.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/scene/schema.hpp"
@@ -70,6 +71,11 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
     }
     return refuse(fmt::format("--mesh: {} makes its own surface; the starters with a mesh are {}",
                               starter.name, with_mesh));
+  }
+  if (options.mesh) {
+    if (const auto readable = check_readable(*options.mesh); !readable)
+      return refuse(
+          fmt::format("--mesh {}: {}", printable(*options.mesh), readable.error().message));
   }
   if (options.out) {
     if (auto there = check_output_file("-o", *options.out); !there) return there;

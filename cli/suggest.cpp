@@ -80,10 +80,17 @@ std::vector<Operation> operations_for(const Suggestion& suggestion, const Scene&
   return operations;
 }
 
-// Writes the suggested values into the scene's file. Returns whether that changes it.
-Result<bool> write(SceneDocument& document, const Suggestion& suggestion) {
+// Writes the suggested values into the scene's file, and notes what that does beside. Returns
+// whether it changes the file.
+Result<bool> write(SceneDocument& document, Suggestion& suggestion) {
   const auto changed = document.apply(operations_for(suggestion, document.scene()), "suggest");
   if (!changed) return fail(changed.error());
+  for (const TextEdit& edit : changed->edits) {
+    if (edit.removed.find('$') == std::string::npos) continue;
+    suggestion.notes.push_back(
+        fmt::format("{} takes the place of {}; what else uses the definition keeps its value",
+                    printable(edit.inserted), printable(edit.removed)));
+  }
   if (document.is_saved()) return false;
   const auto is_other = document.has_file_changed();
   if (!is_other) return fail(is_other.error());

@@ -116,7 +116,7 @@ class New(Command):
                 (["sheet", "-o", "a.obj"], "must end in .xml"),
                 (["sheet", "-o", "-"], "cannot write this to the standard output"),
                 (["--material", "jelly"], "needs the NAME"),
-                (["mesh", "--mesh", "none.obj"], "none.obj")):
+                (["mesh", "--mesh", "none.obj"], "error: --mesh none.obj: cannot read the file: No such file")):
             result = self.run_pliant("new", *arguments, code=2)
             self.assertIn(message, result.stderr)
             self.assertEqual(result.stderr.count("\n"), 1, result.stderr)

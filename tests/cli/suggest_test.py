@@ -175,6 +175,17 @@ class Suggest(Command):
         self.assertIn("poke.magnitude", result.stdout)
         self.assertRegex(result.stderr, r'"poke" does not stand in this file, but in .*rig\.xml:1; edit that file')
 
+    def test_a_number_takes_the_place_of_a_definition(self):
+        scene = self.write("scene.xml", '<scene version="1" start="1" end="12"><define name="m" value="450"/><surface '
+                                        'name="sheet"><grid columns="21" rows="21" width="10" depth="10"/></surface>'
+                                        '<point name="poke" deformationRadius="4" forceRadius="2" magnitude="$m * 2"/>'
+                                        '</scene>')
+        told = self.suggest(scene, "--peak", "1", "--write")
+        number = f'{told["values"][0]["after"]:g}'
+        self.assertIn(f'magnitude="{number}"', self.read("scene.xml").decode())
+        self.assertIn(f"{number} takes the place of $m * 2; what else uses the definition keeps its value",
+                      told["notes"])
+
     def test_only_numbers_change(self):
         scene = self.write("scene.xml", "")
         with open(scene, "wb") as file:
@@ -236,6 +247,7 @@ class Suggest(Command):
                 ([], "--peak, --settle and --ring"),
                 (["--peak", "0"], "--peak"),
                 (["--peak", "1m"], "--peak"),
+                (["--peak", "1e300"], "greater than 0 and less than 1e100"),
                 (["--settle", "1"], "s, ms or f"),
                 (["--settle", "-1s"], "s, ms or f"),
                 (["--ring", "2s"], "such as 2Hz"),

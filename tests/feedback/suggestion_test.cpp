@@ -198,6 +198,23 @@ TEST_CASE("one of several surfaces", "[feedback][suggest]") {
   CHECK(suggestion_of(s, {.peak = 0.6}).after.surface == 1);
 }
 
+TEST_CASE("a force that is 0 begins with 1 if those that are not push nothing",
+          "[feedback][suggest]") {
+  Scene s = poked();
+  Force far = s.forces[0], farther = s.forces[0];
+  far.name = "far", farther.name = "farther";
+  for (Force* force : {&far, &farther})
+    std::get<PointChannels>(force->kind).center = Value<3>{50, 0, 0};
+  s.forces.push_back(far);
+  s.forces.push_back(farther);
+  s.forces[0].magnitude = 0.0;
+  s.forces[2].magnitude = 0.0;
+  const Suggestion one = suggestion_of(s, {.peak = 1});
+  CHECK(one.meets_goals());
+  CHECK(one.scene.forces[0].magnitude.at(1)[0] > 0);
+  CHECK(one.scene.forces[2].magnitude.at(1)[0] == 0);  // it reaches nothing
+}
+
 TEST_CASE("a surface of triangles", "[feedback][suggest]") {
   Scene s = poked();
   s.surfaces[0].shape = square(8, 12, 0.2);

@@ -31,7 +31,8 @@ Result<void> check_goals(const MotionGoals& goals) {
   }
   const auto check = [](std::string_view what, std::optional<double> goal) -> Result<void> {
     if (!goal || (*goal > 0 && *goal < 1e100)) return {};
-    return invalid(fmt::format("{} {}: must be a number greater than 0", what, *goal));
+    return invalid(
+        fmt::format("{} {}: must be a number greater than 0 and less than 1e100", what, *goal));
   };
   for (const auto& [what, goal] :
        {std::pair{"the peak", goals.peak}, std::pair{"the time to settle", goals.settling},
@@ -60,7 +61,9 @@ class Suggester {
     for (const std::size_t force : before->acting.forces()) {
       if (is_ever_enabled(before->acting, force)) subject_.forces.push_back(force);
     }
-    if (goals_.peak) start_with_one();
+    if (goals_.peak) {
+      if (auto started = start_with_one(before->preview); !started) return fail(started.error());
+    }
     magnitudes_ = magnitudes();
     Suggestion best;
     for (int round = 0; round < most_rounds; ++round) {
@@ -119,13 +122,26 @@ class Suggester {
     return false;
   }
 
-  // If every magnitude is a constant 0, the response to 1 is examined instead.
-  void start_with_one() {
-    for (const std::size_t force : subject_.forces) {
+  // If nothing moves, the response to 1 is examined, of the forces with a constant 0 that push.
+  Result<void> start_with_one(const Preview& before) {
+    const auto is_resting = [&](std::size_t force) {
       const Channel<1>& magnitude = scene_.forces[force].magnitude;
-      if (magnitude.is_animated() || magnitude.at(0)[0] != 0) return;
+      return !magnitude.is_animated() && magnitude.at(0)[0] == 0;
+    };
+    if (before.static_peak > 0 || (before.played && before.played->peak > 0)) return {};
+    // Of what is too large for a preview, only the magnitudes tell whether it moves.
+    if (!before.is_solved && !std::ranges::all_of(subject_.forces, is_resting)) return {};
+    std::vector<std::size_t> pushing;
+    for (const std::size_t force : subject_.forces) {
+      if (!is_resting(force)) continue;
+      scene_.forces[force].magnitude = 1.0;
+      const auto one = look();
+      if (!one) return fail(one.error());
+      if (!one->preview.is_solved || one->preview.static_peak > 0) pushing.push_back(force);
+      scene_.forces[force].magnitude = 0.0;
     }
-    for (const std::size_t force : subject_.forces) scene_.forces[force].magnitude = 1.0;
+    for (const std::size_t force : pushing) scene_.forces[force].magnitude = 1.0;
+    return {};
   }
 
   std::vector<Channel<1>> magnitudes() const {

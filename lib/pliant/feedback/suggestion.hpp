@@ -93,9 +93,9 @@ struct Suggestion {
 
 /// Finds magnitudes, density and damping with which a surface moves as wanted: docs/model.md,
 /// "Suggestions". All forces that act are scaled by one factor, so that signs and shares stay; one
-/// whose constant magnitude is 0 begins with 1 if no other one pushes. With a damping ratio in the
-/// scene that takes the damping's place. What cannot be reached is no error: the result has the
-/// nearest that can, and the reason.
+/// that could push and has the constant magnitude 0 begins with 1 if nothing moves. With a damping
+/// ratio in the scene that takes the damping's place. What cannot be reached is no error: the
+/// result has the nearest that can, and the reason.
 ///
 /// Cost: two or more previews of these forces, and at most 24 times playing the animation, usually
 /// three. Errors: InvalidInput if no goal is given, a goal is not finite and > 0, or a name is
