@@ -93,6 +93,34 @@ TEST_CASE("each channel's rule is checked at each frame of the range", "[scene][
   CHECK(check_channels(s).size() == 1);
 }
 
+TEST_CASE("a static surface that is solved as a whole needs edges that hold it",
+          "[scene][channels]") {
+  constexpr Edge clamped = Edge::Clamped, pinned = Edge::Pinned, open = Edge::Free;
+  Scene s = scene({sheet("s")}, {}, 24);
+  Surface& surface = s.surfaces[0];
+  surface.solver.region = SolvedRegion::All;
+  surface.material.damping = 0.0;
+  surface.material.density = 0.0;
+  for (const Edges& edges : {Edges{clamped, open, open, open}, Edges{pinned, open, pinned, open}}) {
+    surface.solver.edges = edges;
+    CHECK(complaint(s) == "none");
+  }
+  for (const Edges& edges : {Edges{open, open, open, open}, Edges{open, open, open, pinned}}) {
+    surface.solver.edges = edges;
+    CHECK_THAT(complaint(s), StartsWith("s.density is 0, and so is damping, but nothing holds"));
+  }
+  surface.material.density = curve({{1, 1}, {12, 0}, {24, 1}});
+  CHECK_THAT(complaint(s), StartsWith("s.density at frame 12 is 0, and so is damping"));
+  surface.solver.start_frame = 13;
+  CHECK(complaint(s) == "none");
+  surface.solver.start_frame = {};
+  surface.solver.time_scale = curve({{1, 1}, {11, 1}, {12, 0}, {13, 1}});
+  CHECK(complaint(s) == "none");
+  surface.solver.time_scale = 1.0;
+  surface.enabled = false;
+  CHECK(complaint(s) == "none");
+}
+
 TEST_CASE("what happens outside the range is no matter", "[scene][channels]") {
   Scene s = scene({sheet("s")}, {}, 5);
   s.surfaces[0].material.density = curve({{1, 1}, {5, 1}, {20, -100}});

@@ -145,10 +145,13 @@ TEST_CASE("a sheet with free edges flies off evenly, unless it is static",
   kite.material.density = 0;
   for (const Edge second : {Edge::Free, Edge::Pinned}) {
     kite.solver.edges = {Edge::Pinned, Edge::Free, second, Edge::Free};
-    auto simulation = Simulation::make(scene({kite}, {wind})).value();
-    const auto last = simulation.at(2);
-    CHECK(last.has_value() == (second == Edge::Pinned));
-    if (!last) CHECK_THAT(last.error().message, Contains("nothing holds") && Contains("frame 1"));
+    auto simulation = Simulation::make(scene({kite}, {wind}));
+    CHECK(simulation.has_value() == (second == Edge::Pinned));
+    if (simulation)
+      CHECK(simulation->at(2));
+    else
+      CHECK_THAT(simulation.error().message,
+                 Contains("s.density is 0") && Contains("nothing holds"));
   }
 }
 

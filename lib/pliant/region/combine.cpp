@@ -226,19 +226,7 @@ std::vector<Region> combine(std::span<const Box> boxes, Combine how, const Grid&
   return regions;
 }
 
-bool Patch::is_held() const {
-  if (!interior.empty()) return true;
-  int pinned = 0;
-  for (const auto& [edge, is_ring] : {std::pair(edges.u0, is_ring_u),
-                                      {edges.u1, is_ring_u},
-                                      {edges.v0, is_ring_v},
-                                      {edges.v1, is_ring_v}}) {
-    if (is_ring) continue;
-    if (edge == Edge::Clamped) return true;
-    pinned += edge == Edge::Pinned;
-  }
-  return pinned >= 2;
-}
+bool Patch::is_held() const { return !interior.empty() || edges.hold(is_ring_u, is_ring_v); }
 
 int Patch::interior_count() const {
   if (interior.empty()) return inner().columns() * inner().rows();

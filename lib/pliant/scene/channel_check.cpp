@@ -74,6 +74,7 @@ class ChannelChecker {
       check_poisson(surface);
     }
     if (kept_.contains("hardening")) check_hardening(surface);
+    if (kept_.contains("density") && kept_.contains("damping")) check_is_held(surface);
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
     if (kept_.contains("dt") && kept_.contains("timeScale")) check_steps(surface);
@@ -233,6 +234,28 @@ class ChannelChecker {
           "is 0, but must be greater than 0 where density and damping are 0: nothing "
           "else says how far a static surface yields",
           scene_.origin.last_line_of(surface.name, {"density", "damping", "hardening"}));
+    }
+  }
+
+  // A static surface that is solved as a whole needs edges that hold it: PHYSICS 3.
+  void check_is_held(const Surface& surface) {
+    const SolverSettings& solver = surface.solver;
+    if (solver.region != SolvedRegion::All || solver.edges.hold()) return;
+    if (!surface.enabled || surface.is_driven()) return;
+    const MaterialChannels& material = surface.material;
+    const Channel<1>& density = material.density;
+    const Channel<1>& damping = material.damping_ratio ? density : material.damping;
+    const bool is_animated =
+        density.is_animated() || damping.is_animated() || solver.time_scale.is_animated();
+    const int first = std::max(first_, first_solved_frame(scene_, surface));
+    const int last = is_animated ? last_ : std::min(first, last_);
+    for (int frame = first; frame <= last; ++frame) {
+      if (density.at(frame)[0] != 0 || damping.at(frame)[0] != 0) continue;
+      if (frame_length(scene_, surface, frame) == 0) continue;
+      return add_error(surface.name, "density", is_animated, frame,
+                       "is 0, and so is damping, but nothing holds a static surface: give it a "
+                       "density or a damping, or a clamped edge or two pinned ones",
+                       scene_.origin.last_line_of(surface.name, {"density", "damping", "edges"}));
     }
   }
 
