@@ -14,7 +14,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "curve_plot.hpp"
 #include "inputs.hpp"
@@ -107,16 +106,9 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
     const auto found = std::find_if(
         all.begin(), all.end(), [&](const NamedChannel& channel) { return channel.path == path; });
     if (found == all.end()) {
-      // Suggest channels of the same surface or force, if there is one, otherwise all.
-      const std::string owner = path.substr(0, path.find('.') + 1);
-      std::vector<std::string> near, any;
-      for (const NamedChannel& channel : all) {
-        any.push_back(channel.path);
-        if (!owner.empty() && channel.path.starts_with(owner)) near.push_back(channel.path);
-      }
       return fail(ErrorCode::InvalidInput,
-                  fmt::format("--channel {}: the scene has no such channel; it has {}", path,
-                              fmt::join(near.empty() ? any : near, ", ")));
+                  fmt::format("--channel {}: the scene has no such channel{}", path,
+                              channel_hint(scene, path)));
     }
     chosen.push_back(*found);
   }

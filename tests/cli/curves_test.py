@@ -100,6 +100,7 @@ class Curves(Command):
         self.write("at.txt", "1\n")
         for arguments, words in ((["--channel", "poke.magnitud"], "it has poke.enabled, poke.magnitude"),
                                  (["--channel", "none.b"], "no such channel"),
+                                 (["--channel", "sheet.stiffness"], 'did you mean "sheet.b", "sheet.c" and "sheet.d"?'),
                                  (["--frames", "3:1"], "A:B with A <= B"),
                                  (["--frames", "nan:1"], "A:B with A <= B"),
                                  (["--frames", "0:1e300"], "too many; at most"),

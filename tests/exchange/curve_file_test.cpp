@@ -244,6 +244,8 @@ TEST_CASE("the channels of a scene as curves", "[exchange][file]") {
   CHECK((*all)[0].channel == "crease.magnitude");
   CHECK_THAT(curves_of(own, {"poke.magnitude"}).error().message, contains_text("is constant"));
   CHECK_THAT(curves_of(own, {"poke.magnitud"}).error().message, contains_text("no such channel"));
+  CHECK_THAT(curves_of(own, {"poke.strength"}).error().message,
+             contains_text("did you mean \"poke.magnitude\"?"));
 }
 
 }  // namespace

@@ -21,6 +21,12 @@ TEST_CASE("an animate names one channel of its element, once", "[scene][animate]
       {force_with("<animate attribute=\"name\">" + one_key + "</animate>"),
        3,
        {"cannot be animated"}},
+      {force_with("<animate attribute=\"strength\">" + one_key + "</animate>"),
+       3,
+       {"<point> has no such channel; did you mean \"magnitude\"?"}},
+      {surface_with("<animate attribute=\"stiffness\">" + one_key + "</animate>"),
+       3,
+       {"<surface> has no such channel; did you mean \"b\", \"c\" and \"d\"?"}},
       {force_with("<animate attribute=\"\">" + one_key + "</animate>"), 3, {"no such channel"}},
       {scene_with("<point name=\"p\" magnitude=\"3\">\n<animate attribute=\"magnitude\">" +
                   one_key + "</animate></point>"),

@@ -65,6 +65,20 @@ TEST_CASE("a position on a path has its progress as a channel", "[scene][channel
                                           "g.enabled", "g.center.progress", "g.deformationRadius"});
 }
 
+TEST_CASE("what is no channel is told with those that may be meant", "[scene][channels]") {
+  const Scene scene = testing::scene({testing::sheet("sheet")}, {testing::poke("poke", {0, 0, 0})});
+  CHECK(channel_hint(scene, "sheet.stiffness")
+            .starts_with("; did you mean \"sheet.b\", \"sheet.c\" and \"sheet.d\"? it has "));
+  for (const char* const word : {"poke.strength", "poke.magnitud"})
+    CHECK(channel_hint(scene, word) ==
+          "; did you mean \"poke.magnitude\"? it has poke.enabled, poke.magnitude, "
+          "poke.deformationRadius, poke.forceRadius, poke.center, poke.direction");
+  CHECK(channel_hint(scene, "pike.magnitude") ==
+        "; nothing is named \"pike\"; did you mean \"poke\"? allowed: sheet, poke");
+  CHECK(channel_hint(scene, "") == "; nothing is named \"\"; allowed: sheet, poke");
+  CHECK(channel_hint(scene, "sheet").starts_with("; it has sheet."));
+}
+
 TEST_CASE("channels point at the scene's own values", "[scene][channels]") {
   const Scene scene = scene_of(animate_with("", "<key frame=\"3\" value=\"7\"/>\n"));
   int animated = 0;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pliant/core/text.hpp"
 #include "pliant/exchange/curve_names.hpp"
@@ -48,14 +47,8 @@ const Channel<D>& plain_channel(const Channel<D>& channel) {
 
 tl::unexpected<Error> unknown_channel(std::string_view option, const std::string& path,
                                       const Scene& scene) {
-  std::vector<std::string> near, any;
-  const std::string owner = split_channel(path).first + '.';
-  for (const NamedChannel& channel : channels_of(scene)) {
-    any.push_back(channel.path);
-    if (channel.path.starts_with(owner)) near.push_back(channel.path);
-  }
-  return invalid(fmt::format("{}{}: the scene has no such channel; it has {}", option, path,
-                             fmt::join(near.empty() ? any : near, ", ")));
+  return invalid(fmt::format("{}{}: the scene has no such channel{}", option, path,
+                             channel_hint(scene, path)));
 }
 
 std::optional<NamedChannel> find_channel(const Scene& scene, const std::string& path) {

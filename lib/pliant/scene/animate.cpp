@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/read_elements.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Slot* const> rows,
                        std::string_view name) {
   const std::string parent = tag(*animate.Parent()->ToElement());
-  std::vector<std::string_view> channels;
+  std::vector<std::string_view> channels, meant;
   bool is_known = false;
   for (const Slot* row : rows) {
     if (row->attribute.name == name && row->attribute.need == Need::Later)
@@ -27,8 +28,13 @@ std::string no_channel(const tinyxml2::XMLElement& animate, std::span<Slot* cons
     return value_problem(animate, "attribute", name,
                          fmt::format("cannot be animated; the channels of {} are: {}", parent,
                                      channels.empty() ? "none" : listed(channels)));
-  return value_problem(animate, "attribute", name,
-                       fmt::format("{} has no such channel{}", parent, hint(name, channels)));
+  // Of the parts whose channels a surface animates too, the material has the words of artists.
+  const std::string_view element = animate.Parent()->ToElement()->Name();
+  return value_problem(
+      animate, "attribute", name,
+      fmt::format("{} has no such channel{}", parent,
+                  attribute_hint(element == Description<Surface>::element ? "material" : element,
+                                 name, channels, meant)));
 }
 
 /// The largest number of components among the values of the keys.
@@ -130,7 +136,7 @@ void read_animate(const tinyxml2::XMLElement& animate, std::span<Slot* const> ro
     else
       row.line = animate.GetLineNum();
     row.is_animated = true;
-  } else if (given) {
+  } else if (given && !is_unknown(*given)) {
     findings.add_problem(given->GetLineNum(), no_channel(animate, rows, name));
   }
   std::visit(CurveOfChannel{animate, owner + '.' + name, findings}, place);

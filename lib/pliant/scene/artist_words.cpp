@@ -131,12 +131,16 @@ std::string plain_word(std::string_view word) {
   return text;
 }
 
-/// `"b", "c" and "d"`
-std::string joined_words(const std::vector<std::string>& words) {
-  std::string text = words.front();
-  for (std::size_t k = 1; k < words.size(); ++k)
-    text += (k + 1 == words.size() ? " and " : ", ") + words[k];
-  return text;
+/// The elements whose attributes an object has, those that artists name most first.
+std::vector<std::string_view> elements_of(const Scene& scene, std::string_view name) {
+  for (const Force& force : scene.forces)
+    if (force.name == name) return {kind_of(force)};
+  for (const Group& group : scene.groups)
+    if (group.name == name) return {Description<Group>::element};
+  for (const Surface& surface : scene.surfaces)
+    if (surface.name == name)
+      return {"material", "solver", "transform", "grid", "mesh", Description<Surface>::element};
+  return {Description<Scene>::element};
 }
 
 }  // namespace
@@ -169,6 +173,22 @@ std::string attribute_hint(std::string_view element, std::string_view word,
     return fmt::format("; did you mean {}? allowed: {}", joined_words(meant), listed(allowed));
   if (const auto near = nearest_word(word, allowed)) own.push_back(*near);
   return hint(word, allowed);
+}
+
+std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
+                           std::span<const std::string_view> allowed,
+                           std::vector<std::string_view>& own) {
+  std::string meant;
+  for (const std::string_view element : elements_of(scene, name))
+    if (own.empty()) meant = attribute_hint(element, word, allowed, own);
+  return meant;
+}
+
+std::string joined_words(std::span<const std::string> words) {
+  std::string text = words.front();
+  for (std::size_t k = 1; k < words.size(); ++k)
+    text += (k + 1 == words.size() ? " and " : ", ") + words[k];
+  return text;
 }
 
 }  // namespace pliant::xml

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/scene/scene.hpp"
+
 namespace pliant::xml {
 
 /// Words of other programs for attributes of these elements. Each list is separated by blanks.
@@ -23,5 +25,13 @@ std::span<const ArtistWords> artist_words();
 std::string attribute_hint(std::string_view element, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own);
+
+/// The same for an attribute of an object of a scene, which has those of several elements.
+std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
+                           std::span<const std::string_view> allowed,
+                           std::vector<std::string_view>& own);
+
+/// `b, c and d`. Requires: a word.
+std::string joined_words(std::span<const std::string> words);
 
 }  // namespace pliant::xml

@@ -121,18 +121,6 @@ bool may_change(const Slot& slot) {
          slot.attribute.need != Need::Later;
 }
 
-// The elements whose attributes an object has, those that artists name most first.
-std::vector<std::string_view> elements_of(const Scene& scene, std::string_view name) {
-  for (const Force& force : scene.forces)
-    if (force.name == name) return {kind_of(force)};
-  for (const Group& group : scene.groups)
-    if (group.name == name) return {Description<Group>::element};
-  for (const Surface& surface : scene.surfaces)
-    if (surface.name == name)
-      return {"material", "solver", "transform", "grid", "mesh", Description<Surface>::element};
-  return {Description<Scene>::element};
-}
-
 std::string no_attribute(const Scene& scene, const Table& table, const ValuePath& path) {
   std::vector<std::string_view> names;
   for (const Slot& slot : table)
@@ -143,12 +131,9 @@ std::string no_attribute(const Scene& scene, const Table& table, const ValuePath
                        slot.attribute.need == Need::Later ? not_supported(slot.attribute.instead)
                                                           : "cannot be changed");
   }
-  std::string meant;
   std::vector<std::string_view> own;
-  for (const std::string_view element : elements_of(scene, path.name))
-    if (own.empty()) meant = attribute_hint(element, path.attribute, names, own);
   return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
-                     meant);
+                     attribute_hint(scene, path.name, path.attribute, names, own));
 }
 
 // Adjusts the channel of a slot, or a component of it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -21,5 +22,9 @@ struct NamedChannel {
 /// each in the order of docs/scene-format.md. They point into `scene`, which must outlive them and
 /// not change.
 std::vector<NamedChannel> channels_of(const Scene& scene);
+
+/// `; did you mean "poke.magnitude"? it has …`, or `; nothing is named "pike"; did you mean "poke"?
+/// …`, for a path that is none of a channel of the scene.
+std::string channel_hint(const Scene& scene, std::string_view path);
 
 }  // namespace pliant

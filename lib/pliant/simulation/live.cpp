@@ -18,9 +18,9 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
-#include "pliant/scene/nearest.hpp"
 #include "pliant/scene/text.hpp"
 #include "pliant/simulation/bodies.hpp"
 #include "pliant/timeline/checks.hpp"
@@ -208,12 +208,9 @@ Result<void> LiveSimulation::Run::make_bodies() {
 }
 
 tl::unexpected<Error> LiveSimulation::Run::no_channel(std::string_view channel) const {
-  std::vector<std::string_view> paths;
-  for (const auto& [path, place] : places_) paths.push_back(path);
-  const auto near = xml::nearest_word(channel, paths);
   return fail(ErrorCode::InvalidInput,
               fmt::format("the scene has no channel \"{}\"{}", printable(channel),
-                          near ? fmt::format("; did you mean \"{}\"?", *near) : ""));
+                          channel_hint(scene_, channel)));
 }
 
 Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const double> value) {
