@@ -11,6 +11,7 @@
 
 using namespace pliant;
 using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -237,6 +238,40 @@ TEST_CASE("what cannot be changed is told with the change and the nearest word",
   CHECK_THAT(problem("sheet.c=-5"), Contains("c is -5"));  // only b and d say that it is too small
   CHECK_THAT(problem("sheet.damping*=-1"), Contains("damping at frame 1 is -2"));
   CHECK_THAT(problem("poke.targets=shet"), Contains("shet"));
+}
+
+TEST_CASE("a path is closed and opened", "[scene][change]") {
+  const auto is_closed = [](const Scene& scene) {
+    return std::get<RadialChannels>(scene.forces[1].kind).center.path()->path.is_closed();
+  };
+  const Scene scene = changed({"ball.center.closed=true", "ball.center.progress=0.25"});
+  CHECK(is_closed(scene));
+  // As a file that says so.
+  std::string said(text);
+  said.replace(said.find("progress=\"0.5\""), 14, "progress=\"0.25\" closed=\"true\"");
+  CHECK(values_of(scene) == values_of(parse_scene(said, "test.xml", "").value()));
+  CHECK_FALSE(is_closed(changed({"ball.center.closed= false "})));
+  CHECK_THAT(problem("ball.center.closed=1"), Contains("must be true or false"));
+  CHECK_THAT(problem("ball.center.closed*=2"), Contains("no numeric channel"));
+  CHECK_THAT(problem("poke.center.closed=true"), Contains("is not on a <path>"));
+  CHECK_THAT(problem("poke.magnitude.closed=true"), Contains("has no closed"));
+}
+
+TEST_CASE("a rule that a change breaks is told with the change", "[scene][change]") {
+  const auto problem_of = [](const std::vector<std::string>& typed) {
+    Scene scene = scene_of_text();
+    const auto made = change_scene(scene, std::span(typed));
+    REQUIRE_FALSE(made);
+    CHECK(made.error().file.empty());
+    CHECK(scene.end == 24);
+    return made.error().message;
+  };
+  CHECK_THAT(problem_of({"scene.end=0"}), StartsWith("--set scene.end=0: "));
+  CHECK_THAT(problem_of({"poke.magnitude=3", "sheet.c=-2", "scene.end=9"}),
+             StartsWith("--set sheet.c=-2: sheet.c is -2, but"));
+  // What a later one mends is no fault.
+  CHECK_THAT(problem_of({"scene.start=50", "scene.end=60", "sheet.density*=-1", "sheet.columns=9"}),
+             StartsWith("--set sheet.density*=-1: "));
 }
 
 TEST_CASE("two changes of one value are refused, and nothing is changed then", "[scene][change]") {

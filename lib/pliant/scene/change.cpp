@@ -30,20 +30,20 @@ namespace {
 using namespace xml;
 namespace fs = std::filesystem;
 
-constexpr std::string_view part_words[] = {"x", "y", "z", "progress"};
+constexpr std::string_view part_words[] = {"x", "y", "z", "progress", "closed"};
 
 tl::unexpected<Error> refuse(std::string message) {
   return fail(ErrorCode::InvalidInput, std::move(message));
 }
 
-// `NAME.attribute`, `NAME.attribute.x` or `NAME.attribute.progress`.
+// `NAME.attribute`, `NAME.attribute.x`, or `NAME.attribute.progress` of a path.
 struct ValuePath {
   std::string name, attribute;
   std::string part = {};  // one of `part_words`; empty: the whole
 
-  bool is_progress() const { return part == "progress"; }
+  bool is_of_path() const { return part == "progress" || part == "closed"; }
   std::optional<std::size_t> component() const {
-    if (part.empty() || is_progress()) return {};
+    if (part.empty() || is_of_path()) return {};
     return static_cast<std::size_t>(part[0] - 'x');
   }
   std::string title() const { return fmt::format("{}.{}", name, attribute); }
@@ -143,7 +143,7 @@ class Adjust {
 
   template <int D>
   Result<void> operator()(Channel<D>* channel) const {
-    if (path_.is_progress()) return no_path();
+    if (path_.is_of_path()) return no_path();
     return adjust<D>(*channel);
   }
   template <int D>
@@ -155,8 +155,9 @@ class Adjust {
     return std::visit([&](auto& channel) { return (*this)(&channel); }, *tangent);
   }
   Result<void> operator()(PositionChannel* position) const {
-    if (!path_.is_progress()) return adjust<3>(*position);
+    if (!path_.is_of_path()) return adjust<3>(*position);
     if (!position->path()) return no_path();
+    if (path_.part == "closed") return close(*position->path());
     Channel<1>& progress = position->path()->progress;
     if (change_.kind != SceneChange::Kind::Set) return adjust<1>(progress);
     return read(slot(progress_attribute, &progress));
@@ -175,7 +176,20 @@ class Adjust {
 
  private:
   Result<void> no_path() const {
-    return refuse(path_.title() + " is not on a <path>, so it has no progress");
+    return refuse(fmt::format("{} is not on a <path>, so it has no {}", path_.title(), path_.part));
+  }
+
+  Result<void> close(PathMotion& motion) const {
+    if (change_.kind != SceneChange::Kind::Set)
+      return refuse(path_.title() + ".closed is no numeric channel");
+    const Reading<bool> is_closed = parse_boolean(trimmed(change_.text));
+    if (!is_closed)
+      return refuse(fmt::format("{}: {}", in_quotes(change_.text), is_closed.error()));
+    auto path = Path::make(motion.path.waypoints(), *is_closed);
+    if (!path)
+      return refuse(fmt::format("waypoint {} {}", path.error().waypoint + 1, path.error().message));
+    motion.path = *std::move(path);
+    return {};
   }
 
   template <int D, class Place>
@@ -283,6 +297,30 @@ class AdjustCopy {
   const Adjust& adjust_;
 };
 
+// Where a scene as a whole breaks a rule.
+std::vector<Error> problems_of(const Scene& scene) {
+  std::vector<Error> problems = check_scene(scene);
+  return problems.empty() ? check_channels(scene) : problems;
+}
+
+// The problems that all changes bring to a scene without any, as those of the change from which on
+// there are some.
+Error blamed(std::vector<Error> problems, const Scene& scene, std::span<const SceneChange> changes,
+             const std::string& root) {
+  std::size_t count = changes.size();
+  for (; count > 1; --count) {
+    Scene before = scene;
+    if (!make_changes(before, changes.first(count - 1), root)) break;
+    std::vector<Error> others = problems_of(before);
+    if (others.empty()) break;
+    problems = std::move(others);
+  }
+  for (Error& problem : problems)
+    problem = {.code = problem.code,
+               .message = fmt::format("--set {}: {}", changes[count - 1].typed(), problem.message)};
+  return as_one(std::move(problems), "");
+}
+
 template <class Member>
 bool is_adjusted(const Member& member) {
   if constexpr (requires { member.adjustments(); }) {
@@ -325,8 +363,8 @@ bool SceneChange::overlaps(const SceneChange& other) const {
   const auto own = split(path), others = split(other.path);
   if (!own || !others) return path == other.path;
   if (own->name != others->name || own->attribute != others->attribute) return false;
-  // Parts of a position on a path are those of another value than its progress.
-  if (own->is_progress() != others->is_progress()) return own->part.empty() && kind == Kind::Set;
+  // Parts of a position on a path are those of another value than the path.
+  if (own->is_of_path() != others->is_of_path()) return own->part.empty() && kind == Kind::Set;
   return own->part.empty() || others->part.empty() || own->part == others->part;
 }
 
@@ -374,9 +412,8 @@ Result<void> change_scene(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root) {
   Scene changed = scene;
   if (auto made = make_changes(changed, changes, root); !made) return made;
-  std::vector<Error> errors = check_scene(changed);
-  if (errors.empty()) errors = check_channels(changed);
-  if (!errors.empty()) return fail(as_one(std::move(errors), changed.origin.file));
+  if (std::vector<Error> problems = problems_of(changed); !problems.empty())
+    return fail(as_one(std::move(problems), changed.origin.file));
   scene = std::move(changed);
   return {};
 }
@@ -392,7 +429,8 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
   Scene changed = scene;
   if (auto made = make_changes(changed, changes, root); !made)
     return refuse("--set " + made.error().message);
-  if (auto sound = change_scene(changed, std::span<const SceneChange>()); !sound) return sound;
+  if (std::vector<Error> problems = problems_of(changed); !problems.empty())
+    return fail(blamed(std::move(problems), scene, changes, root));
   scene = std::move(changed);
   return {};
 }
