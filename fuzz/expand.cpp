@@ -8,6 +8,7 @@
 
 #include "fuzz.hpp"
 #include "pliant/scene/arithmetic.hpp"
+#include "pliant/scene/scene_file.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;
@@ -57,7 +58,7 @@ void check_lines(const Expansion& expansion, const Markup& markup, const Files& 
   };
   for (std::size_t k = 0; k < markup.elements.size(); ++k) {
     const std::string_view name = markup.elements[k].name.of(expansion.text);
-    require(name != "include" && name != "define");
+    require(name != "define" && (name != "include" || !expansion.is_sound));
     check(markup.elements[k].name.begin, name);
     for (const AttributePlace& attribute : markup.attributes_of(k))
       check(attribute.name.begin, attribute.name.of(expansion.text));
@@ -81,11 +82,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const bool is_needed = needs_expansion(scene);
   const auto expansion = expand(scene, in_memory(files), findings);
   if (!expansion) return fails(), 0;
-  require(findings.problem_count() == 0);
+  require((findings.problem_count() == 0) == expansion->is_sound);
+  for (const std::size_t at : expansion->unknown) require(expansion->text[at] == '?');
   if (!is_needed) require(expansion->text == text);
   findings.use(expansion->files);
   const auto expanded = scan_markup(expansion->text, findings);
   if (!expanded) return fails(), 0;
   check_lines(*expansion, *expanded, files);
+  const auto read = parse_scene_of(text, "a.xml", "", "", in_memory(files));
+  if (!read) check_error(read.error(), 20'000);
+  require(!read || expansion->is_sound);
   return 0;
 }

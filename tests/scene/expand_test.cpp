@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
@@ -270,6 +271,93 @@ TEST_CASE("a message about two places names both files", "[scene][expand]") {
             "shot.xml:2); remove one of them"});
 }
 
+TEST_CASE("what cannot be included or made hides no other problem", "[scene][expand]") {
+  // Nothing follows from what is missing: no shape, no keys, no name, no target.
+  Shot shot(
+      "<surface name=\"a\"><include file=\"none.xml\"/></surface>\n"
+      "<surface name=\"$b\"><grid columns=\"5\" rows=\"$rows\" width=\"1,5\"/>\n"
+      "<material density=\"$rho\"/><animate attribute=\"$what\"><key frame=\"1\" value=\"2\"/>\n"
+      "</animate><animate attribute=\"damping\"><include file=\"keys.xml\"/></animate></surface>\n"
+      "<point name=\"p\" targets=\"shet\" magnitde=\"3\"><path attribute=\"$at\">\n"
+      "<waypoint at=\"0 0 0\"/><waypoint at=\"$to\"/><waypoint at=\"0 0 1\"/></path>\n"
+      "<animate attribute=\"magnitude\"><key frame=\"$one\" value=\"$big\"/>\n"
+      "<key frame=\"0\" value=\"2\" tangent=\"$t\"/></animate></point>");
+  std::vector<std::string> told;
+  for (const std::string& problem : shot.problems())
+    told.push_back(problem.substr(0, problem.find("; ")));
+  const auto undefined = [](int line, std::string_view what, std::string_view name) {
+    return fmt::format("shot.xml:{}: {}=\"${}\": no definition of \"{}\" comes before it", line,
+                       what, name, name);
+  };
+  std::ranges::sort(told);
+  Lines expected{
+      "shot.xml:2: <include> file=\"none.xml\": none.xml: cannot read the file: No such file or "
+      "directory",
+      "shot.xml:5: <animate> has no element \"include\"",
+      undefined(3, "<surface> name", "b"),
+      undefined(3, "<grid> rows", "rows"),
+      "shot.xml:3: <grid> width=\"1,5\": not a number: \",5\" follows 1 (write the decimal point "
+      "as \".\")",
+      undefined(4, "<material> density", "rho"),
+      undefined(4, "<animate> attribute", "what"),
+      "shot.xml:6: <point> has no attribute \"magnitde\"",
+      undefined(6, "<path> attribute", "at"),
+      undefined(7, "<waypoint> at", "to"),
+      undefined(8, "<key> frame", "one"),
+      undefined(8, "<key> value", "big"),
+      undefined(9, "<key> tangent", "t"),
+  };
+  std::ranges::sort(expected);
+  CHECK(told == expected);
+
+  // What an included file has wrong is told too.
+  Shot rig(define("w", "1 / 0") + sheet_of("$w") + "<include file=\"rig.xml\"/>");
+  rig.fragment("rig.xml",
+               "<point name=\"p\" magnitude=\"$w\" targets=\"none\"/>\n<radial nme=\"r\"/>");
+  const Lines problems = rig.problems();
+  REQUIRE(problems.size() == 3);
+  CHECK(problems[0] ==
+        "shot.xml:2: <grid> width=\"$w\": it is divided by 0; $w is defined at line 2");
+  CHECK(problems[1] ==
+        "rig.xml:2: <point> magnitude=\"$w\": it is divided by 0; $w is defined at line 2 of "
+        "shot.xml; included by shot.xml:2");
+  CHECK(problems[2].starts_with("rig.xml:3: <radial> has no attribute \"nme\"; did you mean"));
+}
+
+TEST_CASE("a message about a value that definitions made tells where they are", "[scene][expand]") {
+  const auto only = [](const Shot& shot) {
+    const Lines problems = shot.problems();
+    INFO(fmt::format("{}", fmt::join(problems, "\n")));
+    REQUIRE(problems.size() == 1);
+    return problems.front();
+  };
+  CHECK(only(Shot(sheet_of("$w", define("w", "-3") + "\n"))) ==
+        "shot.xml:3: <grid> width=\"-3\": must be greater than 0; $w is defined at line 2");
+  CHECK(only(Shot(sheet_of("$a - $b", define("a", "1") + "\n" + define("b", "4") + "\n"))) ==
+        "shot.xml:4: <grid> width=\"-3\": must be greater than 0; $a is defined at line 2; $b is "
+        "defined at line 3");
+  // The file that the value comes from: of what is given, that of the <include>.
+  Shot shot("<include file=\"sizes.xml\"/>" + sheet_of("$w"));
+  shot.fragment("sizes.xml", define("w", "wide"));
+  CHECK(only(shot) ==
+        "shot.xml:2: <grid> width=\"wide\": not a number; $w is defined at line 2 of sizes.xml, "
+        "included by shot.xml:2");
+  Shot given("\n<include file=\"rig.xml\">\n" + define("w", "wide") + "</include>");
+  given.fragment("rig.xml", sheet_of("$w", define("w", "2")));
+  CHECK(only(given) ==
+        "rig.xml:2: <grid> width=\"wide\": not a number; $w is defined at line 4 of shot.xml; "
+        "included by shot.xml:3");
+  // Of several values on a line only the one that the message is about.
+  CHECK(only(Shot(define("x", "x") + define("one", "1") +
+                  "\n<point name=\"p\"><animate attribute=\"magnitude\"><key frame=\"$one\" "
+                  "value=\"$one\"/><key frame=\"2\" value=\"$x\"/></animate></point>")) ==
+        "shot.xml:3: <key> value=\"x\": not a number; $x is defined at line 2");
+  // A rule between values has no value in quotes.
+  CHECK(only(Shot(define("rho", "-1") + "\n<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/>"
+                                        "<material density=\"$rho\"/></surface>"))
+            .ends_with("; $rho is defined at line 2"));
+}
+
 TEST_CASE("notes and origins name the file", "[scene][expand]") {
   Shot shot("<include file=\"rig.xml\"/>\n<point name=\"own\" magnitude=\"2\"/>");
   shot.fragment(
@@ -390,8 +478,9 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
        {"shot.xml:2: <grid> width=\"${}\": \"${\" must be followed by a name and "
         "\"}\"; write $$ for a $"}},
       {sheet_of("$w / 0", define("w", "1")),
-       {"shot.xml:2: <grid> width=\"$w / 0\": it is divided by 0"}},
-      {sheet_of("($w", define("w", "1")), {"shot.xml:2: <grid> width=\"($w\": a \")\" is missing"}},
+       {"shot.xml:2: <grid> width=\"$w / 0\": it is divided by 0; $w is defined at line 2"}},
+      {sheet_of("($w", define("w", "1")),
+       {"shot.xml:2: <grid> width=\"($w\": a \")\" is missing; $w is defined at line 2"}},
       // A definition with a problem causes no others.
       {sheet_of("$w", define("w", "$x")),
        {"shot.xml:2: <define> value=\"$x\": no definition of \"x\" comes before it"}},
@@ -576,9 +665,12 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
   for (int k = 0; k < 100; ++k) body += "<include file=\"a.xml\"/>\n";
   Shot shot(body);
   shot.fragment("a.xml", "<nonsense/>\n<uniform name=\"$x\"/>");
-  CHECK(shot.problems() ==
-        Lines{"a.xml:3: <uniform> name=\"$x\": no definition of \"x\" comes before it; "
-              "included by shot.xml:2"});
+  CHECK(
+      shot.problems() ==
+      Lines{"a.xml:2: <scene> has no element \"nonsense\"; allowed: surface, point, radial, line, "
+            "uniform, vortex, noise, inertia, group; included by shot.xml:2",
+            "a.xml:3: <uniform> name=\"$x\": no definition of \"x\" comes before it; "
+            "included by shot.xml:2"});
   shot.fragment("a.xml", "<nonsense/>");
   CHECK(shot.problems().size() == 1);
 }

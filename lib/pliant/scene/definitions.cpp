@@ -75,6 +75,9 @@ class ValueReader {
     return parts;
   }
 
+  /// Of the definitions that were read.
+  std::vector<std::uint32_t> sources() { return std::move(sources_); }
+
  private:
   std::string_view take(std::size_t count) {
     const std::string_view taken = rest_.substr(0, count);
@@ -95,6 +98,7 @@ class ValueReader {
       return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
                                  hint_of_undefined(name, scope_)));
     if (!definition->is_sound) return refusal({});
+    sources_.push_back(definition->source);
     return ValuePart{.text = definition->text,
                      .is_definition = true,
                      .numbers = definition->numbers ? &*definition->numbers : nullptr,
@@ -103,6 +107,7 @@ class ValueReader {
 
   std::string_view rest_;
   const Scope& scope_;
+  std::vector<std::uint32_t> sources_;
 };
 
 bool has_operator(const std::vector<ValuePart>& parts) {
@@ -143,10 +148,14 @@ void Scope::take(Scope included) {
   imported.merge(included.imported);
 }
 
-tl::expected<std::string, std::string> expand_value(std::string_view value, const Scope& scope,
-                                                    Use use) {
-  const auto parts = ValueReader(value, scope).read();
-  if (!parts) return tl::unexpected(parts.error());
+tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
+                                                       Use use) {
+  ValueReader reader(value, scope);
+  const auto parts = reader.read();
+  if (!parts) return tl::unexpected(ValueRefusal{parts.error()});
+  const auto refusal_of = [&](std::string complaint) {
+    return tl::unexpected(ValueRefusal{std::move(complaint), reader.sources()});
+  };
   const bool is_defined = std::any_of(parts->begin(), parts->end(),
                                       [](const ValuePart& part) { return part.is_definition; });
   const bool may_be_computed =
@@ -156,7 +165,7 @@ tl::expected<std::string, std::string> expand_value(std::string_view value, cons
   if (computed && computed->has_value()) {
     text = **computed;
   } else if (computed && !(use == Use::Definition && computed->error().is_syntax)) {
-    return refusal(computed->error().complaint);
+    return refusal_of(computed->error().complaint);
   } else {
     for (const ValuePart& part : *parts) {
       text += part.text;
@@ -164,8 +173,9 @@ tl::expected<std::string, std::string> expand_value(std::string_view value, cons
     }
   }
   if (is_defined && text.size() > longest_value)
-    return refusal(fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
-  return text;
+    return refusal_of(
+        fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
+  return ExpandedValue{std::move(text), reader.sources()};
 }
 
 }  // namespace pliant::xml

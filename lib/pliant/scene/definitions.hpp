@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -23,6 +25,7 @@ struct Definition {
   bool is_plain = false;                ///< a number, or several between blanks
   bool is_sound = false;                ///< false: a problem with it has been reported
   int line = 0;                         ///< of the <define> in its file
+  std::uint32_t source = 0;             ///< of its value, in `DefinedValues`
   mutable bool is_used = false;
 
   void set(std::string value);
@@ -54,11 +57,21 @@ enum class Use {
   Definition,  ///< as Number, but kept if it has no operator, or wrong syntax
 };
 
+/// A value in which definitions are used.
+struct ExpandedValue {
+  std::string text;
+  std::vector<std::uint32_t> sources = {};  ///< of these definitions
+};
+
+/// Why a value cannot be made.
+struct ValueRefusal {
+  std::string complaint;  ///< follows `<grid> width="$w": `; empty: the problem is reported already
+  std::vector<std::uint32_t> sources = {};  ///< of the definitions that it was to be made of
+};
+
 /// A value, decoded, with `$NAME` and `${NAME}` replaced and `$$` as `$`; computed if it is
-/// arithmetic
-/// (`compute`). Errors: a complaint that follows `<grid> width="$w": `, empty if the problem is
-/// reported already.
-tl::expected<std::string, std::string> expand_value(std::string_view value, const Scope& scope,
-                                                    Use use);
+/// arithmetic (`compute`).
+tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
+                                                       Use use);
 
 }  // namespace pliant::xml

@@ -51,6 +51,11 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
                          : belongs + "; allowed: " + (names.empty() ? "none" : listed(names)));
 }
 
+/// An <include> is still there if it could not be replaced, which is reported.
+bool is_include(const tinyxml2::XMLElement& element) {
+  return element.Name() == Description<IncludeText>::element;
+}
+
 void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given, Slot& row,
                 Findings& findings) {
   if (row.line != 0)
@@ -60,6 +65,10 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
                       fmt::format("{} is already animated ({}); remove one of them", given.Name(),
                                   findings.title_of(row.line, given.GetLineNum()))));
   row.line = given.GetLineNum();
+  if (is_unknown(given)) {
+    row.is_sound = false;
+    return findings.add_consequence();
+  }
   if (row.attribute.need == Need::Later) {
     row.is_sound = false;
     return findings.add_problem(
@@ -128,7 +137,10 @@ bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> c
       continue;
     }
     all_known = false;
-    findings.add_problem(child->GetLineNum(), unknown_child(element, *child, children));
+    if (is_include(*child))
+      findings.add_consequence();
+    else
+      findings.add_problem(child->GetLineNum(), unknown_child(element, *child, children));
   }
   return all_known;
 }
@@ -142,7 +154,10 @@ bool read_numbers(const tinyxml2::XMLElement& element, std::vector<double>& numb
   };
   for (const auto* node = element.FirstChild(); node && !findings.is_full();
        node = node->NextSibling()) {
-    if (const auto* child = node->ToElement())
+    const auto* child = node->ToElement();
+    if (child && is_include(*child))
+      is_sound = false;
+    else if (child)
       complain(child->GetLineNum(), unknown_child(element, *child, {}));
     if (!node->ToText()) continue;
     // The line of a text is that of its first word.
@@ -176,6 +191,8 @@ std::string tag(const tinyxml2::XMLElement& element) {
   const std::string name = in_quotes(element.Name());
   return '<' + name.substr(1, name.size() - 2) + '>';
 }
+
+bool is_unknown(const tinyxml2::XMLAttribute& given) { return given.Value()[0] == unknown_value; }
 
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
                           std::string_view text, std::string_view complaint) {

@@ -10,8 +10,9 @@
 #include "pliant/scene/slot.hpp"
 
 namespace tinyxml2 {
+class XMLAttribute;
 class XMLElement;
-}
+}  // namespace tinyxml2
 
 namespace pliant::xml {
 
@@ -41,6 +42,9 @@ Slot* find(std::span<Slot> table, std::string_view name);
 
 /// `<grid>`.
 std::string tag(const tinyxml2::XMLElement& element);
+
+/// Whether the value could not be made of definitions, which is reported.
+bool is_unknown(const tinyxml2::XMLAttribute& given);
 
 /// `<grid> width="1,5": not a number`.
 std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,

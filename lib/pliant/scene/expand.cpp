@@ -79,8 +79,8 @@ class Expander {
                         const AttributePlace& attribute, Scope& scope);
   void define(OpenText& text, std::size_t index, const Scope& scope, Definitions& definitions,
               const Definitions* given);
-  void include(OpenText& text, std::size_t index, Scope& scope);
-  void expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
+  bool include(OpenText& text, std::size_t index, Scope& scope);
+  bool expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
                    const std::string& identity, Scope& inner);
   const IncludedFile* read(const fs::path& path, const std::string& identity, int index);
   bool read_attributes(OpenText& text, std::size_t index,
@@ -109,6 +109,9 @@ class Expander {
     add(text, where,
         fmt::format("<{}> {}={}: {}", element, attribute, in_quotes(value), complaint));
   }
+  std::string told(const ValueRefusal& refusal, const OpenText& text) const {
+    return refusal.complaint + values_.sources(refusal.sources, text.index, map_);
+  }
   /// Adds a problem that concerns a limit, after which nothing is expanded further.
   void stop(OpenText& text, std::size_t where, std::string message) {
     if (!is_stopped_) add(text, where, std::move(message));
@@ -127,6 +130,8 @@ class Expander {
   const TextFiles& files_;
   Findings& findings_;
   LineMap map_;
+  DefinedValues values_;
+  std::vector<std::size_t> unknown_;
   ExpansionRules rules_;
   std::map<std::string, std::unique_ptr<IncludedFile>> read_;  // by identity
   std::string out_;
@@ -168,8 +173,12 @@ std::optional<Expansion> Expander::expand(const SourceText& scene) {
   scope.later = later_definitions(text);
   expand(text, 0, scene.text.size(), scope);
   if (!is_stopped_) spend(0, text, 0);
-  if (findings_.problem_count() != problems) return std::nullopt;
-  return Expansion{std::move(out_), std::move(map_)};
+  if (is_stopped_) return std::nullopt;
+  return Expansion{.text = std::move(out_),
+                   .files = std::move(map_),
+                   .values = std::move(values_),
+                   .is_sound = findings_.problem_count() == problems,
+                   .unknown = std::move(unknown_)};
 }
 
 /// Expands the bytes from `begin` to `end`, which contain whole elements.
@@ -198,7 +207,8 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
       k = after(text, k);
     } else if (name == include_name) {
       write_to(element.whole().begin);
-      if (check_place(text, element)) include(text, k, scope);
+      if (!check_place(text, element) || !include(text, k, scope))
+        emit(fmt::format("<{}/>", include_name));
       begin_run(text.index, text.lines.line_of(element.end));
       written = element.end;
       k = after(text, k);
@@ -215,7 +225,7 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
   write_to(end);
 }
 
-/// Writes a value with its closing quote.
+/// Writes a value with its closing quote; for one that cannot be made, see `Expansion`.
 void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
                                 const AttributePlace& attribute, Scope& scope) {
   const std::string_view raw = attribute.value.of(text.text);
@@ -225,15 +235,17 @@ void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
       expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number);
   if (!expanded) {
     const bool is_scene = element.parent == ElementPlace::no_parent && owner == scene_name;
-    if (!expanded.error().empty())
+    if (!expanded.error().complaint.empty())
       add_value(text, attribute.name.begin, owner, name, value,
                 is_scene ? "the attributes of <scene> come before all definitions; write the value "
                            "itself"
-                         : expanded.error());
-    return;
+                         : told(expanded.error(), text));
+    unknown_.push_back(out_.size());
+  } else if (!expanded->sources.empty()) {
+    values_.add(line_, name, expanded->text, expanded->sources);
   }
   const char quote = text.text[attribute.value.end];
-  emit(encoded(*expanded, quote));
+  emit(expanded ? encoded(expanded->text, quote) : "?");
   emit({&quote, 1});
   spend(0, text, attribute.name.begin);
   // The value is on one line now. Its other lines follow it.
@@ -308,6 +320,7 @@ void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
                 fmt::format("the scene has more than {} definitions", most_definitions));
   Definition& definition = definitions[name];
   definition.line = text.lines.line_of(element.whole().begin);
+  definition.source = values_.add_definition(name, text.index, definition.line);
   if (!is_complete) return;
   if (given) {
     if (const auto instead = given->find(name); instead != given->end()) {
@@ -321,15 +334,16 @@ void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
   }
   const auto value = expand_value(*table[1].second, scope, Use::Definition);
   if (!value) {
-    if (!value.error().empty())
-      add_value(text, where, define_name, "value", *table[1].second, value.error());
+    if (!value.error().complaint.empty())
+      add_value(text, where, define_name, "value", *table[1].second, told(value.error(), text));
     return;
   }
-  spend(value->size(), text, where);
-  definition.set(*value);
+  spend(value->text.size(), text, where);
+  definition.set(value->text);
 }
 
-void Expander::include(OpenText& text, std::size_t index, Scope& scope) {
+/// Returns whether the file's content was written.
+bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
   const ElementPlace& element = text.markup.elements[index];
   std::pair<std::string_view, std::optional<std::string>> table[] = {{"file", {}}};
   const bool is_complete = read_attributes(text, index, table);
@@ -356,23 +370,25 @@ void Expander::include(OpenText& text, std::size_t index, Scope& scope) {
                       hint(name, allowed)));
   }
   if (!element.closes_itself()) check_text(text.text.rfind('<', element.end - 1));
-  if (!is_complete) return;
+  if (!is_complete) return false;
 
   const std::string& written = *table[0].second;
   const std::size_t where = text.markup.attributes_of(index).front().name.begin;
   const auto refuse = [&](std::string_view complaint) {
     add_value(text, where, include_name, "file", written, complaint);
+    return false;
   };
   const auto expanded = expand_value(written, scope, Use::Text);
-  if (!expanded) {
-    if (!expanded.error().empty()) refuse(expanded.error());
-    return;
+  if (!expanded)
+    return expanded.error().complaint.empty() ? false : refuse(told(expanded.error(), text));
+  const std::string& file = expanded->text;
+  if (trimmed(file).empty()) return refuse("is empty; the name of a file is required");
+  if (file.find('\0') != std::string::npos) return refuse("is not the name of a file");
+  const fs::path path = text.folder / file;
+  if (++include_count_ > most_includes) {
+    stop(text, where, fmt::format("the scene includes more than {} files", most_includes));
+    return false;
   }
-  if (trimmed(*expanded).empty()) return refuse("is empty; the name of a file is required");
-  if (expanded->find('\0') != std::string::npos) return refuse("is not the name of a file");
-  const fs::path path = text.folder / *expanded;
-  if (++include_count_ > most_includes)
-    return stop(text, where, fmt::format("the scene includes more than {} files", most_includes));
   int depth = 1;
   for (const OpenText* one = &text; one->includer; one = one->includer) ++depth;
   if (depth > deepest_include)
@@ -388,9 +404,10 @@ void Expander::include(OpenText& text, std::size_t index, Scope& scope) {
   Scope inner;
   inner.outer = &scope;
   inner.given = &given;
-  expand_file(text, element, path, *identity, inner);
-  if (findings_.problem_count() == problems) report_unused(text, *expanded, given, inner);
+  const bool is_written = expand_file(text, element, path, *identity, inner);
+  if (findings_.problem_count() == problems) report_unused(text, file, given, inner);
   scope.take(std::move(inner));
+  return is_written;
 }
 
 /// A definition that is given to a file which neither has nor uses it is probably misspelt.
@@ -431,20 +448,22 @@ const IncludedFile* Expander::read(const fs::path& path, const std::string& iden
   return nullptr;
 }
 
-/// Writes the content of a file.
-void Expander::expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
+/// Writes the content of a file. Returns whether it has any that may be included.
+bool Expander::expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
                            const std::string& identity, Scope& inner) {
   const std::size_t where = element.whole().begin;
   const int index = map_.add_text(path.string(), text.index, text.lines.line_of(where));
   const IncludedFile* const file = read(path, identity, index);
-  if (!file || !spend(file->text.size(), text, where)) return;
+  if (!file || !spend(file->text.size(), text, where)) return false;
   const auto& elements = file->markup->elements;
   markup_count_ += elements.size() + file->markup->attributes.size();
-  if (markup_count_ > most_markup)
-    return stop(text, where,
-                fmt::format("the scene, with all that it includes, has more than {} elements and "
-                            "attributes",
-                            most_markup));
+  if (markup_count_ > most_markup) {
+    stop(text, where,
+         fmt::format("the scene, with all that it includes, has more than {} elements and "
+                     "attributes",
+                     most_markup));
+    return false;
+  }
   OpenText inside{.text = file->text,
                   .markup = *file->markup,
                   .index = index,
@@ -453,11 +472,12 @@ void Expander::expand_file(OpenText& text, const ElementPlace& element, const fs
                   .includer = &text};
   const ElementPlace& root = elements.front();
   const std::string_view name = inside.name_of(root);
-  if (std::find(rules_.roots().begin(), rules_.roots().end(), name) == rules_.roots().end())
-    return add(
-        inside, root.whole().begin,
+  if (std::find(rules_.roots().begin(), rules_.roots().end(), name) == rules_.roots().end()) {
+    add(inside, root.whole().begin,
         fmt::format("the root element is <{}>; a file that is included must contain one of: {}",
                     name, listed(rules_.roots())));
+    return false;
+  }
   if (name == fragment_name)
     for (const AttributePlace& attribute : file->markup->attributes_of(0))
       add(inside, attribute.name.begin,
@@ -472,6 +492,7 @@ void Expander::expand_file(OpenText& text, const ElementPlace& element, const fs
   inner.later = later_definitions(inside);
   expand(inside, begin, end, inner);
   inner.later = {};
+  return true;
 }
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/scene/defined_values.hpp"
 #include "pliant/scene/description.hpp"
 #include "pliant/scene/findings.hpp"
 #include "pliant/scene/line_map.hpp"
@@ -55,13 +57,21 @@ bool needs_expansion(const SourceText& source);
 /// definitions that of each `$NAME`, and in which no <define> is left.
 struct Expansion {
   std::string text;
-  LineMap files;  ///< of its lines
+  LineMap files;                          ///< of its lines
+  DefinedValues values = {};              ///< those that were made of definitions
+  bool is_sound = true;                   ///< false: there are problems, see below
+  std::vector<std::size_t> unknown = {};  ///< offsets of the values that could not be made
 };
+
+/// What takes the place of a value that could not be made, once the expanded text is scanned: a
+/// character that no file may have. Its problem is reported.
+inline constexpr char unknown_value = '\x01';
 
 /// Expands the text of a scene: docs/scene-format.md, "Sharing". Each element and attribute of the
 /// result begins on the line of the expansion whose place in `files` is that of the element or
-/// attribute in its file. Null if there is a problem: all problems of including and defining are
-/// found, but after one that concerns a limit the others are not.
+/// attribute in its file. All problems of including and defining are found. For those of the rest,
+/// an <include/> then stands where a file could not be included, and a `?` for a value that could
+/// not be made. Null after a problem that concerns a limit.
 std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,
                                 Findings& findings);
 

@@ -17,6 +17,7 @@ constexpr std::size_t most_listed = 10'000;
 }  // namespace
 
 void Findings::add_problem(int line, std::string message) {
+  message += values_.sources(line, message, files_);
   add_problem(files_.place_of(line), std::move(message));
 }
 

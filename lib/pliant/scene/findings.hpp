@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/scene/defined_values.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant::xml {
@@ -20,8 +21,12 @@ class Findings {
   explicit Findings(const SceneOrigin& origin)
       : files_(origin.files ? *origin.files : LineMap(origin.file)) {}
 
-  /// From now on lines are those of the expanded text.
-  void use(LineMap files) { files_ = std::move(files); }
+  /// From now on lines are those of the expanded text. A problem of a value that was made of
+  /// definitions also tells where they are.
+  void use(LineMap files, DefinedValues values = {}) {
+    files_ = std::move(files);
+    values_ = std::move(values);
+  }
 
   void add_problem(int line, std::string message);
   void add_note(int line, std::string message);
@@ -29,6 +34,9 @@ class Findings {
   /// The same of a place that is known. Problems that are alike, in a file that is included several
   /// times, are one.
   void add_problem(ScenePlace place, std::string message);
+
+  /// Counts a problem that follows from one that was added, and is not told.
+  void add_consequence() { ++problem_count_; }
 
   /// `line 5`, for a message at the line `from`: see `LineMap`.
   std::string title_of(int line, int from) const { return files_.title_of(line, from); }
@@ -51,6 +59,7 @@ class Findings {
 
  private:
   LineMap files_;
+  DefinedValues values_;
   std::vector<Error> problems_;
   std::set<std::tuple<std::string, int, std::string>> included_;  // problems of included files
   std::vector<std::pair<int, std::string>> notes_;                // lines of the expanded text

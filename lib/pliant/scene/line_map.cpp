@@ -54,8 +54,14 @@ ScenePlace LineMap::place_in(int text, int line) const {
 }
 
 std::string LineMap::title_of(int line, int from) const {
-  const ScenePlace place = place_of(line);
-  if (text_of(line) == text_of(from)) return fmt::format("line {}", place.line);
+  if (line <= 0) return title_in(0, 0, text_of(from));
+  const LineRun& run = run_of(line);
+  return title_in(run.text, run.line + line - run.first, text_of(from));
+}
+
+std::string LineMap::title_in(int text, int line, int from) const {
+  if (text == from) return fmt::format("line {}", line);
+  const ScenePlace place = place_in(text, line);
   return fmt::format("line {} of {}{}{}", place.line, printable(place.file),
                      place.chain.empty() ? "" : ", ", place.chain);
 }

@@ -60,6 +60,9 @@ class LineMap {
   /// texts, `line 5 of rig.xml, included by shot.xml:9`.
   std::string title_of(int line, int from) const;
 
+  /// The same for a line of a text, in a message at the text `from`.
+  std::string title_in(int text, int line, int from) const;
+
   const std::vector<SceneText>& texts() const { return texts_; }  ///< the first is the scene's own
 
  private:

@@ -35,7 +35,7 @@ void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Fi
 /// is a problem.
 Slot* find_position(const tinyxml2::XMLElement& element, std::span<Slot> rows, Findings& findings) {
   const tinyxml2::XMLAttribute* given = element.FindAttribute("attribute");
-  if (!given) return nullptr;  // reported with the other attributes
+  if (!given || is_unknown(*given)) return nullptr;  // reported with the other attributes
   const std::string name(trimmed(given->Value()));
   Slot* row = find(rows, name);
   if (!row || !is_position(*row)) {

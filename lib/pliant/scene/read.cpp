@@ -108,13 +108,13 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   std::vector<Named> named;
   add_named_children(root, named);
   for (const auto& [part, line] : file.lines) scene.origin.lines.push_back({part, line});
-  check(scene, named, file);
+  if (file.is_expanded) check(scene, named, file);
   note_idle_targets(scene, file.findings);
   return scene;
 }
 
 /// Scans the text, and expands it into `expanded` if it needs that; `text` is then the expanded
-/// one. Returns whether there was no problem.
+/// one. Returns whether it can be read, perhaps only to find further problems.
 bool prepare(std::string_view& text, std::string& expanded, const std::string& name,
              SceneFile& file) {
   const std::optional<Markup> markup = scan_markup(text, file.findings);
@@ -125,10 +125,13 @@ bool prepare(std::string_view& text, std::string& expanded, const std::string& n
   if (!expansion) return false;
   expanded = std::move(expansion->text);
   text = expanded;
-  file.findings.use(expansion->files);
+  file.findings.use(expansion->files, std::move(expansion->values));
   file.files = std::move(expansion->files);
+  file.is_expanded = expansion->is_sound;
   // Each file is well-formed, but all together may be nested too deep, or too large.
-  return scan_markup(text, file.findings).has_value();
+  if (!scan_markup(text, file.findings)) return false;
+  for (const std::size_t at : expansion->unknown) expanded[at] = unknown_value;
+  return true;
 }
 
 /// Reads a document whose root is probably a <scene>.

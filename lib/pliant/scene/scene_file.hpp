@@ -30,6 +30,7 @@ struct SceneFile {
   TextFiles texts;               ///< those that it may include
   Findings findings;
   std::optional<LineMap> files = {};  ///< of the expanded text's lines; absent: nothing is included
+  bool is_expanded = true;  ///< false: some content is missing, for reasons that are reported
   std::map<std::string, int> lines = {};  ///< see SceneLine
   std::vector<NamedMesh> meshes = {};
   /// `NAME.attribute` of those with a problem: their values are not those of the author.

@@ -1,0 +1,70 @@
+#include "pliant/scene/defined_values.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/result.hpp"
+#include "pliant/scene/text.hpp"
+
+namespace pliant::xml {
+namespace {
+
+constexpr std::size_t most_told = 3;  // definitions
+
+bool is_of_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+bool has_name(std::string_view text, std::string_view name) {
+  for (std::size_t at = 0; (at = text.find(name, at)) != std::string_view::npos; ++at) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || !is_of_name(text[at - 1])) && (end == text.size() || !is_of_name(text[end])))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::uint32_t DefinedValues::add_definition(std::string name, int text, int line) {
+  if (definitions_.size() < most_kept) definitions_.push_back({std::move(name), text, line});
+  return static_cast<std::uint32_t>(definitions_.size() - 1);
+}
+
+void DefinedValues::add(int line, std::string_view attribute, std::string_view value,
+                        std::vector<std::uint32_t> definitions) {
+  if (values_.size() >= most_kept || definitions_.size() >= most_kept) return;
+  values_.push_back({line, std::string(attribute), std::string(value), std::move(definitions)});
+}
+
+std::string DefinedValues::sources(int line, std::string_view message, const LineMap& files) const {
+  std::vector<std::uint32_t> meant;
+  for (auto value = std::ranges::lower_bound(values_, line, {}, &Value::line);
+       value != values_.end() && value->line == line && meant.size() < most_told; ++value) {
+    const std::string quoted = fmt::format("{}={}", value->attribute, in_quotes(value->value));
+    const bool quotes_another = message.find(value->attribute + "=\"") != std::string_view::npos &&
+                                message.find(quoted) == std::string_view::npos;
+    if (quotes_another || !has_name(message, value->attribute)) continue;
+    meant.insert(meant.end(), value->definitions.begin(), value->definitions.end());
+  }
+  return sources(meant, files.text_of(line), files);
+}
+
+std::string DefinedValues::sources(std::span<const std::uint32_t> definitions, int text,
+                                   const LineMap& files) const {
+  std::string sources;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < definitions.size() && count < most_told; ++k) {
+    const auto before = definitions.first(k);
+    if (std::ranges::find(before, definitions[k]) != before.end()) continue;
+    const Definition& definition = definitions_[definitions[k]];
+    sources += fmt::format("; ${} is defined at {}", definition.name,
+                           files.title_in(definition.text, definition.line, text));
+    ++count;
+  }
+  return sources;
+}
+
+}  // namespace pliant::xml
