@@ -11,6 +11,7 @@
 #include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "support/catch.hpp"
+#include "support/dense.hpp"
 #include "support/exact_solution.hpp"
 #include "support/plates.hpp"
 #include "support/sanitized.hpp"
@@ -73,8 +74,7 @@ TEST_CASE("the exact integrator has the error of a millionth in each of 250 fram
     const Eigen::MatrixXd L = dense_operator({outline, stiffness, 0});
     const auto n = L.rows();
     const auto nodes = outline.grid().node_count();
-    const double slowest =
-        std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(L).eigenvalues()[0]);
+    const double slowest = std::sqrt(eigenvalues_of(L)[0]);
     const Field shape = Field::Random(nodes, 3);
     EdgeTangents tangents;
     if (outline.is_rectangle()) tangents.su0 = {1, -2, 0.5};

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "pliant/plate/small_modes.hpp"
 #include "pliant/plate/sparse/operator.hpp"
 #include "support/catch.hpp"
+#include "support/dense.hpp"
 #include "support/sanitized.hpp"
 
 using namespace pliant;
@@ -25,9 +25,7 @@ double smallest(const Grid& grid, const Stiffness& stiffness,
 // An independent slow path: all eigenvalues of the full matrix.
 double smallest_of_all(const Grid& grid, const Stiffness& stiffness) {
   const Eigen::MatrixXd matrix = assemble_upper({grid, stiffness, 0});
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>(),
-                                                        Eigen::EigenvaluesOnly)
-      .eigenvalues()(0);
+  return eigenvalues_of(matrix.selfadjointView<Eigen::Upper>())(0);
 }
 
 }  // namespace
@@ -77,9 +75,7 @@ TEST_CASE("a plate of another outline vibrates as its full matrix says", "[plate
   }
   const PlateSystem system{{grid, interior}, {1, 2, 3}, 0};
   const Eigen::MatrixXd matrix = assemble_upper(system);
-  const double expected =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.selfadjointView<Eigen::Upper>())
-          .eigenvalues()(0);
+  const double expected = eigenvalues_of(matrix.selfadjointView<Eigen::Upper>())(0);
   const auto solver = make_plate_solver(available_solvers().front());
   CHECK_THAT(smallest_eigenvalue(vibrating(*solver, system).value()).value(),
              WithinRel(expected, 1e-10));
@@ -102,13 +98,12 @@ TEST_CASE("the small modes are those of Eigen", "[plate][vibration]") {
     matrix += matrix.transpose().eval();
     const SmallModes modes =
         small_modes({matrix.data(), matrix.data() + matrix.size()}, static_cast<std::size_t>(size));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(matrix);
+    const Eigen::VectorXd all = eigenvalues_of(matrix);
     for (int k = 0; k < size; ++k) {
       CAPTURE(size, k);
-      CHECK_THAT(modes.values[static_cast<std::size_t>(k)],
-                 WithinAbs(all.eigenvalues()(k), 1e-13 * size));
+      CHECK_THAT(modes.values[static_cast<std::size_t>(k)], WithinAbs(all(k), 1e-13 * size));
       const Eigen::Map<const Eigen::VectorXd> vector(&modes.vectors[std::size_t(k) * size], size);
-      CHECK((matrix * vector - all.eigenvalues()(k) * vector).norm() < 1e-12 * size);
+      CHECK((matrix * vector - all(k) * vector).norm() < 1e-12 * size);
     }
   }
   // Of equal values, and of sizes far apart.
@@ -122,8 +117,7 @@ TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate]
   for (const Grid& grid : {Grid{15, 12, 0.07, 0.1}, Grid{4, 3, 1, 1}, Grid{3, 3, 1, 1}}) {
     const PlateSystem system{grid, {1, 2, 2}, 0};
     const Eigen::MatrixXd matrix = assemble_upper(system);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
-        matrix.selfadjointView<Eigen::Upper>());
+    const Modes all = modes_of(matrix.selfadjointView<Eigen::Upper>());
     // The displacement under a load on a few nodes, off the middle.
     const Eigen::Index size = unknown_count(system.outline);
     Eigen::VectorXd load = Eigen::VectorXd::Zero(size);
@@ -141,9 +135,9 @@ TEST_CASE("a shape falls apart into the vibrations of the full matrix", "[plate]
     // The slowest modes, individually.
     const std::size_t compared = std::min<std::size_t>(modes.size(), size == 130 ? 4 : 1);
     for (std::size_t k = 0; k < compared; ++k) {
-      const auto vector = all.eigenvectors().col(static_cast<Eigen::Index>(k));
+      const auto vector = all.vectors.col(static_cast<Eigen::Index>(k));
       CAPTURE(grid.columns, k);
-      CHECK_THAT(modes[k].lambda, WithinRel(all.eigenvalues()(static_cast<Eigen::Index>(k)), 1e-6));
+      CHECK_THAT(modes[k].lambda, WithinRel(all.values(static_cast<Eigen::Index>(k)), 1e-6));
       CHECK_THAT(modes[k].share, WithinAbs(vector.dot(shape) * vector(node) / shape(node), 1e-6));
     }
   }

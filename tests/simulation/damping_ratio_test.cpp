@@ -2,13 +2,12 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
 #include "pliant/body/grid_body.hpp"
 #include "pliant/plate/sparse/operator.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/simulation/live.hpp"
 #include "support/catch.hpp"
+#include "support/dense.hpp"
 #include "support/meshes.hpp"
 #include "support/moving_scene.hpp"
 #include "support/sanitized.hpp"
@@ -28,8 +27,8 @@ struct FullMode {
 
 FullMode full_mode(const Outline& outline, const Stiffness& stiffness) {
   const Eigen::MatrixXd matrix = assemble_upper({outline, stiffness, 0});
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(matrix.selfadjointView<Eigen::Upper>());
-  return {all.eigenvalues()(0), all.eigenvectors().col(0)};
+  const Modes all = modes_of(matrix.selfadjointView<Eigen::Upper>());
+  return {all.values(0), all.vectors.col(0)};
 }
 
 // The scene with a damping in place of a damping ratio.

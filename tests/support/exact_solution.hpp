@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
+#include <Eigen/Core>
 
 #include "pliant/core/field.hpp"
+#include "support/dense.hpp"
 
 namespace pliant::testing {
 
@@ -30,7 +30,7 @@ class ExactSolution {
     }
     A.block(moving - n_, moving, n_, n_) = inverse;
     A.block(moving, moving + n_, n_, n_).setIdentity();
-    power_ = (interval * A).exp();
+    power_ = exponential_of(interval * A);
   }
 
   /// Advances w and v (#rows x 3) under a force that changes evenly.

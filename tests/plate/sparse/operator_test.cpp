@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "support/catch.hpp"
+#include "support/dense.hpp"
 #include "support/plates.hpp"
 
 using namespace pliant;
 using pliant::testing::dense_operator;
+using pliant::testing::eigenvalues_of;
 using pliant::testing::unit_grid;
 using pliant::testing::WithinAbs;
 using pliant::testing::WithinRel;
@@ -30,9 +30,7 @@ TEST_CASE("the operator is positive definite down to c near -2 sqrt(bd)", "[plat
   const double shortfall = GENERATE(1.0, 1e-3, 1e-9);
   const double c = -2 * std::sqrt(b) * (1 - shortfall);
   const Eigen::MatrixXd dense = dense_operator({unit_grid(11, 9), {b, c, 1}, 0});
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense, Eigen::EigenvaluesOnly).eigenvalues();
-  CHECK(eigenvalues.minCoeff() > 0);
+  CHECK(eigenvalues_of(dense).minCoeff() > 0);
 }
 
 TEST_CASE("the one unknown of a 3 x 3 region has (8b + 4c + 8d)/h^4", "[plate][operator]") {
@@ -48,8 +46,7 @@ TEST_CASE("the first natural frequency of the clamped square plate is 35.985",
   // omega^2 is the smallest eigenvalue; its error is O(h^2), which one extrapolation removes.
   const auto frequency = [](int nodes) {
     const Eigen::MatrixXd dense = dense_operator({unit_grid(nodes, nodes), {1, 2, 1}, 0});
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense, Eigen::EigenvaluesOnly)
-                         .eigenvalues()[0]);
+    return std::sqrt(eigenvalues_of(dense)[0]);
   };
   const double coarse = frequency(11), fine = frequency(21);
   CHECK_THAT(fine + (fine - coarse) / 3, WithinRel(35.985, 2e-3));  // the remaining error is O(h^4)
@@ -90,9 +87,7 @@ TEST_CASE("the condition number is estimated within a factor", "[plate][operator
   const Grid grid = GENERATE(unit_grid(9, 9), unit_grid(17, 6), Grid{9, 9, 0.5, 0.125});
   const double shift = GENERATE(0.0, 1e4);
   const PlateSystem system{grid, {1, 2, 1}, shift};
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense_operator(system), Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Eigen::VectorXd eigenvalues = eigenvalues_of(dense_operator(system));
   const double condition = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
   // Clamping raises the smallest eigenvalue of the square from 4 pi^4 to 35.985^2: 3.3 times.
   CHECK(estimate_condition(system) >= 0.9 * condition);
