@@ -110,6 +110,28 @@ TEST_CASE("a component that is not mapped keeps the scene's value", "[exchange][
   CHECK(center.value(48) == Value<3>{-3, 3, 0});
 }
 
+TEST_CASE("a component that is not mapped keeps the scene's curve", "[exchange][file]") {
+  std::string text(scene_text);
+  const std::size_t at = text.find("<material");
+  text.insert(at,
+              "<animate attribute=\"translate\"><key frame=\"1\" value=\"0 0 7\"/>"
+              "<key frame=\"10\" value=\"1 2 7\"/></animate>");
+  const Scene own = parse_scene(text, "shot.xml", "").value();
+  const auto placed =
+      place_curves(file_of({"Cube.power"}), {parse_mapping("Cube.power=sheet.translate.y").value()},
+                   &own, 0, 1e-6);
+  REQUIRE(placed.has_value());
+  const Curve<3> joined = Curve<3>::make(std::get<CurveKeys<3>>(placed->curves[0].keys)).value();
+  const Curve<1> mapped = Curve<1>::make(file_of({"Cube.power"}).curves[0].keys).value();
+  for (const double frame : {-3.0, 1.0, 4.0, 7.5, 10.0, 24.0, 31.0, 48.0, 60.0}) {
+    CAPTURE(frame);
+    const Value<3> value = joined.value(frame);
+    CHECK_THAT(value[0], WithinAbs(own.surfaces[0].transform.translate.at(frame)[0], 1e-5));
+    CHECK_THAT(value[1], WithinAbs(mapped.value(frame)[0], 1e-5));
+    CHECK(value[2] == 7);
+  }
+}
+
 TEST_CASE("problems of a mapping name it", "[exchange][file]") {
   const CurveFile file = file_of({"Cube.location.x", "Cube.location.y", "Cube.power"});
   const auto problem = [&](const std::vector<std::string>& mappings) {

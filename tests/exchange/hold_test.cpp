@@ -131,6 +131,25 @@ TEST_CASE("a segment that changes too fast for keys becomes few, and tells what 
   CHECK(make(keys_of(result.pieces)).keys().keys.size() == result.pieces.frames.size());
 }
 
+TEST_CASE("a segment that stands upright becomes a steep one, not a spike", "[exchange][hold]") {
+  const double to = GENERATE(5.0, -5e6, 1e-9);
+  CurveKeys<1> keys{.keys = {key(5, 0), key(15, to)}};
+  keys.keys[0].out = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 10};
+  keys.keys[1].in = {.kind = Tangent<1>::Kind::Handle, .handle_frames = -10};
+  const Held result = held(keys, {.has_long_arms = false}, 1e-4 * std::fabs(to));
+  const Curve<1> curve = make(keys_of(result.pieces));
+  const double margin = 1e-3 * std::fabs(to);
+  for (int k = 0; k <= 100'000; ++k) {
+    const double value = curve.value(5 + 1e-4 * k)[0];
+    if (value < std::min(0.0, to) - margin || value > std::max(0.0, to) + margin) {
+      CAPTURE(k, value);
+      FAIL_CHECK();
+      break;
+    }
+  }
+  REQUIRE(result.losses.size() == 1);
+}
+
 TEST_CASE("cubics that deviate most are halved first", "[exchange][fit]") {
   // A quarter circle is steep at one end only.
   const auto root = [](double frame) { return Value<1>{std::sqrt(1 - frame * frame)}; };

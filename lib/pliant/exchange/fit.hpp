@@ -96,7 +96,16 @@ class Fitter {
     return cubic.start + (cubic.end - cubic.start) / 2;
   }
 
-  void keep(const FittedCubic<D>& cubic, double deviation) {
+  void keep(FittedCubic<D> cubic, double deviation) {
+    if (deviation > tolerance_) {
+      // Where the function is nearly vertical, its slope means nothing over a whole part.
+      FittedCubic<D> line = cubic;
+      for (int c = 0; c < D; ++c)
+        line.from_slope[c] = line.to_slope[c] =
+            (line.to[c] - line.from[c]) / (line.end - line.start);
+      const double of_line = deviation_of(line);
+      if (of_line < deviation) cubic = line, deviation = of_line;
+    }
     fit_.deviation = std::max(fit_.deviation, deviation);
     fit_.cubics.push_back(cubic);
   }

@@ -165,6 +165,7 @@ class Placer {
     if (sources.number && has_components)
       return broken(sources.text, "the channel is mapped as a whole and by a component");
     Value<3> constant{};
+    std::optional<CurveKeys<3>> own;  // those of the scene, for components that are not mapped
     bool is_vector = has_components;
     PlacedCurve placed{path, {}, false};
     if (scene_) {
@@ -174,6 +175,7 @@ class Placer {
       if (const auto channel = find_channel(*scene_, path)) {
         if (const auto* held = std::get_if<const Channel<3>*>(&channel->channel)) {
           constant = (*held)->at(scene_->start);
+          if ((*held)->is_animated()) own = (*held)->curve().keys();
           is_vector = true;
         } else if (is_vector && !is_tangent(attribute)) {
           return broken(sources.text, "this channel is a number, not a vector");
@@ -196,8 +198,11 @@ class Placer {
       return {};
     }
     std::array<const CurveKeys<1>*, 3> components{};
-    for (std::size_t c = 0; c < 3; ++c)
-      components[c] = sources.components[c] ? &*sources.components[c] : nullptr;
+    for (std::size_t c = 0; c < 3; ++c) {
+      auto& component = sources.components[c];
+      if (!component && own) component = component_of(*own, static_cast<int>(c));
+      components[c] = component ? &*component : nullptr;
+    }
     auto joined = join_curves(components, constant, tolerance_);
     if (!joined) return broken(sources.text, joined.error().message);
     for (std::string& loss : joined->losses)
