@@ -57,7 +57,7 @@ Result<void> DtCheck::advance(const Frame& frame) {
 void DtCheck::compare(const Frame& frame, std::span<const std::size_t> surfaces) {
   for (const std::size_t k : surfaces) {
     const Field apart = frame.surfaces()[k].positions() - frame_.surfaces()[k].positions();
-    const double farthest = std::sqrt(apart.rowwise().squaredNorm().maxCoeff());
+    const double farthest = longest_vector(apart).length;
     if (farthest <= difference_) continue;
     difference_ = farthest;
     at_ = frame.number();

@@ -18,20 +18,36 @@ BoundingBox bounding_box(const Field& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
-// Computes all facts that need the meshes.
-Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
+// Vertices of a surface in world space at the first frame.
+Field at_rest(const Scene& scene, std::size_t surface, const Field& vertices) {
+  const TransformChannels& channels = scene.surfaces[surface].transform;
+  const auto vector = [&](const Channel<3>& channel) {
+    const Value<3> value = channel.at(scene.start);
+    return Vector3d(value[0], value[1], value[2]);
+  };
+  return to_world(make_transform(vector(channels.translate), vector(channels.rotate),
+                                 vector(channels.scale), channels.rotate_order),
+                  vertices);
+}
+
+// Computes all facts that need the meshes. Returns whether there is a first frame; if not, its
+// error is printed.
+Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                               const SimulationOptions& run) {
   auto previews = preview_forces(simulation, run);
   if (!previews) return fail(previews.error());
   facts.previews = *std::move(previews);
-  const auto rest = simulation.at(facts.scene.start);
-  if (!rest) return fail(rest.error());
+  const auto first = simulation.at(facts.scene.start);
+  if (!first && first.error().code != ErrorCode::SolverFailed) return fail(first.error());
+  // A loop that does not close has no first frame, but all else that helps to close it.
+  if (!first) report(first.error());
   for (std::size_t k = 0; k < facts.scene.surfaces.size(); ++k) {
     const RestShape& shape = simulation.rest_shapes()[k];
     facts.surfaces.push_back(
         {shape.grid, summary_of(shape), static_cast<std::size_t>(shape.mesh.vertex_count()),
-         bounding_box(rest->surfaces()[k].positions()), bounding_box(shape.mesh.positions),
-         cache_summary_of(shape), map_summaries_of(shape)});
+         bounding_box(first ? first->surfaces()[k].positions()
+                            : at_rest(facts.scene, k, shape.mesh.positions)),
+         bounding_box(shape.mesh.positions), cache_summary_of(shape), map_summaries_of(shape)});
   }
   facts.surface_memory = simulation.surface_memory();
   for (const Preview& preview : facts.previews) {
@@ -39,7 +55,7 @@ Result<void> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
       facts.solver_memory = std::max(facts.solver_memory, region.solver_memory);
     }
   }
-  return {};
+  return first.has_value();
 }
 
 int tell(const SceneFacts& facts, const InfoOptions& options) {
@@ -87,10 +103,10 @@ int run_info(const InfoOptions& options) {
   if (!simulation) return report(simulation.error());
   print_notes(simulation->scene(), note_count);
   SceneFacts facts{.file = options.scene, .scene = simulation->scene()};
-  if (const auto looked = look_at_surfaces(facts, *simulation, run); !looked) {
-    return report(looked.error());
-  }
-  return tell(facts, options);
+  const auto looked = look_at_surfaces(facts, *simulation, run);
+  if (!looked) return report(looked.error());
+  const int told = tell(facts, options);
+  return *looked ? told : exit_failed;
 }
 
 }  // namespace pliant::cli

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -196,6 +197,29 @@ class Info(Command):
             "</surface>", '<transform translate="100 0 0" scale="2 1 1"/></surface>'))
         self.assertIn("bounding box 88 0 -5 to 112 0 5\n    -6 0 -5 to 6 0 5 before its transform\n",
                       self.run_pliant("info", scene).stdout)
+
+    def test_numbers_at_the_edge_are_told(self):
+        plain = SCENE.format(end=6)
+        self.assertIn("magnitude=", plain)
+        for name, text in (("magnitude", re.sub(r'magnitude="[^"]*"', 'magnitude="1e200"', plain)),
+                           ("c", plain.replace("</surface>", '<material c="1e160"/></surface>'))):
+            with self.subTest(name):
+                scene = self.write("edge.xml", text)
+                told = json.loads(self.run_pliant("info", scene, "--json").stdout)
+                peak = told["together"][0]["staticPeak"]
+                self.assertTrue(0 < peak < 1e300, peak)
+                self.run_pliant("suggest", scene, "--settle", "1s", code=None)
+                self.assertNotRegex(self.run_pliant("bake", scene, "-o", "a.npy").stdout, "inf|nan")
+
+    def test_a_loop_that_does_not_close_is_told_with_all_else(self):
+        scene = self.write("loop.xml", '<scene version="1" start="1" end="24"><surface name="s"><grid columns="21" '
+                                       'rows="21" width="4" depth="3"/><material density="40" damping="0"/><solver '
+                                       'region="all" loop="24" integrator="newmark"/></surface><uniform name="f" '
+                                       'magnitude="5" forceRadius="3"/></scene>')
+        told = self.run_pliant("info", scene, code=1)
+        self.assertIn("more damping makes it forget how it began", told.stderr)
+        self.assertIn("first natural frequency", told.stdout)
+        self.assertIn("bounding box -2 0 -1.5 to 2 0 1.5", told.stdout)
 
     def test_one_is_no_plural(self):
         told = self.run_pliant("info", self.scene()).stdout

@@ -43,7 +43,7 @@ double largest_length(const Field& a, const Field& b) {
     const double square = x * x + y * y + z * z;
     if (!(square <= largest)) largest = square;  // not a number too
   }
-  return std::sqrt(largest);
+  return std::isinf(largest) ? longest_vector(a - b).length : std::sqrt(largest);
 }
 
 struct Gap {

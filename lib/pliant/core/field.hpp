@@ -10,4 +10,13 @@ using Eigen::Vector3d;
 /// One vector per node or vertex: #rows x 3, each component contiguous.
 using Field = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
+/// The longest vector of a field.
+struct LongestVector {
+  double length = 0;     ///< finite if the vector is, whatever its square is
+  Eigen::Index row = 0;  ///< the first of equal ones
+};
+
+/// Requires: a row.
+LongestVector longest_vector(const Field& field);
+
 }  // namespace pliant

@@ -154,7 +154,9 @@ PreviewBody::Peak PreviewBody::peak(const Transform& transform,
   Peak peak;
   Eigen::Index row = 0;
   const auto find_in = [&](const Field& way) {
-    peak.size = std::sqrt(way.rowwise().squaredNorm().maxCoeff(&row));
+    const LongestVector longest = longest_vector(way);
+    row = longest.row;
+    peak.size = longest.length;
     peak.way = way.row(row).transpose();
   };
   if (!shape_.grid) {
@@ -303,7 +305,7 @@ Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   }
   const Field ways = displacements(nodes);
   const Field world = vectors_to_world(inputs.transform, ways);
-  region.static_peak = std::sqrt(world.rowwise().squaredNorm().maxCoeff());
+  region.static_peak = longest_vector(world).length;
   if (piece.free_nodes > most_factored_unknowns) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
   TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
@@ -327,9 +329,8 @@ Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
                                                  RegionPreview region) const {
   if (!(plate.masses.sum() > 0)) return MovingRegion{std::move(region)};  // a map: no weight
   std::vector<ExcitedMode> modes;
-  Eigen::Index node = 0;
   const Field world = vectors_to_world(inputs.transform, ways);
-  const double size = std::sqrt(world.rowwise().squaredNorm().maxCoeff(&node));
+  const auto [size, node] = longest_vector(world);
   if (size > 0) {
     const Eigen::VectorXd along =
         ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));

@@ -111,8 +111,8 @@ class SlowestVibration {
                   std::vector<double>* parts = nullptr) const {
     const double whole = std::sqrt(mass_product(masses_, shape, shape));
     const std::size_t known_count = rigid_.size() + basis_.size() + (others ? others->size() : 0);
-    if (!(whole > 0) || !std::isfinite(whole)) return 0;
     if (parts) parts->assign(basis_.size() + (others ? others->size() : 0), 0);
+    if (!(whole > 0) || !std::isfinite(whole)) return 0;
     double length = whole;
     // Once more if much was taken away, whose rounding errors then count.
     for (int pass = 0; pass < 3; ++pass) {

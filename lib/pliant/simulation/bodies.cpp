@@ -50,8 +50,12 @@ Extent extent_of(const Transform& transform, const Field& positions, const Field
     }
     for (int n = 0; n < lanes; ++n) largest[n] = squares[n] > largest[n] ? squares[n] : largest[n];
   }
-  return {std::all_of(not_finite, not_finite + lanes, [](double x) { return x == 0; }),
-          std::sqrt(*std::max_element(largest, largest + lanes))};
+  Extent extent{std::all_of(not_finite, not_finite + lanes, [](double x) { return x == 0; }),
+                std::sqrt(*std::max_element(largest, largest + lanes))};
+  if (extent.is_finite && !std::isfinite(extent.peak_displacement))  // its square is not finite
+    extent.peak_displacement =
+        longest_vector((positions - rest) * transform.linear.transpose()).length;
+  return extent;
 }
 
 std::ptrdiff_t solved_count(const Scene& scene) {
