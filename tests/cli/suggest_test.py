@@ -175,6 +175,16 @@ class Suggest(Command):
         self.assertIn("poke.magnitude", result.stdout)
         self.assertRegex(result.stderr, r'"poke" does not stand in this file, but in .*rig\.xml:1; edit that file')
 
+    def test_a_material_of_an_included_file_is_left_there(self):
+        self.write("m.xml", '<fragment><material damping="2"/></fragment>')
+        text = ('<scene version="1" start="1" end="12"><surface name="sheet"><grid columns="21" rows="21" width="10" '
+                'depth="10"/><include file="m.xml"/></surface><point name="poke" deformationRadius="4" '
+                'forceRadius="2" magnitude="900"/></scene>')
+        scene = self.write("scene.xml", text)
+        result = self.run_pliant("suggest", scene, "--ring", "2Hz", "--write", code=2)
+        self.assertRegex(result.stderr, r'the <material> of "sheet" does not stand in this file, but in .*m\.xml:1; edit')
+        self.assertEqual(self.read("scene.xml").decode(), text)
+
     def test_a_number_takes_the_place_of_a_definition(self):
         scene = self.write("scene.xml", '<scene version="1" start="1" end="12"><define name="m" value="450"/><surface '
                                         'name="sheet"><grid columns="21" rows="21" width="10" depth="10"/></surface>'

@@ -88,14 +88,26 @@ Result<void> Editor::set_constant(const Spot& spot, const std::string& value) {
     }
     draft_.set(*spot.element, spot.attribute(), text);
   } else {
-    insert_part(spot, {.name = spot.part, .attributes = {{std::string(spot.attribute()), value}}});
+    auto inserted = insert_part(
+        spot, {.name = spot.part, .attributes = {{std::string(spot.attribute()), value}}});
+    if (!inserted) return inserted;
   }
   parts_.insert(spot.path);
   return draft_.commit();
 }
 
-/// Inserts a part that a surface lacks, in the order of the format.
-void Editor::insert_part(const Spot& spot, const xml::ElementText& part) {
+/// Inserts a part that a surface lacks, in the order of the format. Errors: it comes from a file
+/// that is included.
+Result<void> Editor::insert_part(const Spot& spot, const xml::ElementText& part) {
+  const std::string name = name_of(spot.object);
+  for (const AttributeFormat& row : format_of(part.name).attributes) {
+    const std::string attribute(row.name);
+    if (!scene_.origin.gives(name, attribute) || scene_.origin.is_own(name, attribute)) continue;
+    const ScenePlace at = scene_.origin.place_of(name, attribute);
+    return draft_.refuse(
+        fmt::format("the <{}> of {} does not stand in this file, but in {}:{}; edit that file",
+                    part.name, xml::in_quotes(name), at.file, at.line));
+  }
   constexpr std::string_view order[] = {"grid",      "mesh",     "nurbs",    "subdivision",
                                         "transform", "material", "tangents", "solver"};
   Draft::Place place{.parent = spot.object};
@@ -103,6 +115,7 @@ void Editor::insert_part(const Spot& spot, const xml::ElementText& part) {
   for (const Element child : draft_.children(spot.object))
     if (std::ranges::find(order, draft_.name(child)) < own) place.after = child;
   draft_.insert(part, place);
+  return {};
 }
 
 Result<void> Editor::operator()(const Reset& reset) {
@@ -143,8 +156,8 @@ Result<void> Editor::insert_animate(const Spot& spot, double frame, const std::s
 Result<void> Editor::insert_animate(const Spot& spot, const xml::ElementText& animate) {
   parts_.insert(spot.path);
   if (!spot.element) {
-    insert_part(spot, {.name = spot.part, .children = {animate}});
-    return draft_.commit();
+    auto inserted = insert_part(spot, {.name = spot.part, .children = {animate}});
+    return inserted ? draft_.commit() : inserted;
   }
   draft_.remove_attribute(*spot.element, spot.attribute());
   if (auto done = draft_.commit(); !done) return done;
@@ -195,7 +208,8 @@ Result<void> Editor::operator()(const SetPart& set) {
   }
   const std::vector<Element> present = draft_.children(*object, set.part);
   if (present.empty()) {
-    insert_part({.path = {}, .object = *object, .part = set.part}, text);
+    auto inserted = insert_part({.path = {}, .object = *object, .part = set.part}, text);
+    if (!inserted) return inserted;
     if (auto done = draft_.commit(); !done || set.comment.empty()) return done;
   } else {
     for (const xml::AttributePlace& one : draft_.attributes(present.front()))

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/text.hpp"
@@ -163,9 +164,12 @@ Result<Spot> Editor::spot_in(const std::string& path, Element object,
       return spot_on_path(path, object, attribute, inner);
     }
   }
-  const std::string name = object == Draft::root ? "the scene" : name_of(object);
-  return draft_.refuse(fmt::format("{} has no attribute {}{}", name, in_quotes(attribute),
-                                   hint_of(attribute, known)));
+  const std::string name = object == Draft::root ? "scene" : name_of(object);
+  const std::vector<std::string_view> words(known.begin(), known.end());
+  std::vector<std::string_view> meant;
+  return draft_.refuse(fmt::format("{} has no attribute {}{}",
+                                   object == Draft::root ? "the scene" : name, in_quotes(attribute),
+                                   xml::attribute_hint(scene_, name, attribute, words, meant)));
 }
 
 /// `center.progress`, an attribute of the <path> that a position follows.

@@ -91,7 +91,7 @@ class Editor {
   Result<std::string> constant(const Spot& spot) const;
 
   Result<void> set_constant(const Spot& spot, const std::string& value);
-  void insert_part(const Spot& spot, const xml::ElementText& part);
+  Result<void> insert_part(const Spot& spot, const xml::ElementText& part);
   Result<void> insert_animate(const Spot& spot, double frame, const std::string& value);
   Result<void> insert_animate(const Spot& spot, const xml::ElementText& animate);
   Result<std::string> with_component(const Spot& spot, const std::string& value) const;
