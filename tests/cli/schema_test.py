@@ -351,6 +351,7 @@ class Schema(Command):
                    '<material density="3"><animate attribute="b"><key frame="1" value="1"/></animate></material>',
                    '<animate attribute="center"><key frame="$f" value="0 0 $z"/></animate>', '<surface name="s"/>'],
             False: ['<scene start="1" end="9"><include/></scene>', '<scene start="1" end="9"><define name="a"/></scene>',
+                    *(f'<scene start="1" end="9"><define name="{name}" value="1"/></scene>' for name in ("1x", "a-b", "a b")),
                     '<scene start="1" end="9"><transform><include file="a.xml"/></transform></scene>', "<other/>",
                     '<fragment size="1"/>', '<include file="a.xml"><grid columns="3" rows="3"/></include>']}
         for is_valid, group in texts.items():

@@ -32,8 +32,9 @@ TEST_CASE("a message names the definitions of the value that it is about", "[sce
   CHECK(told(7, "<grid> width=\"-3\": must be greater than 0").empty());
   CHECK(told(6, "s.c is -9, but must be greater") == of_w);
   CHECK(told(6, "s.cc and s.c2 and s.bc are wrong").empty());
-  CHECK(told(6, "c") == of_w);
-  CHECK(DefinedValues().sources(1, "c", files).empty());
+  CHECK(told(6, "s.c") == of_w);
+  CHECK(told(6, "<radial> has no attribute \"e\"; allowed: b, c").empty());
+  CHECK(DefinedValues().sources(1, "s.c", files).empty());
 }
 
 TEST_CASE("the definitions behind values are few in memory and in messages", "[scene][expand]") {
@@ -45,8 +46,8 @@ TEST_CASE("the definitions behind values are few in memory and in messages", "[s
   values.add(1, "b", "1", many);
   for (std::size_t k = 1; k < DefinedValues::most_kept; ++k) values.add(2, "b", "1", {many[0]});
   values.add(3, "b", "1", {many[0]});
-  CHECK(values.sources(1, "b", files) ==
+  CHECK(values.sources(1, "s.b", files) ==
         "; $a is defined at line 1; $b is defined at line 2; $c is defined at line 3");
-  CHECK(values.sources(2, "b", files) == "; $a is defined at line 1");
-  CHECK(values.sources(3, "b", files).empty());
+  CHECK(values.sources(2, "s.b", files) == "; $a is defined at line 1");
+  CHECK(values.sources(3, "s.b", files).empty());
 }

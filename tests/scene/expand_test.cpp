@@ -673,6 +673,14 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
             "included by shot.xml:2"});
   shot.fragment("a.xml", "<nonsense/>");
   CHECK(shot.problems().size() == 1);
+  // Also if each has other values.
+  body.clear();
+  for (int k = 0; k < 9; ++k)
+    body +=
+        fmt::format("<include file=\"a.xml\">{}</include>\n", define("id", fmt::format("n{}", k)));
+  Shot others(body);
+  others.fragment("a.xml", define("id", "n") + "<radial name=\"$id\" centre=\"0 0 0\"/>");
+  CHECK(others.problems().size() == 1);
 }
 
 TEST_CASE("a text without includes and definitions is left as it is", "[scene][expand]") {

@@ -17,11 +17,12 @@ bool is_of_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-bool has_name(std::string_view text, std::string_view name) {
-  for (std::size_t at = 0; (at = text.find(name, at)) != std::string_view::npos; ++at) {
-    const std::size_t end = at + name.size();
-    if ((at == 0 || !is_of_name(text[at - 1])) && (end == text.size() || !is_of_name(text[end])))
-      return true;
+// Whether a text names the attribute of an object, as in `sheet.density is -1`.
+bool names_attribute(std::string_view text, std::string_view attribute) {
+  const std::string wanted = '.' + std::string(attribute);
+  for (std::size_t at = 0; (at = text.find(wanted, at)) != std::string_view::npos; ++at) {
+    const std::size_t end = at + wanted.size();
+    if (end == text.size() || !is_of_name(text[end])) return true;
   }
   return false;
 }
@@ -44,9 +45,9 @@ std::string DefinedValues::sources(int line, std::string_view message, const Lin
   for (auto value = std::ranges::lower_bound(values_, line, {}, &Value::line);
        value != values_.end() && value->line == line && meant.size() < most_told; ++value) {
     const std::string quoted = fmt::format("{}={}", value->attribute, in_quotes(value->value));
-    const bool quotes_another = message.find(value->attribute + "=\"") != std::string_view::npos &&
-                                message.find(quoted) == std::string_view::npos;
-    if (quotes_another || !has_name(message, value->attribute)) continue;
+    if (message.find(quoted) == std::string_view::npos &&
+        !names_attribute(message, value->attribute))
+      continue;
     meant.insert(meant.end(), value->definitions.begin(), value->definitions.end());
   }
   return sources(meant, files.text_of(line), files);

@@ -209,8 +209,9 @@ void SchemaWriter::write_attributes(const ElementFormat& format, const Context& 
   for (const AttributeFormat& each : format.attributes) {
     const bool is_of_group = context.is_in_group && each.name == "deformationRadius";
     if (is_of_group || each.need == Need::Later) continue;
-    AttributeFormat written = each;  // a definition may be empty
-    if (format.name == define_name && each.name == "value") written.type = "any text";
+    AttributeFormat written = each;
+    if (format.name == define_name)  // its value may be empty
+      written.type = each.name == "value" ? "any text" : "definition name";
     write_attribute(each, types_.of(written, KeyValues::Numbers));
   }
 }

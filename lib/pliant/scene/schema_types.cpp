@@ -149,6 +149,8 @@ std::string body_of(const AttributeFormat& attribute, KeyValues values) {
   if (type == "four numbers") return list_of(number_body({}), length(4));
   if (type == "rate") return rate_body();
   if (type == "name") return name_body();
+  if (type == "definition name")
+    return restriction("xs:string", pattern("[A-Za-z_][A-Za-z0-9_]{0,99}"));
   if (type == "names") return list_of(name_body(), "<xs:minLength value=\"1\"/>");
   if (type == "path") return not_blank_body();
   if (type == "text") return restriction("xs:string", "<xs:minLength value=\"1\"/>");
