@@ -137,8 +137,11 @@ std::string comment_of(const Look& look, const Numbers& numbers, bool is_by_iner
   comment += line(fmt::format("b, c, d: {}. {}", look.shape,
                               is_by_inertia ? "With a higher density inertia pushes harder, so "
                                               "that density / b alone matters here."
-                                            : "All of them and the density times 2: half the "
-                                              "peak, the same frequency."));
+                              : numbers.yield > 0
+                                  ? "All of them and the density times 2, yield times 0.71: half "
+                                    "the peak, the same frequency."
+                                  : "All of them and the density times 2: half the peak, the same "
+                                    "frequency."));
   if (numbers.yield > 0) comment += line(fmt::format("yield, hardening: {}.", look.memory));
   return comment;
 }

@@ -19,6 +19,7 @@
 #include "pliant/scene/schema.hpp"
 #include "report.hpp"
 #include "resources.hpp"
+#include "shell_word.hpp"
 #include "starters.hpp"
 
 namespace pliant::cli {
@@ -224,8 +225,8 @@ int run_new(const NewOptions& options) {
   std::string names;
   for (const NewFile& file : *files)
     names += (names.empty() ? "" : ", ") + printable(file.path.string());
-  print(stdout,
-        fmt::format("{}: written; next: pliant view {} --serve\n", names, printable(*options.out)));
+  print(stdout, fmt::format("{}: written; next: pliant view {} --serve\n", names,
+                            shell_word(*options.out)));
   return exit_done;
 }
 

@@ -97,6 +97,7 @@ Result<StarterFacts> look_at(const std::string& text, const StarterSource& sourc
   facts.is_by_inertia = std::ranges::any_of(scene.forces, [](const Force& force) {
     return std::holds_alternative<InertiaChannels>(force.kind);
   });
+  if (!preview->is_solvable) return invalid("no node of the mesh can move: all are on its border");
   if (facts.is_held && facts.frequency == 0) {
     return invalid(
         fmt::format("the mesh has too many nodes to find its frequency: more than {} "

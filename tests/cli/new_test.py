@@ -221,6 +221,9 @@ class New(Command):
 
     def test_names_that_xml_must_escape(self):
         self.own_mesh('a "b" & <c>.obj', 1)
+        self.write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.assertIn("no node of the mesh can move",
+                      self.run_pliant("new", "mesh", "-o", "b.xml", "--mesh", "tri.obj", code=2).stderr)
         self.run_pliant("new", "mesh", "-o", "a.xml", "--mesh", 'a "b" & <c>.obj')
         self.run_pliant("validate", "a.xml")
 
