@@ -1,6 +1,7 @@
 #include "pliant/scene/defined_values.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,4 +51,8 @@ TEST_CASE("the definitions behind values are few in memory and in messages", "[s
         "; $a is defined at line 1; $b is defined at line 2; $c is defined at line 3");
   CHECK(values.sources(2, "s.b", files) == "; $a is defined at line 1");
   CHECK(values.sources(3, "s.b", files).empty());
+  std::uint32_t last = 0;
+  for (std::size_t k = 0; k < DefinedValues::most_kept; ++k)
+    last = values.add_definition("z", 0, 9);
+  CHECK(values.sources(std::span(&last, 1), 0, files).empty());
 }

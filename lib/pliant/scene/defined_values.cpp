@@ -30,13 +30,14 @@ bool names_attribute(std::string_view text, std::string_view attribute) {
 }  // namespace
 
 std::uint32_t DefinedValues::add_definition(std::string name, int text, int line) {
-  if (definitions_.size() < most_kept) definitions_.push_back({std::move(name), text, line});
-  return static_cast<std::uint32_t>(definitions_.size() - 1);
+  const std::size_t index = definitions_.size();
+  if (index < most_kept) definitions_.push_back({std::move(name), text, line});
+  return static_cast<std::uint32_t>(index);
 }
 
 void DefinedValues::add(int line, std::string_view attribute, std::string_view value,
                         std::vector<std::uint32_t> definitions) {
-  if (values_.size() >= most_kept || definitions_.size() >= most_kept) return;
+  if (values_.size() >= most_kept) return;
   values_.push_back({line, std::string(attribute), std::string(value), std::move(definitions)});
 }
 
@@ -59,6 +60,7 @@ std::string DefinedValues::sources(std::span<const std::uint32_t> definitions, i
   std::size_t count = 0;
   for (std::size_t k = 0; k < definitions.size() && count < most_told; ++k) {
     const auto before = definitions.first(k);
+    if (definitions[k] >= definitions_.size()) continue;
     if (std::ranges::find(before, definitions[k]) != before.end()) continue;
     const Definition& definition = definitions_[definitions[k]];
     sources += fmt::format("; ${} is defined at {}", definition.name,

@@ -14,7 +14,7 @@ namespace pliant::xml {
 /// can tell where these are.
 class DefinedValues {
  public:
-  /// Values beyond these are not kept: messages about them lack their definitions.
+  /// Definitions and values beyond these are not kept: messages do not tell of them.
   static constexpr std::size_t most_kept = 100'000;
 
   /// Adds a definition at a line of a text; returns its index.
