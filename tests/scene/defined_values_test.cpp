@@ -51,6 +51,12 @@ TEST_CASE("the definitions behind values are few in memory and in messages", "[s
         "; $a is defined at line 1; $b is defined at line 2; $c is defined at line 3");
   CHECK(values.sources(2, "s.b", files) == "; $a is defined at line 1");
   CHECK(values.sources(3, "s.b", files).empty());
+  // A long line does not make each of its messages slow.
+  DefinedValues crowd;
+  const auto one = crowd.add_definition("one", 0, 1);
+  for (int k = 0; k < 1000; ++k) crowd.add(1, "b", std::to_string(k), {one});
+  CHECK(crowd.sources(1, "b=\"9\"", files) == "; $one is defined at line 1");
+  CHECK(crowd.sources(1, "b=\"999\"", files).empty());
   std::uint32_t last = 0;
   for (std::size_t k = 0; k < DefinedValues::most_kept; ++k)
     last = values.add_definition("z", 0, 9);

@@ -12,6 +12,7 @@ namespace pliant::xml {
 namespace {
 
 constexpr std::size_t most_told = 3;  // definitions
+constexpr int most_compared = 100;    // values of a line, with each message about it
 
 bool is_of_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -43,8 +44,10 @@ void DefinedValues::add(int line, std::string_view attribute, std::string_view v
 
 std::string DefinedValues::sources(int line, std::string_view message, const LineMap& files) const {
   std::vector<std::uint32_t> meant;
+  int compared = 0;
   for (auto value = std::ranges::lower_bound(values_, line, {}, &Value::line);
        value != values_.end() && value->line == line && meant.size() < most_told; ++value) {
+    if (++compared > most_compared) break;
     const std::string quoted = fmt::format("{}={}", value->attribute, in_quotes(value->value));
     if (message.find(quoted) == std::string_view::npos &&
         !names_attribute(message, value->attribute))

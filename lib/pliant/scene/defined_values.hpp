@@ -25,7 +25,8 @@ class DefinedValues {
            std::vector<std::uint32_t> definitions);
 
   /// `; $w is defined at line 3`, for a message about a value on a line that was made of $w; empty:
-  /// it is about none. Such a message has `attribute="value"` or `NAME.attribute`.
+  /// it is about none. Such a message has `attribute="value"` or `NAME.attribute`. Of a line with
+  /// very many values only the first are compared.
   std::string sources(int line, std::string_view message, const LineMap& files) const;
 
   /// The same of these definitions, for a message at a text.
