@@ -175,7 +175,7 @@ class Slurm(unittest.TestCase):
             _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1)
         self.assertIn(f"job {number} goes on", errors)
-        self.assertLess(time.monotonic() - begin, 3)
+        self.assertLess(time.monotonic() - begin, 10)
         self.assertTrue(self.active(number))
         wait_until(lambda: not self.active(number))
         self.status()
