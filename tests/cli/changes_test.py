@@ -112,6 +112,8 @@ class Changes(Command):
             errors = self.run_pliant(*command, "--set", outside, "--root", self.path("shots"), code=2).stderr
             self.assertIn("--set s.file=../quad.obj: ", errors)
             self.assertIn("the folder of --root", errors)
+        errors = self.run_pliant("info", scene, "--set", "s.file=no.obj", code=2).stderr
+        self.assertEqual(errors, "pliant: error: --set s.file=no.obj: cannot read the file: No such file or directory\n")
 
     def test_info_knows_the_changes(self):
         scene = self.scene_with("plain.xml")

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -13,15 +12,16 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
+#include "pliant/core/read_file.hpp"
 #include "pliant/mesh/file_reference.hpp"
-#include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/change_texts.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
-#include "pliant/scene/nearest.hpp"
 #include "pliant/scene/slot.hpp"
 #include "pliant/scene/text.hpp"
+#include "pliant/scene/value_path.hpp"
 #include "pliant/timeline/adjustment.hpp"
 
 namespace pliant {
@@ -30,110 +30,8 @@ namespace {
 using namespace xml;
 namespace fs = std::filesystem;
 
-constexpr std::string_view part_words[] = {"x", "y", "z", "progress", "closed"};
-
 tl::unexpected<Error> refuse(std::string message) {
   return fail(ErrorCode::InvalidInput, std::move(message));
-}
-
-// `NAME.attribute`, `NAME.attribute.x`, or `NAME.attribute.progress` of a path.
-struct ValuePath {
-  std::string name, attribute;
-  std::string part = {};  // one of `part_words`; empty: the whole
-
-  bool is_of_path() const { return part == "progress" || part == "closed"; }
-  std::optional<std::size_t> component() const {
-    if (part.empty() || is_of_path()) return {};
-    return static_cast<std::size_t>(part[0] - 'x');
-  }
-  std::string title() const { return fmt::format("{}.{}", name, attribute); }
-};
-
-std::optional<ValuePath> split(std::string_view path) {
-  const std::size_t first = path.find('.');
-  if (first == std::string_view::npos || first == 0) return {};
-  const std::string_view rest = path.substr(first + 1);
-  const std::size_t second = std::min(rest.find('.'), rest.size());
-  ValuePath parts{std::string(path.substr(0, first)), std::string(rest.substr(0, second))};
-  if (second < rest.size()) parts.part = rest.substr(second + 1);
-  if (parts.attribute.empty() || (second < rest.size() && parts.part.empty())) return {};
-  return parts;
-}
-
-// The slots of a part after those before it.
-void append(Table& table, Table part) {
-  std::move(part.begin(), part.end(), std::back_inserter(table));
-}
-
-void append_shape(Table& table, Surface& surface) {
-  if (auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
-    append(table, table_of(*sheet, surface.cache));
-  } else if (auto* const net = std::get_if<NurbsNet>(&surface.shape)) {
-    append(table, table_of(*net));
-  } else if (auto* const mesh = std::get_if<MeshFile>(&surface.shape)) {
-    append(table, surface.subdivision
-                      ? table_of(*mesh, surface.reading, surface.cache, *surface.subdivision)
-                      : table_of(*mesh, surface.reading, surface.cache));
-  }
-}
-
-Table all_slots(Surface& surface) {
-  Table table = table_of(surface);
-  append_shape(table, surface);
-  append(table, table_of(surface.transform));
-  if (surface.is_driven()) return table;
-  append(table, table_of(surface.material));
-  append(table, table_of(surface.tangents));
-  append(table, table_of(surface.solver));
-  return table;
-}
-
-// In a group, the group selects the region.
-Table all_slots(Force& force) {
-  Table table = table_of(force);
-  if (!force.group.empty())
-    std::erase_if(table, [](const Slot& slot) {
-      return slot.attribute.name == deformation_radius_attribute.name;
-    });
-  return table;
-}
-
-Table all_slots(Scene& scene, std::string_view name) {
-  for (Surface& surface : scene.surfaces)
-    if (surface.name == name) return all_slots(surface);
-  for (Force& force : scene.forces)
-    if (force.name == name) return all_slots(force);
-  for (Group& group : scene.groups)
-    if (group.name == name) return table_of(group);
-  return name == Description<Scene>::element ? table_of(scene) : Table();
-}
-
-std::string no_object(const Scene& scene, std::string_view name) {
-  std::vector<std::string_view> names = {Description<Scene>::element};
-  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
-  for (const Force& force : scene.forces) names.push_back(force.name);
-  for (const Group& group : scene.groups) names.push_back(group.name);
-  return fmt::format("nothing is named {}{}", in_quotes(name), hint(name, names));
-}
-
-bool may_change(const Slot& slot) {
-  return slot.attribute.syntax != Syntax::Version && slot.attribute.name != "name" &&
-         slot.attribute.need != Need::Later;
-}
-
-std::string no_attribute(const Scene& scene, const Table& table, const ValuePath& path) {
-  std::vector<std::string_view> names;
-  for (const Slot& slot : table)
-    if (may_change(slot)) names.push_back(slot.attribute.name);
-  for (const Slot& slot : table) {
-    if (slot.attribute.name != path.attribute) continue;
-    return fmt::format("{} {}", path.attribute,
-                       slot.attribute.need == Need::Later ? not_supported(slot.attribute.instead)
-                                                          : "cannot be changed");
-  }
-  std::vector<std::string_view> own;
-  return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
-                     attribute_hint(scene, path.name, path.attribute, names, own));
 }
 
 // Adjusts the channel of a slot, or a component of it.
@@ -255,27 +153,13 @@ Result<void> settle(Scene& scene, const ValuePath& path, const Slot& slot,
 }
 
 Result<void> make_change(Scene& scene, const SceneChange& change, const std::string& root) {
-  const auto path = split(change.path);
-  if (!path)
-    return refuse(
-        fmt::format("{} is no path of an attribute; write NAME.ATTRIBUTE or "
-                    "scene.ATTRIBUTE",
-                    in_quotes(change.path)));
-  const Table table = all_slots(scene, path->name);
-  if (table.empty()) return refuse(no_object(scene, path->name));
-  const auto found = std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
-    return slot.attribute.name == path->attribute && may_change(slot);
-  });
-  if (found == table.end()) return refuse(no_attribute(scene, table, *path));
-  if (!path->part.empty() &&
-      std::find(std::begin(part_words), std::end(part_words), path->part) == std::end(part_words))
-    return refuse(fmt::format("{} has no part {}{}", path->title(), in_quotes(path->part),
-                              hint(path->part, part_words)));
-  const Adjust adjust(*path, change);
-  if (change.kind != SceneChange::Kind::Set || !path->part.empty())
-    return std::visit(adjust, found->place);
-  if (auto read = adjust.read(*found); !read) return read;
-  return settle(scene, *path, *found, root);
+  const auto at = slot_at(scene, change.path);
+  if (!at) return refuse(at.error());
+  const Adjust adjust(at->path, change);
+  if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
+    return std::visit(adjust, at->slot.place);
+  if (auto read = adjust.read(at->slot); !read) return read;
+  return settle(scene, at->path, at->slot, root);
 }
 
 // Adjusts a copy of the channel.
@@ -321,6 +205,13 @@ Error blamed(std::vector<Error> problems, const Scene& scene, std::span<const Sc
   return as_one(std::move(problems), "");
 }
 
+// The name of a file that a path leads to; null: it leads to another value.
+const std::string* file_at(Scene& scene, const std::string& path) {
+  const auto at = slot_at(scene, path);
+  if (!at || at->slot.attribute.syntax != Syntax::Path) return nullptr;
+  return std::get<std::string*>(at->slot.place);
+}
+
 template <class Member>
 bool is_adjusted(const Member& member) {
   if constexpr (requires { member.adjustments(); }) {
@@ -360,7 +251,7 @@ std::string SceneChange::typed() const {
 }
 
 bool SceneChange::overlaps(const SceneChange& other) const {
-  const auto own = split(path), others = split(other.path);
+  const auto own = split_path(path), others = split_path(other.path);
   if (!own || !others) return path == other.path;
   if (own->name != others->name || own->attribute != others->attribute) return false;
   // Parts of a position on a path are those of another value than the path.
@@ -429,6 +320,12 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
   Scene changed = scene;
   if (auto made = make_changes(changed, changes, root); !made)
     return refuse("--set " + made.error().message);
+  for (const SceneChange& change : changes) {
+    const std::string* const file = file_at(changed, change.path);
+    if (!file || file->empty()) continue;
+    if (const auto readable = check_readable(*file); !readable)
+      return refuse(fmt::format("--set {}: {}", change.typed(), readable.error().message));
+  }
   if (std::vector<Error> problems = problems_of(changed); !problems.empty())
     return fail(blamed(std::move(problems), scene, changes, root));
   scene = std::move(changed);
@@ -447,15 +344,12 @@ Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
   if (texts.empty()) return {};
   if (auto made = check_fully(texts.front()); !made) return made;
   // The path is right, so that only the texts can be wrong.
-  const auto path = split(change.path);
   Scene changed = scene;
-  const Table table = all_slots(changed, path->name);
-  const Slot& found = *std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
-    return slot.attribute.name == path->attribute && may_change(slot);
-  });
-  const bool is_file = found.attribute.syntax == Syntax::Path;
-  const bool is_whole = change.kind == SceneChange::Kind::Set && path->part.empty();
-  const Adjust adjust(*path, one);
+  const auto at = slot_at(changed, change.path);
+  PLIANT_EXPECTS(at.has_value());
+  const bool is_file = at->slot.attribute.syntax == Syntax::Path;
+  const bool is_whole = change.kind == SceneChange::Kind::Set && at->path.part.empty();
+  const Adjust adjust(at->path, one);
   for (std::size_t k = 1; k < texts.size(); ++k) {
     if (k % 256 == 0 && should_stop && should_stop())
       return fail(ErrorCode::Interrupted, "interrupted before the first take");
@@ -465,20 +359,15 @@ Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
     }
     one.text = texts[k];
     const Result<void> read =
-        is_whole ? adjust.read(found) : std::visit(AdjustCopy(adjust), found.place);
+        is_whole ? adjust.read(at->slot) : std::visit(AdjustCopy(adjust), at->slot.place);
     if (!read) return refuse(fmt::format("{}: {}", one.typed(), read.error().message));
   }
   return {};
 }
 
 bool names_file(const Scene& scene, const std::string& path) {
-  const auto parts = split(path);
-  if (!parts) return false;
   Scene changed = scene;  // a table gives access to what it lists
-  const Table table = all_slots(changed, parts->name);
-  return std::any_of(table.begin(), table.end(), [&](const Slot& slot) {
-    return slot.attribute.name == parts->attribute && slot.attribute.syntax == Syntax::Path;
-  });
+  return file_at(changed, path) != nullptr;
 }
 
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {

@@ -1,0 +1,127 @@
+#include "pliant/scene/value_path.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/artist_words.hpp"
+#include "pliant/scene/description.hpp"
+#include "pliant/scene/nearest.hpp"
+
+namespace pliant::xml {
+namespace {
+
+constexpr std::string_view part_words[] = {"x", "y", "z", "progress", "closed"};
+
+// The slots of a part after those before it.
+void append(Table& table, Table part) {
+  std::move(part.begin(), part.end(), std::back_inserter(table));
+}
+
+void append_shape(Table& table, Surface& surface) {
+  if (auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
+    append(table, table_of(*sheet, surface.cache));
+  } else if (auto* const net = std::get_if<NurbsNet>(&surface.shape)) {
+    append(table, table_of(*net));
+  } else if (auto* const mesh = std::get_if<MeshFile>(&surface.shape)) {
+    append(table, surface.subdivision
+                      ? table_of(*mesh, surface.reading, surface.cache, *surface.subdivision)
+                      : table_of(*mesh, surface.reading, surface.cache));
+  }
+}
+
+Table all_slots(Surface& surface) {
+  Table table = table_of(surface);
+  append_shape(table, surface);
+  append(table, table_of(surface.transform));
+  if (surface.is_driven()) return table;
+  append(table, table_of(surface.material));
+  append(table, table_of(surface.tangents));
+  append(table, table_of(surface.solver));
+  return table;
+}
+
+// In a group, the group selects the region.
+Table all_slots(Force& force) {
+  Table table = table_of(force);
+  if (!force.group.empty())
+    std::erase_if(table, [](const Slot& slot) {
+      return slot.attribute.name == deformation_radius_attribute.name;
+    });
+  return table;
+}
+
+Table all_slots(Scene& scene, std::string_view name) {
+  for (Surface& surface : scene.surfaces)
+    if (surface.name == name) return all_slots(surface);
+  for (Force& force : scene.forces)
+    if (force.name == name) return all_slots(force);
+  for (Group& group : scene.groups)
+    if (group.name == name) return table_of(group);
+  return name == Description<Scene>::element ? table_of(scene) : Table();
+}
+
+std::string no_object(const Scene& scene, std::string_view name) {
+  std::vector<std::string_view> names = {Description<Scene>::element};
+  for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
+  for (const Force& force : scene.forces) names.push_back(force.name);
+  for (const Group& group : scene.groups) names.push_back(group.name);
+  return fmt::format("nothing is named {}{}", in_quotes(name), hint(name, names));
+}
+
+bool may_change(const Slot& slot) {
+  return slot.attribute.syntax != Syntax::Version && slot.attribute.name != "name" &&
+         slot.attribute.need != Need::Later;
+}
+
+std::string no_attribute(const Scene& scene, const Table& table, const ValuePath& path) {
+  std::vector<std::string_view> names;
+  for (const Slot& slot : table)
+    if (may_change(slot)) names.push_back(slot.attribute.name);
+  for (const Slot& slot : table) {
+    if (slot.attribute.name != path.attribute) continue;
+    return fmt::format("{} {}", path.attribute,
+                       slot.attribute.need == Need::Later ? not_supported(slot.attribute.instead)
+                                                          : "cannot be changed");
+  }
+  std::vector<std::string_view> own;
+  return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
+                     attribute_hint(scene, path.name, path.attribute, names, own));
+}
+
+}  // namespace
+
+std::optional<ValuePath> split_path(std::string_view path) {
+  const std::size_t first = path.find('.');
+  if (first == std::string_view::npos || first == 0) return {};
+  const std::string_view rest = path.substr(first + 1);
+  const std::size_t second = std::min(rest.find('.'), rest.size());
+  ValuePath parts{std::string(path.substr(0, first)), std::string(rest.substr(0, second))};
+  if (second < rest.size()) parts.part = rest.substr(second + 1);
+  if (parts.attribute.empty() || (second < rest.size() && parts.part.empty())) return {};
+  return parts;
+}
+
+Reading<SlotAt> slot_at(Scene& scene, std::string_view path) {
+  std::optional<ValuePath> parts = split_path(path);
+  if (!parts)
+    return tl::unexpected(fmt::format(
+        "{} is no path of an attribute; write NAME.ATTRIBUTE or scene.ATTRIBUTE", in_quotes(path)));
+  Table table = all_slots(scene, parts->name);
+  if (table.empty()) return tl::unexpected(no_object(scene, parts->name));
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == parts->attribute && may_change(slot);
+  });
+  if (found == table.end()) return tl::unexpected(no_attribute(scene, table, *parts));
+  if (!parts->part.empty() &&
+      std::find(std::begin(part_words), std::end(part_words), parts->part) == std::end(part_words))
+    return tl::unexpected(fmt::format("{} has no part {}{}", parts->title(), in_quotes(parts->part),
+                                      hint(parts->part, part_words)));
+  return SlotAt{*std::move(parts), std::move(*found)};
+}
+
+}  // namespace pliant::xml
