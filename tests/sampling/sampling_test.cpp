@@ -111,7 +111,7 @@ TEST_CASE("inertia is the load of the surface's own acceleration", "[sampling][i
     const auto inputs = inputs_of(s, 0, frame);
     const Vector3d p(0.3, -1, 2);
     const auto at = [&](int f) -> Vector3d {
-      const Transform x = sample_transform(surface.transform, f);
+      const Transform x = surface.transform.at(f);
       return x.linear * p + x.translation;
     };
     const Vector3d expected = -7 * 25 * 25 * (at(frame + 1) - 2 * at(frame) + at(frame - 1));

@@ -127,7 +127,7 @@ Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left) {
       if (nodes_left <= 0) return {};
     }
     if (frame + 1 < scene_.start) continue;  // of the preroll, which is not shown
-    const Transform shown = sample_transform(surface_.transform, frame + 1);
+    const Transform shown = surface_.transform.at(frame + 1);
     const double peak = body_.peak(shown).size;
     if (peak > played.peak) played = {peak, frame + 1};
   }

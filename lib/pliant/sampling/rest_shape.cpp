@@ -425,8 +425,8 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
                              scene.origin.line_of(own.name, "drivenBy")));
   }
   shape.binding = std::make_shared<const Binding>(
-      **triangles, sample_transform(driving.transform, scene.start),
-      to_world(sample_transform(own.transform, scene.start), shape.mesh.positions));
+      **triangles, driving.transform.at(scene.start),
+      to_world(own.transform.at(scene.start), shape.mesh.positions));
   return {};
 }
 

@@ -39,9 +39,9 @@ Vector3d sample_tangent(const TangentChannel& channel, int frame) {
 // R(f) + w, and to R(k) - R(f): the part of each node.
 InertiaForce sample_inertia(const Surface& surface, double fps, int frame,
                             const ShapeFrames& shape) {
-  const Transform before = sample_transform(surface.transform, frame - 1);
-  const Transform now = sample_transform(surface.transform, frame);
-  const Transform after = sample_transform(surface.transform, frame + 1);
+  const Transform before = surface.transform.at(frame - 1);
+  const Transform now = surface.transform.at(frame);
+  const Transform after = surface.transform.at(frame + 1);
   const double rate = fps / surface.solver.time_scale.at(frame)[0];  // of frames, in its own time
   const double scale = -surface.material.density.at(frame)[0] * rate * rate;
   const Matrix3d turning = (after.linear - now.linear) - (now.linear - before.linear);
@@ -235,12 +235,6 @@ bool is_solved_at(const Scene& scene, const Surface& surface, int frame) {
          frame_length(scene, surface, solved_frame(scene, surface, frame)) > 0;
 }
 
-Transform sample_transform(const TransformChannels& channels, int frame) {
-  return make_transform(to_vector(channels.translate.at(frame)),
-                        to_vector(channels.rotate.at(frame)), to_vector(channels.scale.at(frame)),
-                        channels.rotate_order);
-}
-
 BodySettings body_settings(const Surface& surface, bool is_grid) {
   const SolverSettings& solver = surface.solver;
   return {.integrator = solver.integrator,
@@ -260,7 +254,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
                        const ShapeFrames& shape) {
   const MaterialChannels& material = surface.material;
   const TangentChannels& tangents = surface.tangents;
-  return {.transform = sample_transform(surface.transform, frame),
+  return {.transform = surface.transform.at(frame),
           .stiffness = {material.b.at(frame)[0], material.c.at(frame)[0], material.d.at(frame)[0]},
           .dynamics = {material.density.at(frame)[0],
                        material.damping_ratio ? 0 : material.damping.at(frame)[0]},

@@ -120,8 +120,6 @@ bool begins_cycle(const Scene& scene, const Surface& surface, int frame);
 /// Whether a surface is solved at a frame; otherwise its state does not change.
 bool is_solved_at(const Scene& scene, const Surface& surface, int frame);
 
-Transform sample_transform(const TransformChannels& channels, int frame);
-
 /// The group of a force; null: none.
 const Group* group_of(const Scene& scene, const Force& force);
 

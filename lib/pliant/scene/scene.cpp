@@ -18,6 +18,14 @@ int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
 
 }  // namespace
 
+Transform TransformChannels::at(double frame) const {
+  const auto vector = [frame](const Channel<3>& channel) {
+    const Value<3> value = channel.at(frame);
+    return Vector3d(value[0], value[1], value[2]);
+  };
+  return make_transform(vector(translate), vector(rotate), vector(scale), rotate_order);
+}
+
 std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
 }

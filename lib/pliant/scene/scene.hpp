@@ -52,6 +52,8 @@ struct TransformChannels {
   Channel<3> rotate = Value<3>{0, 0, 0};     ///< [degrees]
   Channel<3> scale = Value<3>{1, 1, 1};      ///< [1], no component 0
   RotateOrder rotate_order = RotateOrder::Xyz;
+
+  Transform at(double frame) const;
 };
 
 /// The coefficients of the plate equation. SPEC 2; thesis 5.2.1.2.

@@ -261,7 +261,7 @@ Result<void> Bodies::show(std::size_t index, int frame, SurfaceFrame& shown) con
   const RestShape& shape = rest_shapes_[index];
   const Surface& surface = scene_.surfaces[index];
   const Field& nodes = bodies_[index]->state().positions;
-  const Transform transform = sample_transform(surface.transform, frame);
+  const Transform transform = surface.transform.at(frame);
   Field positions = std::move(shown.object_positions_);
   Field rest = std::move(shown.object_rest_);
   if (shape.binding || shape.animation) {
@@ -329,7 +329,7 @@ Result<Field> Bodies::driven_positions(std::size_t index, int frame, const Trans
     moved += **now - **at_start;
   }
   Field positions = rest_shapes_[index].binding->displacements(moved, std::move(reuse));
-  const Transform from = sample_transform(scene_.surfaces[driver].transform, frame);
+  const Transform from = scene_.surfaces[driver].transform.at(frame);
   const Matrix3d linear = inverse_linear(transform) * from.linear;
   for (Eigen::Index k = 0; k < positions.rows(); ++k) {
     const Vector3d displacement = linear * positions.row(k).transpose();

@@ -39,7 +39,7 @@ class TakeWriter {
         .file = file, .first_frame = frames.first, .last_frame = frames.last, .fps = scene.fps};
     for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
       const RestShape& shape = simulation.rest_shapes()[k];
-      const Transform transform = sample_transform(scene.surfaces[k].transform, frames.first);
+      const Transform transform = scene.surfaces[k].transform.at(frames.first);
       plan.surfaces.push_back({.name = shape.name,
                                .mesh = &shape.mesh,
                                .rest = to_world(transform, shape.mesh.positions)});
