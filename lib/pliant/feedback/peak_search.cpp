@@ -10,6 +10,7 @@ namespace {
 constexpr double played_miss = 3e-4;  // less than what rounding changes
 constexpr double kept_miss = 1e-3;    // numbers that are there already may be rounded ones
 constexpr double most_growth = 100;   // of the factor, in a play
+constexpr double least_jump = 20;     // a steeper growth of logarithms is one, as far as is seen
 
 struct Play {
   double factor = 1;
@@ -18,13 +19,16 @@ struct Play {
 
 double miss_of(const Play& play, double wanted) { return std::abs(play.peak / wanted - 1); }
 
+double growth_of_logarithms(const Play& from, const Play& to) {
+  return std::log(to.peak / from.peak) / std::log(to.factor / from.factor);
+}
+
 // Where the line through the logarithms of two plays reaches `wanted`. With one play it is
 // proportional.
 double secant(const Play& now, const std::optional<Play>& before, double wanted) {
   double slope = 1;
   if (before && before->factor != now.factor && before->peak > 0) {
-    slope = std::log(now.peak / before->peak) / std::log(now.factor / before->factor);
-    slope = std::clamp(slope, 0.2, 5.0);
+    slope = std::clamp(growth_of_logarithms(*before, now), 0.2, 5.0);
   }
   const double growth = std::pow(wanted / now.peak, 1 / slope);
   return now.factor * std::clamp(growth, 1 / most_growth, most_growth);
@@ -37,6 +41,7 @@ Result<FactorFound> find_factor(double wanted, int most_plays, const PeakAt& pea
   const auto found = [&](Obstacle obstacle, double other_peak = 0) -> FactorFound {
     return {best->factor, best->peak, obstacle, other_peak};
   };
+  const auto beyond_jump = [&] { return best->peak == low->peak ? high->peak : low->peak; };
   double factor = 1;
   int without_effect = 0;
   for (int plays = 0; plays < most_plays; ++plays) {
@@ -56,10 +61,7 @@ Result<FactorFound> find_factor(double wanted, int most_plays, const PeakAt& pea
     if (low && high) {
       // A jump, or a peak that does not grow with the factor.
       const double room = std::abs(high->factor / low->factor - 1);
-      if (room < 1e-4) {
-        const double other = best->peak == low->peak ? high->peak : low->peak;
-        return found(Obstacle::LeavesReach, other);
-      }
+      if (room < 1e-4) return found(Obstacle::LeavesReach, beyond_jump());
       factor = secant(now, now.peak < wanted ? high : low, wanted);
       const auto [least, most] = std::minmax(low->factor, high->factor);
       // Every third play halves what is left.
@@ -70,6 +72,8 @@ Result<FactorFound> find_factor(double wanted, int most_plays, const PeakAt& pea
     }
     before = now;
   }
+  if (low && high && low->peak > 0 && growth_of_logarithms(*low, *high) > least_jump)
+    return found(Obstacle::LeavesReach, beyond_jump());
   return found(Obstacle::NotFound);
 }
 
