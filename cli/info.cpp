@@ -18,18 +18,6 @@ BoundingBox bounding_box(const Field& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
-// Vertices of a surface in world space at the first frame.
-Field at_rest(const Scene& scene, std::size_t surface, const Field& vertices) {
-  const TransformChannels& channels = scene.surfaces[surface].transform;
-  const auto vector = [&](const Channel<3>& channel) {
-    const Value<3> value = channel.at(scene.start);
-    return Vector3d(value[0], value[1], value[2]);
-  };
-  return to_world(make_transform(vector(channels.translate), vector(channels.rotate),
-                                 vector(channels.scale), channels.rotate_order),
-                  vertices);
-}
-
 // Computes all facts that need the meshes. Returns whether there is a first frame; if not, its
 // error is printed.
 Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
@@ -46,7 +34,8 @@ Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
     facts.surfaces.push_back(
         {shape.grid, summary_of(shape), static_cast<std::size_t>(shape.mesh.vertex_count()),
          bounding_box(first ? first->surfaces()[k].positions()
-                            : at_rest(facts.scene, k, shape.mesh.positions)),
+                            : to_world(facts.scene.surfaces[k].transform.at(facts.scene.start),
+                                       shape.mesh.positions)),
          bounding_box(shape.mesh.positions), cache_summary_of(shape), map_summaries_of(shape)});
   }
   facts.surface_memory = simulation.surface_memory();
@@ -96,13 +85,13 @@ int run_info(const InfoOptions& options) {
     if (const auto checked = Simulation::check(*scene, run); !checked) {
       return report(checked.error());
     }
-    return tell({.file = options.scene, .scene = *scene}, options);
+    return tell({.file = title_of_scene(options.scene), .scene = *scene}, options);
   }
   const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
   print_notes(simulation->scene(), note_count);
-  SceneFacts facts{.file = options.scene, .scene = simulation->scene()};
+  SceneFacts facts{.file = title_of_scene(options.scene), .scene = simulation->scene()};
   const auto looked = look_at_surfaces(facts, *simulation, run);
   if (!looked) return report(looked.error());
   const int told = tell(facts, options);

@@ -81,6 +81,7 @@ std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts&
 }
 
 std::string frequency_text(double frequency) {
+  if (!std::isfinite(frequency)) return "too high for a number";
   return frequency >= 0.001 ? fmt::format("{:.4g} Hz", frequency)
                             : fmt::format("{:.3e} Hz", frequency);
 }
@@ -98,7 +99,8 @@ std::string vibration_text(const RegionPreview& region, double fps) {
                         frequency > fps / 2 ? ", faster than frames can show" : "",
                         ratio < 0.7 ? "rings" : "hardly swings");
   } else {
-    text += std::isinf(ratio) ? "it creeps" : fmt::format("damping ratio {:.3g}, it creeps", ratio);
+    text +=
+        !std::isfinite(ratio) ? "it creeps" : fmt::format("damping ratio {:.3g}, it creeps", ratio);
   }
   const Settling& settling = region.settling;
   if (!std::isfinite(settling.time)) return text + "; does not settle\n";
@@ -173,14 +175,18 @@ std::string shares_text(const Preview& preview, const Scene& scene) {
   return text + '\n';
 }
 
+std::string distance_text(double distance) {
+  return std::isfinite(distance) ? fmt::format("{:.4g}", distance) : "too far for a number";
+}
+
 std::string gap_text(const Preview& preview) {
   std::string text = "it selects nothing";
   if (!preview.gap) return text;
   const auto& [frame, to_vertex, to_centre, radius] = *preview.gap;
   text += fmt::format(
-      "\n    nearest at frame {}: {:.4g} to the nearest vertex, {:.4g} to the middle of the "
-      "bounding box, deformationRadius {:.4g}\n",
-      frame, to_vertex, to_centre, radius);
+      "\n    nearest at frame {}: {} to the nearest vertex, {} to the middle of the bounding box, "
+      "deformationRadius {:.4g}\n",
+      frame, distance_text(to_vertex), distance_text(to_centre), radius);
   return text;
 }
 

@@ -63,6 +63,10 @@ Result<std::filesystem::path> folder_of(const Root& root) {
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
+std::string title_of_scene(const std::string& scene) {
+  return is_standard_input(scene) ? name : scene;
+}
+
 void add_changes(CLI::App& command, Changes& changes) {
   command
       .add_option("--set", changes,

@@ -122,7 +122,7 @@ int suggest(const SuggestOptions& options, Scene scene, SceneDocument* document)
   const double fps = simulation->scene().fps;
   auto suggestion = suggest_material(*simulation, goals_of(options, fps), run);
   if (!suggestion) return report(suggestion.error());
-  SuggestFacts facts{.file = options.scene,
+  SuggestFacts facts{.file = title_of_scene(options.scene),
                      .surface = simulation->scene().surfaces[suggestion->after.surface].name,
                      .force = options.force,
                      .fps = fps,

@@ -105,8 +105,11 @@ Row row_of(std::string_view name, const GoalResult& goal, std::string_view unit,
   if (!goal.is_known) return row;
   row.found = std::isfinite(goal.found) ? fmt::format("{:.4g}{}", goal.found, unit) : "never";
   const double percent = 100 * (goal.found / goal.wanted - 1);
-  if (std::isfinite(percent))
-    row.off = std::abs(percent) < 0.005 ? "0.00 %" : fmt::format("{:+.2f} %", percent);
+  if (std::isfinite(percent)) {
+    row.off = std::abs(percent) < 0.005 ? "0.00 %"
+              : std::abs(percent) < 1e6 ? fmt::format("{:+.2f} %", percent)
+                                        : fmt::format("{:+.3g} %", percent);
+  }
   return row;
 }
 

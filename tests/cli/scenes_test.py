@@ -211,6 +211,14 @@ class Info(Command):
                 self.run_pliant("suggest", scene, "--settle", "1s", code=None)
                 self.assertNotRegex(self.run_pliant("bake", scene, "-o", "a.npy").stdout, "inf|nan")
 
+    def test_what_is_beyond_a_number_is_said(self):
+        light = self.write("light.xml", SCENE.format(end=6).replace("</surface>", '<material density="5e-324"/></surface>'))
+        far = self.write("far.xml", SCENE.format(end=6).replace(
+            "</scene>", '<line name="far" from="-1e308 1 0" to="1e308 1 0" deformationRadius="0.5" magnitude="1"/></scene>'))
+        for scene in (light, far):
+            self.assertNotRegex(self.run_pliant("info", scene).stdout, r"\b(inf|nan)\b")
+            self.assertRegex(self.run_pliant("info", scene).stdout, "too (high|far) for a number")
+
     def test_a_loop_that_does_not_close_is_told_with_all_else(self):
         scene = self.write("loop.xml", '<scene version="1" start="1" end="24"><surface name="s"><grid columns="21" '
                                        'rows="21" width="4" depth="3"/><material density="40" damping="0"/><solver '

@@ -25,6 +25,8 @@ class StandardInput(Command):
                          self.run_pliant("curves", scene, "--channel", "poke.magnitude").stdout)
         self.assertIn("valid: 1 surface", self.pipe(text, "validate", "-").stdout)
         self.assertIn("poke (point)", self.pipe(text, "info", "-").stdout)
+        for command in (["info", "-"], ["suggest", "-", "--peak", "1"]):
+            self.assertTrue(self.pipe(text, *command).stdout.startswith("standard input"), command)
 
     def test_meshes_are_relative_to_the_current_folder(self):
         self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"

@@ -285,6 +285,7 @@ class Suggest(Command):
         before = self.read("far.xml")
         told = self.suggest(far, "--peak", "1", "--write", code=1)
         self.assertEqual(told["peak"]["obstacle"], "nothingMoves")
+        self.assertRegex(self.run_pliant("suggest", scene, "--settle", "1e-9s", code=1).stdout, r"\+\d\.\d+e\+\d+ %")
         self.assertFalse(told["written"])
         self.assertEqual(self.read("far.xml"), before)
 

@@ -71,7 +71,8 @@ class SweepSafety(SweepCommand):
         text = self.read("s/sweep.json").decode()
         for old, new, part in (('"version"', '"more": ' + "[" * 1_000_000, "nested too deeply"),
                                ('"axes": [', '"axes": [1,', "is not the file of a sweep"),
-                               ('"texts": [', '"texts": [1,', "is not the file of a sweep"),
+                               ('"texts": [', '"texts": [1,', "a member is missing, or has a value of another kind"),
+                               ('"engine"', '"motor"', "a member is missing, or has a value of another kind"),
                                ('"texts": [', '"texts": ["1",', "do not belong together"),
                                ('"texts": [', '"texts": [{"texts": ["1"]},', "is not the file of a sweep"),
                                ('"texts": [', '"more": [', "do not belong together")):

@@ -505,7 +505,8 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
       {"<include file=\"latin.xml\"/>",
        {"latin.xml:1: the byte 0xE4 is not UTF-8; save the file as UTF-8" + in_shot}},
       {"<include file=\"key.xml\"/>",
-       {"key.xml:1: the root element is <key>; a file that is included must contain one of: "
+       {"key.xml:1: the root element cannot be included; a file that is included must contain one "
+        "of: "
         "fragment, "
         "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, "
         "solver, "

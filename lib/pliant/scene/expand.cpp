@@ -474,8 +474,9 @@ bool Expander::expand_file(OpenText& text, const ElementPlace& element, const fs
   const std::string_view name = inside.name_of(root);
   if (std::find(rules_.roots().begin(), rules_.roots().end(), name) == rules_.roots().end()) {
     add(inside, root.whole().begin,
-        fmt::format("the root element is <{}>; a file that is included must contain one of: {}",
-                    name, listed(rules_.roots())));
+        fmt::format("the root element cannot be included; a file that is included must contain one "
+                    "of: {}",
+                    listed(rules_.roots())));
     return false;
   }
   if (name == fragment_name)

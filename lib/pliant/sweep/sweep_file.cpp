@@ -390,6 +390,8 @@ Result<SweepFile> read_sweep_file(const std::filesystem::path& file,
     if (json.is_discarded()) return refuse("it is no JSON");
     *text = std::string();
     return content_of(std::move(json), texts.take());
+  } catch (const FileJson::exception&) {
+    return refuse("a member is missing, or has a value of another kind");
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
