@@ -167,6 +167,17 @@ TEST_CASE("a vector is one sampler, a number a node of its own", "[exchange][glt
   CHECK(disagreement(magnitude, make(file->curves[3].keys), 1, 25, {1e-5, 1e-4}) == 0);
 }
 
+TEST_CASE("the largest value goes out and comes back", "[exchange][gltf]") {
+  for (const double largest : {1e30, -1e30}) {
+    const auto text = write_curves({{"poke.magnitude", make({key(1, 0), key(13, largest)})}},
+                                   CurveFormat::Gltf, {.last = 25});
+    REQUIRE(text.has_value());
+    const auto file = parse_curves(text->bytes, CurveFormat::Gltf, "large.glb", {});
+    REQUIRE(file.has_value());
+    CHECK(file->curves[0].keys.keys[1].value[0] == largest);
+  }
+}
+
 TEST_CASE("keys before the first frame move second 0", "[exchange][gltf]") {
   const Curve<1> early = make({key(-11, 3), key(13, 100)});
   const auto text = write_curves({{"poke.magnitude", early}}, CurveFormat::Gltf, {.last = 25});

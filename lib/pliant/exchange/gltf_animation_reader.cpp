@@ -131,11 +131,11 @@ class GltfCurveReader {
     if (values.width > most_curves)
       return invalid(fmt::format("{} animates more than {} weights", name, most_curves));
     for (double& number : values.numbers) {
+      number = shortest_of_single(number);
       if (!(std::fabs(number) <= largest_gltf_value)) {
         return invalid(fmt::format("{} has the value {}; its size must not exceed {}", name, number,
                                    largest_gltf_value));
       }
-      number = shortest_of_single(number);
     }
     return values;
   }
