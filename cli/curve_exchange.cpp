@@ -80,9 +80,10 @@ void print_channels(const Scene& scene) {
 
 // The order of rotation of the surfaces whose `rotate` curves go to. Errors: several orders.
 Result<RotateOrder> order_of(const std::vector<CurveMapping>& mappings, const Scene* scene) {
+  if (!scene) return RotateOrder::Xyz;
   std::set<RotateOrder> orders;
   for (const CurveMapping& mapping : mappings) {
-    for (const Surface& surface : scene ? scene->surfaces : std::vector<Surface>{})
+    for (const Surface& surface : scene->surfaces)
       if (mapping.channel == surface.name + ".rotate")
         orders.insert(surface.transform.rotate_order);
   }

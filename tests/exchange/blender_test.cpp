@@ -211,6 +211,36 @@ TEST_CASE("problems of curves of Blender name the path, the value and the rule",
              contains_text("must not exceed"));
 }
 
+TEST_CASE("curves of Blender that have one name are numbered", "[exchange][blender]") {
+  const std::string one = document(two_keys);
+  const std::size_t begin = one.find("{\"owner\""), end = one.rfind("]}]}") + 2;
+  const std::string curve = one.substr(begin, end - begin);
+  std::string again = curve;
+  again.replace(again.find("location"), 8, "location#3");
+  std::string all = curve;
+  for (const std::string& next : {again, curve, curve, curve}) all += "," + next;
+  const auto file = read_fcurves(one.substr(0, begin) + all + one.substr(end));
+  REQUIRE(file.has_value());
+  std::vector<std::string> names;
+  for (const FileCurve& each : file->curves) names.push_back(each.name);
+  CHECK(names == std::vector<std::string>{"Cube.location.z", "Cube.location#3.z",
+                                          "Cube.location#2.z", "Cube.location#4.z",
+                                          "Cube.location#5.z"});
+}
+
+TEST_CASE("a small file of Blender does not become endless keys", "[exchange][blender]") {
+  const std::string one =
+      document(two_keys, R"("cycles": {"after": "REPEAT_OFFSET", "after_count": 400000}, )");
+  CHECK(read_fcurves(one).has_value());
+  const std::size_t begin = one.find("{\"owner\""), end = one.rfind("]}]}") + 2;
+  const std::string curve = one.substr(begin, end - begin);
+  std::string all = curve;
+  for (int k = 0; k < 3; ++k) all += "," + curve;
+  const auto file = read_fcurves(one.substr(0, begin) + all + one.substr(end));
+  REQUIRE_FALSE(file.has_value());
+  CHECK_THAT(file.error().message, contains_text("is one of more than 1000000 keys"));
+}
+
 TEST_CASE("every beginning of curves of Blender is a problem", "[exchange][blender]") {
   const std::string text = document(two_keys, R"("cycles": {"after": "MIRROR"}, )");
   REQUIRE(read_fcurves(text).has_value());

@@ -128,6 +128,29 @@ TEST_CASE("rotations become angles that turn alike", "[exchange][gltf]") {
   }
 }
 
+TEST_CASE("a rotation that does not change has few keys", "[exchange][gltf]") {
+  const Curve<3> still = Curve<3>::make({.keys = {{.frame = 1, .value = {30, 40, 50}},
+                                                  {.frame = 101, .value = {30, 40, 50}},
+                                                  {.frame = 150, .value = {30, 40, 50.5}}}})
+                             .value();
+  const auto text =
+      write_curves({{"sheet.rotate", still, CurveUnit::Degrees}}, CurveFormat::Gltf, {.last = 150});
+  REQUIRE(text.has_value());
+  const auto file = parse_curves(text->bytes, CurveFormat::Gltf, "sheet.glb", {});
+  REQUIRE(file.has_value());
+  CHECK(file->curves[2].keys.keys.size() < 40);
+  // The last one looks along an axis at which angles are not sure.
+  for (const exchange::Quaternion& turn : {exchange::Quaternion{0.1, 0.2, 0.3, 0.9274},
+                                           exchange::Quaternion{0, 0.7071068, 0, 0.7071068}}) {
+    std::vector<float> values;
+    for (int k = 0; k < 2; ++k)
+      for (const double each : turn) values.push_back(static_cast<float>(each));
+    const auto own = read_gltf_text(gltf_of("rotation", "LINEAR", {0, 4}, values, "VEC4", 2));
+    REQUIRE(own.has_value());
+    for (const FileCurve& curve : own->curves) CHECK(curve.keys.keys.size() == 2);
+  }
+}
+
 TEST_CASE("rotations come back from a file", "[exchange][gltf]") {
   const auto order = static_cast<RotateOrder>(GENERATE(range(0, 6)));
   const Curve<3> turn = Curve<3>::make({.keys = {{.frame = 1},

@@ -49,6 +49,30 @@ TEST_CASE("what a format cannot hold is told once, with the first key and the de
   CHECK_FALSE(result.losses[0].is_exact);
 }
 
+TEST_CASE("a level segment is one line, whatever its handles", "[exchange][hold]") {
+  Key<1> first = key(1, 5), second = key(21, 5);
+  first.out = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 7.8, .handle_value = {0}};
+  second.in = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 7.8, .handle_value = {0}};
+  for (const double tolerance : {0.0, 1e-3}) {
+    const Held result = held({.keys = {first, second}}, {}, tolerance);
+    CHECK(result.losses.empty());
+    REQUIRE(result.pieces.pieces.size() == 1);
+    CHECK(make(keys_of(result.pieces)).value(9.3)[0] == 5);
+  }
+}
+
+TEST_CASE("what becomes too many keys is refused before it is made", "[exchange][hold]") {
+  CurveKeys<1> keys;
+  for (int k = 0; k < 2000; ++k) {
+    Interpolation elastic = of_ease(Ease::Elastic, EaseSide::Out);
+    elastic.period = 1e-4;
+    keys.keys.push_back(key(k, k % 7, elastic));
+  }
+  const auto result = hold(pieces_of(make(keys)), {}, 1e-6, wanted);
+  REQUIRE_FALSE(result.has_value());
+  CHECK_THAT(result.error().message, contains_text("would become more than 500000 keys"));
+}
+
 TEST_CASE("easings that are cubics become them exactly", "[exchange][hold]") {
   const auto ease = GENERATE(Ease::Quad, Ease::Cubic, Ease::Back, Ease::Bounce);
   const auto side = GENERATE(EaseSide::In, EaseSide::Out, EaseSide::InOut);

@@ -87,6 +87,18 @@ TEST_CASE("a component without a curve keeps its value", "[exchange][join]") {
   }
 }
 
+TEST_CASE("a level component gets no keys of its own", "[exchange][join]") {
+  Key<1> first = key(1, 5), last = key(20, 5);
+  first.out = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 7.41, .handle_value = {0}};
+  last.in = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 7.41, .handle_value = {0}};
+  const CurveKeys<1> x{.keys = {key(1, 0), key(10, 3), key(20, 5)}}, z{.keys = {first, last}};
+  const auto joined = join_curves({&x, nullptr, &z}, {}, 1e-4);
+  REQUIRE(joined.has_value());
+  CHECK(joined->keys.keys.size() == 3);
+  for (const double frame : {1.0, 7.3, 20.0})
+    CHECK(Curve<3>::make(joined->keys).value().value(frame)[2] == 5);
+}
+
 TEST_CASE("copies that differ cannot be joined", "[exchange][join]") {
   CurveKeys<1> x{.keys = {key(1, 0), key(20, 5)}}, y = x, level{.keys = {key(1, 2), key(20, 2)}};
   x.after.kind = OutsideKind::Repeat;

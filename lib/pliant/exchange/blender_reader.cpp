@@ -157,9 +157,16 @@ class BlenderReader : private JsonReader {
     file_.losses.push_back({name_, std::move(message), is_exact});
   }
 
+  /// False: a fault.
+  bool count_keys(std::size_t more) {
+    key_count_ += more;
+    if (key_count_ > most_file_keys)
+      refuse("", fmt::format("is one of more than {} keys", most_file_keys));
+    return key_count_ <= most_file_keys;
+  }
+
   void read_key(Json& json) {
-    if (++key_count_ > most_file_keys)
-      return refuse("", fmt::format("is one of more than {} keys", most_file_keys));
+    if (!count_keys(1)) return;
     FKey key;
     const auto co = point(json, "co");
     key.frame = co[0];
@@ -246,6 +253,7 @@ class BlenderReader : private JsonReader {
     if (has_copies && !add_cycles(keys, before, after)) return;
     if (const auto checked = Curve<1>::make(keys); !checked)
       return refuse("keys", fmt::format("are not a curve: {}", checked.error().message));
+    if (!count_keys(keys.keys.size() - std::min(keys.keys.size(), keys_.size()))) return;
     file_.curves.push_back(std::move(curve));
   }
 
@@ -281,6 +289,7 @@ class BlenderReader : private JsonReader {
         continue;
       ++count;
       deviation = std::max(deviation, add_turned_elastic(keys.keys[k], next, to, result));
+      if (fault_) return;
     }
     if (count == 0) return;
     lose(fmt::format(

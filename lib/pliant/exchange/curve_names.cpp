@@ -10,11 +10,14 @@ std::string component_suffix(int component) {
 
 void name_curve(FileCurve& curve, CurveNames& names) {
   const std::string group = curve.group;
-  for (int number = 2;; ++number) {
-    curve.name = curve.group + component_suffix(curve.component);
-    if (names.insert(curve.name).second) return;
-    curve.group = fmt::format("{}#{}", group, number);
-  }
+  const std::string suffix = component_suffix(curve.component);
+  curve.name = group + suffix;
+  if (names.taken.insert(curve.name).second) return;
+  int& number = names.next_numbers.try_emplace(curve.name, 2).first->second;
+  do {
+    curve.group = fmt::format("{}#{}", group, number++);
+    curve.name = curve.group + suffix;
+  } while (!names.taken.insert(curve.name).second);
 }
 
 bool jumps_at_seam(const CurveKeys<1>& keys) {

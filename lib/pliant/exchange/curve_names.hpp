@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,7 +11,10 @@
 namespace pliant::exchange {
 
 /// The names that curves of a file have so far.
-using CurveNames = std::set<std::string>;
+struct CurveNames {
+  std::set<std::string> taken;
+  std::map<std::string, int> next_numbers;  ///< of names that are taken several times
+};
 
 /// `.x` to `.z`, or nothing for -1.
 std::string component_suffix(int component);

@@ -48,6 +48,7 @@ struct Fit {
   std::vector<FittedCubic<D>> cubics;
   double deviation = 0;     ///< the largest of any component, at many frames [unit]
   bool is_complete = true;  ///< no more cubics were needed than are allowed
+  bool is_close = true;     ///< none deviates by more than the tolerance and what rounding makes
 };
 
 /// The most cubics that one interval becomes.
@@ -57,7 +58,7 @@ inline constexpr std::size_t most_fitted = 50'000;
 /// an interval until each cubic deviates by at most `tolerance` or is shorter than two times
 /// `shortest` frames. If `most` cubics do not suffice, those that deviate most are the ones that
 /// were halved. The deviation is measured at 32 frames of each cubic, and the tolerance there is
-/// 0.8 of the given one.
+/// 0.8 of the given one, but not less than what rounding makes of the values.
 template <int D>
 class Fitter {
  public:
@@ -92,12 +93,20 @@ class Fitter {
     friend bool operator<(const Coarse& a, const Coarse& b) { return a.deviation < b.deviation; }
   };
 
+  static double rounding_of(const FittedCubic<D>& cubic) {
+    double largest = 0;
+    for (int c = 0; c < D; ++c)
+      largest = std::max({largest, std::fabs(cubic.from[c]), std::fabs(cubic.to[c])});
+    return 1e-13 * largest;
+  }
+
   static double middle_of(const FittedCubic<D>& cubic) {
     return cubic.start + (cubic.end - cubic.start) / 2;
   }
 
   void keep(FittedCubic<D> cubic, double deviation) {
-    if (deviation > tolerance_) {
+    const double allowed = std::max(tolerance_, rounding_of(cubic));
+    if (deviation > allowed) {
       // Where the function is nearly vertical, its slope means nothing over a whole part.
       FittedCubic<D> line = cubic;
       for (int c = 0; c < D; ++c)
@@ -106,6 +115,7 @@ class Fitter {
       const double of_line = deviation_of(line);
       if (of_line < deviation) cubic = line, deviation = of_line;
     }
+    fit_.is_close = fit_.is_close && deviation <= allowed;
     fit_.deviation = std::max(fit_.deviation, deviation);
     fit_.cubics.push_back(cubic);
   }
@@ -121,8 +131,8 @@ class Fitter {
     }
     const double deviation = deviation_of(cubic);
     const double middle = middle_of(cubic);
-    if (deviation <= 0.8 * tolerance_ || end - start < 2 * shortest_ || middle <= start ||
-        middle >= end) {
+    if (deviation <= std::max(0.8 * tolerance_, rounding_of(cubic)) ||
+        end - start < 2 * shortest_ || middle <= start || middle >= end) {
       return keep(cubic, deviation);
     }
     coarse_.push_back({cubic, deviation});

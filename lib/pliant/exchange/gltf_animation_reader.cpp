@@ -96,6 +96,12 @@ class GltfCurveReader {
     return {};
   }
 
+  Result<void> count_keys(std::size_t more) {
+    key_count_ += more;
+    if (key_count_ <= most_file_keys) return {};
+    return invalid(fmt::format("the file has more than {} keys", most_file_keys));
+  }
+
   /// Width 0: as many as there are.
   Result<KeyedValues> read_values(const gltf::AnimationSampler& sampler, std::size_t width,
                                   const std::string& name) {
@@ -115,9 +121,6 @@ class GltfCurveReader {
       }
       values.frames.push_back(frame);
     }
-    key_count_ += values.frames.size() * std::max<std::size_t>(width, 1);
-    if (key_count_ > most_file_keys)
-      return invalid(fmt::format("the file has more than {} keys", most_file_keys));
     auto numbers = width == 0 ? accessors_.scalars(sampler.values)
                               : accessors_.vectors(sampler.values, static_cast<int>(width));
     if (!numbers) return fail(numbers.error());
@@ -130,6 +133,8 @@ class GltfCurveReader {
     }
     if (values.width > most_curves)
       return invalid(fmt::format("{} animates more than {} weights", name, most_curves));
+    if (auto counted = count_keys(values.frames.size() * values.width); !counted)
+      return fail(counted.error());
     for (double& number : values.numbers) {
       number = shortest_of_single(number);
       if (!(std::fabs(number) <= largest_gltf_value)) {
@@ -236,6 +241,7 @@ class GltfCurveReader {
     }
     double range = 0;
     for (std::size_t c = 0; c < 3; ++c) range = std::max(range, high[c] - low[c]);
+    const double tolerance = std::max(reading_.tolerance * range, least_rotation_tolerance);
     double deviation = 0;
     std::size_t count = 0;
     const auto tangent = [](double slope) {
@@ -243,11 +249,11 @@ class GltfCurveReader {
     };
     for (const RotationTrack<3>& track : tracks) {
       const SmoothFunction<3> function = track.function();
-      const Fit<3> fit = Fitter<3>(function, reading_.tolerance * range, 1.0 / 1024)
-                             .fit(track.start(), track.end());
+      const Fit<3> fit = Fitter<3>(function, tolerance, 1.0 / 1024).fit(track.start(), track.end());
       count += fit.cubics.size();
       if (!fit.is_complete || count > most_fitted)
         return invalid(fmt::format("{} would become more than {} keys", name, most_fitted));
+      if (auto counted = count_keys(3 * fit.cubics.size()); !counted) return counted;
       deviation = std::max(deviation, fit.deviation);
       for (const FittedCubic<3>& cubic : fit.cubics) {
         for (std::size_t c = 0; c < 3; ++c) {

@@ -195,22 +195,32 @@ class GltfCurveWriter {
     return fitted_rotation(curve, channel, turn);
   }
 
+  /// The widest range of an angle between two frames [degrees].
+  static double turn_within(const std::vector<Curve<1>>& angles, double first, double last) {
+    double widest = 0;
+    for (const Curve<1>& angle : angles) {
+      const ValueRange<1> range = angle.range(first, last);
+      widest = std::max(widest, range.high[0] - range.low[0]);
+    }
+    return widest;
+  }
+
   template <class Turn>
   Result<SampledKeys> fitted_rotation(const ChannelCurve& curve, const HeldChannel& channel,
                                       const Turn& turn) {
     SampledKeys result{.interpolation = "CUBICSPLINE", .width = 4};
     std::vector<Curve<1>> parts;
-    double tolerance = 0, fastest = 0;
+    double tolerance = least_rotation_tolerance;
+    double first = std::numeric_limits<double>::infinity(), last = -first;
     for (const HeldComponent& part : channel.components) {
       auto made = Curve<1>::make(exchange::keys_of(part.pieces));
       PLIANT_EXPECTS(made.has_value());  // pieces of a curve
       tolerance = std::max(tolerance, tolerance_of(*made, writing_));
-      const ValueRange<1> range =
-          made->range(part.pieces.frames.front(), part.pieces.frames.back());
-      fastest = std::max(fastest, range.high[0] - range.low[0]);
+      first = std::min(first, part.pieces.frames.front());
+      last = std::max(last, part.pieces.frames.back());
       parts.push_back(*std::move(made));
     }
-    if (fastest > 360 * 1000) {
+    if (const double fastest = turn_within(parts, first, last); fastest > 360 * 1000) {
       return fail(ErrorCode::InvalidInput,
                   fmt::format("{}: turns by {} degrees; at most 1000 turns become quaternions",
                               curve.channel, fastest));
@@ -224,8 +234,8 @@ class GltfCurveWriter {
     Quaternion beside = at(channel.components[0].pieces.frames.front(), {0, 0, 0, 1});
     double deviation = 0;
     const std::vector<double> frames = frames_of_all(channel);
-    const int steps = 64 + static_cast<int>(fastest / 10);
     for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
+      const int steps = 64 + static_cast<int>(turn_within(parts, frames[k], frames[k + 1]) / 10);
       const RotationTrack<4> track(at, frames[k], frames[k + 1], beside, steps);
       beside = track.last();
       const SmoothFunction<4> function = track.function();
@@ -241,10 +251,6 @@ class GltfCurveWriter {
         result.keys.back().out = cubic.from_slope;
         result.keys.push_back({.frame = cubic.end, .value = cubic.to, .in = cubic.to_slope});
       }
-    }
-    if (frames.size() == 1) {
-      result.keys.push_back({.frame = frames[0], .value = beside});
-      return result;
     }
     result_.losses.push_back(
         {curve.channel, fmt::format("its angles became quaternions: {} keys, within {:.2g} degrees",

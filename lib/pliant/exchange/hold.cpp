@@ -76,13 +76,9 @@ class Holder {
     if (auto error = beyond_bounds(pieces_)) return fail(*std::move(error));
     if (auto held = hold_copies(); !held) return fail(held.error());
     hold_lines();
-    hold_shapes();
+    if (auto held = hold_shapes(); !held) return fail(held.error());
     hold_jumps();
-    hold_arms();
-    if (pieces_.pieces.size() > most_pieces) {
-      return invalid(fmt::format("would become {} keys; at most {} are allowed",
-                                 pieces_.frames.size(), most_pieces));
-    }
+    if (auto held = hold_arms(); !held) return fail(held.error());
     if (auto error = beyond_bounds(pieces_)) return fail(*std::move(error));
     return Held{std::move(pieces_), losses_.take()};
   }
@@ -257,9 +253,9 @@ class Holder {
     pieces_ = std::move(result);
   }
 
-  /// Replaces each piece by the parts that `parts_of` makes of it.
+  /// Replaces each piece by the parts that `parts_of` makes of it. Errors: they are too many.
   template <class PartsOf>
-  void divide(const PartsOf& parts_of) {
+  Result<void> divide(const PartsOf& parts_of) {
     Pieces result;
     result.before = pieces_.before;
     result.after = pieces_.after;
@@ -271,24 +267,35 @@ class Holder {
         result.frames.push_back(part.end);
         result.values.push_back(part.to);
       }
+      if (result.pieces.size() > most_pieces)
+        return invalid(fmt::format("would become more than {} keys", most_pieces));
       // The curve has this value there, whatever the parts arrive with.
       result.frames.back() = pieces_.frames[k + 1];
       result.values.back() = pieces_.values[k + 1];
     }
     pieces_ = std::move(result);
+    return {};
   }
 
-  void hold_shapes() {
-    divide([this](const Piece& piece) -> std::vector<Piece> {
-      if (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time && !abilities_.has_long_arms)
-        return fitted(piece, "Bézier segment");
+  static Piece level_of(Piece piece) {
+    piece.kind = Piece::Kind::Line;
+    return piece;
+  }
+
+  Result<void> hold_shapes() {
+    return divide([this](const Piece& piece) -> std::vector<Piece> {
+      if (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time &&
+          !abilities_.has_long_arms) {
+        const bool is_level = piece.from == piece.to && piece.out.value == 0 && piece.in.value == 0;
+        return is_level ? std::vector{level_of(piece)} : fitted(piece, "Bézier segment");
+      }
       if (piece.kind == Piece::Kind::Easing) return parts_of_easing(piece);
       return {piece};
     });
   }
 
-  void hold_arms() {
-    divide([this](const Piece& piece) -> std::vector<Piece> {
+  Result<void> hold_arms() {
+    return divide([this](const Piece& piece) -> std::vector<Piece> {
       if (piece.kind != Piece::Kind::Bezier) return {piece};
       std::vector<Piece> parts = with_short_arms(piece);
       if (parts.size() > 1) {
@@ -302,11 +309,7 @@ class Holder {
 
   std::vector<Piece> parts_of_easing(const Piece& piece) {
     if (abilities_.has_easing && abilities_.has_easing(piece)) return {piece};
-    if (piece.from == piece.to) {
-      Piece level = piece;
-      level.kind = Piece::Kind::Line;
-      return {level};
-    }
+    if (piece.from == piece.to) return {level_of(piece)};
     const std::string name = fmt::format("{} easing", name_of(piece.easing.ease));
     if (auto parts = cubics_of(piece)) {
       if (parts->size() > 1) losses_.add(name, "became", frame_of(piece), parts->size(), 0, true);
@@ -468,8 +471,8 @@ class Holder {
                                   cubic.from_slope[0], cubic.to_slope[0]));
       parts.back().key = piece.key;
     }
-    losses_.add(name, fit.deviation <= tolerance_ ? "became" : "changed too fast and became",
-                frame_of(piece), parts.size(), fit.deviation, false);
+    losses_.add(name, fit.is_close ? "became" : "changed too fast and became", frame_of(piece),
+                parts.size(), fit.deviation, false);
     return parts;
   }
 

@@ -12,6 +12,9 @@
 
 namespace pliant::exchange {
 
+/// Smaller turns are less than rounding makes of quaternions in single precision [degrees].
+inline constexpr double least_rotation_tolerance = 5e-6;
+
 /// A rotation over some frames as D numbers, of which several stand for the same: the choice
 /// follows the one beside it, so that they change without jumps.
 template <int D>
