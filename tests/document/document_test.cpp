@@ -7,6 +7,7 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/document/text_edit.hpp"
+#include "pliant/output/atomic_file.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
 #include "support/scene_values.hpp"
@@ -114,6 +115,20 @@ TEST_CASE("a document is saved whole, and knows its file", "[document]") {
   CHECK(read_file(other).value() == text);
   CHECK_FALSE(one.save_as((folder.path() / "none" / "x.xml").string()));
   CHECK(one.file() == other);
+}
+
+TEST_CASE("messages name a document's new file, also beside included ones", "[document]") {
+  const ScratchFolder folder;
+  const std::string first = (folder.path() / "a.xml").string();
+  const std::string other = (folder.path() / "b.xml").string();
+  REQUIRE(write_file((folder.path() / "rig.xml").string(), "<point name='f'/>"));
+  REQUIRE(write_file(first,
+                     "<scene version='1' start='1' end='2'>\n<surface name='s'><grid columns='5' "
+                     "rows='5'/></surface>\n<include file='rig.xml'/></scene>"));
+  SceneDocument one = SceneDocument::open(first).value();
+  REQUIRE(one.save_as(other));
+  CHECK(one.scene().origin.place_of("s").file == other);
+  CHECK(one.scene().origin.place_of("f").chain == "included by " + other + ":3");
 }
 
 TEST_CASE("relative files keep a document in its folder", "[document]") {

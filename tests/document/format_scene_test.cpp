@@ -1,5 +1,6 @@
 #include "pliant/document/format_scene.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
@@ -14,6 +15,15 @@
 
 namespace pliant::testing {
 namespace {
+
+TEST_CASE("a line of very many comments is laid out", "[document][format]") {
+  std::string comments;
+  for (int k = 0; k < 300'000; ++k) comments += "<!---->";
+  const std::string text = "<scene version=\"1\" start=\"1\" end=\"2\">" + comments + "</scene>";
+  const auto result = format_scene(text, "shot.xml");
+  REQUIRE(result);
+  CHECK(std::count(result->begin(), result->end(), '!') == 300'000);
+}
 
 std::string formatted(const std::string& text) {
   const auto result = format_scene(text, "shot.xml");

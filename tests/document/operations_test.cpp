@@ -291,6 +291,43 @@ TEST_CASE("forces are grouped and ungrouped", "[document]") {
              "<radial name=\"b\">", "<radial name=\"b\" deformationRadius=\"3.0\">"));
 }
 
+TEST_CASE("a force that leaves its group keeps when it is enabled", "[document]") {
+  const auto grouped = [](const std::string& group, const std::string& force,
+                          const std::string& curve = "") {
+    return "<scene start=\"1\" end=\"9\">\n  <define name=\"g\" value=\"true\"/>\n  <surface "
+           "name=\"s\"><grid columns=\"5\" rows=\"5\"/></surface>\n  <group name=\"all\"" +
+           group + ">\n    <point name=\"f\"" + force + ">" + curve +
+           "</point>\n  </group>\n</scene>\n";
+  };
+  const std::string steps =
+      "<animate attribute=\"enabled\"><key frame=\"1\" value=\"true\"/><key frame=\"5\" "
+      "value=\"false\"/></animate>";
+  const std::vector<Operation> ungroup = {edit::Ungroup{{"all"}}};
+  CHECK_THAT(after(grouped(" enabled=\"$g\"", ""), ungroup),
+             contains_text("<point name=\"f\" enabled=\"$g\""));
+  CHECK_THAT(after(grouped(" enabled=\"$g\"", " enabled=\"false\""), ungroup),
+             contains_text("<point name=\"f\" enabled=\"false\""));
+  const std::string off = after(grouped(" enabled=\"false\"", "", steps), ungroup);
+  CHECK_THAT(off, contains_text("enabled=\"false\"") && !contains_text("<animate"));
+  for (const auto& [force, curve] : {std::pair(" enabled=\"$g\"", std::string()), {"", steps}})
+    CHECK_THAT(refusal(grouped(" enabled=\"$g\"", force, curve), ungroup),
+               contains_text("f.enabled and all.enabled are both more than true or false"));
+}
+
+TEST_CASE("forces of a copied group get names that are free", "[document]") {
+  std::string text =
+      "<scene start=\"1\" end=\"9\"><surface name=\"s\"><grid columns=\"5\" rows=\"5\"/></surface>"
+      "<point name=\"f3\"/><group name=\"g\">";
+  for (int k = 4; k < 300; ++k) text += "<point name=\"f" + std::to_string(k) + "\"/>";
+  text += "</group></scene>";
+  SceneDocument document = document_of(text);
+  REQUIRE(document.apply({edit::Duplicate{"g", "h"}}));
+  const std::vector<Force>& forces = document.scene().forces;
+  REQUIRE(forces.size() == 593);
+  CHECK(forces[297].name == "f2");
+  CHECK(forces[298].name == "f300");
+}
+
 TEST_CASE("a refusal is what validate would say of the file", "[document]") {
   CHECK(refusal(shot, {edit::Set{"poke.magnitude", "1,5"}}) ==
         "shot.xml:11: error: <point> magnitude=\"1,5\": not a number: \",5\" follows 1 (write the "
@@ -329,6 +366,16 @@ const std::string every_number =
     "period=\"1\"/><key frame=\"8\" value=\"60\"/><key frame=\"20\" value=\"0.00\" "
     "tangent=\"flat\"/>"
     "<loop from=\"3\" to=\"8\" after=\"1\" offset=\"9\"/></animate></point></scene>";
+
+TEST_CASE("a loop that begins at a key moves with it, and not with those after it", "[document]") {
+  const auto moved = [](const std::vector<double>& frames) {
+    SceneDocument document = document_of(every_number);
+    REQUIRE(document.apply({edit::MoveKeys{{{"f.magnitude", frames}}, 2}}));
+    return document.scene().forces[0].magnitude.curve().keys().loop->from;
+  };
+  CHECK(moved({3, 5, 7, 8}) == 5);
+  CHECK(moved({20}) == 3);
+}
 
 TEST_CASE("a curve is scaled in every number, and nowhere else", "[document]") {
   std::string wanted = every_number;

@@ -8,6 +8,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/document/draft.hpp"
 #include "pliant/document/editor.hpp"
 #include "pliant/output/atomic_file.hpp"
@@ -17,10 +18,6 @@
 
 namespace pliant {
 namespace {
-
-std::string folder_of_file(const std::string& file) {
-  return std::filesystem::path(file).parent_path().string();
-}
 
 /// The edits of batches as a list: those of one from the last to the first, so that each offset is
 /// that of the text at its turn.
@@ -146,9 +143,11 @@ Result<void> SceneDocument::save() {
 Result<void> SceneDocument::save_as(const std::string& file) {
   if (auto place = check_scene_place(text_, file_, folder_, file); !place) return place;
   if (auto written = write_file(file, text_); !written) return written;
+  for (SceneNote& note : scene_.notes)
+    if (note.file == file_) note.file = file;
+  scene_.origin.rename(file);
   file_ = file;
   folder_ = folder_of_file(file);
-  scene_.origin.file = file;
   saved_ = text_;
   return {};
 }

@@ -173,13 +173,15 @@ Result<void> Editor::inherit(const std::string& group, const std::string& force)
     if (!curve && !given) continue;
     if (attribute != radius) {
       if (given && xml::trimmed(*given) == "true") continue;
-      const auto own = animated(*to) ? std::nullopt : draft_.value(*to->element, attribute);
-      const bool is_off = own && xml::trimmed(*own) == "false";
-      if (is_off) continue;
-      if (curve && animated(*to))
+      const bool is_animated = animated(*to).has_value();
+      const auto own = is_animated ? std::nullopt : draft_.value(*to->element, attribute);
+      if (own && xml::trimmed(*own) == "false") continue;
+      const bool is_on = !is_animated && (!own || xml::trimmed(*own) == "true");
+      const bool is_group_off = given && !curve && xml::trimmed(*given) == "false";
+      if (!is_on && !is_group_off)
         return draft_.refuse(fmt::format(
-            "{0}.enabled and {1}.enabled are both animated; one must be constant before {1} can be "
-            "dissolved",
+            "{0}.enabled and {1}.enabled are both more than true or false; one must be that before "
+            "{1} can be dissolved",
             force, group));
     }
     if (!curve) {

@@ -106,7 +106,8 @@ Result<void> Editor::operator()(const MoveKeys& move) {
       }
       const double frame = entry.key.frame;
       entry.key.frame += move.frames;
-      if (wanted.loop && wanted.loop->from == frame) wanted.loop->from = entry.key.frame;
+      if (wanted.loop && curve.curve.keys().loop->from == frame)
+        wanted.loop->from = entry.key.frame;
       for (std::size_t c = 0; c < D && !move.rise.empty(); ++c) {
         const double rise = move.rise[move.rise.size() == 1 ? 0 : c];
         if (rise == 0) continue;

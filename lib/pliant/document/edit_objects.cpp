@@ -99,13 +99,13 @@ Result<void> Editor::operator()(const Duplicate& duplication) {
   copy->set(Draft::root, "name", duplication.name);
   parts_.insert(duplication.name);
   if (draft_.name(original) == "group") {
-    std::set<std::string> taken = {duplication.name};
+    std::set<std::string> taken = taken_names();
+    taken.insert(duplication.name);
     for (const Element member : copy->children(Draft::root)) {
       const auto name = copy->value(member, "name");
       if (!name) continue;
       const std::string own = free_name(*name, taken);
       copy->set(member, "name", own);
-      taken.insert(own);
       parts_.insert(own);
     }
   }

@@ -215,8 +215,9 @@ Result<void> Editor::operator()(const SetPart& set) {
     for (const xml::AttributePlace& one : draft_.attributes(present.front()))
       name_part(one.name.of(draft_.text()));
     for (const Element child : draft_.children(present.front())) {
-      name_part(draft_.name(child));  // such as a map
-      name_part(xml::trimmed(draft_.value(child, "attribute").value_or("")));
+      const bool is_curve = draft_.name(child) == "animate";  // others: such as a map
+      name_part(is_curve ? xml::trimmed(draft_.value(child, "attribute").value_or(""))
+                         : draft_.name(child));
     }
     draft_.replace_element(present.front(), text);
     if (auto done = draft_.commit(); !done || set.comment.empty()) return done;

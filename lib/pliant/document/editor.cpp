@@ -73,7 +73,7 @@ Result<Element> Editor::object(std::string_view name) const {
 }
 
 bool Editor::is_force(Element element) const {
-  const std::vector<Force> kinds = xml::force_kinds();
+  static const std::vector<Force> kinds = xml::force_kinds();
   return std::ranges::any_of(
       kinds, [&](const Force& kind) { return kind_of(kind) == draft_.name(element); });
 }
@@ -90,15 +90,18 @@ std::string Editor::name_of(Element element) const {
   return draft_.value(element, "name").value_or("");
 }
 
-std::string Editor::free_name(const std::string& like, const std::set<std::string>& taken) const {
+std::string Editor::free_name(const std::string& like, std::set<std::string>& taken) const {
   const std::string base = like.substr(0, like.find_last_not_of("0123456789") + 1);
   for (int number = 2;; ++number) {
     std::string name = fmt::format("{}{}", base, number);
-    const std::vector<NamedElement> all = objects();
-    const bool is_used =
-        std::ranges::any_of(all, [&](const auto& one) { return one.first == name; });
-    if (!is_used && !taken.contains(name)) return name;
+    if (taken.insert(name).second) return name;
   }
+}
+
+std::set<std::string> Editor::taken_names() const {
+  std::set<std::string> names;
+  for (const auto& [name, element] : objects()) names.insert(name);
+  return names;
 }
 
 const ElementFormat& Editor::format_of(std::string_view element) const {

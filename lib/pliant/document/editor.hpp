@@ -75,7 +75,8 @@ class Editor {
   Result<Element> object(std::string_view name) const;
   bool is_force(Element element) const;
   std::string name_of(Element element) const;
-  std::string free_name(const std::string& like, const std::set<std::string>& taken) const;
+  std::string free_name(const std::string& like, std::set<std::string>& taken) const;
+  std::set<std::string> taken_names() const;
   const ElementFormat& format_of(std::string_view element) const;
   const AttributeFormat* find_attribute(std::string_view element, std::string_view name) const;
   std::vector<std::string> parts_of(Element object) const;

@@ -140,11 +140,14 @@ class Formatter {
     return value;
   }
 
+  static bool is_blank(char c) { return xml::blanks.find(c) != std::string_view::npos; }
+
   /// The blanks before a place on its line; empty if something else stands there.
   std::string_view margin_at(std::size_t at) const {
-    const std::size_t line = text_.substr(0, at).rfind('\n') + 1;
-    const std::string_view before = text_.substr(line, at - line);
-    return xml::trimmed(before).empty() ? before : std::string_view();
+    std::size_t begin = at;
+    while (begin > 0 && text_[begin - 1] != '\n' && is_blank(text_[begin - 1])) --begin;
+    const bool is_margin = begin == 0 || text_[begin - 1] == '\n';
+    return is_margin ? text_.substr(begin, at - begin) : std::string_view();
   }
 
   /// Writes a text whose first line began behind `from` with the others moved to `to`.

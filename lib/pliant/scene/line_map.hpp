@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pliant {
@@ -39,6 +40,9 @@ class LineMap {
  public:
   /// Every line is that of the file.
   explicit LineMap(std::string file = {});
+
+  /// The scene's own file has another name from now on.
+  void rename(std::string file) { texts_.front().file = std::move(file); }
 
   /// Adds a text that is included at a line of another one; returns its index.
   int add_text(std::string file, int parent, int line);

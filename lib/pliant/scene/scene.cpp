@@ -30,6 +30,11 @@ std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
 }
 
+void SceneOrigin::rename(const std::string& name) {
+  file = name;
+  if (files) files->rename(name);
+}
+
 ScenePlace SceneOrigin::place_at(int line) const {
   return files ? files->place_of(line) : ScenePlace{file, line};
 }

@@ -258,6 +258,9 @@ struct SceneOrigin {
   /// The file and line of a line of the expanded text.
   ScenePlace place_at(int line) const;
 
+  /// The scene's own file has another name from now on.
+  void rename(const std::string& name);
+
   /// The file and line of `NAME.attribute`, otherwise of `NAME`.
   ScenePlace place_of(const std::string& name, const std::string& attribute = {}) const;
 
