@@ -14,6 +14,7 @@
 #include "output_file.hpp"
 #include "own_mesh.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/scene/schema.hpp"
@@ -96,13 +97,6 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
   return {};
 }
 
-// The mesh as the scene names it, from the scene's folder.
-std::string name_from(const fs::path& folder, const std::string& file) {
-  std::error_code unknown;
-  const fs::path name = fs::proximate(file, folder.empty() ? "." : folder, unknown);
-  return (unknown ? fs::path(file) : name).generic_string();
-}
-
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
@@ -119,7 +113,7 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
     if (options.mesh) {
       source.obj = {};
       source.name = *options.mesh;
-      const std::string name = name_from(out.parent_path(), *options.mesh);
+      const std::string name = path_from(out.parent_path(), *options.mesh);
       facts = use_own_mesh(*document, name, *facts, source);
       if (!facts) return fail(facts.error());
     }
@@ -141,7 +135,13 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
   return scene;
 }
 
-// Whether a file may be written. An older one with the same content may stay.
+// Whether a file is there with this content.
+bool is_there(const NewFile& file) {
+  const auto text = read_file(file.path);
+  return text && *text == file.text;
+}
+
+// Whether a file may be written.
 Result<void> check_place(const NewFile& file, bool is_forced) {
   if (auto place = check_output_file("-o", file.path.string()); !place) return place;
   std::error_code unknown;
@@ -175,7 +175,8 @@ Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& 
   files.push_back({out, {}});
   if (options.out) {
     for (const NewFile& file : files) {
-      const bool may_replace = options.is_forced || file.path.filename() == schema_name;
+      const bool may_replace =
+          options.is_forced || (file.path.filename() == schema_name && is_there(file));
       if (auto free = check_place(file, may_replace); !free) return fail(free.error());
     }
   }

@@ -121,6 +121,12 @@ class New(Command):
         self.assertEqual(lines[:2], ['<?xml version="1.0" encoding="UTF-8"?>', '<?xml-model href="pliant-scene.xsd"?>'])
         self.run_pliant("validate", "a.xml")
         self.run_pliant("new", "dent", "-o", "b.xml", "--schema")  # the same schema again is no harm
+        self.write("pliant-scene.xsd", "mine")
+        self.assertIn("--force replaces it", self.run_pliant("new", "dent", "-o", "c.xml", "--schema", code=2).stderr)
+        self.assertEqual(self.read("pliant-scene.xsd"), b"mine")
+        self.assertNotIn("c.xml", self.files())
+        self.run_pliant("new", "dent", "-o", "c.xml", "--schema", "--force")
+        self.assertNotEqual(self.read("pliant-scene.xsd"), b"mine")
 
     @long
     def test_a_material_swings_as_its_comment_says(self):

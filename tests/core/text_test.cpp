@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <random>
 #include <string>
@@ -72,6 +73,21 @@ TEST_CASE("an ending is that of the name, in lower case", "[core][file_ending]")
   CHECK(ending_of("a.b/c.0001.Ply") == ".ply");
   CHECK(ending_of("a.obj/c").empty());
   CHECK(ending_of(".npy").empty());  // a hidden file's name
+}
+
+TEST_CASE("a file's name from a folder leads to it", "[core][text]") {
+  namespace fs = std::filesystem;
+  CHECK(path_from("", "a.obj") == "a.obj");
+  CHECK(path_from("shots", "shots/b/a.obj") == "b/a.obj");
+  CHECK(path_from("/x/y", "/x/y/a.obj") == "a.obj");
+  for (const char* folder : {"", ".", "..", "shots", "../out", "shots/../out", "/other", "/"}) {
+    for (const char* file : {"a.obj", "shots/m.obj", "../m.obj", "/other/m.obj"}) {
+      CAPTURE(folder, file);
+      const fs::path name = path_from(folder, file);
+      CHECK(fs::weakly_canonical(fs::absolute(folder[0] == 0 ? "." : folder) / name) ==
+            fs::weakly_canonical(fs::absolute(file)));
+    }
+  }
 }
 
 TEST_CASE("UTF-8 is told from other bytes", "[core][text]") {

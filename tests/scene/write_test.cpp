@@ -23,6 +23,20 @@ void check_round_trip(const Scene& scene, const std::string& folder) {
   CHECK(to_xml(*again, folder).value() == *text);
 }
 
+TEST_CASE("mesh files are named from the folder, wherever that is", "[scene][write]") {
+  namespace fs = std::filesystem;
+  Scene scene = scene_of(
+      "<scene version=\"1\" start=\"1\" end=\"2\"><surface name=\"s\"><mesh "
+      "file=\"m.obj\"/></surface></scene>");
+  std::get<MeshFile>(scene.surfaces[0].shape).path = "shots/m.obj";
+  for (const char* folder : {"shots", "/other", "../out"}) {
+    CAPTURE(folder);
+    const Scene again = parse_scene(to_xml(scene, folder).value(), "again.xml", folder).value();
+    CHECK(fs::weakly_canonical(fs::absolute(std::get<MeshFile>(again.surfaces[0].shape).path)) ==
+          fs::weakly_canonical(fs::absolute("shots/m.obj")));
+  }
+}
+
 TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
   check_round_trip(scene_of(rich_scene), "shots");
   for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {

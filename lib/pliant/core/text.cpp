@@ -79,4 +79,23 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+std::string folder_of_file(const std::filesystem::path& file) {
+  return file.parent_path().string();
+}
+
+std::string path_from(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  const bool leads_up = std::find(folder.begin(), folder.end(), "..") != folder.end();
+  if (!leads_up && folder.is_absolute() == file.is_absolute()) {
+    const std::filesystem::path below = file.lexically_relative(folder.empty() ? "." : folder);
+    if (!below.empty() && *below.begin() != "..") return below.string();
+  }
+  std::error_code unknown;
+  const auto real = [&](const std::filesystem::path& path) {
+    const std::filesystem::path whole = std::filesystem::absolute(path, unknown);
+    return unknown ? path : std::filesystem::weakly_canonical(whole, unknown);
+  };
+  const std::filesystem::path base = real(folder.empty() ? "." : folder), there = real(file);
+  return (unknown ? file : there.lexically_proximate(base)).string();
+}
+
 }  // namespace pliant

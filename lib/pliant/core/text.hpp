@@ -40,4 +40,11 @@ bool is_utf8(std::string_view text);
 /// ending.
 std::string ending_of(const std::filesystem::path& file);
 
+/// The folder that a file is in; empty: the current one.
+std::string folder_of_file(const std::filesystem::path& file);
+
+/// The name of a file as seen from a folder; an empty one is the current folder. Where the way
+/// leads over another folder, links are resolved.
+std::string path_from(const std::filesystem::path& folder, const std::filesystem::path& file);
+
 }  // namespace pliant

@@ -5,15 +5,12 @@
 #include <utility>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/scene_file.hpp"
 
 namespace pliant {
 namespace {
-
-std::string folder_of_file(const std::string& file) {
-  return std::filesystem::path(file).parent_path().string();
-}
 
 // Files on the disk, which notes in `texts` what it finds.
 xml::TextFiles noting(SceneTexts& texts, const std::string& root) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/scene/change.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
@@ -192,8 +193,7 @@ void SceneWriter::write_shape(const Surface& surface) {
 
 // A file's path as the scene names it.
 std::string SceneWriter::from_folder(const std::string& path) const {
-  if (folder_.empty()) return path;
-  return std::filesystem::path(path).lexically_proximate(folder_).string();
+  return folder_.empty() ? path : path_from(folder_, path);
 }
 
 void SceneWriter::write_material(const Surface& surface) {
