@@ -635,6 +635,21 @@ TEST_CASE("limits of expansion end with one error", "[scene][expand]") {
     REQUIRE(problems.size() == 1);
     CHECK_THAT(problems[0], contains_text("<define> value=\"$a16$a16\": is longer than 64 KiB"));
   }
+  SECTION("a value that is long as written") {
+    for (const std::string& body :
+         {"<point name=\"" + std::string(xml::longest_value, ' ') + "$a\"/>",
+          define("a", std::string(xml::longest_value + 1, '1')) + "<point name=\"f$a\"/>"}) {
+      const Lines problems = Shot(body).problems();
+      REQUIRE(problems.size() == 1);
+      CHECK_THAT(problems[0], contains_text("is longer than 64 KiB"));
+    }
+  }
+  SECTION("more problems than are listed") {
+    std::string body;
+    for (int k = 0; k < 1000; ++k) body += define(fmt::format("a_definition_{}", k), "1");
+    for (int k = 0; k < 100'000; ++k) body += fmt::format("<point name=\"$a_definitio_{}\"/>\n", k);
+    CHECK_THAT(Shot(body).problems().back(), contains_text("too many problems; reading stopped here"));
+  }
   SECTION("text that is included often") {
     std::string body;
     for (int k = 0; k < 300; ++k) body += "<include file=\"a.xml\"/>";
@@ -673,6 +688,8 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
             "a.xml:3: <uniform> name=\"$x\": no definition of \"x\" comes before it; "
             "included by shot.xml:2"});
   shot.fragment("a.xml", "<nonsense/>");
+  CHECK(shot.problems().size() == 1);
+  shot.fragment("a.xml", "<nonsense");
   CHECK(shot.problems().size() == 1);
   // Also if each has other values.
   body.clear();

@@ -98,7 +98,11 @@ class ValueReader {
       return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
                                  hint_of_undefined(name, scope_)));
     if (!definition->is_sound) return refusal({});
-    sources_.push_back(definition->source);
+    // More than are told of any value.
+    constexpr std::size_t most_sources = 8;
+    if (sources_.size() < most_sources &&
+        std::find(sources_.begin(), sources_.end(), definition->source) == sources_.end())
+      sources_.push_back(definition->source);
     return ValuePart{.text = definition->text,
                      .is_definition = true,
                      .numbers = definition->numbers ? &*definition->numbers : nullptr,
@@ -125,6 +129,9 @@ bool is_definition_name(std::string_view text) {
 void Definition::set(std::string value) {
   text = std::move(value);
   is_sound = true;
+  is_plain = false;
+  numbers.reset();
+  if (text.size() > longest_value) return;  // nothing that is made of it may be so long
   is_plain = are_plain_numbers(text);
   numbers = numbers_of(text);
   if (numbers && numbers->has_value() && (*numbers)->size() > most_numbers) numbers.reset();
@@ -150,6 +157,9 @@ void Scope::take(Scope included) {
 
 tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
                                                        Use use) {
+  if (value.size() > longest_value && value.find('$') != std::string_view::npos)
+    return tl::unexpected(ValueRefusal{
+        fmt::format("is longer than {} KiB, too long for definitions", longest_value >> 10U)});
   ValueReader reader(value, scope);
   const auto parts = reader.read();
   if (!parts) return tl::unexpected(ValueRefusal{parts.error()});

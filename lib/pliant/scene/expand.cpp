@@ -31,6 +31,7 @@ struct IncludedFile {
   std::string text;
   std::optional<Markup> markup;  ///< null: it has problems
   std::vector<Error> problems;
+  bool is_told = false;  ///< the problems are
 };
 
 /// A text while it is expanded.
@@ -194,6 +195,10 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
   };
   for (auto k = static_cast<std::size_t>(first - elements.begin());
        k < elements.size() && elements[k].name.begin < end && !is_stopped_;) {
+    if (findings_.is_full()) {
+      is_stopped_ = true;
+      break;
+    }
     const ElementPlace& element = elements[k];
     const std::string_view name = text.name_of(element);
     if (name == define_name) {
@@ -413,10 +418,13 @@ bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
 /// A definition that is given to a file which neither has nor uses it is probably misspelt.
 void Expander::report_unused(OpenText& text, const std::string& file, const Definitions& given,
                              const Scope& inner) {
+  constexpr std::size_t most_compared = 1000;
+  std::vector<std::string_view> names;
+  for (const auto& [own, value] : inner.own)
+    if (names.size() < most_compared) names.push_back(own);
   for (const auto& [name, definition] : given) {
     if (definition.is_used) continue;
-    std::vector<std::string_view> names;
-    for (const auto& [own, value] : inner.own) names.push_back(own);
+    if (findings_.is_full()) return;
     const auto near = nearest_word(name, names);
     findings_.add_problem(
         map_.place_in(text.index, definition.line),
@@ -443,6 +451,10 @@ const IncludedFile* Expander::read(const fs::path& path, const std::string& iden
     file->problems = own.problems();
   }
   if (file->markup) return file.get();
+  if (std::exchange(file->is_told, true)) {  // alike, they would be told once
+    findings_.add_consequence();
+    return nullptr;
+  }
   for (const Error& error : file->problems)
     findings_.add_problem(map_.place_in(index, error.line), error.message);
   return nullptr;
