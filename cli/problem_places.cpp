@@ -34,7 +34,7 @@ std::size_t utf16_units(std::string_view text) {
   return units;
 }
 
-bool has(std::string_view text, const std::string& part) {
+bool has(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
@@ -45,6 +45,12 @@ struct ProblemPlaces::Text {
     line_starts.push_back(0);
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
       line_starts.push_back(at + 1);
+    }
+    for (std::size_t at = 0; at <= text.size(); at += block_size) {
+      const std::size_t before = units_before_blocks.empty() ? 0 : units_before_blocks.back();
+      const std::size_t size = at == 0 ? 0 : block_size;
+      units_before_blocks.push_back(before +
+                                    utf16_units(std::string_view(text).substr(at - size, size)));
     }
     xml::Findings ignored("");
     if (auto scanned = xml::scan_markup(text, ignored)) markup = *std::move(scanned);
@@ -65,8 +71,14 @@ struct ProblemPlaces::Text {
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     std::size_t begin = line(line_of(at)).begin;
     if (begin == 0 && text.starts_with(byte_order_mark)) begin = byte_order_mark.size();
-    const std::string_view before = std::string_view(text).substr(begin, at - std::min(at, begin));
-    return static_cast<int>(utf16_units(before)) + 1;
+    return static_cast<int>(at > begin ? units_before(at) - units_before(begin) : 0) + 1;
+  }
+
+  /// UTF-16 units of the text before a place that begins a character.
+  std::size_t units_before(std::size_t at) const {
+    const std::size_t block = at / block_size;
+    return units_before_blocks[block] +
+           utf16_units(std::string_view(text).substr(block * block_size, at % block_size));
   }
 
   std::optional<Stretch> attribute(const Stretch& in, std::string_view message) const;
@@ -74,9 +86,14 @@ struct ProblemPlaces::Text {
   Stretch without_blanks(const Stretch& in) const;
 
   std::string text;
+  static constexpr std::size_t block_size = 4096;  // bytes
+  std::vector<std::size_t> units_before_blocks;    // UTF-16 units before each
   std::vector<std::size_t> line_starts;
   xml::Markup markup;
 };
+
+// Of the attributes and of the elements of a line, with each problem on it.
+constexpr int most_compared = 10'000;
 
 // The attribute that the message names, in the ways in which the reader names one.
 std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
@@ -86,8 +103,12 @@ std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
       [](const xml::AttributePlace& place, std::size_t at) { return place.name.begin < at; });
   std::optional<Stretch> best;
   std::size_t best_way = 5;
-  for (auto each = first; each != markup.attributes.end() && each->name.begin < in.end; ++each) {
+  int compared = 0;
+  for (auto each = first;
+       each != markup.attributes.end() && each->name.begin < in.end && ++compared <= most_compared;
+       ++each) {
     const std::string_view name = each->name.of(text);
+    if (!has(message, name)) continue;
     const Stretch value = stretch_of(each->value), whole = stretch_of(each->whole());
     const std::array<std::pair<std::string, Stretch>, 5> ways = {
         {{fmt::format(" {}=\"", name), value},
@@ -111,7 +132,10 @@ std::optional<Stretch> ProblemPlaces::Text::element(const Stretch& in,
       markup.elements.begin(), markup.elements.end(), in.begin,
       [](const xml::ElementPlace& place, std::size_t at) { return place.name.begin < at; });
   std::optional<Stretch> best;
-  for (auto each = first; each != markup.elements.end() && each->name.begin < in.end; ++each) {
+  int compared = 0;
+  for (auto each = first;
+       each != markup.elements.end() && each->name.begin < in.end && ++compared <= most_compared;
+       ++each) {
     const std::string name(each->name.of(text));
     if (has(message, "has no element \"" + name + '"') || has(message, '<' + name + '>')) {
       return stretch_of(each->name);

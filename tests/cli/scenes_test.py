@@ -62,6 +62,9 @@ class Validate(Command):
                          [(2, "2"), (3, "nam"), (3, "1,5"), (4, "surface"), (4, "wrong"), (6, 'frame="1"'), (7, "shet")])
         problems = told("b.xml", "\ufeff<scene start='1' end='9'>\r\n  <point name='p'>\r\n</scene>\r\n")
         self.assertEqual([(problem["line"], problem["column"], problem["endColumn"]) for problem in problems], [(3, 1, 9)])
+        long = text.replace("<!-- ", "<!-- " + "\u00fc\U0001f44b " * 3000)
+        self.assertEqual([named(problem, long.split("\n")) for problem in told("long.xml", long)],
+                         [named(problem, text.split("\n")) for problem in told("a.xml", text)])
         # A line of a file that is no XML, and no file at all.
         scene = SCENE.format(end=9)
         self.write("m.obj", "v 0 0 0\nf 1 2 x\n")
