@@ -79,7 +79,8 @@ class Suggester {
       if (auto played = play(*after); !played) return fail(played.error());
       Suggestion one = told(*after);
       if (round == 0 || worst_miss(one) < worst_miss(best)) best = std::move(one);
-      if (worst_miss(best) <= good_miss || is_explained() || plays_ >= most_plays) break;
+      if (worst_miss(best) <= good_miss || is_explained()) break;
+      if (plays_ + 2 > most_plays) break;  // a round has two at least
     }
     best.before = std::move(before->preview);
     return best;
@@ -111,6 +112,7 @@ class Suggester {
   }
 
   Result<void> play(PreviewCase& one) {
+    ++plays_;
     double nodes_left = played_nodes;
     return previewer_.play(one, nodes_left);
   }
@@ -275,7 +277,6 @@ class Suggester {
       if (auto set = set_magnitudes(factor_ * factor); !set) return fail(set.error());
       PreviewCase one = new_case();
       if (!is_peak_static_) {
-        ++plays_;
         if (auto played = play(one); !played) return fail(played.error());
         if (one.preview.played) return one.preview.played->peak;
         is_peak_static_ = true;
@@ -284,7 +285,7 @@ class Suggester {
       return one.preview.static_peak;
     };
     const auto found = find_factor(
-        *goals_.peak, std::clamp(most_plays - plays_, 1, most_plays_of_a_round), peak_at);
+        *goals_.peak, std::clamp(most_plays - plays_ - 1, 1, most_plays_of_a_round), peak_at);
     if (!found) return fail(found.error());
     peak_miss_ = miss_of(*found);
     if (found->obstacle == Obstacle::NothingMoves) {  // also if they began with 1
