@@ -11,6 +11,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/scene/markup.hpp"
+#include "pliant/scene/read.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -68,9 +69,8 @@ struct ProblemPlaces::Text {
   }
 
   int column_of(std::size_t at) const {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     std::size_t begin = line(line_of(at)).begin;
-    if (begin == 0 && text.starts_with(byte_order_mark)) begin = byte_order_mark.size();
+    if (begin == 0 && text.starts_with(xml::byte_order_mark)) begin = xml::byte_order_mark.size();
     return static_cast<int>(at > begin ? units_before(at) - units_before(begin) : 0) + 1;
   }
 
@@ -160,8 +160,7 @@ std::optional<ProblemPlace> ProblemPlaces::find(const std::string& file, int lin
                                                 std::string_view message) {
   const auto [found, is_new] = texts_.try_emplace(file);
   if (is_new) {
-    constexpr std::size_t largest = std::size_t{256} << 20U;
-    if (auto text = read_file(file, largest)) {
+    if (auto text = read_file(file, largest_scene_file)) {
       const std::size_t first = text->find_first_not_of(" \t\r\n\xEF\xBB\xBF");
       const bool is_xml = first != std::string::npos && (*text)[first] == '<';
       if (is_xml) found->second = std::make_unique<Text>(*std::move(text));

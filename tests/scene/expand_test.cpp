@@ -648,7 +648,8 @@ TEST_CASE("limits of expansion end with one error", "[scene][expand]") {
     std::string body;
     for (int k = 0; k < 1000; ++k) body += define(fmt::format("a_definition_{}", k), "1");
     for (int k = 0; k < 100'000; ++k) body += fmt::format("<point name=\"$a_definitio_{}\"/>\n", k);
-    CHECK_THAT(Shot(body).problems().back(), contains_text("too many problems; reading stopped here"));
+    CHECK_THAT(Shot(body).problems().back(),
+               contains_text("too many problems; reading stopped here"));
   }
   SECTION("text that is included often") {
     std::string body;

@@ -7,6 +7,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/scene/curve_text.hpp"
 #include "pliant/scene/text.hpp"
+#include "pliant/timeline/curve_numbers.hpp"
 #include "pliant/timeline/edit/bake_keys.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 #include "pliant/timeline/edit/simplify.hpp"
@@ -17,20 +18,7 @@ namespace {
 /// Rounds what a curve has in the unit of its channel.
 template <int D>
 CurveKeys<D> rounded_keys(CurveKeys<D> curve, int digits) {
-  const auto round = [&](double& number) { number = with_digits(number, digits); };
-  const auto round_all = [&](Value<D>& value) { std::ranges::for_each(value, round); };
-  for (Key<D>& key : curve.keys) {
-    round_all(key.value);
-    if (key.left) round_all(*key.left);
-    if (key.next.amplitude) round(*key.next.amplitude);
-    for (Tangent<D>* const side : {&key.in, &key.out}) {
-      round_all(side->slope);
-      round_all(side->handle_value);
-    }
-  }
-  round_all(curve.before.slope);
-  round_all(curve.after.slope);
-  if (curve.loop) round_all(curve.loop->offset);
+  for_each_number(curve, [digits](double& number) { number = with_digits(number, digits); });
   return curve;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pliant/document/draft.hpp"
+#include "pliant/scene/markup.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant {
@@ -16,8 +17,6 @@ using edit::Draft;
 using edit::Element;
 
 namespace {
-
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 /// Lays out a text from its begin to its end.
 class Formatter {
@@ -29,7 +28,7 @@ class Formatter {
   }
 
   std::string format() {
-    const auto begin = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+    const auto begin = text_.starts_with(xml::byte_order_mark) ? xml::byte_order_mark.size() : 0;
     result_ = text_.substr(0, begin);
     is_empty_ = true;
     write_content(begin, text_.size(), {Draft::root}, "");

@@ -12,6 +12,7 @@
 #include "pliant/exchange/gltf_animation.hpp"
 #include "pliant/exchange/maya.hpp"
 #include "pliant/mesh/file_reference.hpp"
+#include "pliant/scene/markup.hpp"
 
 namespace pliant {
 namespace {
@@ -20,9 +21,8 @@ constexpr std::size_t most_file_bytes = std::size_t{1} << 30;
 
 Result<CurveFile> parse_as(std::string_view bytes, CurveFormat format, const CurveReading& reading,
                            const ReadCurveReference& read_reference) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (format != CurveFormat::Gltf && bytes.starts_with(byte_order_mark))
-    bytes.remove_prefix(byte_order_mark.size());
+  if (format != CurveFormat::Gltf && bytes.starts_with(xml::byte_order_mark))
+    bytes.remove_prefix(xml::byte_order_mark.size());
   switch (format) {
     case CurveFormat::Blender:
       return exchange::parse_blender(bytes, reading);

@@ -8,6 +8,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/timeline/curve_numbers.hpp"
 
 namespace pliant {
 
@@ -30,21 +31,7 @@ Result<Channel<1>> scaled(const Channel<1>& channel, double factor) {
       std::minmax_element(keys.keys.begin(), keys.keys.end(),
                           [](const Key<1>& a, const Key<1>& b) { return a.value[0] < b.value[0]; });
   const double range = factor * (high->value[0] - low->value[0]);
-  const auto scale = [&](double& number) { number = rounded(factor * number, range); };
-  const auto scale_tangent = [&](Tangent<1>& tangent) {
-    scale(tangent.slope[0]);
-    scale(tangent.handle_value[0]);
-  };
-  for (Key<1>& key : keys.keys) {
-    scale(key.value[0]);
-    if (key.left) scale((*key.left)[0]);
-    if (key.next.amplitude) scale(*key.next.amplitude);
-    scale_tangent(key.in);
-    scale_tangent(key.out);
-  }
-  scale(keys.before.slope[0]);
-  scale(keys.after.slope[0]);
-  if (keys.loop) scale(keys.loop->offset[0]);
+  for_each_number(keys, [&](double& number) { number = rounded(factor * number, range); });
   auto curve = Curve<1>::make(std::move(keys));
   if (!curve) return invalid(fmt::format("its keys times {:g}: {}", factor, curve.error().message));
   return Channel<1>(*std::move(curve));

@@ -19,8 +19,6 @@ constexpr std::size_t deepest = 50;
 constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_attributes = 100;  // per element
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
 unsigned byte_at(std::string_view text, std::size_t at) {
   return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
 }

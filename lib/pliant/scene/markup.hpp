@@ -11,6 +11,9 @@
 
 namespace pliant::xml {
 
+/// With which some programs begin a file in UTF-8.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 /// The bytes of a text from `begin` up to, but not including, `end`.
 struct TextRange {
   std::uint32_t begin = 0;
