@@ -347,6 +347,10 @@ TEST_CASE("a message about a value that definitions made tells where they are", 
   CHECK(only(given) ==
         "rig.xml:2: <grid> width=\"wide\": not a number; $w is defined at line 4 of shot.xml; "
         "included by shot.xml:3");
+  // Those that a definition was made of come after it.
+  CHECK(only(Shot(sheet_of("$w", define("a", "-2") + "\n" + define("w", "$a * 2") + "\n"))) ==
+        "shot.xml:4: <grid> width=\"-4\": must be greater than 0; $w is defined at line 3; $a is "
+        "defined at line 2");
   // Of several values on a line only the one that the message is about.
   CHECK(only(Shot(define("x", "x") + define("one", "1") +
                   "\n<point name=\"p\"><animate attribute=\"magnitude\"><key frame=\"$one\" "
@@ -356,6 +360,22 @@ TEST_CASE("a message about a value that definitions made tells where they are", 
   CHECK(only(Shot(define("rho", "-1") + "\n<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/>"
                                         "<material density=\"$rho\"/></surface>"))
             .ends_with("; $rho is defined at line 2"));
+}
+
+TEST_CASE("a definition of its own name has the value from outside", "[scene][expand]") {
+  for (const char* value : {"$w", "$w * 2", "${w}", "x$w"}) {
+    const Lines problems = Shot(sheet_of("$w", define("w", value) + "\n")).problems();
+    REQUIRE(problems.size() == 1);
+    CHECK_THAT(problems[0], contains_text("no definition of \"w\" comes before it") &&
+                                !contains_text("there is one"));
+  }
+  Shot shot(define("w", "5") + "<include file=\"rig.xml\"/>");
+  shot.fragment("rig.xml", sheet_of("$w", define("w", "$w * 2")));
+  CHECK(width_of(shot.scene()) == 10);
+  Shot given("<include file=\"rig.xml\">" + define("w", "$w") + "</include>");
+  given.fragment("rig.xml", sheet_of("$w", define("w", "2")));
+  REQUIRE(given.problems().size() == 1);
+  CHECK_THAT(given.problems()[0], !contains_text("there is one"));
 }
 
 TEST_CASE("notes and origins name the file", "[scene][expand]") {

@@ -1,6 +1,7 @@
 #include "pliant/scene/definitions.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,7 @@ tl::unexpected<std::string> refusal(std::string words) { return tl::unexpected(s
 
 /// `; did you mean "width"?`, or where the name is defined later.
 std::string hint_of_undefined(std::string_view name, const Scope& scope) {
-  if (scope.later) {
+  if (scope.later && name != scope.defined_now) {
     if (const auto line = scope.later(name)) return fmt::format("; there is one at line {}", *line);
   }
   constexpr std::size_t most_compared = 1000;
@@ -75,10 +76,20 @@ class ValueReader {
     return parts;
   }
 
-  /// Of the definitions that were read.
-  std::vector<std::uint32_t> sources() { return std::move(sources_); }
+  /// Of the definitions that were read, and then of those that they were made of.
+  std::vector<std::uint32_t> sources() const {
+    std::vector<std::uint32_t> all = direct_;
+    add_sources(all, indirect_);
+    return all;
+  }
 
  private:
+  static void add_sources(std::vector<std::uint32_t>& to, std::span<const std::uint32_t> more) {
+    constexpr std::size_t most = 8;  // more than are told of any value
+    for (const std::uint32_t source : more)
+      if (to.size() < most && std::ranges::find(to, source) == to.end()) to.push_back(source);
+  }
+
   std::string_view take(std::size_t count) {
     const std::string_view taken = rest_.substr(0, count);
     rest_.remove_prefix(count);
@@ -98,11 +109,8 @@ class ValueReader {
       return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
                                  hint_of_undefined(name, scope_)));
     if (!definition->is_sound) return refusal({});
-    // More than are told of any value.
-    constexpr std::size_t most_sources = 8;
-    if (sources_.size() < most_sources &&
-        std::find(sources_.begin(), sources_.end(), definition->source) == sources_.end())
-      sources_.push_back(definition->source);
+    add_sources(direct_, std::span(definition->sources).first(1));
+    add_sources(indirect_, std::span(definition->sources).subspan(1));
     return ValuePart{.text = definition->text,
                      .is_definition = true,
                      .numbers = definition->numbers ? &*definition->numbers : nullptr,
@@ -111,7 +119,7 @@ class ValueReader {
 
   std::string_view rest_;
   const Scope& scope_;
-  std::vector<std::uint32_t> sources_;
+  std::vector<std::uint32_t> direct_, indirect_;
 };
 
 bool has_operator(const std::vector<ValuePart>& parts) {

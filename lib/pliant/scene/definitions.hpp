@@ -25,7 +25,8 @@ struct Definition {
   bool is_plain = false;                ///< a number, or several between blanks
   bool is_sound = false;                ///< false: a problem with it has been reported
   int line = 0;                         ///< of the <define> in its file
-  std::uint32_t source = 0;             ///< of its value, in `DefinedValues`
+  /// Of its value, in `DefinedValues`: where the value is from, and then those that it was made of.
+  std::vector<std::uint32_t> sources = {};
   mutable bool is_used = false;
 
   void set(std::string value);
@@ -41,6 +42,9 @@ struct Scope {
   Definitions imported = {};  ///< from files that the text includes
   /// The line of a later definition in the text; null: there is none.
   std::function<std::optional<int>(std::string_view name)> later = {};
+
+  /// The name that is being defined; it is not what comes later.
+  mutable std::string_view defined_now = {};
 
   /// The definition of a name, its own before one that is imported before one from outside; null:
   /// there is none. Marks it as used.

@@ -323,28 +323,29 @@ void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
   if (++definition_count_ > most_definitions)
     return stop(text, where,
                 fmt::format("the scene has more than {} definitions", most_definitions));
-  Definition& definition = definitions[name];
-  definition.line = text.lines.line_of(element.whole().begin);
-  definition.source = values_.add_definition(name, text.index, definition.line);
-  if (!is_complete) return;
-  if (given) {
-    if (const auto instead = given->find(name); instead != given->end()) {
-      instead->second.is_used = true;
-      const int line = std::exchange(definition.line, 0);
-      definition = instead->second;
-      definition.line = line;
-      spend(definition.text.size(), text, where);
-      return;
+  Definition definition;
+  const int line = text.lines.line_of(element.whole().begin);
+  definition.sources = {values_.add_definition(name, text.index, line)};
+  const auto instead = given ? given->find(name) : Definitions::const_iterator();
+  if (is_complete && given && instead != given->end()) {
+    instead->second.is_used = true;
+    definition = instead->second;
+  } else if (is_complete) {
+    // Its own name is not defined yet: there it has the value from outside, if there is one.
+    scope.defined_now = name;
+    const auto value = expand_value(*table[1].second, scope, Use::Definition);
+    scope.defined_now = {};
+    if (value) {
+      definition.sources.insert(definition.sources.end(), value->sources.begin(),
+                                value->sources.end());
+      definition.set(value->text);
+    } else if (!value.error().complaint.empty()) {
+      add_value(text, where, define_name, "value", *table[1].second, told(value.error(), text));
     }
   }
-  const auto value = expand_value(*table[1].second, scope, Use::Definition);
-  if (!value) {
-    if (!value.error().complaint.empty())
-      add_value(text, where, define_name, "value", *table[1].second, told(value.error(), text));
-    return;
-  }
-  spend(value->text.size(), text, where);
-  definition.set(value->text);
+  definition.line = line;
+  spend(definition.text.size(), text, where);
+  definitions.emplace(name, std::move(definition));
 }
 
 /// Returns whether the file's content was written.
