@@ -55,6 +55,31 @@ TEST_CASE("a sheet, its mesh in code and its file are one surface", "[sampling][
   CHECK(from_file->shape.rest == from_sheet.rest);
 }
 
+TEST_CASE("a sheet is the grid that its mesh would be, however thin it is",
+          "[sampling][rest_shape]") {
+  for (int columns = 3; columns < 60; columns += 2) {
+    for (const bool triangles : {false, true}) {
+      const GridSheet sheet{.columns = columns,
+                            .rows = columns / 2 + 2,
+                            .width = 0.7,
+                            .depth = 3,
+                            .triangles = triangles};
+      const RestShape own = make_rest_shape(with_shape(sheet), {})->shape;
+      const RestShape mesh = make_rest_shape(with_shape(make_mesh(sheet)), {})->shape;
+      REQUIRE((own.grid && mesh.grid));
+      CHECK((own.grid->hu == mesh.grid->hu && own.grid->hv == mesh.grid->hv));
+      CHECK((own.rest == mesh.rest && own.vertex_nodes == mesh.vertex_nodes));
+    }
+  }
+  for (const double width : {1e-12, 1e-6, 1e6, 1e12}) {
+    const RestShape thin =
+        make_rest_shape(with_shape(GridSheet{.columns = 5, .rows = 41, .width = width}), {})->shape;
+    REQUIRE(thin.grid);
+    CHECK(thin.grid->node_count() == 205);
+    CHECK(thin.note.empty());
+  }
+}
+
 TEST_CASE("the memory of a shape is reserved as long as it is held", "[simulation][rest_shape]") {
   const Surface surface = with_shape(GridSheet{.columns = 4, .rows = 3, .width = 3, .depth = 2});
   MemoryBudget budget(1'000'000);

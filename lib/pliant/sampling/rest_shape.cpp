@@ -86,6 +86,16 @@ RestShape on_grid(const Surface& surface, Mesh mesh, GridMapping mapping) {
           .grid = mapping.grid};
 }
 
+// A sheet is its grid, whatever its size: its vertices are the nodes, in their order.
+GridMapping mapping_of(const GridSheet& sheet, const Mesh& mesh) {
+  GridMapping mapping{
+      .grid = {sheet.columns, sheet.rows, 1.0 / (sheet.columns - 1), 1.0 / (sheet.rows - 1)},
+      .vertex_nodes = std::vector<int>(static_cast<std::size_t>(mesh.vertex_count())),
+      .rest = mesh.positions};
+  std::iota(mapping.vertex_nodes.begin(), mapping.vertex_nodes.end(), 0);
+  return mapping;
+}
+
 Result<RestShape> on_surface(const Surface& surface, Mesh mesh) {
   auto triangles = make_surface(mesh, surface.reading);
   if (!triangles) return fail(triangles.error());
@@ -101,6 +111,10 @@ Result<RestShape> on_surface(const Surface& surface, Mesh mesh) {
 Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
   const MeshReading& reading = surface.reading;
   if (reading.asks_for_surface()) return on_surface(surface, std::move(mesh));
+  if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
+    GridMapping mapping = mapping_of(*sheet, mesh);
+    return on_grid(surface, std::move(mesh), std::move(mapping));
+  }
   const auto* const file = std::get_if<MeshFile>(&surface.shape);
   auto grid = find_grid(mesh, reading.wrap);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
