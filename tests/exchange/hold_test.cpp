@@ -61,6 +61,18 @@ TEST_CASE("a level segment is one line, whatever its handles", "[exchange][hold]
   }
 }
 
+TEST_CASE("an easing that a jump cuts keeps its shape", "[exchange][hold]") {
+  const auto ease = GENERATE(Ease::Sine, Ease::Expo, Ease::Bounce, Ease::Back, Ease::Elastic);
+  const auto side = GENERATE(EaseSide::In, EaseSide::Out);
+  const Abilities blender{
+      .has_steps = true, .has_easing = [](const Piece&) { return true; }, .gap = 1.0 / 1024};
+  const CurveKeys<1> keys{
+      .keys = {key(1, 0, of_ease(ease, side)), with_left(key(3, 0), 100), key(9, 4)}};
+  const Held result = held(keys, blender, 1e-2);
+  const Curve<1> before = make(keys), after = make(keys_of(result.pieces));
+  CHECK(disagreement(before, after, 1, 3 - 2.0 / 1024, {0, 1e-2}) == 0);
+}
+
 TEST_CASE("what becomes too many keys is refused before it is made", "[exchange][hold]") {
   CurveKeys<1> keys;
   for (int k = 0; k < 2000; ++k) {

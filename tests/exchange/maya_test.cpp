@@ -31,6 +31,18 @@ Curve<1> anim_curve_in(const std::string& text) {
   return make(file->curves[0].keys);
 }
 
+TEST_CASE("slopes that are too steep for an angle are told", "[exchange][maya]") {
+  for (const double rise : {1.0, 1e6, 1e15, 1e20}) {
+    CAPTURE(rise);
+    const Curve<1> curve =
+        make(CurveKeys<1>{.keys = {key(1, 0), key(10, rise), key(20, 3 * rise), key(30, 0)}});
+    const auto text = write_curves({{"poke.magnitude", curve}}, CurveFormat::Maya, {.last = 30});
+    REQUIRE(text.has_value());
+    REQUIRE(text->losses.empty() == (rise < 1e9));
+    if (rise > 1e9) CHECK_THAT(text->losses[0].message, contains_text("became angles"));
+  }
+}
+
 TEST_CASE("an .anim as Maya writes it", "[exchange][maya]") {
   // 45 degrees: one unit per frame. The weight of a curve without weights is not used.
   const std::string text = anim_of(

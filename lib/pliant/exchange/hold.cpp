@@ -200,12 +200,7 @@ class Holder {
 
   /// The part of a piece from its start or up to its end without `gap` frames at the other end.
   static Piece without(const Piece& piece, double gap, bool at_start) {
-    if (piece.kind == Piece::Kind::Easing) {  // cannot be cut: faster instead
-      Piece result = piece;
-      (at_start ? result.start : result.end) += at_start ? gap : -gap;
-      if (result.easing.period) *result.easing.period *= result.length() / piece.length();
-      return result;
-    }
+    PLIANT_EXPECTS(piece.kind != Piece::Kind::Easing);
     return at_start ? cut(piece, piece.start + gap).right : cut(piece, piece.end - gap).left;
   }
 
@@ -262,7 +257,7 @@ class Holder {
     result.frames.push_back(pieces_.frames[0]);
     result.values.push_back(pieces_.values[0]);
     for (std::size_t k = 0; k < pieces_.pieces.size(); ++k) {
-      for (const Piece& part : parts_of(pieces_.pieces[k])) {
+      for (const Piece& part : parts_of(pieces_.pieces[k], k)) {
         result.pieces.push_back(part);
         result.frames.push_back(part.end);
         result.values.push_back(part.to);
@@ -283,19 +278,20 @@ class Holder {
   }
 
   Result<void> hold_shapes() {
-    return divide([this](const Piece& piece) -> std::vector<Piece> {
+    return divide([this](const Piece& piece, std::size_t k) -> std::vector<Piece> {
       if (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time &&
           !abilities_.has_long_arms) {
         const bool is_level = piece.from == piece.to && piece.out.value == 0 && piece.in.value == 0;
         return is_level ? std::vector{level_of(piece)} : fitted(piece, "Bézier segment");
       }
-      if (piece.kind == Piece::Kind::Easing) return parts_of_easing(piece);
+      if (piece.kind == Piece::Kind::Easing)
+        return parts_of_easing(piece, jumps_right(k) || jumps_left(k + 1));
       return {piece};
     });
   }
 
   Result<void> hold_arms() {
-    return divide([this](const Piece& piece) -> std::vector<Piece> {
+    return divide([this](const Piece& piece, std::size_t) -> std::vector<Piece> {
       if (piece.kind != Piece::Kind::Bezier) return {piece};
       std::vector<Piece> parts = with_short_arms(piece);
       if (parts.size() > 1) {
@@ -307,8 +303,9 @@ class Holder {
     });
   }
 
-  std::vector<Piece> parts_of_easing(const Piece& piece) {
-    if (abilities_.has_easing && abilities_.has_easing(piece)) return {piece};
+  /// One that is cut for a jump is no easing any more.
+  std::vector<Piece> parts_of_easing(const Piece& piece, bool is_cut) {
+    if (!is_cut && abilities_.has_easing && abilities_.has_easing(piece)) return {piece};
     if (piece.from == piece.to) return {level_of(piece)};
     const std::string name = fmt::format("{} easing", name_of(piece.easing.ease));
     if (auto parts = cubics_of(piece)) {

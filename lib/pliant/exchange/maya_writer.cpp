@@ -51,6 +51,16 @@ class MayaCurve {
       is_weighted_ = is_weighted_ || (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time);
   }
 
+  /// The largest slope that is written as an angle [unit/frame].
+  double steepest() const {
+    double steepest = 0;
+    for (std::size_t k = 0; k < pieces_.frames.size(); ++k)
+      for (const MayaTangent& tangent : {in_of(k), out_of(k)})
+        if (tangent.word == "fixed" && tangent.frames > 0)
+          steepest = std::max(steepest, std::fabs(tangent.value) / tangent.frames);
+    return steepest;
+  }
+
   void append_to(std::string& text, std::string_view output) const {
     fmt::format_to(std::back_inserter(text),
                    "animData {{\n  input time;\n  output {};\n  weighted {};\n  preInfinity {};\n"
@@ -159,7 +169,17 @@ Result<CurveText> write_maya(const std::vector<ChannelCurve>& curves, const Curv
                                  "where its copies meet, pliant has the last value of the one "
                                  "before, Maya the first of the next"});
       }
-      MayaCurve(part.pieces).append_to(text, output_word(curve.unit));
+      const MayaCurve maya(part.pieces);
+      // An angle near 90 degrees leaves few digits of its slope.
+      constexpr double digits = 2e-16, least_told = 1e9;
+      if (const double steepest = maya.steepest(); steepest > least_told) {
+        result.losses.push_back(
+            {curve.channel + component_suffix(part.component),
+             fmt::format("slopes of up to {:.2g} a frame became angles: off by up to {:.1g} of "
+                         "the slope",
+                         steepest, std::min(1.0, digits * steepest))});
+      }
+      maya.append_to(text, output_word(curve.unit));
     }
   }
   return result;
