@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -83,6 +85,8 @@ struct ProblemPlaces::Text {
 
   std::optional<Stretch> attribute(const Stretch& in, std::string_view message) const;
   std::optional<Stretch> element(const Stretch& in, std::string_view message) const;
+  std::optional<Stretch> content(const Stretch& in, std::string_view message) const;
+  std::string_view owner_of(std::uint32_t attribute) const;
   Stretch without_blanks(const Stretch& in) const;
 
   std::string text;
@@ -95,14 +99,17 @@ struct ProblemPlaces::Text {
 // Of the attributes and of the elements of a line, with each problem on it.
 constexpr int most_compared = 10'000;
 
-// The attribute that the message names, in the ways in which the reader names one.
+// The attribute that the message names, in the ways in which the reader names one: best with its
+// value and its element.
 std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
                                                       std::string_view message) const {
   const auto first = std::lower_bound(
       markup.attributes.begin(), markup.attributes.end(), in.begin,
       [](const xml::AttributePlace& place, std::size_t at) { return place.name.begin < at; });
+  // What was there already is the earlier one.
+  const bool is_later = has(message, "already") || has(message, "twice");
   std::optional<Stretch> best;
-  std::size_t best_way = 5;
+  std::size_t best_way = 12;
   int compared = 0;
   for (auto each = first;
        each != markup.attributes.end() && each->name.begin < in.end && ++compared <= most_compared;
@@ -110,19 +117,45 @@ std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
     const std::string_view name = each->name.of(text);
     if (!has(message, name)) continue;
     const Stretch value = stretch_of(each->value), whole = stretch_of(each->whole());
-    const std::array<std::pair<std::string, Stretch>, 5> ways = {
-        {{fmt::format(" {}=\"", name), value},
+    const std::array<std::pair<std::string, Stretch>, 6> ways = {
+        {{fmt::format(" {}=\"{}\"", name, each->value.of(text)), value},
+         {fmt::format(" {}=\"", name), value},
          {fmt::format("\"{}\"", name), stretch_of(each->name)},
          {fmt::format(".{}:", name), value},
          {fmt::format(".{} ", name), value},
          {fmt::format("> {}", name), whole}}};
-    for (std::size_t way = 0; way < best_way; ++way) {
-      if (!has(message, ways[way].first)) continue;
+    const auto index = static_cast<std::uint32_t>(each - markup.attributes.begin());
+    const std::size_t is_other = has(message, fmt::format("<{}>", owner_of(index))) ? 0 : 1;
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+      const std::size_t own = 2 * way + is_other;
+      if (own > best_way || (own == best_way && !is_later) || !has(message, ways[way].first))
+        continue;
       best = ways[way].second;
-      best_way = way;
+      best_way = own;
     }
   }
   return best;
+}
+
+// The name of the element that has an attribute.
+std::string_view ProblemPlaces::Text::owner_of(std::uint32_t attribute) const {
+  const auto after = std::upper_bound(markup.elements.begin(), markup.elements.end(), attribute,
+                                      [](std::uint32_t at, const xml::ElementPlace& element) {
+                                        return at < element.first_attribute;
+                                      });
+  return std::prev(after)->name.of(text);
+}
+
+// The text that the message quotes as what an element contains.
+std::optional<Stretch> ProblemPlaces::Text::content(const Stretch& in,
+                                                    std::string_view message) const {
+  const std::size_t at = message.find('"', message.find(" contains "));
+  if (at == std::string_view::npos) return {};
+  const std::string_view rest = message.substr(at + 1);
+  const std::string_view quoted = rest.substr(0, std::min(rest.find('"'), rest.find("\u2026")));
+  const std::size_t found = std::string_view(text).substr(0, in.end).find(quoted, in.begin);
+  if (quoted.empty() || found == std::string_view::npos) return {};
+  return Stretch{found, found + quoted.size()};
 }
 
 // The name of the first element of the line that the message names, or else of the first one.
@@ -169,7 +202,8 @@ std::optional<ProblemPlace> ProblemPlaces::find(const std::string& file, int lin
   const Text* const text = found->second.get();
   if (!text || line < 1 || static_cast<std::size_t>(line) > text->line_starts.size()) return {};
   const Stretch in = text->line(line);
-  std::optional<Stretch> place = text->attribute(in, message);
+  std::optional<Stretch> place = text->content(in, message);
+  if (!place) place = text->attribute(in, message);
   if (!place) place = text->element(in, message);
   if (!place) place = text->without_blanks(in);
   return ProblemPlace{text->line_of(place->begin), text->column_of(place->begin),

@@ -114,7 +114,7 @@ int run_validate(const ValidateOptions& options) {
     if (was_interrupted()) {
       return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
     }
-    findings.scenes.push_back({{"file", file}, {"valid", code == exit_done}});
+    findings.scenes.push_back({{"file", title_of_scene(file)}, {"valid", code == exit_done}});
   }
   if (options.is_json) {
     const Json json = {{"format", "pliant-validate-1"},

@@ -62,6 +62,15 @@ class Validate(Command):
                          [(2, "2"), (3, "nam"), (3, "1,5"), (4, "surface"), (4, "wrong"), (6, 'frame="1"'), (7, "shet")])
         problems = told("b.xml", "\ufeff<scene start='1' end='9'>\r\n  <point name='p'>\r\n</scene>\r\n")
         self.assertEqual([(problem["line"], problem["column"], problem["endColumn"]) for problem in problems], [(3, 1, 9)])
+        # Several things on one line.
+        one = ('<scene version="1" start="1" end="9"><surface name="s"><grid columns="5" rows="5"/></surface>'
+               '<point name="a" forceRadius="1"/><point name="b" forceRadius="-1"/><line name="1"/><line name="s"/>'
+               '<point name="c"><animate attribute="magnitude"><key frame="1" value="1"/><key frame="3" value="x"/>'
+               '</animate></point> stray </scene>')
+        self.assertEqual([named(problem, one.split("\n")) for problem in told("one.xml", one)],
+                         ["-1", "1", "x", "stray", "s"])
+        second = [problem for problem in told("one.xml", one) if "already" in problem["message"]][0]
+        self.assertGreater(second["column"], one.index("<line name=\"s\""))
         long = text.replace("<!-- ", "<!-- " + "\u00fc\U0001f44b " * 3000)
         self.assertEqual([named(problem, long.split("\n")) for problem in told("long.xml", long)],
                          [named(problem, text.split("\n")) for problem in told("a.xml", text)])
