@@ -75,6 +75,18 @@ class Sweeps(SweepCommand):
         for command in commands:
             self.sweep(*command, "--root", ".")
 
+    def test_a_file_that_is_not_there_is_told_ahead_of_all_work(self):
+        self.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n")
+        scene = self.write("a.xml", """<scene version="1" start="1" end="2">
+  <surface name="s"><mesh file="quad.obj"/></surface></scene>""")
+        for option in ("--set", "--vary"):
+            values = (["--set", "s.file=no.obj", "--vary", "s.density=1,2"] if option == "--set" else
+                      ["--vary", "s.file=quad.obj,no.obj"])
+            told = self.sweep("run", scene, "-o", self.path("s"), *values, code=2).stderr
+            self.assertIn(f"{option} s.file=", told)
+            self.assertIn("no.obj: cannot read the file: No such file or directory", told)
+            self.assertFalse(os.path.exists(self.path("s")))
+
     def test_a_table_from_elsewhere(self):
         takes = self.write("design.csv", 'sheet.density,poke.magnitude*,"poke.center"\n1,2,0 0 0\n7,0.5,"1 0 0"\n')
         self.make("s", vary=("--takes", takes))

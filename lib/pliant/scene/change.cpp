@@ -320,15 +320,22 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
   Scene changed = scene;
   if (auto made = make_changes(changed, changes, root); !made)
     return refuse("--set " + made.error().message);
-  for (const SceneChange& change : changes) {
-    const std::string* const file = file_at(changed, change.path);
-    if (!file || file->empty()) continue;
-    if (const auto readable = check_readable(*file); !readable)
-      return refuse(fmt::format("--set {}: {}", change.typed(), readable.error().message));
-  }
+  if (auto there = check_files(changed, changes); !there)
+    return refuse("--set " + there.error().message);
   if (std::vector<Error> problems = problems_of(changed); !problems.empty())
     return fail(blamed(std::move(problems), scene, changes, root));
   scene = std::move(changed);
+  return {};
+}
+
+Result<void> check_files(const Scene& changed, std::span<const SceneChange> changes) {
+  Scene scene = changed;  // a table gives access to what it lists
+  for (const SceneChange& change : changes) {
+    const std::string* const file = file_at(scene, change.path);
+    if (!file || file->empty()) continue;
+    if (const auto readable = check_readable(*file); !readable)
+      return refuse(fmt::format("{}: {}", change.typed(), readable.error().message));
+  }
   return {};
 }
 
@@ -339,7 +346,8 @@ Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
   const auto check_fully = [&](std::string_view text) {
     Scene changed = scene;
     one.text = text;
-    return make_changes(changed, std::span(&one, 1), root);
+    if (auto made = make_changes(changed, std::span(&one, 1), root); !made) return made;
+    return check_files(changed, std::span(&one, 1));
   };
   if (texts.empty()) return {};
   if (auto made = check_fully(texts.front()); !made) return made;

@@ -10,8 +10,12 @@
 
 namespace pliant {
 
+/// Checks that there are the files that changes made a scene name. Errors: InvalidInput, naming the
+/// change.
+Result<void> check_files(const Scene& changed, std::span<const SceneChange> changes);
+
 /// Checks that `make_changes` would make a change with each of many texts, each by itself, in much
-/// less time. Errors: that of the first text that it would refuse; Interrupted.
+/// less time, and `check_files`. Errors: that of the first text that these refuse; Interrupted.
 Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
                                 std::span<const std::string_view> texts, const std::string& root,
                                 const StopRequest& should_stop);

@@ -66,6 +66,8 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
     Scene base = scene;
     if (auto made = make_changes(base, takes_.set(), settings_.root); !made)
       return fail(told_after(made.error(), "--set "));
+    if (auto there = check_files(base, takes_.set()); !there)
+      return fail(told_after(there.error(), "--set "));
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       const VariedPath& varied = takes_.paths()[path];
       const std::vector<std::string_view> texts = takes_.texts_of(path, should_stop);
