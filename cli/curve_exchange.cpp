@@ -147,6 +147,27 @@ std::vector<CurveLoss> losses_of(const Import& imported) {
   return losses;
 }
 
+// Curves that no channel has the name of.
+void note_left_out(const Import& imported, std::vector<CurveLoss>& losses) {
+  std::set<std::string> used, used_groups;
+  for (const CurveMapping& mapping : imported.mappings) used.insert(mapping.source);
+  for (const FileCurve& curve : imported.file.curves)
+    if (used.contains(curve.name)) used_groups.insert(curve.group);
+  std::vector<std::string> names;
+  for (const FileCurve& curve : imported.file.curves)
+    if (!used_groups.contains(curve.group)) names.push_back(curve.name);
+  constexpr std::size_t most = 8;
+  if (names.empty()) return;
+  const bool are_many = names.size() > most;
+  const std::size_t others = are_many ? names.size() - most : 0;
+  if (are_many) names.resize(most);
+  losses.push_back(
+      {names.front(),
+       fmt::format("no channel has the name of {}{}; --map gives one", fmt::join(names, ", "),
+                   are_many ? fmt::format(" and {} more", others) : ""),
+       true});
+}
+
 Result<void> import_curves(const CurveExchangeOptions& options) {
   const auto root = folder_of(options.root);
   if (!root) return fail(root.error());
@@ -184,8 +205,17 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
   }
   auto placed = place_curves(imported->file, imported->mappings, scene ? &*scene : nullptr,
                              options.offset, options.tolerance);
-  if (!placed) return fail(placed.error());
+  if (!placed) {
+    Error error = placed.error();
+    // Nobody typed what was mapped by name.
+    if (options.mappings.empty() && error.message.starts_with("--map ")) {
+      error.message.erase(0, std::string_view("--map ").size());
+      error.file = options.file;
+    }
+    return fail(std::move(error));
+  }
   std::vector<CurveLoss> losses = losses_of(*imported);
+  if (options.mappings.empty()) note_left_out(*imported, losses);
   losses.insert(losses.end(), placed->losses.begin(), placed->losses.end());
   const auto fps = imported->file.fps;
   if (scene && fps && std::abs(*fps - scene->fps) > 1e-9 * scene->fps) {
@@ -274,9 +304,11 @@ void add_import(CLI::App& app, CurveExchangeOptions& options) {
                                "Read keys of Blender, Maya or a glTF into a scene");
   command->add_option("FILE", options.file, "File of the other program: .json, .gltf, .glb, .anim")
       ->required();
-  command->add_option("-o,--out", options.out,
-                      "Scene that gets the keys; \"-\": print them as elements; by default the "
-                      "curves of the file are listed");
+  command
+      ->add_option("-o,--out", options.out,
+                   "Scene that gets the keys; \"-\": print them as elements; by default the "
+                   "curves of the file are listed")
+      ->check(file_name());
   command->add_option("--map", options.mappings,
                       "SOURCE=CHANNEL[.x|.y|.z][*FACTOR]: a curve of the file for a channel; by "
                       "default those whose names are the same");

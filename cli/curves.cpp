@@ -254,8 +254,10 @@ void add_curves(CLI::App& app, CurvesOptions& options) {
   curves->add_option("--at", options.at, "File with the frames, one per line")
       ->excludes(frames)
       ->excludes(step);
-  curves->add_option("-o,--out", options.out,
-                     "Output file, a .csv table or an .svg plot; CSV on stdout by default");
+  curves
+      ->add_option("-o,--out", options.out,
+                   "Output file, a .csv table or an .svg plot; CSV on stdout by default")
+      ->check(file_name());
   add_root(*curves, options.root);
   add_changes(*curves, options.changes);
   curves->add_flag("--sides", options.has_sides,

@@ -13,6 +13,7 @@
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/scene/read.hpp"
 #include "report.hpp"
+#include "resources.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -33,7 +34,8 @@ void add_format(CLI::App& app, FormatOptions& options) {
       app.add_subcommand("format", "Write a scene in its canonical layout, comments kept");
   format->add_option("SCENE", options.scene, "Scene file")->required();
   CLI::Option* const out =
-      format->add_option("-o,--out", options.out, "Output file; the standard output by default");
+      format->add_option("-o,--out", options.out, "Output file; the standard output by default")
+          ->check(file_name());
   format->add_flag("--in-place", options.is_in_place, "Replace the scene file")->excludes(out);
   add_root(*format, options.root);
 }

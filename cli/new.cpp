@@ -97,6 +97,14 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
   return {};
 }
 
+// An error of the starter's text with a mesh is one of the mesh, on no line that anybody sees.
+Error about_mesh(Error error, const std::string& starter, const std::string& mesh) {
+  if (error.file != starter) return error;
+  error.file = mesh;
+  error.line = 0;
+  return error;
+}
+
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
@@ -112,10 +120,10 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
     if (!facts) return fail(facts.error());
     if (options.mesh) {
       source.obj = {};
-      source.name = *options.mesh;
+      source.name = "the starter with --mesh";
       const std::string name = path_from(out.parent_path(), *options.mesh);
       facts = use_own_mesh(*document, name, *facts, source);
-      if (!facts) return fail(facts.error());
+      if (!facts) return fail(about_mesh(facts.error(), source.name, *options.mesh));
     }
     if (options.material) {
       const auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);

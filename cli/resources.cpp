@@ -47,6 +47,14 @@ CLI::Validator number_from(double least) {
       range);
 }
 
+CLI::Validator file_name() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return text.empty() ? std::string("the name of the file is empty") : std::string();
+      },
+      "");
+}
+
 void add_threads(CLI::App& command, ResourceOptions& options) {
   command
       .add_option("--threads", options.threads,

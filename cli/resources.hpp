@@ -17,6 +17,9 @@ struct ResourceOptions {
 /// For an option with a number from `least` to 10^9.
 CLI::Validator number_from(double least);
 
+/// Accepts a name that is not empty, as that of a variable which a script did not set is.
+CLI::Validator file_name();
+
 void add_threads(CLI::App& command, ResourceOptions& options);
 void add_memory(CLI::App& command, ResourceOptions& options);
 

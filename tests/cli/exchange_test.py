@@ -76,6 +76,24 @@ class Exchange(Command):
                     for one, two in zip(before, after):
                         self.assertAlmostEqual(one, two, delta=2e-3, msg=f"{name} {channel}")
 
+    def test_curves_that_go_nowhere_are_told(self):
+        scene, other = self.scene(), self.write("other.xml", SCENE.format(poke="", bulge=BULGE))
+        self.run_pliant("export", "curves", other, "-o", "keys.json")
+        keys = json.loads(self.read("keys.json"))
+        keys["curves"] += [{**keys["curves"][0]}, {**keys["curves"][0], "data_path": "wobble"}]
+        self.write("keys.json", json.dumps(keys))
+        told = self.run_pliant("import", "curves", "keys.json", "-o", scene)
+        self.assertIn("1 channel: bulge.magnitude", told.stdout)
+        self.assertRegex(told.stderr, "no channel has the name of [^\n]*magnitude#2, [^\n]*wobble; --map gives one")
+
+    def test_an_error_of_curves_is_on_no_line_of_the_scene(self):
+        scene = self.scene()
+        self.run_pliant("export", "curves", self.write("other.xml", SCENE.format(poke="", bulge=BULGE)), "-o", "keys.json")
+        self.write("keys.json", self.read("keys.json").decode().replace('"co": [1, 0]', '"co": [1, 0.5]'))
+        told = self.run_pliant("import", "curves", "keys.json", "-o", scene, "--map", "bulge.magnitude=poke.forceRadius*-1",
+                               code=2).stderr
+        self.assertRegex(told, r"^[^\n]*shot.xml: error: the scene cannot have the curves: [^\n]*forceRadius")
+
     def test_what_a_format_cannot_hold_is_told_or_refused(self):
         scene = self.scene(bulge=BULGE)
         done = self.run_pliant("export", "curves", scene, "-o", "keys.anim")

@@ -111,6 +111,9 @@ class New(Command):
             self.assertEqual(result.stdout, "")
         self.run_pliant("new", "sheet", "-o", "no/a.xml", code=1)
         self.assertEqual(self.files(), [])
+        self.write("b.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n")
+        told = self.run_pliant("new", "mesh", "--mesh", "b.obj", "-o", "a.xml", code=2).stderr
+        self.assertRegex(told, r"^b.obj: error: [^\n]*the area of the mesh's triangles is too large for a number\n$")
 
     def test_the_schema_is_written_beside_the_scene(self):
         self.run_pliant("new", "sheet", "-o", "a.xml", "--schema")

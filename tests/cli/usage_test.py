@@ -45,7 +45,8 @@ class Usage(Command):
 
     def test_wrong_usage_is_exit_code_2(self):
         scene = self.scene()
-        for arguments in (["bak"], ["bake"], ["bake", scene], ["bake", scene, "-o"],
+        for arguments in (["bak"], ["bake"], ["bake", scene], ["bake", scene, "-o"], ["format", scene, "-o", ""],
+                          ["curves", scene, "-o", ""], ["import", "curves", scene, "-o", ""],
                           ["bake", scene, "-o", "a.npy", "--nonsense"],
                           ["bake", scene, "-o", "a.npy", "--space", "camera"],
                           ["bake", scene, "-o", "a.npy", "extra"]):

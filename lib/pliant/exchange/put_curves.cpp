@@ -34,6 +34,7 @@ Result<std::string> with_curves(std::string_view text, const std::string& name,
   if (auto changed = document->apply(operations, "import curves"); !changed) {
     Error error = changed.error();
     error.message = "the scene cannot have the curves: " + error.message;
+    error.line = 0;  // of a text that nobody sees
     return fail(std::move(error));
   }
   return document->text();

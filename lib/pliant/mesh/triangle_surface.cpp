@@ -275,9 +275,8 @@ class SurfaceMaker {
       area += std::abs(triangle.signed_area());
     if (!std::isfinite(area) || !(area > 0)) {
       return invalid(
-          fmt::format("the area of the mesh's triangles is {}, but must be a positive "
-                      "number",
-                      area));
+          fmt::format("the area of the mesh's triangles is {}",
+                      area == 0 ? "0, or too small for a number" : "too large for a number"));
     }
     const double side = std::sqrt(area);
     surface_.unit = reading_.unit.value_or(std::array{side, side});
