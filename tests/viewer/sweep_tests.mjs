@@ -318,7 +318,7 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
     });
   });
 
-  test("a hundred thousand takes are one page, sorted in a second", async () => {
+  test("a hundred thousand takes are one page, and sorted", async () => {
     writeFileSync(inFolder("tiny.xml"), '<scene version="1" start="1" end="1"><surface name="s"><grid columns="5" rows="5"/></surface></scene>');
     run("sweep", "run", inFolder("tiny.xml"), "-o", inFolder("many"), "--vary", "s.damping=1:100", "--vary", "s.density=0.5:3", "--sample", "100000", "--make-only", "--quiet");
     // As if they had been run: the scene at rest, with numbers of our own.
