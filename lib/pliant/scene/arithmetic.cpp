@@ -254,15 +254,15 @@ class Evaluator {
 
 /// In as few digits as read back the same; whole numbers that an integer can hold without an
 /// exponent, which integers do not have.
-std::string to_text(double number) {
+std::string digits_of(double number) {
   constexpr double least = -0x1p63, end = 0x1p64;
   const bool is_whole = number >= least && number < end && std::trunc(number) == number;
   return is_whole ? fmt::format("{:.0f}", number) : fmt::format("{}", number);
 }
 
-std::string to_text(std::span<const double> numbers) {
+std::string digits_of(std::span<const double> numbers) {
   std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : " ") + to_text(number);
+  for (const double number : numbers) text += (text.empty() ? "" : " ") + digits_of(number);
   return text;
 }
 
@@ -305,7 +305,8 @@ std::optional<tl::expected<std::string, ArithmeticFault>> compute(
   for (const Component& component : **components) {
     const std::string_view gap = text.empty() ? "" : " ";
     text += gap;
-    text += component.written.empty() ? to_text(component.numbers) : std::string(component.written);
+    text +=
+        component.written.empty() ? digits_of(component.numbers) : std::string(component.written);
   }
   return text;
 }
