@@ -156,15 +156,14 @@ void note_left_out(const Import& imported, std::vector<CurveLoss>& losses) {
   std::vector<std::string> names;
   for (const FileCurve& curve : imported.file.curves)
     if (!used_groups.contains(curve.group)) names.push_back(curve.name);
-  constexpr std::size_t most = 8;
   if (names.empty()) return;
-  const bool are_many = names.size() > most;
-  const std::size_t others = are_many ? names.size() - most : 0;
-  if (are_many) names.resize(most);
+  constexpr std::size_t most = 8;
+  const std::size_t others = names.size() - std::min(names.size(), most);
+  names.resize(names.size() - others);
   losses.push_back(
       {names.front(),
        fmt::format("no channel has the name of {}{}; --map gives one", fmt::join(names, ", "),
-                   are_many ? fmt::format(" and {} more", others) : ""),
+                   others > 0 ? fmt::format(" and {} more", others) : ""),
        true});
 }
 

@@ -127,7 +127,10 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
     }
     if (options.material) {
       const auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);
-      if (!applied) return fail(applied.error());
+      if (!applied) {
+        return fail(options.mesh ? about_mesh(applied.error(), source.name, *options.mesh)
+                                 : applied.error());
+      }
     }
   }
   if (!starter.mesh.empty() && !options.mesh) {
