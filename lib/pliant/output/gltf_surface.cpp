@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pliant/core/elementary.hpp"
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/mesh/normals.hpp"
+#include "pliant/output/raw_bytes.hpp"
 #include "pliant/output/single_precision.hpp"
 
 namespace pliant {
@@ -67,6 +70,13 @@ std::vector<float> uvs_of(const GltfShape& shape, const Mesh& mesh) {
   return numbers;
 }
 
+// The hash of a target's numbers.
+std::string name_of_shape(std::span<const float> positions, std::span<const float> normals) {
+  HashStream hash;
+  for (const auto numbers : {positions, normals}) hash.add(bytes_of(numbers));
+  return to_text(hash.hash());
+}
+
 }  // namespace
 
 bool GltfKeys::is_moving() const {
@@ -91,8 +101,6 @@ Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer
     base_.insert(base_.end(), row, row + 3);
   }
   base_normals_ = normals_at(rest);
-  last_.assign(base_.size(), 0.0f);
-  last_normals_.assign(base_.size(), 0.0f);
 
   const auto positions = buffer.add_vertices(base_, 3, Bounds::Written);
   if (!positions) return fail(positions.error());
@@ -150,23 +158,20 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
   std::vector<float> normals = normals_at(pose.positions);
   for (std::size_t k = 0; k < normals.size(); ++k) normals[k] -= base_normals_[k];
 
-  if (*rounded != last_ || normals != last_normals_) {
-    last_ = *std::move(rounded);
-    last_normals_ = std::move(normals);
-    const auto is_zero = [](float number) { return number == 0; };
-    if (std::all_of(last_.begin(), last_.end(), is_zero)) {
-      target_of_frame_.push_back(-1);  // at rest
-      return {};
-    }
-    const auto position_offsets = buffer.add_offsets(last_, Bounds::Written);
-    if (!position_offsets) return fail(position_offsets.error());
-    const auto normal_offsets = buffer.add_offsets(last_normals_, Bounds::None);
-    if (!normal_offsets) return fail(normal_offsets.error());
-    targets_.push_back({frame, *position_offsets, *normal_offsets});
-    target_of_frame_.push_back(static_cast<int>(targets_.size()) - 1);
-  } else {
-    target_of_frame_.push_back(target_of_frame_.empty() ? -1 : target_of_frame_.back());
+  if (std::ranges::all_of(*rounded, [](float number) { return number == 0; })) {
+    target_of_frame_.push_back(-1);  // at rest
+    return {};
   }
+  // A frame may repeat any earlier one, as those of a loop do.
+  const auto [shape, is_new] = target_of_shape_.try_emplace(name_of_shape(*rounded, normals),
+                                                            static_cast<int>(targets_.size()));
+  target_of_frame_.push_back(shape->second);
+  if (!is_new) return {};
+  const auto position_offsets = buffer.add_offsets(*rounded, Bounds::Written);
+  if (!position_offsets) return fail(position_offsets.error());
+  const auto normal_offsets = buffer.add_offsets(normals, Bounds::None);
+  if (!normal_offsets) return fail(normal_offsets.error());
+  targets_.push_back({frame, *position_offsets, *normal_offsets});
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -59,8 +60,8 @@ class GltfSurface {
   Json attributes_;
   std::vector<std::size_t> indices_;        // accessors of the shape's parts
   std::vector<float> base_, base_normals_;  // #vertices x 3
-  std::vector<float> last_, last_normals_;  // offsets of the last frame
   std::vector<Target> targets_;
+  std::map<std::string, int> target_of_shape_;  // by the hash of its numbers
   std::vector<int> target_of_frame_;
   std::vector<GltfKeys> keys_;  // of a placed surface
 };
