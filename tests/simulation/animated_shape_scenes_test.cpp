@@ -463,3 +463,24 @@ TEST_CASE("caches that mean nothing are refused by name", "[simulation][cache]")
     return problem.message.find("a net, but a cache") != std::string::npos;
   }));
 }
+
+TEST_CASE("a cache without a sample within the scene is one warning, before any frame",
+          "[simulation][cache]") {
+  const ScratchFolder folder;
+  const int count = 4, end = 9;  // frames 1 to 9
+  const std::string cache = write_cache(folder, "a.npy", waving(sheet_vertices(), count));
+  for (const double first : {-40.0, -3.0, -2.25, -2.0, 1.0, 9.0, 9.25, 10.0, 1000.0}) {
+    CAPTURE(first);
+    const auto simulation =
+        Simulation::make(scene({animated(sheet("s"), cache, first)}, {}, end)).value();
+    const bool is_within = first + count - 1 >= 1 && first <= end;
+    const std::vector<Warning> warnings = simulation.warnings();
+    REQUIRE(warnings.size() == (is_within ? 0 : 1));
+    if (is_within) continue;
+    CHECK(warnings[0].kind == Warning::Kind::CacheOutside);
+    CHECK_THAT(warnings[0].message(),
+               Catch::Matchers::Contains(first < 1 ? "before its frames" : "after its frames") &&
+                   Catch::Matchers::Contains(
+                       fmt::format("at frames {:.6g} to {:.6g}", first, first + count - 1)));
+  }
+}

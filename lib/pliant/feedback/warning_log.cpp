@@ -27,10 +27,11 @@ void WarningLog::happened(Warning::Kind kind, std::string_view surface, std::str
 
 std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_complete) const {
   FramesOfCauses all = frames_;
-  if (is_range_complete) {
-    for (const auto& [cause, frames] : expected_) {
-      if (!happened_.contains(cause)) all.emplace(cause, frames);
-    }
+  std::set<CauseView> never;  // expected, but it did not happen
+  for (const auto& [cause, frames] : expected_) {
+    if (happened_.contains(cause)) continue;
+    all.emplace(cause, frames);
+    never.insert(cause);
   }
   std::vector<Warning> warnings;
   for (const auto& [cause, frames] : all) {
@@ -40,7 +41,9 @@ std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_comp
       warnings.back().frames.add(frames);
       continue;
     }
-    warnings.push_back({cause.kind, cause.surface, cause.force, frames});
+    Warning& warning = warnings.emplace_back();
+    warning = {cause.kind, cause.surface, cause.force, frames};
+    warning.is_of_part = !is_range_complete && never.contains(cause);
   }
   // An author who writes combine="box" explicitly needs no warning.
   std::erase_if(warnings, [&](const Warning& warning) {

@@ -19,13 +19,13 @@ class WarningLog {
   void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
 
   /// Notes that something is expected to happen at some frame of the range, perhaps this one. If it
-  /// `happened` at none, it becomes a warning with all these frames.
+  /// `happened` at none so far, it is a warning with all these frames.
   void expect(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
   void happened(Warning::Kind kind, std::string_view surface, std::string_view force);
 
-  /// In the order of kind, surface and force. Expectations that never happened are included only if
-  /// the range is complete. All forces that are apart on one surface form one warning, and none if
-  /// the scene's file gives `combine`.
+  /// In the order of kind, surface and force. What is expected, but did not happen, is told as of
+  /// the frames so far unless the range is complete. All forces that are apart on one surface form
+  /// one warning, and none if the scene's file gives `combine`.
   std::vector<Warning> warnings(const Scene& scene, bool is_range_complete) const;
 
  private:

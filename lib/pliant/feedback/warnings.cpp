@@ -30,7 +30,9 @@ std::string Warning::message() const {
   const std::string_view noun = is_group ? "group" : "force";
   const bool is_single = frames.ranges().size() == 1 &&
                          frames.ranges().front().first == frames.ranges().front().second;
-  const std::string when = (is_single ? "at frame " : "at frames ") + frames.to_string(most_ranges);
+  const std::string when = (is_single ? "at frame " : "at frames ") +
+                           frames.to_string(most_ranges) +
+                           (is_of_part ? ", of those that were played" : "");
   switch (kind) {
     case Kind::RegionTooSmall:
       return fmt::format("{} \"{}\" selects fewer than 3 x 3 nodes of \"{}\" {}: too few to solve",
@@ -87,18 +89,33 @@ std::string Warning::message() const {
           "{} face{} of \"{}\" take{} no part: fewer than three different corners, a corner twice, "
           "or the corners of another face",
           faces, faces == 1 ? "" : "s", surface, faces == 1 ? "s" : "");
+    case Kind::CacheOutside:
+      return fmt::format(
+          "the cache of \"{}\" has no sample within the scene: all are {} its frames, at frames "
+          "{:.6g} "
+          "to {:.6g}, so the surface keeps the shape of one of them; cacheStart moves them",
+          surface, is_cache_late ? "after" : "before", cache->first, cache->last);
   }
   return {};
 }
 
-std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes) {
+std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, const Scene& scene) {
   std::vector<Warning> warnings;
   for (const RestShape& shape : rest_shapes) {
-    if (!shape.surface || shape.surface->faces_left_out == 0) continue;
-    Warning& warning = warnings.emplace_back();
-    warning.kind = Warning::Kind::FacesLeftOut;
-    warning.surface = shape.name;
-    warning.faces = shape.surface->faces_left_out;
+    if (shape.surface && shape.surface->faces_left_out > 0) {
+      Warning& warning = warnings.emplace_back();
+      warning.kind = Warning::Kind::FacesLeftOut;
+      warning.surface = shape.name;
+      warning.faces = shape.surface->faces_left_out;
+    }
+    const auto cache = cache_summary_of(shape);
+    if (cache && (cache->last < scene.start || cache->first > scene.end)) {
+      Warning& warning = warnings.emplace_back();
+      warning.kind = Warning::Kind::CacheOutside;
+      warning.surface = shape.name;
+      warning.cache = cache;
+      warning.is_cache_late = cache->first > scene.end;
+    }
   }
   return warnings;
 }
@@ -107,6 +124,9 @@ int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (!warning.force.empty()) return origin.line_of(warning.force);
   if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::LoosePiece) {
     return origin.line_of(warning.surface, "file");
+  }
+  if (warning.kind == Warning::Kind::CacheOutside) {
+    return origin.line_of(warning.surface, "cache");
   }
   if (warning.kind == Warning::Kind::NeverStarts) {
     return origin.line_of(warning.surface, "startFrame");

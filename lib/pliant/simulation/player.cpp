@@ -151,7 +151,7 @@ std::vector<Warning> Simulation::Player::warnings() const {
   const bool is_complete =
       first_ == scene_.end || (ranges.size() == 1 && ranges.front().first == first_ &&
                                ranges.front().second == scene_.end - 1);
-  std::vector<Warning> warnings = warnings_about(bodies_.rest_shapes());
+  std::vector<Warning> warnings = warnings_about(bodies_.rest_shapes(), scene_);
   for (Warning& warning : warnings_.warnings(scene_, is_complete)) {
     warnings.push_back(std::move(warning));
   }

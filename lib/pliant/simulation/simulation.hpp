@@ -147,8 +147,8 @@ class Simulation {
   std::span<const RestShape> rest_shapes() const;
 
   /// The warnings of the frames computed or read so far, each cause once with its frames. A warning
-  /// about something that never happens, such as a force that selects nothing, is included only
-  /// after all frames.
+  /// about something that never happens, such as a force that selects nothing, says that it is
+  /// about these frames if they are not all.
   std::vector<Warning> warnings() const;
 
   /// The solver of the options.
