@@ -337,10 +337,8 @@ int run_bake(const BakeOptions& options, const BakeSource& source) {
   run.store = store->get();
   run.round_done = round_line(options.is_quiet);
   if (options.checks_dt) run.max_memory /= 2;  // for each of the two runs
-  const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
-  print_notes(simulation->scene(), note_count);
   auto output = open_output(*simulation, options, *frames);
   if (!output) return report(output.error());
 

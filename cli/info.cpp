@@ -47,6 +47,17 @@ Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
   return first.has_value();
 }
 
+// How the meshes are read.
+std::vector<SceneNote> notes_on_shapes(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  std::vector<SceneNote> notes;
+  for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
+    const std::string& note = simulation.rest_shapes()[k].note;
+    if (auto told = note_on(scene.surfaces[k], note, scene.origin)) notes.push_back(*told);
+  }
+  return notes;
+}
+
 int tell(const SceneFacts& facts, const InfoOptions& options) {
   print(stdout, options.is_json ? info_json(facts) : info_text(facts));
   return exit_done;
@@ -79,7 +90,7 @@ int run_info(const InfoOptions& options) {
   catch_interrupts();
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
-  print_notes(*scene);
+  print_notes(scene->notes);
   const SimulationOptions run = simulation_options(options.resources);
   if (scene->surfaces.empty()) {
     if (const auto checked = Simulation::check(*scene, run); !checked) {
@@ -87,10 +98,9 @@ int run_info(const InfoOptions& options) {
     }
     return tell({.file = title_of_scene(options.scene), .scene = *scene}, options);
   }
-  const std::size_t note_count = scene->notes.size();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
-  print_notes(simulation->scene(), note_count);
+  print_notes(notes_on_shapes(*simulation));
   SceneFacts facts{.file = title_of_scene(options.scene), .scene = simulation->scene()};
   const auto looked = look_at_surfaces(facts, *simulation, run);
   if (!looked) return report(looked.error());

@@ -45,19 +45,22 @@ int report(const Error& error) {
   return exit_code(error);
 }
 
-void print_notes(const Scene& scene, std::size_t first) {
-  for (const SceneNote& note : std::span(scene.notes).subspan(first)) {
+void print_notes(std::span<const SceneNote> notes) {
+  for (const SceneNote& note : notes) {
     print(stderr, fmt::format("{}:{}: note: {}\n", printable(note.file), note.line,
                               printable(note.message)));
   }
 }
 
+void print_warning(const ScenePlace& place, const std::string& message) {
+  print(stderr, fmt::format("{}:{}: warning: {}\n", printable(place.file), place.line,
+                            printable(place.told(message))));
+}
+
 void print_warnings(const Simulation& simulation) {
   const SceneOrigin& origin = simulation.scene().origin;
   for (const Warning& warning : simulation.warnings()) {
-    const ScenePlace place = origin.place_at(line_of(warning, origin));
-    print(stderr, fmt::format("{}:{}: warning: {}\n", printable(place.file), place.line,
-                              printable(place.told(warning.message()))));
+    print_warning(origin.place_at(line_of(warning, origin)), warning.message());
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdio>
+#include <span>
 #include <string_view>
 
 #include "pliant/core/result.hpp"
@@ -34,8 +35,11 @@ int exit_code_after_output(int code);
 /// Prints every problem on stderr, one line each, and returns the exit code.
 int report(const Error& error);
 
-/// Prints the notes of a scene: remarks on valid content.
-void print_notes(const Scene& scene, std::size_t first = 0);
+/// Prints notes on a scene: remarks on valid content.
+void print_notes(std::span<const SceneNote> notes);
+
+/// Prints a warning about a place of a scene on stderr.
+void print_warning(const ScenePlace& place, const std::string& message);
 
 /// Prints the warnings of a run, each with its line.
 void print_warnings(const Simulation& simulation);

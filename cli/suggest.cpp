@@ -113,12 +113,10 @@ MotionGoals goals_of(const SuggestOptions& options, double fps) {
 
 // Without a document nothing is written.
 int suggest(const SuggestOptions& options, Scene scene, SceneDocument* document) {
-  print_notes(scene);
-  const std::size_t note_count = scene.notes.size();
+  print_notes(scene.notes);
   const SimulationOptions run = simulation_options(options.resources);
   auto simulation = Simulation::make(std::move(scene), run);
   if (!simulation) return report(simulation.error());
-  print_notes(simulation->scene(), note_count);
   const double fps = simulation->scene().fps;
   auto suggestion = suggest_material(*simulation, goals_of(options, fps), run);
   if (!suggestion) return report(suggestion.error());

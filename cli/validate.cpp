@@ -77,7 +77,7 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
   if (!scene) return tell(scene.error(), file, findings);
   auto checked = Simulation::check(*scene, simulation_options(options.resources));
   if (checked) scene->notes.insert(scene->notes.end(), checked->begin(), checked->end());
-  if (!findings) print_notes(*scene);
+  if (!findings) print_notes(scene->notes);
   if (findings) {
     for (const SceneNote& note : scene->notes) {
       add_problem(*findings, note.file, note.line, "note", note.message);

@@ -27,7 +27,7 @@ std::string title_of(const Scene& scene) {
 
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
                               const StopRequest& should_stop, MemoryStateStore* store) {
-  print_notes(scene);
+  print_notes(scene.notes);
   const auto frames = parse_frames(options.frames, scene);
   if (!frames) return fail(frames.error());
   SimulationOptions run = simulation_options(options.resources);
@@ -35,10 +35,8 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   run.store = store;
   run.round_done = round_line(options.is_quiet);
   if (store != nullptr) run.max_memory -= std::min(run.max_memory, store->byte_budget());
-  const std::size_t note_count = scene.notes.size();
   auto simulation = Simulation::make(std::move(scene), run);
   if (!simulation) return fail(simulation.error());
-  print_notes(simulation->scene(), note_count);
   auto baked = [&] {
     Progress progress(frames->last - simulation->scene().start + 1, options.is_quiet);
     return viewer::view_bake(*simulation, *frames, {run.max_memory, should_stop},

@@ -129,8 +129,11 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
   }
   auto shape = on_surface(surface, std::move(mesh));
   if (!shape) return shape;
-  shape->note = fmt::format("{}: the mesh{} is read as a surface, since it is no even grid: {}",
-                            surface.name, file ? " " + file->path : "", reason);
+  shape->note = fmt::format(
+      "{}: the mesh{} is read as a surface, as most models are: it bends on its own faces, "
+      "whatever "
+      "its UVs, which form no even grid ({}); nothing is wrong, and uv=\"surface\" ends this note",
+      surface.name, file ? " " + file->path : "", reason);
   return shape;
 }
 

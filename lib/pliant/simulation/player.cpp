@@ -23,8 +23,6 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
 Result<void> Simulation::Player::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    const std::string& note = bodies_.rest_shapes()[k].note;
-    if (auto told = note_on(scene_.surfaces[k], note, scene_.origin)) scene_.notes.push_back(*told);
     kept_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
   }
   return {};

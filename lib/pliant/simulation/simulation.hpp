@@ -140,7 +140,6 @@ class Simulation {
   /// it. Warnings then lack those of frames that were not computed here.
   Result<int> restore(std::string_view state_bytes);
 
-  /// Its notes tell also how its meshes are read.
   const Scene& scene() const;
 
   /// The surfaces at rest, in the order of the scene.
