@@ -26,6 +26,7 @@
 #include "progress.hpp"
 #include "regions_file.hpp"
 #include "report.hpp"
+#include "rounded.hpp"
 #include "scene_input.hpp"
 #include "solver_option.hpp"
 
@@ -77,6 +78,28 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
                                          : shape.mesh.positions});
   }
   return plan;
+}
+
+// Warns of surfaces so far from the origin that the format tears them.
+void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan) {
+  const Scene& scene = simulation.scene();
+  for (const PrecisionLoss& loss : precision_losses(plan)) {
+    const std::string& name = plan.surfaces[loss.surface].name;
+    const auto& surface = *std::ranges::find(scene.surfaces, name, &Surface::name);
+    const Vector3d there = plan.is_placed
+                               ? Vector3d(0, 0, 0)
+                               : placement_at(surface.transform, plan.first_frame).translate;
+    print_warning(
+        scene.origin.place_of(name),
+        fmt::format(
+            "\"{}\" is so far from the origin that the single precision of {} moves its "
+            "vertices by up to {:.2g}, {:.2g} % of its size; <transform translate=\"{}\"/>{} "
+            "brings it to the origin, if its forces move along; .npy, .obj and .ply have "
+            "double precision",
+            name, ending_of(plan.file), loss.error, 100 * loss.error / loss.size,
+            place_text(there - loss.centre, 1000 * loss.size),
+            plan.is_placed ? " and --space world" : ""));
+  }
 }
 
 // Checks that no output file is an input of the scene: a bake to head.pc2 also writes head.obj.
@@ -137,6 +160,7 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
     return fail(free.error());
   auto writer = make_writer(plan);
   if (!writer) return fail(writer.error());
+  warn_of_precision(simulation, plan);
   return Output{*chosen, *std::move(writer)};
 }
 

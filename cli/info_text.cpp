@@ -8,6 +8,7 @@
 #include "counted.hpp"
 #include "info_formats.hpp"
 #include "pliant/scene/description.hpp"
+#include "rounded.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -28,11 +29,8 @@ std::string shape_text(const Surface& surface) {
 }
 
 std::string box_text(const BoundingBox& box) {
-  // + 0.0 avoids "-0".
-  const auto corner = [](const Vector3d& p) {
-    return fmt::format("{:.5g} {:.5g} {:.5g}", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0);
-  };
-  return corner(box.low) + " to " + corner(box.high);
+  const double size = (box.high - box.low).norm();
+  return place_text(box.low, size) + " to " + place_text(box.high, size);
 }
 
 std::string closed_text(const Grid& grid) {

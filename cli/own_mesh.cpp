@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pliant/scene/channels.hpp"
 #include "rounded.hpp"
@@ -19,17 +17,6 @@ namespace {
 std::string direction_text(const Vector3d& direction) {
   return fmt::format("{} {} {}", rounded(direction.x()), rounded(direction.y()),
                      rounded(direction.z()));
-}
-
-// A place, to a thousandth of the mesh's size.
-std::string place_text(const Vector3d& at, double size) {
-  const int digits = std::clamp(3 - static_cast<int>(std::floor(std::log10(size))), 0, 300);
-  std::vector<std::string> words;
-  for (const double number : at) {
-    const std::string text = fmt::format("{:.{}f}", number, digits);
-    words.push_back(fmt::format("{}", std::strtod(text.c_str(), nullptr) + 0.0));
-  }
-  return fmt::format("{}", fmt::join(words, " "));
 }
 
 // Multiplies channels by a factor, with the digits that a person would write.

@@ -169,6 +169,46 @@ class Bake(Command):
                                         r'nodes of "sheet" at frames 1-4: too few to solve\n$')
 
 
+    def test_what_was_not_played_is_no_excuse_for_silence(self):
+        far = self.write("far.xml", SCENE.format(end=12).replace('center="0 0 0"', 'center="0 50 0"'))
+        for frames, told in ((None, "at frames 1-11: no node"), ("1:11", "at frames 1-10, of those that were played: no node"),
+                             ("4", "at frames 1-3, of those that were played: no node")):
+            done = self.run_pliant("bake", far, "-o", "a.npy", *(["--frames", frames] if frames else []))
+            self.assertEqual(done.stderr.count("warning"), 1, done.stderr)
+            self.assertIn(told, done.stderr)
+        np.save(self.path("late.npy"), np.zeros((3, 143, 3)))
+        late = self.write("late.xml", SCENE.format(end=12).replace("<grid", '<grid cache="late.npy" cacheStart="20"'))
+        done = self.run_pliant("bake", late, "-o", "a.npy")
+        self.assertEqual(done.stderr.count("no sample within the scene"), 1, done.stderr)
+        self.assertIn("after its frames, at frames 20 to 22", done.stderr)
+
+    def test_a_place_far_from_the_origin_is_told_in_digits_and_what_single_precision_does_to_it(self):
+        def scene(at, more=""):
+            return self.write("far.xml", f"""<scene version="1" start="1" end="4"><surface name="pad">
+              <mesh file="pad.obj" uv="surface"/>{more}</surface>
+              <point name="p" center="{at}" deformationRadius="{0.6 * size}" forceRadius="{0.3 * size}" magnitude="9"/></scene>""")
+
+        for size in (1e-3, 1.0, 1e4):
+            offset = np.array([3e6, -4e6, 5e6]) * size
+            corners = np.array([[i, 0, j] for j in range(9) for i in range(9)]) / 8 * size + offset
+            faces = [[9 * j + i + 1, 9 * j + i + 10, 9 * j + i + 11, 9 * j + i + 2] for j in range(8) for i in range(8)]
+            self.write("pad.obj", "".join("v %r %r %r\n" % tuple(map(float, corner)) for corner in corners) +
+                       "".join("f %d %d %d %d\n" % tuple(face) for face in faces))
+            middle = corners.mean(axis=0)
+            place = " ".join(map(repr, map(float, middle)))
+            low, high = re.search(r"bounding box (.*) to (.*)\n", self.run_pliant("info", scene(place)).stdout).groups()
+            self.assertLess(np.abs(np.array([low.split(), high.split()], float) - corners[[0, -1]]).max(), 2e-3 * size)
+            for ending in ONE_FILE:
+                told = self.run_pliant("bake", scene(place), "-o", "a" + ending).stderr
+                self.assertEqual(told.count("single precision of " + ending), ending != ".npy", told)
+            translate = re.search(r'translate="([^"]*)"', told)[1]
+            moved = middle + np.array(translate.split(), float)
+            self.assertLess(np.abs(moved).max(), size)
+            near = scene(" ".join(map(repr, map(float, moved))), f'<transform translate="{translate}"/>')
+            for ending in ONE_FILE:
+                self.assertEqual(self.run_pliant("bake", near, "-o", "a" + ending).stderr, "")
+            self.assertIn("and --space world", self.run_pliant("bake", near, "-o", "a.glb", "--space", "object").stderr)
+
     def test_threads_change_no_bit(self):
         scene = self.write("two.xml", SCENE.format(end=6).replace(
             "<point", '<surface name="other"><grid columns="17" rows="9" width="8" depth="8"/>'

@@ -22,21 +22,24 @@ using MakeWriter = Result<std::unique_ptr<AnimationWriter>> (*)(const AnimationP
 struct Format {
   std::string ending;
   bool is_sequence = false;
+  bool is_single = false;                           // it has positions in single precision
   MakeSurfaceWriter make_surface_writer = nullptr;  // for a format of one surface
   MakeWriter make_writer = nullptr;                 // for a format of all surfaces
   std::string beside = {};  // ending of a second file with the same name, if any
 };
 
+constexpr double most_precision_loss = 1e-4;  // of the size of a surface
+
 const std::vector<Format>& formats() {
   static const std::vector<Format> all = {
-      {".npy", false, &make_npy_writer, nullptr},
-      {".obj", true, &make_obj_writer, nullptr},
-      {".ply", true, &make_ply_writer, nullptr},
-      {".pc2", false, &make_pc2_writer, nullptr, ".obj"},
-      {".mdd", false, &make_mdd_writer, nullptr, ".obj"},
-      {".glb", false, nullptr, &make_gltf_writer},
-      {".gltf", false, nullptr, &make_gltf_writer},
-      {".usda", false, nullptr, &make_usda_writer},
+      {".npy", false, false, &make_npy_writer, nullptr},
+      {".obj", true, false, &make_obj_writer, nullptr},
+      {".ply", true, false, &make_ply_writer, nullptr},
+      {".pc2", false, true, &make_pc2_writer, nullptr, ".obj"},
+      {".mdd", false, true, &make_mdd_writer, nullptr, ".obj"},
+      {".glb", false, true, nullptr, &make_gltf_writer},
+      {".gltf", false, true, nullptr, &make_gltf_writer},
+      {".usda", false, true, nullptr, &make_usda_writer},
   };
   return all;
 }
@@ -125,6 +128,26 @@ Result<void> check_ending(const std::string& file) {
   return fail(ErrorCode::InvalidInput,
               fmt::format("{}: no format has the ending \"{}\"; allowed: {}", file, ending_of(file),
                           fmt::join(known_endings(), ", ")));
+}
+
+std::vector<PrecisionLoss> precision_losses(const AnimationPlan& plan) {
+  const Format* const format = find_format(plan.file);
+  PLIANT_EXPECTS(format);
+  std::vector<PrecisionLoss> losses;
+  for (std::size_t k = 0; format->is_single && k < plan.surfaces.size(); ++k) {
+    const Field& rest = plan.surfaces[k].rest;
+    const std::vector<int>& vertices = plan.surfaces[k].mesh->corner_vertices;
+    Vector3d low = rest.row(vertices.front()).transpose(), high = low;
+    for (const int vertex : vertices) {  // a vertex of no face is not seen
+      low = low.cwiseMin(rest.row(vertex).transpose());
+      high = high.cwiseMax(rest.row(vertex).transpose());
+    }
+    constexpr double rounding = 0x1p-24;  // of a number, half a unit in the last place at most
+    const double error = rounding * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+    const double size = (high - low).norm();
+    if (error > most_precision_loss * size) losses.push_back({k, error, size, (low + high) / 2});
+  }
+  return losses;
 }
 
 std::vector<std::string> files_of(const AnimationPlan& plan) {

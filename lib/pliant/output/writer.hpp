@@ -66,6 +66,17 @@ std::vector<std::string> known_endings();
 /// Whether the file's ending is that of a format. Errors: InvalidInput, listing the endings.
 Result<void> check_ending(const std::string& file);
 
+/// A surface whose vertices the single precision of a format moves by more than 1e-4 of its size.
+struct PrecisionLoss {
+  std::size_t surface = 0;  ///< of the plan
+  double error = 0;         ///< the farthest that a vertex at rest may be moved [length]
+  double size = 0;          ///< the diagonal of the box around the surface at rest [length]
+  Vector3d centre;          ///< of this box, in the space of the poses [length]
+};
+
+/// The surfaces of a plan that are so far from the origin. Requires: check_ending(plan.file).
+std::vector<PrecisionLoss> precision_losses(const AnimationPlan& plan);
+
 /// All files of the plan's writer whose names are known in advance, including those of a sequence.
 /// Requires: check_ending(plan.file).
 std::vector<std::string> files_of(const AnimationPlan& plan);
