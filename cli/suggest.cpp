@@ -59,18 +59,13 @@ const Channel<1>* find_number(const Scene& scene, const std::string& path) {
   return number ? *number : nullptr;
 }
 
-bool are_equal(const Channel<1>& a, const Channel<1>& b) {
-  if (a.is_animated() != b.is_animated()) return false;
-  return a.is_animated() ? a.curve().keys() == b.curve().keys() : a.at(0) == b.at(0);
-}
-
 // What makes the suggested values of those that differ.
 std::vector<Operation> operations_for(const Suggestion& suggestion, const Scene& scene) {
   std::vector<Operation> operations;
   for (const SuggestedValue& value : suggestion.values) {
     const Channel<1>* const wanted = find_number(suggestion.scene, value.path);
     const Channel<1>* const present = find_number(scene, value.path);
-    if (!wanted || (present && are_equal(*wanted, *present))) continue;
+    if (!wanted || (present && *wanted == *present)) continue;
     if (wanted->is_animated()) {
       operations.emplace_back(edit::SetCurve{value.path, wanted->curve().keys()});
     } else {

@@ -11,7 +11,7 @@
 namespace pliant::testing {
 namespace {
 
-void check_round_trip(const Scene& scene, const std::string& folder) {
+Scene check_round_trip(const Scene& scene, const std::string& folder) {
   const Result<std::string> text = to_xml(scene, folder);
   REQUIRE(text);
   CAPTURE(*text);
@@ -21,6 +21,7 @@ void check_round_trip(const Scene& scene, const std::string& folder) {
   REQUIRE(again);
   CHECK(SceneValues(*again).texts() == SceneValues(scene).texts());
   CHECK(to_xml(*again, folder).value() == *text);
+  return *again;
 }
 
 TEST_CASE("mesh files are named from the folder, wherever that is", "[scene][write]") {
@@ -38,7 +39,7 @@ TEST_CASE("mesh files are named from the folder, wherever that is", "[scene][wri
 }
 
 TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
-  check_round_trip(scene_of(rich_scene), "shots");
+  CHECK(check_round_trip(scene_of(rich_scene), "shots") == scene_of(rich_scene));
   for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(
@@ -47,7 +48,7 @@ TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
       CAPTURE(entry.path().string());
       const auto scene = load_scene(entry.path().string());
       REQUIRE(scene);
-      check_round_trip(*scene, entry.path().parent_path().string());
+      CHECK(check_round_trip(*scene, entry.path().parent_path().string()) == *scene);
       ++count;
     }
     CHECK(count > 3);

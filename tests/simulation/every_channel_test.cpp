@@ -138,6 +138,10 @@ TEST_CASE("every channel of every kind is read, listed, written, sampled and has
     const auto text = to_xml(animated);
     REQUIRE(text);
     const Scene again = scene_of(*text);
+    CHECK(one == constant(first));
+    CHECK(again == animated);
+    CHECK_FALSE(one == other);
+    CHECK_FALSE(one == animated);
     const std::vector<NamedChannel> listed_again = channels_of(again);
     REQUIRE(listed_again.size() == listed.size());
     for (std::size_t k = 0; k < listed.size(); ++k) {

@@ -4,6 +4,8 @@
 
 namespace pliant {
 
+bool are_equal(const Field& a, const Field& b) { return a.rows() == b.rows() && a == b; }
+
 LongestVector longest_vector(const Field& field) {
   LongestVector longest;
   const double square = field.rowwise().squaredNorm().maxCoeff(&longest.row);

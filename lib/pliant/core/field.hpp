@@ -10,6 +10,9 @@ using Eigen::Vector3d;
 /// One vector per node or vertex: #rows x 3, each component contiguous.
 using Field = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
+/// Whether two fields have the same rows, of whatever count.
+bool are_equal(const Field& a, const Field& b);
+
 /// The longest vector of a field.
 struct LongestVector {
   double length = 0;     ///< finite if the vector is, whatever its square is

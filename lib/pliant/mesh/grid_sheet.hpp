@@ -12,6 +12,8 @@ struct GridSheet {
   double width = 1;        ///< along x [length], > 0
   double depth = 1;        ///< along z [length], > 0
   bool triangles = false;  ///< split each quad in two
+
+  friend bool operator==(const GridSheet&, const GridSheet&) = default;
 };
 
 /// The sheet's mesh: vertex j*columns + i is node (i,j), faces are counter-clockwise seen from +y.

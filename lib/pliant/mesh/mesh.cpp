@@ -69,6 +69,16 @@ Result<void> check_attributes(const Mesh& mesh) {
 
 }  // namespace
 
+bool operator==(const Mesh& a, const Mesh& b) {
+  const auto& [positions, uvs, sizes, vertices, corner_uvs, normals, materials, groups, object,
+               attributes, first, numbers] = b;  // a new member has to be added here
+  return are_equal(a.positions, positions) && a.uvs == uvs && a.face_sizes == sizes &&
+         a.corner_vertices == vertices && a.corner_uvs == corner_uvs &&
+         a.corner_normals == normals && a.materials == materials && a.groups == groups &&
+         a.object == object && a.attributes == attributes && a.first_index == first &&
+         a.file_vertices == numbers;
+}
+
 Result<void> check_mesh(const Mesh& mesh) {
   if (mesh.face_sizes.empty()) return invalid("the mesh has no faces");
   if (!mesh.file_vertices.empty() &&

@@ -57,6 +57,8 @@ struct Mesh {
   }
 
   int vertex_count() const { return static_cast<int>(positions.rows()); }
+
+  friend bool operator==(const Mesh& a, const Mesh& b);
 };
 
 /// Whether a mesh made by a program fulfils the comments on its members. Errors, naming the face,

@@ -44,6 +44,8 @@ struct MeshReading {
   bool asks_for_surface() const {
     return uv == UvReading::Surface || unit || axis || border || weld;
   }
+
+  friend bool operator==(const MeshReading&, const MeshReading&) = default;
 };
 
 }  // namespace pliant

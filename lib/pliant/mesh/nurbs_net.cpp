@@ -122,6 +122,11 @@ tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
 
 }  // namespace
 
+bool operator==(const NurbsNet& a, const NurbsNet& b) {
+  const auto& [u, v, points, weights] = b;  // a new member has to be added here
+  return a.u == u && a.v == v && are_equal(a.points, points) && a.weights == weights;
+}
+
 std::vector<double> knots_of(const NurbsDirection& direction) {
   if (!direction.knots.empty()) return direction.knots;
   const int degree = direction.degree, spans = direction.count - degree;

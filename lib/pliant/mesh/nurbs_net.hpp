@@ -19,6 +19,8 @@ struct NurbsDirection {
   bool is_closed = false;           ///< the first control point follows the last one
   std::vector<double> knots = {};   ///< count + degree + 1, or none: see `knots_of`
   std::optional<int> samples = {};  ///< written vertices; none: see `samples_of`
+
+  friend bool operator==(const NurbsDirection&, const NurbsDirection&) = default;
 };
 
 /// A net of control points of a NURBS surface: of columns along u, and rows along v.
@@ -27,6 +29,8 @@ struct NurbsNet {
   NurbsDirection v;
   Field points = {};  ///< #columns*rows x 3: control point (i,j) is row j*columns + i
   std::vector<double> weights = {};  ///< one > 0 for each control point; none: all are 1
+
+  friend bool operator==(const NurbsNet& a, const NurbsNet& b);
 };
 
 /// Its own knots, or the default ones: 0 (degree + 1 times), 1, 2, ..., the last one degree + 1

@@ -26,6 +26,12 @@ Transform TransformChannels::at(double frame) const {
   return make_transform(vector(translate), vector(rotate), vector(scale), rotate_order);
 }
 
+bool operator==(const Scene& a, const Scene& b) {
+  const auto& [fps, start, end, seed, surfaces, forces, groups, origin, notes] = b;
+  return a.fps == fps && a.start == start && a.end == end && a.seed == seed &&
+         a.surfaces == surfaces && a.forces == forces && a.groups == groups;
+}
+
 std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
 }

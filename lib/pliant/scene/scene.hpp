@@ -34,6 +34,8 @@ struct MeshFile {
   /// Files that it refers to are read only from this folder and below; empty: the file's own
   /// folder.
   std::string root = {};
+
+  friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
 /// An animation of a surface's rest shape, in a file: .pc2, .mdd or .npy.
@@ -41,6 +43,8 @@ struct CacheFile {
   std::string path = {};             ///< as passed to open; empty: the shape stays as it is
   std::optional<double> first = {};  ///< the frame of its first sample; none: that of a .pc2
                                      ///< itself, else the scene's start
+
+  friend bool operator==(const CacheFile&, const CacheFile&) = default;
 };
 
 /// The source of a surface's rest shape; a `Mesh` is made by a program.
@@ -54,6 +58,8 @@ struct TransformChannels {
   RotateOrder rotate_order = RotateOrder::Xyz;
 
   Transform at(double frame) const;
+
+  friend bool operator==(const TransformChannels&, const TransformChannels&) = default;
 };
 
 /// The coefficients of the plate equation. SPEC 2; thesis 5.2.1.2.
@@ -71,6 +77,8 @@ struct MaterialChannels {
   Channel<1> hardening = 0.1;  ///< H >= 0, of a plate that yields
   /// nu: acts with a free border or edge, a map of b, c or d, or `yield`; then > -1 and < 1
   Channel<1> poisson = 0.3;
+
+  friend bool operator==(const MaterialChannels&, const MaterialChannels&) = default;
 };
 
 /// The channels of the material that a map may change.
@@ -89,6 +97,8 @@ struct MaterialMap {
   double high = 1;             ///< the factor where m is 1 [1]
   /// m at each node of a sheet or of a net (row by row), or at each vertex of a mesh.
   std::vector<double> values = {};
+
+  friend bool operator==(const MaterialMap&, const MaterialMap&) = default;
 };
 
 /// A boundary tangent: one number for all of x, y, z, 0 by default, or three numbers. [length/uv]
@@ -100,6 +110,8 @@ struct TangentChannels {
   TangentChannel su1 = {};  ///< d/du on the edge of largest u
   TangentChannel sv0 = {};  ///< d/dv on the edge of smallest v
   TangentChannel sv1 = {};  ///< d/dv on the edge of largest v
+
+  friend bool operator==(const TangentChannels&, const TangentChannels&) = default;
 };
 
 /// How a surface is solved.
@@ -118,6 +130,8 @@ struct SolverSettings {
   Edges edges = {};  ///< of a grid; others than clamped only with SolvedRegion::All
   Combine combine = Combine::Box;
   Release release = Release::Freeze;  ///< Recover only with tangents of 0
+
+  friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
 };
 
 /// One elastic surface, or one that is driven by another.
@@ -139,17 +153,23 @@ struct Surface {
 
   bool is_driven() const { return !driven_by.empty(); }
   bool is_animated() const { return !cache.path.empty(); }  ///< its shape at rest moves
+
+  friend bool operator==(const Surface&, const Surface&) = default;
 };
 
 /// The thesis's force: a sphere that pushes along one direction.
 struct PointChannels {
   PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
   Channel<3> direction = Value<3>{0, 1, 0};    ///< world; normalised
+
+  friend bool operator==(const PointChannels&, const PointChannels&) = default;
 };
 
 /// Pushes away from a centre; a negative magnitude attracts.
 struct RadialChannels {
   PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
+
+  friend bool operator==(const RadialChannels&, const RadialChannels&) = default;
 };
 
 /// Acts around a line segment, along `direction`, or away from the segment if that is null.
@@ -157,11 +177,15 @@ struct LineChannels {
   PositionChannel from = Value<3>{0, 0, 0};  ///< world [length]
   PositionChannel to = Value<3>{1, 0, 0};    ///< world [length]
   std::optional<Channel<3>> direction = {};
+
+  friend bool operator==(const LineChannels&, const LineChannels&) = default;
 };
 
 /// The same everywhere, like gravity.
 struct UniformChannels {
   Channel<3> direction = Value<3>{0, 1, 0};  ///< world; normalised
+
+  friend bool operator==(const UniformChannels&, const UniformChannels&) = default;
 };
 
 /// Turns about a line by the right-hand rule, and pulls towards it.
@@ -169,6 +193,8 @@ struct VortexChannels {
   PositionChannel center = Value<3>{0, 0, 0};  ///< a point of the line, world [length]
   Channel<3> axis = Value<3>{0, 1, 0};         ///< the line's direction, world; normalised
   Channel<1> pull = 0;                         ///< inward part, relative to a turning part of 1
+
+  friend bool operator==(const VortexChannels&, const VortexChannels&) = default;
 };
 
 /// Smooth noise in space and time, on a lattice with a corner at the centre.
@@ -177,10 +203,14 @@ struct NoiseChannels {
   Channel<1> frequency = 1;                    ///< [cells/length]; < 0: mirrored
   Channel<1> rate = 1;                         ///< [cells/s]; < 0: backwards; frame 0 is second 0
   std::optional<std::uint64_t> seed = {};      ///< absent: the scene's seed
+
+  friend bool operator==(const NoiseChannels&, const NoiseChannels&) = default;
 };
 
 /// The inertial force that the motion of a surface's transform causes; its magnitude is usually 1.
-struct InertiaChannels {};
+struct InertiaChannels {
+  friend bool operator==(const InertiaChannels&, const InertiaChannels&) = default;
+};
 
 /// The time at which a force is evaluated.
 struct ForceTime {
@@ -205,6 +235,11 @@ struct CustomForce {
   /// stored under this key beyond one simulation, so functions with other results must have another
   /// key. Empty: such states are not stored.
   std::string key = {};
+
+  /// The same key, which is not empty: functions cannot be compared.
+  friend bool operator==(const CustomForce& a, const CustomForce& b) {
+    return a.key == b.key && !a.key.empty();
+  }
 };
 
 /// One force of a scene.
@@ -223,6 +258,8 @@ struct Force {
   std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
                NoiseChannels, InertiaChannels, CustomForce>
       kind = {};  ///< by default `PointChannels`
+
+  friend bool operator==(const Force&, const Force&) = default;
 };
 
 /// `point`, `radial`, …: the name of its element in a scene file; `custom` has no element.
@@ -237,6 +274,8 @@ struct Group {
   std::vector<std::string> targets = {};       ///< names of surfaces; empty: all
   PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
   Channel<1> deformation_radius = 1;           ///< selects the region, world [length], >= 0
+
+  friend bool operator==(const Group&, const Group&) = default;
 };
 
 /// A part of a scene that its file contains.
@@ -325,6 +364,9 @@ struct Scene {
   std::vector<Group> groups;
   SceneOrigin origin = {};
   std::vector<SceneNote> notes = {};  ///< found while reading, in the order of lines
+
+  /// The same values, wherever they come from: `origin` and `notes` do not count.
+  friend bool operator==(const Scene& a, const Scene& b);
 };
 
 }  // namespace pliant

@@ -36,6 +36,8 @@ class Channel {
   /// What its curve is adjusted by; null: nothing, or it is constant.
   const Adjustments<D>* adjustments() const { return curve_ ? curve_->adjustments() : nullptr; }
 
+  friend bool operator==(const Channel&, const Channel&) = default;
+
  private:
   Value<D> constant_ = {};
   std::optional<Curve<D>> curve_;
@@ -55,6 +57,8 @@ class Switch {
   bool at(double frame) const { return channel_.at(frame)[0] != 0; }
   bool is_animated() const { return channel_.is_animated(); }
   const Channel<1>& channel() const { return channel_; }
+
+  friend bool operator==(const Switch&, const Switch&) = default;
 
  private:
   Channel<1> channel_;

@@ -142,6 +142,12 @@ const timeline::Extrapolated<D>& Curve<D>::compiled() const {
 }
 
 template <int D>
+bool Curve<D>::is_equal(const Curve& other) const {
+  return parts_ == other.parts_ ||
+         (keys() == other.keys() && parts_->adjustments == other.parts_->adjustments);
+}
+
+template <int D>
 const CurveKeys<D>& Curve<D>::keys() const {
   return parts_->keys;
 }

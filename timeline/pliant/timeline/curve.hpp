@@ -77,6 +77,9 @@ class Curve {
   /// frames: for drawing the curve as its author sees it.
   const std::vector<KeyHandle<D>>& handles() const;
 
+  /// The same keys and adjustments. Requires: neither is moved from.
+  friend bool operator==(const Curve& a, const Curve& b) { return a.is_equal(b); }
+
  private:
   friend class Sampler<D>;
 
@@ -85,6 +88,7 @@ class Curve {
   const timeline::Extrapolated<D>& compiled() const;
 
   explicit Curve(Parts parts);
+  bool is_equal(const Curve& other) const;
 
   std::shared_ptr<const Parts> parts_;  // of all copies; null once moved from
 };

@@ -45,6 +45,11 @@ class Path {
   const std::vector<Value<3>>& waypoints() const { return waypoints_; }
   bool is_closed() const { return is_closed_; }
 
+  /// The same waypoints, from which all else follows.
+  friend bool operator==(const Path& a, const Path& b) {
+    return a.waypoints_ == b.waypoints_ && a.is_closed_ == b.is_closed_;
+  }
+
  private:
   /// Half of a piece between two waypoints, counted from one of them: q in [0, 1/2].
   using Half = std::array<timeline::Cubic, 3>;

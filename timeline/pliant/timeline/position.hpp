@@ -12,6 +12,8 @@ namespace pliant {
 struct PathMotion {
   Path path;
   Channel<1> progress = 0;  ///< share of the length, 0 to 1
+
+  friend bool operator==(const PathMotion&, const PathMotion&) = default;
 };
 
 /// A position over time: a constant, a curve, or a motion along a path.
@@ -47,6 +49,8 @@ class PositionChannel {
   /// The constant or curve; null: a path.
   const Channel<3>* channel() const { return std::get_if<Channel<3>>(&way_); }
   Channel<3>* channel() { return std::get_if<Channel<3>>(&way_); }
+
+  friend bool operator==(const PositionChannel&, const PositionChannel&) = default;
 
  private:
   std::variant<Channel<3>, PathMotion> way_;
