@@ -23,6 +23,9 @@ EQUATIONS = pattern(r"(docs/[\w-]+\.md, |[Tt]hesis(?: [\d.]+,)? )?"
                     rf"\b[Ee]q\. ?({NUMBER}(?:(?:,|,? and| to) {NUMBER}(?!\w))*)( of docs/[\w-]+\.md)?")
 SPEC = pattern(r"\bSPEC (\d+(?:\.\d+)*(?:(?:, | and | to |-)\d+(?:\.\d+)*)*)(?:, \\?\"([^\"\\]+)\\?\")?")
 THESIS = pattern(r"\b[Tt]hesis(?:'s(?: \w+)?)?,? \(?(\d+(?:\.\d+)*)")
+# Names under which texts outside of the repository are known.
+ELSEWHERE = pattern(r"\b(?:(PHYSICS|MESHES|SWEEP|TIMELINE|SCENE_FORMAT)\b"
+                    r"|(CONTROL|CONTACT|EDITOR|PYTHON|BLENDER|CLI|ARCHITECTURE|PERFORMANCE)(?:\.md| \d|, \\?\"))")
 PAGE = pattern(r"docs/([\w-]+\.md)(?:,(?: section)? \\?\"([^\"\\]+)\\?\")?")
 
 
@@ -80,6 +83,8 @@ class Documents:
                 section = self.spec.get(numbers(found[1])[-1], "")
                 expect(found, " ".join(found[2].split()).lower() in section.lower(),
                        f"section {found[1]} of docs/spec.md does not mention \"{found[2]}\"")
+        for found in ELSEWHERE.finditer(text):
+            expect(found, False, f"{found[1] or found[2]} is no page of docs/")
         for found in THESIS.finditer(text):
             expect(found, found[1] in self.thesis, f"docs/thesis.md does not list section {found[1]} of the thesis")
         for found in PAGE.finditer(text):
@@ -88,6 +93,46 @@ class Documents:
                 title = " ".join(found[2].split())
                 expect(found, self.has_title(found[1], title), f"docs/{found[1]} has no title \"{title}\"")
         return faults
+
+
+LINK = pattern(r"\]\(([\w./-]*\.md)?(?:#([\w-]+))?\)")
+SECTION = pattern(r"\*([A-Z][^*\n]+)\* in (?:the )?\[[^\]]*\]\(([\w./-]+\.md)\)")
+
+
+def anchors_of(text):
+    """The anchors of a page's titles, as GitHub makes them."""
+    titles = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for title in titles}
+
+
+def broken_links(path, text, pages):
+    """Links of a page, and sections that it names in another, that are not there. `pages`: text by path."""
+    faults = []
+    for found in LINK.finditer(text):
+        page = os.path.normpath(os.path.join(os.path.dirname(path), found[1])) if found[1] else path
+        if page not in pages:
+            faults.append(f"{path}: there is no {page}")
+        elif found[2] and found[2] not in anchors_of(pages[page]):
+            faults.append(f"{path}: {page} has no section #{found[2]}")
+    for found in SECTION.finditer(text):
+        page = os.path.normpath(os.path.join(os.path.dirname(path), found[2]))
+        if " ".join(found[1].split()) not in re.findall(r"^#+ (.+)$", pages.get(page, ""), re.MULTILINE):
+            faults.append(f"{path}: {page} has no section \"{found[1]}\"")
+    return faults
+
+
+def check_links(documents):
+    pages = {os.path.join("docs", name): text for name, text in documents.pages.items()}
+    for name in ("README.md", "CHANGELOG.md"):
+        with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
+            pages[name] = file.read()
+    faults = [fault for path, text in pages.items() for fault in broken_links(path, text, pages)]
+    assert not faults, "\n".join(faults)
+    pages["docs/a.md"] = "# Some `thing`, twice\n"
+    for text in ("[x](a.md)", "[x](a.md#some-thing-twice)", "[x](../README.md)", "*Units* in the [README](../README.md)"):
+        assert broken_links("docs/b.md", text, pages) == [], text
+    for text in ("[x](c.md)", "[x](a.md#some)", "*Choosing numbers* in the\n[README](../README.md)"):
+        assert len(broken_links("docs/b.md", text, pages)) == 1, text
 
 
 def sources():
@@ -111,7 +156,7 @@ def check_the_check(documents):
     for text in ("// Eq. (99)", "// eq. (41) to (98)", "// docs/timeline.md,\n// eq. 14 to 99", "// eq. (6a)",
                  "// Eq. (0) of docs/model.md", "// docs/spec.md, eq. (1)", "// SPEC 12", "// SPEC 2 and\n/// 99",
                  "// SPEC 5.9", "// SPEC 7, \"Nothing\"", "// thesis 5.9.1", "// docs/nothing.md",
-                 "// docs/model.md, \"Nothing\""):
+                 "// docs/model.md, \"Nothing\"", "// PHYSICS 3.", "// as in MESHES", "// CONTROL\n// 5", "// CLI.md"):
         assert len(documents.faults("lib/a.cpp", text)) == 1, (text, documents.faults("lib/a.cpp", text))
     assert documents.faults("timeline/a.cpp", "// Eq. 6a") == []
     assert documents.faults("timeline/a.cpp", "\n\n// Eq. 26") == [
@@ -129,6 +174,7 @@ def main():
         faults += documents.faults(path, text)
     assert not faults, "\n".join(faults)
     check_the_check(documents)
+    check_links(documents)
     assert count > 150, count
     print(f"ok {count} references")
 

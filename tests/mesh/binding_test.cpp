@@ -95,7 +95,7 @@ TEST_CASE("a point on a node moves as the node, others by the formula", "[mesh][
   });
   CHECK(largest(Binding(driver, {}, driver.rest).displacements(w) - w) < 1e-15);
 
-  // By the formula of MESHES 10, triangle by triangle.
+  // By the formula of SPEC 8, "Proxies", triangle by triangle.
   const int count = driver.node_count();
   std::vector<Matrix3d> sums(static_cast<std::size_t>(count), Matrix3d::Zero());
   std::vector<double> areas(static_cast<std::size_t>(count), 0);

@@ -100,7 +100,7 @@ def still_difference(binary, path, name, reference, folder):
 
 
 def pieces_difference(told, name, reference):
-    """A message unless --regions tells the numbers of the pieces (MESHES 5) of each frame."""
+    """A message unless --regions tells the numbers of the pieces (docs/regions.md) of each frame."""
     for frame in told["frames"]:
         surface = next(s for s in frame["surfaces"] if s["name"] == name)
         pieces = sorted((piece["insideNodes"], piece["heldNodes"], piece["cells"])

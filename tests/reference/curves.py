@@ -1,4 +1,4 @@
-"""Keyed channels, evaluated literally and slowly (TIMELINE; SCENE_FORMAT, "Keys").
+"""Keyed channels, evaluated literally and slowly (docs/timeline.md; docs/scene-format.md, "Animation").
 
 Covered: step, stepNext, linear and bezier segments; auto, spline, flat, linear, plateau and numeric
 tangents with lengths; hold, linear, linearOuter, slope, repeat, repeatOffset and mirror outside the
@@ -88,7 +88,7 @@ def parameter_at(x, target):
 
 
 class Segment:
-    """The curve between two keys (TIMELINE, "Segments")."""
+    """The curve between two keys (docs/timeline.md, "Segments")."""
 
     def __init__(self, left, right, slope_out, slope_in):
         self.left, self.right = left, right
@@ -154,7 +154,7 @@ class Curve:
         return (right.value - left.value) / (right.time - left.time)
 
     def _is_periodic(self, component):
-        """Whether both ends take their secants across the seam (TIMELINE, "Periodic")."""
+        """Whether both ends take their secants across the seam (docs/timeline.md)."""
         kinds = (self.before[0], self.after[0])
         closes = self.first.value[component] == self.last.value[component]
         return "repeatOffset" in kinds or ("repeat" in kinds and closes)
@@ -182,7 +182,7 @@ class Curve:
         return slopes
 
     def _kind_slope(self, kind, side, k, s_p, s_n, before, after):
-        """TIMELINE, "Tangents", for one component; a missing neighbour is None."""
+        """docs/timeline.md, "Tangents", for one component; a missing neighbour is None."""
         if kind == "flat":
             return 0.0
         if kind == "linear":
@@ -227,7 +227,7 @@ class Curve:
         raise AssertionError("time outside the keys")
 
     def _outside(self, time, kind, argument, is_after):
-        """TIMELINE, "Outside the keys"; `argument` is a slope, or the number of copies or None."""
+        """docs/timeline.md, "Outside the keys"; `argument` is a slope, or the number of copies or None."""
         end = self.last if is_after else self.first
         distance = time - self.last.time if is_after else self.first.time - time
         direction = 1 if is_after else -1

@@ -1,4 +1,4 @@
-"""Random meshes of every kind that MESHES 1 and 2 name, as the text of an OBJ file."""
+"""Random meshes of every kind that SPEC 8 names, as the text of an OBJ file."""
 
 import collections
 import math

@@ -17,7 +17,7 @@ from scene import Scene
 
 
 def output_path(path, scene, name):
-    """OUT.npy, or OUT-NAME.npy when the scene has several surfaces (CLI, "Formats")."""
+    """OUT.npy, or OUT-NAME.npy when the scene has several surfaces (docs/command.md)."""
     if len(scene.surfaces) == 1:
         return path
     return f"{path[:-len('.npy')]}-{name}.npy"

@@ -1,4 +1,4 @@
-"""Reads scene files and meshes, trusting them (SCENE_FORMAT; SPEC 1).
+"""Reads scene files and meshes, trusting them (docs/scene-format.md; SPEC 1).
 
 Supports only features of the reference engine; anything else fails an assertion.
 """
@@ -171,7 +171,7 @@ def read_obj(path):
 
 
 def read_surface(element, folder):
-    """A <mesh> that is read as a surface of triangles (MESHES 1)."""
+    """A <mesh> that is read as a surface of triangles (SPEC 1)."""
     assert set(element.keys()) <= {"file", "uv", "unit", "axis", "border", "weld"}
     read = {name: numbers(element.get(name)) for name in ("unit", "axis", "weld")
             if name in element.keys()}

@@ -198,7 +198,7 @@ def curve(*keys, before=("hold", None), after=("hold", None)):
 
 
 class Curves(unittest.TestCase):
-    """Identities of TIMELINE."""
+    """Identities of docs/timeline.md."""
 
     def test_numeric_slopes_reproduce_a_cubic(self):
         def f(t):
@@ -288,7 +288,7 @@ def square_mesh(count, rng, **attributes):
 
 
 class Triangles(unittest.TestCase):
-    """MESHES 1 to 5 and 13."""
+    """SPEC 8."""
 
     def test_bending_is_exact_for_quadratics(self):
         rng = np.random.default_rng(3)

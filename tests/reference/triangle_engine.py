@@ -1,4 +1,4 @@
-"""Surfaces of triangles: MESHES 3 to 5, evaluated literally and slowly.
+"""Surfaces of triangles: SPEC 8, evaluated literally and slowly.
 
 Nothing is shared with the library under test.
 """
@@ -54,7 +54,7 @@ class TriangleRun:
         return pushing, selecting
 
     def region(self, frame, selecting, transform):
-        """MESHES 3, and 5 for `recover`."""
+        """SPEC 8, "Region", and "Release" for `recover`."""
         mesh = self.mesh
         if self.surface.is_whole:
             if "all" not in self.regions:

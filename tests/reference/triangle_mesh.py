@@ -1,4 +1,4 @@
-"""Meshes that are read as surfaces of triangles (MESHES 1 and 2)."""
+"""Meshes that are read as surfaces of triangles (SPEC 8)."""
 
 import collections
 import math
@@ -163,7 +163,7 @@ def area_of(places):
 
 
 def lay_out(corners, uvs, axis):
-    """Places of a triangle's corners along u and v (MESHES 1), 3 x 2."""
+    """Places of a triangle's corners along u and v (SPEC 8, "Units and directions"), 3 x 2."""
     lengths = [float(np.linalg.norm(corners[(k + 1) % 3] - corners[k])) for k in range(3)]
     longest = max(lengths)
     missing = FLAT * longest - (sum(lengths) - 2 * longest)

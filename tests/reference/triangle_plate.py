@@ -1,4 +1,4 @@
-"""The plate on triangles (MESHES 4), with the slopes and the centres as unknowns, and its steps."""
+"""The plate on triangles (SPEC 8, "Plate"), with the slopes and the centres as unknowns, and its steps."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The region on triangles: cut, not picked (MESHES 3), and its shares of area (MESHES 5)."""
+"""The region on triangles: cut, not picked (SPEC 8, "Region"), and its shares of area (SPEC 8, "Mass and load")."""
 
 import collections
 
@@ -130,7 +130,7 @@ class Region:
                 sum(piece_of[number[cell[0]]] == piece for cell in self.cells)))
 
     def held_displacement(self, name, w):
-        """MESHES 4: the displacement of a held corner."""
+        """SPEC 8, "Plate": the displacement of a held corner."""
         if isinstance(name, tuple):
             return self.held_displacement(name[1], w)
         if name < len(self.mesh.rest):
@@ -140,7 +140,7 @@ class Region:
         return w[outside].mean(axis=0)
 
     def values_at(self, name, values):
-        """A function on the mesh's points, carried on to the corners of cells (MESHES 5)."""
+        """A function on the mesh's points, carried on to the corners of cells (SPEC 8, "Mass and load")."""
         if not isinstance(name, tuple):
             return values[name]
         if name[0] == "part":
@@ -149,7 +149,7 @@ class Region:
         return (1 - share) * values[name[0]] + share * values[name[1]]
 
     def shared_out(self, integrals):
-        """Sums of the cells' integrals (of 3 hats each) at the nodes that move (MESHES 5)."""
+        """Sums of the cells' integrals (of 3 hats each) at the nodes that move (SPEC 8, "Mass and load")."""
         total = collections.defaultdict(float)
         for cell, parts in zip(self.cells, integrals):
             for name, part in zip(cell, parts):
@@ -167,7 +167,7 @@ class Region:
         return self.shared_out(self.areas[:, None] * THIRD)
 
     def load_areas(self, reach):
-        """mu of MESHES 5; `reach` is forceRadius - delta at the mesh's points."""
+        """mu of SPEC 8, "Mass and load"; `reach` is forceRadius - delta at the mesh's points."""
         integrals = [area * hat_integrals([self.values_at(name, reach) for name in cell])
                      for area, cell in zip(self.areas, self.cells)]
         return self.shared_out(integrals)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates random, well-posed scenes of surfaces of triangles that exercise MESHES 1 to 5.
+"""Generates random, well-posed scenes of surfaces of triangles that exercise SPEC 8.
 
     python3 triangles_scenes.py --seed N --count K -o DIR
 

@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// A change of one attribute of a scene, as if its file said so. SWEEP.
+/// A change of one attribute of a scene, as if its file said so. docs/sweeps.md.
 struct SceneChange {
   enum class Kind {
     Set,    ///< `PATH=TEXT`: takes the place of the attribute, of its <animate> or its <path>

@@ -237,7 +237,8 @@ class ChannelChecker {
     }
   }
 
-  // A static surface that is solved as a whole needs edges that hold it: PHYSICS 3.
+  // A static surface that is solved as a whole needs edges that hold it: SPEC 9, "Whole-body
+  // motion".
   void check_is_held(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
     if (solver.region != SolvedRegion::All || solver.edges.hold()) return;

@@ -82,7 +82,8 @@ TakesAtOnce takes_at_once(std::size_t takes, int threads, std::size_t max_memory
 std::size_t memory_of_takes(std::size_t count, std::size_t each);
 
 /// A scene that is run many times, each take with other values. Immutable: several threads may use
-/// one. The bits of a take are those of a simulation of the scene edited so by hand. SWEEP.
+/// one. The bits of a take are those of a simulation of the scene edited so by hand.
+/// docs/sweeps.md.
 class Sweep {
  public:
   /// Checks each value that a take gives to a path, ahead of all runs; what only a combination of

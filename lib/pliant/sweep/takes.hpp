@@ -17,7 +17,7 @@ namespace pliant {
 /// each of a million takes.
 inline constexpr std::size_t most_take_texts = 100'000'000;
 
-/// What varies in a sweep, as typed. SWEEP.
+/// What varies in a sweep, as typed. docs/sweeps.md.
 struct SweepVariation {
   std::size_t scene_count = 1;         ///< the first axis if there are several
   std::vector<std::string> set = {};   ///< `--set`: in every take

@@ -60,7 +60,7 @@ Result<AxisValues> integers(std::int64_t first, std::int64_t last) {
   return values;
 }
 
-// SWEEP: from left to right, in double.
+// docs/sweeps.md: from left to right, in double.
 Result<AxisValues> evenly(double a, double b, std::size_t count) {
   AxisValues values;
   for (std::size_t k = 0; k < count; ++k) {
