@@ -1,11 +1,14 @@
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "counted.hpp"
 #include "frame_range.hpp"
@@ -81,13 +84,27 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
     auto table = read_file(*options.takes, largest_table, &was_interrupted);
     if (!table) return fail(table.error());
     request.variation.table = *std::move(table);
+    request.variation.table_name = *options.takes;
   }
   return request;
 }
 
-int print_plan(const SweepRequest& request) {
+// Tells the columns of --takes that say nothing about a scene.
+void note_columns(const Takes& takes, const SweepRunOptions& options) {
+  constexpr std::size_t most_told = 12;
+  const std::span<const std::string> names = takes.columns_left_out();
+  if (names.empty()) return;
+  print(stderr,
+        fmt::format("{}: note: {} left out, whose heads are not of the form NAME.ATTRIBUTE: {}{}\n",
+                    printable(*options.takes), counted(names.size(), "column"),
+                    fmt::join(names.first(std::min(names.size(), most_told)), ", "),
+                    names.size() > most_told ? ", …" : ""));
+}
+
+int print_plan(const SweepRequest& request, const SweepRunOptions& options) {
   const auto sweep = SweepFolder::plan(request, &was_interrupted);
   if (!sweep) return report(sweep.error());
+  note_columns(sweep->takes(), options);
   const auto written =
       write_table(*sweep, request.scenes, {}, [](std::string_view text) -> Result<void> {
         print_bytes(stdout, text);
@@ -265,11 +282,12 @@ int run_sweep_run(const CLI::App& run, const SweepRunOptions& options) {
   }
   if (options.is_dry && options.out) {
     const auto request = request_of(options);
-    return request ? print_plan(*request) : report(request.error());
+    return request ? print_plan(*request, options) : report(request.error());
   }
   if (const auto ready = check_engine(run, options); !ready) return report(ready.error());
   const auto folder = sweep_of(run, options);
   if (!folder) return report(folder.error());
+  note_columns(folder->sweep().takes(), options);
   if (options.slurm.engine) return submit_takes(*folder, options);
   if (!options.makes_only) return run_takes(*folder, options, *part);
   if (!options.is_quiet)

@@ -99,7 +99,7 @@ class SweepSafety(SweepCommand):
                 ([scene, b"--vary", b"poke.targets=\xe9"], folder, r"--vary poke.targets=\xe9: is not UTF-8"),
                 ([scene, *vary, b"--set", b"poke.targets=\xe9"], folder, r"--set poke.targets=\xe9: is not UTF-8"),
                 ([scene, *vary, b"--root", b"f\xe9"], folder, r"f\xe9: is not UTF-8"),
-                ([scene, b"--takes", self.path("table.csv").encode()], folder, "--takes: the table is not UTF-8"),
+                ([scene, b"--takes", self.path("table.csv").encode()], folder, ": the table is not UTF-8"),
                 ([b"scene.xml", *vary], os.path.join(folder, b"f\xe9"), "is not UTF-8")):
             with self.subTest(part=part):
                 done = subprocess.run([PLIANT.encode(), b"sweep", b"run", *arguments, b"-o",

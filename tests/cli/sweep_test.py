@@ -94,6 +94,18 @@ class Sweeps(SweepCommand):
         self.assertTrue(text.startswith("take,status,sheet.density,poke.magnitude*,poke.center,peak,"), text)
         self.assertIn("\n1,done,7,0.5,1 0 0,", text)
 
+    def test_the_table_of_a_sweep_and_those_of_spreadsheets_are_taken(self):
+        self.make("s")
+        self.assertIn(f"{self.path('s/takes.csv')}: note: 11 columns left out, whose heads are not of the form "
+                      "NAME.ATTRIBUTE: take, status, peak, peakFrame, final, rms, speed, energy, settle, hash, error\n",
+                      self.make("again", vary=("--takes", self.path("s/takes.csv"))).stderr)
+        self.assertEqual(self.table("again"), self.table("s"))
+        text = self.table("s").decode()
+        for name, separator in (("semicolons", ";"), ("tabulators", "\t")):
+            other = self.write(name + ".csv", text.replace(",", separator))
+            self.make(name, vary=("--takes", other))
+            self.assertEqual(self.table(name), self.table("s"))
+
     def test_several_scenes_are_the_first_axis(self):
         one, two = self.write("one.xml", edited()), self.write("two.xml", edited(density=9))
         self.sweep("run", one, two, "-o", self.path("s"), "--set", "poke.magnitude=500", "--vary", "sheet.c=1,2")
@@ -166,7 +178,7 @@ class Sweeps(SweepCommand):
         table = self.write("t.csv", "sheet.density,sheet.b\n" + "1,2\n" * 50 + '"3",-1\n' + "1,-1\n")
         scene = self.write("scene.xml", edited())
         errors = self.sweep("run", scene, "-o", self.path("s"), "--takes", table, code=2).stderr
-        self.assertIn("--takes, line 52: sheet.b=-1: \"-1\": must be greater than 0", errors)
+        self.assertIn(f"--takes {table}, line 52: sheet.b=-1: \"-1\": must be greater than 0", errors)
         self.assertEqual(self.files(), ["scene.xml", "t.csv"])
 
     def test_a_gltf_without_its_numbers_is_run_again(self):

@@ -49,6 +49,14 @@ TEST_CASE("tables of other programs are read", "[sweep][csv]") {
                   "a,b\r\n1,\r\n\r\n,2") == Rows{{"a", "b"}, {"1", ""}, {"", "2"}});
   CHECK(fields_of("\"1 \"\"2\"\"\",\"\"\n") == Rows{{"1 \"2\"", ""}});
   CHECK(fields_of("").empty());
+  // The first row tells the separator.
+  CHECK(fields_of("\n\r\na;b\n1,5;\"2;3\"\n") == Rows{{"a", "b"}, {"1,5", "2;3"}});
+  CHECK(fields_of("a\tb;c\n1\t2,3\n") == Rows{{"a", "b;c"}, {"1", "2,3"}});
+  CHECK(fields_of("a;b,c\n1;2,3\n") == Rows{{"a;b", "c"}, {"1;2", "3"}});
+  CHECK(fields_of("sep=;\r\na;b,c\n1;2\n") == Rows{{"a", "b,c"}, {"1", "2"}});
+  CHECK(parse_csv("sep=,\na,b\n\"1", 3).error().line == 3);
+  CHECK(fields_of("sep=").size() == 1);
+  CHECK(fields_of("\"a;b\"\n1;2\n") == Rows{{"a;b"}, {"1;2"}});
   CHECK(parse_csv("a\n\"b\nc\"\nd", 3).value()[2].line == 4);
 }
 

@@ -70,6 +70,24 @@ TEST_CASE("a table has a take in each row", "[sweep][takes]") {
   CHECK(takes.changes(1)[2].typed() == "b.y*=3");
 }
 
+TEST_CASE("rows of several scenes are not run on one another's scene", "[sweep][takes]") {
+  const std::string both = "scene,a.x\none.xml,1\ntwo.xml,2\n",
+                    one = "scene,a.x\none.xml,1\none.xml,2\n";
+  for (const std::size_t count : {1, 2})
+    CHECK_THAT(takes_complaint({.scene_count = count, .table = both}),
+               contains_text("line 1: its rows are of several scenes"));
+  CHECK_THAT(takes_complaint({.scene_count = 2, .table = one}), contains_text("several scenes"));
+  CHECK(Takes::make({.table = one})->count() == 2);
+}
+
+TEST_CASE("blanks round heads and a separator behind the last one are no matter",
+          "[sweep][takes]") {
+  const Takes takes = Takes::make({.table = " a.x ;b.y* ; take;\n1;2;0;\n3;4;1;\n"}).value();
+  CHECK(takes.changes(1)[0].typed() == "a.x=3");
+  CHECK(takes.changes(1)[1].typed() == "b.y*=4");
+  CHECK(takes.columns_left_out() == std::vector<std::string>{"take"});
+}
+
 TEST_CASE("takes come back from their parts", "[sweep][takes]") {
   const Takes takes = Takes::make({.vary = {"a.x=1,2", "b.y=0:10"}, .samples = 5}).value();
   const Takes again = Takes::of(takes.parts()).value();
@@ -102,6 +120,13 @@ TEST_CASE("what cannot vary is told with the option", "[sweep][takes]") {
   CHECK_THAT(takes_complaint({.table = "b.y\n"}), contains_text("a row a take"));
   CHECK_THAT(takes_complaint({.table = "b.y,c.z\n1,2\n3\n"}), StartsWith("--takes, line 3: has 1"));
   CHECK_THAT(takes_complaint({.table = "b.y,\n1,2\n"}), contains_text("a path is missing"));
+  CHECK_THAT(takes_complaint({.table = "take,peak\n1,2\n"}),
+             StartsWith("--takes, line 1: no column is headed by a path"));
+  // Each message names the file.
+  for (const char* table :
+       {"b.y\n", "b.y,c.z\n1\n", "b.y,\n1,2\n", "b\n1\n", "b.y,b.y\n1,2\n", "\"b"})
+    CHECK_THAT(takes_complaint({.table = table, .table_name = "my.csv"}),
+               StartsWith("--takes my.csv"));
   CHECK_THAT(takes_complaint({.vary = {"a.x=1..1000", "b.y=1..1001"}}),
              StartsWith("1001000 takes are too many"));
   std::vector<std::string> many;

@@ -18,14 +18,39 @@ std::string csv_field(std::string_view text) {
   return field + '"';
 }
 
+namespace {
+
+// A comma, unless the first row with any character has a semicolon or a tabulator, and no comma.
+char separator_of(std::string_view text) {
+  bool is_quoted = false, is_empty = true;
+  char found = 0;
+  for (const char c : text) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (is_quoted) continue;
+    if (c == '\n' && !is_empty) break;
+    if (c == ',') return ',';
+    if ((c == ';' || c == '\t') && found == 0) found = c;
+    is_empty = is_empty && (c == '\n' || c == '\r');
+  }
+  return found == 0 ? ',' : found;
+}
+
+}  // namespace
+
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows,
                                       const StopRequest& should_stop) {
   constexpr std::size_t bytes_between_stops = std::size_t{1} << 18U;
   std::size_t next_stop = 0;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  char separator = separator_of(text);
+  int line = 1;
+  if (constexpr std::string_view told = "sep="; text.starts_with(told) && text.size() > 5) {
+    separator = text[told.size()];  // a spreadsheet says it in a line of its own
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    ++line;
+  }
   std::vector<CsvRow> rows;
   std::size_t count = 0;
-  int line = 1;
   CsvRow row{.line = line};
   std::string field;
   bool is_empty = true;  // the row
@@ -56,12 +81,16 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_ro
           break;
         }
       }
-      if (at < text.size() && text[at] != ',' && text[at] != '\n' && text[at] != '\r')
-        return invalid("a comma is missing behind a closing quote", line);
+      if (at < text.size() && text[at] != separator && text[at] != '\n' && text[at] != '\r')
+        return invalid(
+            fmt::format("a {} is missing behind a closing quote", separator == ','   ? "comma"
+                                                                  : separator == ';' ? "semicolon"
+                                                                                     : "tabulator"),
+            line);
       continue;
     }
     ++at;
-    if (c == ',') {
+    if (c == separator) {
       is_empty = false;
       row.fields.push_back(std::exchange(field, {}));
       if (row.fields.size() >= most_csv_fields)

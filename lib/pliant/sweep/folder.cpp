@@ -62,7 +62,9 @@ Result<void> check_is_utf8(const SweepRequest& request) {
       if (auto is = check_is_utf8(what, text); !is) return is;
   }
   if (variation.table && !is_utf8(*variation.table))
-    return fail(ErrorCode::InvalidInput, "--takes: the table is not UTF-8; save it as UTF-8");
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("--takes {}: the table is not UTF-8; save it as UTF-8",
+                            printable(variation.table_name)));
   return check_is_utf8("--root", request.root);
 }
 

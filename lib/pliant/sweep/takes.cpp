@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/sweep/csv.hpp"
 #include "pliant/sweep/sobol.hpp"
 #include "pliant/sweep/stops.hpp"
@@ -27,6 +28,17 @@ Result<void> check_text_count(std::size_t count) {
 }
 
 std::string vary_option(const std::string& typed) { return "--vary " + printable(typed); }
+
+// Whether all rows below the header have one value in a column.
+bool is_the_same(const std::vector<CsvRow>& rows, std::size_t column) {
+  const std::string* first = nullptr;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    if (rows[k].fields.size() <= column) continue;
+    if (!first) first = &rows[k].fields[column];
+    if (rows[k].fields[column] != *first) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -51,8 +63,7 @@ Result<Takes> Takes::make(const SweepVariation& variation, const StopRequest& sh
   if (variation.table) {
     if (!variation.vary.empty() || variation.samples)
       return refuse("--takes: the table says what varies, so it excludes --vary and --sample");
-    if (auto read = takes.read_table(*variation.table, should_stop); !read)
-      return fail(read.error());
+    if (auto read = takes.read_table(variation, should_stop); !read) return fail(read.error());
   } else if (auto read = takes.read_axes(variation, should_stop); !read) {
     return fail(read.error());
   }
@@ -148,19 +159,38 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
   return {};
 }
 
-Result<void> Takes::read_table(std::string_view text, const StopRequest& should_stop) {
-  auto rows = parse_csv(text, most_takes + 1, should_stop);  // and the header
-  const auto at_line = [](int line, const std::string& message) {
-    return refuse(fmt::format("--takes, line {}: {}", line, message));
+Result<void> Takes::read_table(const SweepVariation& variation, const StopRequest& should_stop) {
+  auto rows = parse_csv(*variation.table, most_takes + 1, should_stop);  // and the header
+  table_title_ =
+      variation.table_name.empty() ? "--takes" : "--takes " + printable(variation.table_name);
+  const auto at_line = [&](int line, const std::string& message) {
+    return refuse(fmt::format("{}, line {}: {}", table_title_, line, message));
   };
   if (!rows && rows.error().code == ErrorCode::Interrupted) return fail(rows.error());
   if (!rows) return at_line(rows.error().line, rows.error().message);
   if (rows->size() < 2)
-    return refuse("--takes: the table needs a header of paths, and a row a take");
+    return refuse(table_title_ + ": the table needs a header of paths, and a row a take");
   const CsvRow& header = rows->front();
   TakeAxis axis;
-  for (const std::string& field : header.fields) {
+  std::vector<std::size_t> columns;
+  for (std::size_t column = 0; column < header.fields.size(); ++column) {
     if (is_stopped(should_stop)) return interrupted();
+    const std::string field(trim(header.fields[column], ascii_blanks));
+    const bool is_empty = field.empty() && std::ranges::all_of(*rows, [&](const CsvRow& row) {
+                            return row.fields.size() <= column || row.fields[column].empty();
+                          });
+    if (is_empty) continue;  // some programs end each row by a separator
+    if (field == "scene" && (parts_.scene_count > 1 || !is_the_same(*rows, column))) {
+      return at_line(
+          header.line,
+          "its rows are of several scenes; make a table of the rows of each scene, and run "
+          "each scene by itself");
+    }
+    if (!field.empty() && field.find('.') == std::string::npos) {
+      columns_left_out_.push_back(field);
+      continue;
+    }
+    columns.push_back(column);
     SceneChange change{.path = field};
     if (!field.empty() && (field.back() == '*' || field.back() == '+')) {
       change.kind = field.back() == '*' ? SceneChange::Kind::Times : SceneChange::Kind::Plus;
@@ -168,20 +198,22 @@ Result<void> Takes::read_table(std::string_view text, const StopRequest& should_
     }
     if (change.path.empty()) return at_line(header.line, "a path is missing in the header");
     axis.paths.push_back(parts_.paths.size());
-    if (auto added = add_path(fmt::format("--takes, line {}: {}", header.line, field), change);
+    if (auto added =
+            add_path(fmt::format("{}, line {}: {}", table_title_, header.line, field), change);
         !added)
       return added;
   }
+  if (columns.empty()) return at_line(header.line, "no column is headed by a path NAME.ATTRIBUTE");
   axis.count = rows->size() - 1;
-  if (auto few = check_text_count(axis.count * header.fields.size()); !few) return few;
+  if (auto few = check_text_count(axis.count * columns.size()); !few) return few;
   for (std::size_t k = 1; k < rows->size(); ++k) {
     if (is_stopped(should_stop, k)) return interrupted();
     CsvRow& row = (*rows)[k];
     row_lines_.push_back(row.line);
     if (row.fields.size() != header.fields.size())
-      return at_line(row.line, fmt::format("has {} values, but the header has {} paths",
+      return at_line(row.line, fmt::format("has {} values, but the header has {} columns",
                                            row.fields.size(), header.fields.size()));
-    for (const std::string& field : row.fields) axis.texts.push_back(field);
+    for (const std::size_t column : columns) axis.texts.push_back(row.fields[column]);
     row.fields = {};
   }
   parts_.axes.push_back(std::move(axis));
@@ -207,7 +239,7 @@ std::string Takes::place_of(std::size_t path, std::string_view text) const {
       std::find(axis.paths.begin(), axis.paths.end(), path) - axis.paths.begin());
   std::size_t row = 0;
   while (row + 1 < axis.count && axis.texts[row * axis.paths.size() + column] != text) ++row;
-  return fmt::format("--takes, line {}", row_lines_[row]);
+  return fmt::format("{}, line {}", table_title_, row_lines_[row]);
 }
 
 std::size_t Takes::row_of(std::size_t axis, std::size_t take) const {

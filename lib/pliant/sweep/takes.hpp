@@ -24,6 +24,7 @@ struct SweepVariation {
   std::vector<std::string> vary = {};  ///< `--vary PATH=VALUES`, `PATH*=VALUES`, `PATH+=VALUES`
   std::optional<std::size_t> samples = {};  ///< `--sample`: points for all intervals together
   std::optional<std::string> table = {};    ///< `--takes`: the text of a CSV, in place of `vary`
+  std::string table_name = {};              ///< its file, for messages
 };
 
 /// A value that differs from take to take.
@@ -72,6 +73,9 @@ class Takes {
   const std::vector<SceneChange>& set() const { return parts_.set; }
   const std::vector<VariedPath>& paths() const { return parts_.paths; }
 
+  /// The columns of a table that are no paths, such as the measures of an earlier sweep.
+  const std::vector<std::string>& columns_left_out() const { return columns_left_out_; }
+
   /// The text of each path in a take.
   std::vector<std::string_view> texts(std::size_t take) const;
 
@@ -88,7 +92,7 @@ class Takes {
 
  private:
   Result<void> read_axes(const SweepVariation& variation, const StopRequest& should_stop);
-  Result<void> read_table(std::string_view text, const StopRequest& should_stop);
+  Result<void> read_table(const SweepVariation& variation, const StopRequest& should_stop);
   Result<void> add_path(const std::string& option, const SceneChange& change);
   Result<void> count_takes();
   std::size_t row_of(std::size_t axis, std::size_t take) const;
@@ -96,6 +100,8 @@ class Takes {
   TakeParts parts_;
   std::size_t count_ = 0;
   std::vector<int> row_lines_;  // of a table
+  std::string table_title_;     // `--takes FILE`
+  std::vector<std::string> columns_left_out_;
 };
 
 }  // namespace pliant
