@@ -73,6 +73,29 @@ TEST_CASE("artists' words lead to attributes that the format has", "[scene][arti
   }
 }
 
+TEST_CASE("artists' words for elements lead to elements that the format has",
+          "[scene][artist_words]") {
+  const std::vector<ElementFormat> formats = scene_format();
+  for (const xml::ElementWords& row : xml::element_words()) {
+    CAPTURE(row.words, row.meant);
+    for (std::size_t at = row.meant.find('<'); at != std::string_view::npos;
+         at = row.meant.find('<', at + 1)) {
+      const std::string_view name = row.meant.substr(at + 1);
+      CHECK(element_named(formats, name.substr(0, name.find_first_of(" >"))));
+    }
+    for (const std::string_view word : xml::words_of(row.words)) {
+      CAPTURE(word);
+      CHECK_FALSE(element_named(formats, word));  // it would not be asked for
+      CHECK(xml::meant_by_element(word) == row.meant);
+      CHECK_THAT(
+          problems_of(scene_with(fmt::format("<{}/>", word))).at(0),
+          contains_text(fmt::format("has no element \"{}\"; use {}; allowed: ", word, row.meant)));
+    }
+  }
+  CHECK(xml::meant_by_element("Force_Group") == xml::meant_by_element("forcegroup"));
+  CHECK(xml::meant_by_element("sheets").empty());
+}
+
 TEST_CASE("a message knows what an artist means", "[scene][artist_words]") {
   struct Row {
     std::string text, hint;

@@ -22,7 +22,7 @@ TEST_CASE("a word that the format does not know is told with the nearest and all
        2,
        {"<scene> has no element \"rdial\"; did you mean \"radial\"? allowed: surface, point, "
         "radial, line"}},
-      {scene_with("<sphere/>"), 2, {"<scene> has no element \"sphere\"; allowed: surface, point"}},
+      {scene_with("<potato/>"), 2, {"<scene> has no element \"potato\"; allowed: surface, point"}},
       {surface_with("<grid2/>"), 3, {"<surface> has no element \"grid2\"", "allowed: grid, mesh"}},
       {surface_with("<solver><key/></solver>"),
        3,

@@ -96,6 +96,16 @@ TEST_CASE("a vector is as many numbers as asked for, between XML blanks", "[scen
   CHECK(parse_numbers("1 2", vector).error() ==
         "three numbers are required, not 2 (separated by spaces)");
   CHECK_THAT(parse_numbers("1 2 x", vector).error(), contains_text("\"x\": not a number"));
+  for (const std::string text :
+       {"1,-2.5,3e7", "1, -2.5, 3e7", "(1 -2.5 3e7)", "[1;-2.5; 3e7]", "1 , -2.5 3e7"}) {
+    CAPTURE(text);
+    CHECK(parse_numbers(text, vector).error() ==
+          "numbers are separated by blanks alone: \"1 -2.5 3e7\"");
+  }
+  // Commas within the numbers.
+  for (const std::string text : {"1,5 2,5 3,5", "1,5 2 3"})
+    CHECK_THAT(parse_numbers(text, vector).error(),
+               contains_text("write the decimal point as \".\""));
 }
 
 TEST_CASE("an integer has neither point nor exponent and stays in range", "[scene][text]") {

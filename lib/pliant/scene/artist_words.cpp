@@ -116,6 +116,37 @@ constexpr ArtistWords known_words[] = {
     {"waypoint", "position location point pos center translate value", "at"},
 };
 
+constexpr ElementWords known_elements[] = {
+    {"wind breeze gust gusts airflow", "<uniform> for a steady push, with <noise> for gusts"},
+    {"gravity weight fall", "<uniform direction=\"0 -1 0\">"},
+    {"turbulence turbulent jitter wobble", "<noise>"},
+    {"explosion blast bomb attractor attract magnet repel repulsor repulsion implode explode",
+     "<radial>, which pushes away from its centre, or pulls with a negative magnitude"},
+    {"swirl whirl tornado twist twirl whirlpool", "<vortex>"},
+    {"force forces poke push press pressure touch finger locator deformer softmod cluster",
+     "<point>, which pushes along one direction"},
+    {"capsule segment stroke", "<line>"},
+    {"ball sphere", "<point> or <radial> for a force, <mesh> for a shape"},
+    {"jiggle inertial motion", "<inertia>"},
+    {"drag friction viscosity", "<material damping=\"…\"> in a <surface>"},
+    {"forcegroup multipleforce set", "<group>"},
+    {"object geometry body cloth softbody model", "<surface> with a <mesh> or a <grid>"},
+    {"plane sheet patch lattice", "<grid> in a <surface>"},
+    {"obj file import ply gltf fbx", "<mesh file=\"…\"> in a <surface>"},
+    {"cage subdiv subsurf subdivide", "<subdivision>"},
+    {"position translate rotate scale xform location", "<transform> in a <surface>"},
+    {"physics properties elasticity stiffness dynamics", "<material> in a <surface>"},
+    {"simulation settings integrator stepping", "<solver> in a <surface>"},
+    {"texture weightmap paint", "<map> in a <material>"},
+    {"keyframe keyframes keys curve fcurve animation anim timeline",
+     "<animate attribute=\"…\"> with a <key> for each frame"},
+    {"pointcache alembic", "cache=\"…\" of <mesh>"},
+    {"variable constant parameter var", "<define>"},
+    {"collider collision obstacle", "a <point> that is keyed along: nothing collides yet"},
+};
+
+constexpr std::size_t longest_artist_word = 30;  // of both tables
+
 bool has_word(std::string_view list, std::string_view word) {
   const std::vector<std::string_view> words = words_of(list);
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -147,11 +178,19 @@ std::vector<std::string_view> elements_of(const Scene& scene, std::string_view n
 
 std::span<const ArtistWords> artist_words() { return known_words; }
 
+std::span<const ElementWords> element_words() { return known_elements; }
+
+std::string_view meant_by_element(std::string_view word) {
+  const std::string wanted = word.size() <= longest_artist_word ? plain_word(word) : "";
+  const auto found = std::ranges::find_if(
+      known_elements, [&](const ElementWords& row) { return has_word(row.words, wanted); });
+  return found == std::end(known_elements) ? std::string_view() : found->meant;
+}
+
 std::string attribute_hint(std::string_view element, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own) {
-  constexpr std::size_t longest = 30;  // of the table
-  const std::string wanted = word.size() <= longest ? plain_word(word) : "";
+  const std::string wanted = word.size() <= longest_artist_word ? plain_word(word) : "";
   const auto found =
       std::find_if(std::begin(known_words), std::end(known_words), [&](const ArtistWords& row) {
         return has_word(row.elements, element) && has_word(row.words, wanted);

@@ -19,6 +19,19 @@ struct ArtistWords {
 /// The words that are known, for tests.
 std::span<const ArtistWords> artist_words();
 
+/// Words of other programs for elements.
+struct ElementWords {
+  std::string_view words;  ///< separated by blanks, in lower case, without - and _
+  std::string_view meant;  ///< what to use, for a message
+};
+
+/// The words that are known, for tests.
+std::span<const ElementWords> element_words();
+
+/// What an artist may mean by an element that the format does not have: what to use in its place.
+/// Empty: it is no such word.
+std::string_view meant_by_element(std::string_view word);
+
 /// `; did you mean "b", "c" and "d"? allowed: density, …` for an attribute that an element does not
 /// have: what an artist may mean by it, otherwise as `hint`. `own` receives the attributes of the
 /// element that are probably meant.

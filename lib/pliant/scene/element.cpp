@@ -44,11 +44,14 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
   if (nearest_word(child.Name(), expanded) &&
       std::find(parents.begin(), parents.end(), parent.Name()) != parents.end())
     names.insert(names.end(), std::begin(expanded), std::end(expanded));
-  const std::string belongs = where_it_belongs(child.Name());
+  std::string place = where_it_belongs(child.Name());
+  if (const std::string_view meant = meant_by_element(child.Name());
+      place.empty() && !meant.empty())
+    place = fmt::format("; use {}", meant);
   return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
-                     belongs.empty()
+                     place.empty()
                          ? hint(child.Name(), names)
-                         : belongs + "; allowed: " + (names.empty() ? "none" : listed(names)));
+                         : place + "; allowed: " + (names.empty() ? "none" : listed(names)));
 }
 
 /// An <include> is still there if it could not be replaced, which is reported.

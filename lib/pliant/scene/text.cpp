@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pliant/core/text.hpp"
 
@@ -24,6 +25,9 @@ std::string counted_numbers(std::size_t count) {
 std::string trailing_complaint(std::string_view word, std::string_view rest,
                                std::string_view what) {
   const std::string_view number = word.substr(0, word.size() - rest.size());
+  if (rest == "," || rest == ";")
+    return fmt::format("not {}: {} follows {} (separate numbers by blanks alone)", what,
+                       in_quotes(rest), number);
   if (rest.front() == ',')
     return fmt::format("not {}: {} follows {} (write the decimal point as \".\")", what,
                        in_quotes(rest), number);
@@ -45,6 +49,20 @@ Reading<T> parse_word(std::string_view word, std::string_view what) {
   if (failure == std::errc::result_out_of_range)
     return tl::unexpected(std::string("outside the range of numbers that can be stored"));
   return number;
+}
+
+/// Several numbers between commas, semicolons or in brackets, as other programs write a vector,
+/// with blanks instead; empty: they are not.
+std::string between_blanks(std::string_view text, std::size_t count) {
+  std::string spaced(text);
+  for (char& c : spaced)
+    if (std::string_view(",;()[]{}").find(c) != std::string_view::npos) c = ' ';
+  const std::vector<std::string_view> words = words_of(spaced);
+  const bool are_numbers =
+      words.size() == count && std::all_of(words.begin(), words.end(), [](std::string_view word) {
+        return parse_word<double>(word, "").has_value();
+      });
+  return are_numbers && spaced != text ? fmt::format("{}", fmt::join(words, " ")) : "";
 }
 
 /// Also rejects `nan` and `inf`, which from_chars accepts.
@@ -97,10 +115,14 @@ Reading<void> parse_numbers(std::string_view text, std::span<double> numbers) {
   std::vector<double> found;
   for (const std::string_view word : words) {
     const Reading<double> number = parse_finite(word);
-    if (!number)
-      return tl::unexpected(words.size() == 1
-                                ? number.error()
-                                : fmt::format("{}: {}", in_quotes(word), number.error()));
+    if (!number) {
+      const std::string spaced =
+          numbers.size() > 1 ? between_blanks(text, numbers.size()) : std::string();
+      return tl::unexpected(
+          !spaced.empty()     ? "numbers are separated by blanks alone: " + in_quotes(spaced)
+          : words.size() == 1 ? number.error()
+                              : fmt::format("{}: {}", in_quotes(word), number.error()));
+    }
     found.push_back(*number);
   }
   if (found.size() != numbers.size())
