@@ -29,6 +29,7 @@
 #include "rounded.hpp"
 #include "scene_input.hpp"
 #include "solver_option.hpp"
+#include "usage.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -302,7 +303,7 @@ void add_bake_options(CLI::App& command, BakeOptions& options) {
                      "Frames to write, A:B or one frame; all by default");
   command.add_option("--surface", options.surface, "Write this surface only");
   command.add_option("--space", options.space, "Space of the positions")
-      ->check(CLI::IsMember({"world", "object"}))
+      ->check(one_of({"world", "object"}))
       ->capture_default_str();
   command.add_flag(
       "--resume", options.resume,

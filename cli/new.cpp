@@ -22,6 +22,7 @@
 #include "resources.hpp"
 #include "shell_word.hpp"
 #include "starters.hpp"
+#include "usage.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -202,13 +203,13 @@ Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& 
 void add_new(CLI::App& app, NewOptions& options) {
   CLI::App* create = app.add_subcommand("new", "Write a commented scene to begin with");
   create->add_option("NAME", options.name, "The starter; lists all by default")
-      ->check(CLI::IsMember(names_of(starters())));
+      ->check(one_of(names_of(starters())));
   create->add_option("-o,--out", options.out,
                      "The scene to write, .xml; to the standard output by default");
   create
       ->add_option("--material", options.material,
                    "A material by its look, fitted to the starter's size")
-      ->check(CLI::IsMember(names_of(looks())));
+      ->check(one_of(names_of(looks())));
   create->add_option("--mesh", options.mesh,
                      "A mesh of your own for starters that have one, fitted to its size");
   create->add_flag("--schema", options.has_schema,

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "usage.hpp"
+
 namespace pliant::cli {
 
 void add_solver(CLI::App& command, std::string& solver) {
@@ -10,7 +12,7 @@ void add_solver(CLI::App& command, std::string& solver) {
       .add_option("--solver", solver,
                   "Solver of the plates: in sine space, by CHOLMOD's sparse factors, or the one "
                   "that suits each region; results differ by at most 2e-9 of their size")
-      ->check(CLI::IsMember({"auto", "spectral", "cholmod"}))
+      ->check(one_of({"auto", "spectral", "cholmod"}))
       ->capture_default_str();
 }
 

@@ -21,6 +21,7 @@
 #include "sweep.hpp"
 #include "sweep_memory.hpp"
 #include "sweep_wait.hpp"
+#include "usage.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -373,7 +374,7 @@ class Submission {
 void add_slurm(CLI::App& run, SlurmOptions& options) {
   run.add_option("--engine", options.engine,
                  "Submit the takes that are missing as one job array to this batch engine")
-      ->check(CLI::IsMember({"slurm"}));
+      ->check(one_of({"slurm"}));
   run.add_option("--parts", options.parts,
                  "With --engine: number of parts, in place of the one by which a part takes about "
                  "ten minutes; no take is run here");

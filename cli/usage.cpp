@@ -90,6 +90,17 @@ void add_help(CLI::App& app, HelpOptions& options) {
   help->add_option("COMMAND", options.command, "The command; the list of commands by default");
 }
 
+CLI::Validator one_of(std::vector<std::string> words) {
+  const std::string type = fmt::format("{{{}}}", fmt::join(words, ","));  // completion reads it
+  return CLI::Validator(
+      [words = std::move(words)](const std::string& word) -> std::string {
+        if (std::ranges::find(words, word) != words.end()) return {};
+        return fmt::format("\"{}\": {}allowed: {}", word, question(word, words, ""),
+                           fmt::join(words, ", "));
+      },
+      type);
+}
+
 int run_help(const CLI::App& app, const HelpOptions& options) {
   const CLI::App* command = &app;
   for (const std::string& name : options.command) {
