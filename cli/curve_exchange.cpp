@@ -24,6 +24,7 @@
 #include "report.hpp"
 #include "resources.hpp"
 #include "scene_input.hpp"
+#include "usage.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -99,6 +100,12 @@ Result<RotateOrder> order_of(const std::vector<CurveMapping>& mappings, const Sc
 struct Import {
   CurveFile file;
   std::vector<CurveMapping> mappings;
+
+  // The vector or the curve that a mapping takes.
+  std::string title_of(const CurveMapping& mapping) const {
+    const auto one = std::ranges::find(file.curves, mapping.source, &FileCurve::name);
+    return one != file.curves.end() && mapping.component >= 0 ? one->group : mapping.source;
+  }
 };
 
 // Reads the file with the mappings, given or by name.
@@ -127,6 +134,39 @@ Result<Import> read_import(const CurveExchangeOptions& options, const Scene* sce
     if (*order == reading.rotate_order) return imported;
     reading.rotate_order = *order;
   }
+}
+
+// Turns vectors to the axes of pliant, or tells that they are not turned.
+void turn_vectors(Import& imported, const CurveExchangeOptions& options, const Scene* scene) {
+  std::vector<CurveLoss>& losses = imported.file.losses;
+  const bool is_z_up = options.up == "z";
+  const bool is_doubtful =
+      options.up.empty() && curve_format_of(options.file) == CurveFormat::Blender;
+  std::set<std::string> told;
+  for (const CurveMapping& mapping : imported.mappings) {
+    const std::string title = imported.title_of(mapping);
+    if (!is_of_vector(mapping, imported.file) || !told.insert(title).second) continue;
+    const std::string surface = mapping.channel.substr(0, mapping.channel.find('.'));
+    const bool is_rotation = mapping.channel == surface + ".rotate";
+    if (is_doubtful && title != mapping.channel) {
+      losses.push_back(
+          {title,
+           fmt::format("x, y and z are taken as they are, but in Blender z is up: --up "
+                       "z turns (x, y, z) to (x, z, {}y), and --up y ends this note",
+                       mapping.channel == surface + ".scale" ? "" : "-"),
+           true});
+    }
+    if (!is_z_up || !is_rotation || !scene) continue;
+    const auto found = std::ranges::find(scene->surfaces, surface, &Surface::name);
+    if (found == scene->surfaces.end() || found->transform.rotate_order == RotateOrder::Xzy)
+      continue;
+    losses.push_back({title,
+                      fmt::format("turned angles of the order xyz are those of the order xzy: give "
+                                  "<transform> of {} rotateOrder=\"xzy\"",
+                                  surface),
+                      false});
+  }
+  if (is_z_up) imported.mappings = with_z_up(imported.mappings, imported.file);
 }
 
 // What was lost of the curves that are used.
@@ -202,6 +242,7 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
                     : "no curve of the file has the name of a channel of the scene; name them with "
                       "--map SOURCE=CHANNEL");
   }
+  turn_vectors(*imported, options, scene ? &*scene : nullptr);
   auto placed = place_curves(imported->file, imported->mappings, scene ? &*scene : nullptr,
                              options.offset, options.tolerance);
   if (!placed) {
@@ -311,6 +352,11 @@ void add_import(CLI::App& app, CurveExchangeOptions& options) {
   command->add_option("--map", options.mappings,
                       "SOURCE=CHANNEL[.x|.y|.z][*FACTOR]: a curve of the file for a channel; by "
                       "default those whose names are the same");
+  command
+      ->add_option("--up", options.up,
+                   "The axis that is up in the file, z in Blender: z turns vectors that are mapped "
+                   "as a whole, (x, y, z) to (x, z, -y)")
+      ->check(one_of({"y", "z"}));
   command->add_option("--offset", options.offset, "Frames that are added to those of the file");
   add_shared(*command, options);
 }

@@ -17,6 +17,7 @@ struct CurveExchangeOptions {
   std::vector<std::string> mappings;  ///< import: SOURCE=CHANNEL
   std::vector<std::string> channels;  ///< export: paths; empty: all animated channels
   double offset = 0;                  ///< import [frames]
+  std::string up = {};                ///< import: `y` or `z`; empty: y, but vectors are noted
   double tolerance = 1e-4;            ///< as a share of a curve's range
   bool is_strict = false;             ///< a value that would change is an error
   bool is_quiet = false;

@@ -3,6 +3,8 @@
 import json
 import os
 
+import numpy as np
+
 from command import Command, animated, main
 
 SCENE = """<?xml version="1.0"?>
@@ -112,6 +114,54 @@ class Exchange(Command):
                                "ball.translate.x=poke.center.z").stdout
         self.assertTrue(text.startswith('<!-- poke -->\n<animate attribute="center" after="repeat">\n'), text)
         self.assertIn('<key frame="24" value="0 0 5" tangent="flat"/>', text)
+
+    def test_vectors_of_a_world_with_z_up_are_turned(self):
+        def curve(path, index, unit, first, last):
+            tips = [{"co": [frame, value], "left": [frame - 1, value], "right": [frame + 1, value],
+                     "interpolation": "LINEAR", "easing": "AUTO"} for frame, value in ((1, first), (11, last))]
+            return {"owner": "Cube", "data_path": path, "index": index, "unit": unit, "keys": tips}
+
+        vectors = {"location": ("LENGTH", (1, 2, 3), (4, 6, 8)), "rotation_euler": ("ROTATION", (0.1, 0.2, 0.3), (0, 0, 0)),
+                   "scale": ("NONE", (1, 2, 3), (4, 5, 6))}
+        curves = [curve(path, index, unit, first[index], last[index])
+                  for path, (unit, first, last) in vectors.items() for index in range(3)]
+        keys = self.write("keys.json", json.dumps(
+            {"format": "blender-curves", "version": 1, "fps": 24, "curves": curves}))
+        targets = {"location": "poke.center", "rotation_euler": "sheet.rotate", "scale": "sheet.scale"}
+        maps = [word for path, channel in targets.items() for word in ("--map", f"Cube.{path}={channel}")]
+
+        def taken(*options):
+            scene = self.write("turned.xml", SCENE.format(poke="", bulge="").replace(' center="0 0 0"', ""))
+            done = self.run_pliant("import", "curves", keys, "-o", scene, *maps, *options)
+            return done.stderr, {path: self.values(scene, channel, "1") + self.values(scene, channel, "11")
+                                 for path, channel in targets.items()}
+
+        told, plain = taken()
+        self.assertEqual(told.count("--up z turns"), 3, told)
+        self.assertEqual(taken("--up", "y"), ("", plain))
+        self.assertEqual(plain["location"], [(1, 2, 3), (4, 6, 8)])
+        told, turned = taken("--up", "z")
+        self.assertIn('give <transform> of sheet rotateOrder="xzy"', told)
+        for path, values in plain.items():
+            sign = 1 if path == "scale" else -1
+            self.assertEqual(turned[path], [(x, z, sign * y) for x, y, z in values])
+        # The turned angles turn the turned axes: C R = R' C with C (x, y, z) = (x, z, -y).
+        def about(axis, degrees):
+            c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+            matrix, (i, j) = np.eye(3), ((1, 2), (2, 0), (0, 1))[axis]
+            matrix[i, i], matrix[i, j], matrix[j, i], matrix[j, j] = c, -s, s, c
+            return matrix
+
+        (x, y, z), (u, v, w) = plain["rotation_euler"][0], turned["rotation_euler"][0]
+        of_blender = about(2, z) @ about(1, y) @ about(0, x)
+        of_pliant = about(1, v) @ about(2, w) @ about(0, u)  # xzy: x first
+        axes = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])
+        self.assertLess(np.abs(axes @ of_blender - of_pliant @ axes).max(), 1e-12)
+        # A component goes where it is sent.
+        scene = self.scene()
+        self.run_pliant("import", "curves", keys, "-o", scene, "--map", "Cube.location.y=bulge.magnitude", "--up", "z")
+        self.assertEqual(self.values(scene, "bulge.magnitude", "11"), [(6,)])
+        self.assertIn("allowed: y, z", self.run_pliant("import", "curves", keys, "--up", "x", code=2).stderr)
 
     def test_problems_change_nothing(self):
         scene, anim = self.scene(), self.write("ball.anim", ANIM)

@@ -325,6 +325,40 @@ std::vector<CurveMapping> mappings_by_name(const CurveFile& file, const Scene& s
   return mappings;
 }
 
+bool is_of_vector(const CurveMapping& mapping, const CurveFile& file) {
+  if (mapping.component >= 0) {
+    const auto one = std::ranges::find(file.curves, mapping.source, &FileCurve::name);
+    return one != file.curves.end() && one->component == mapping.component;
+  }
+  return std::ranges::none_of(
+             file.curves, [&](const FileCurve& curve) { return curve.name == mapping.source; }) &&
+         std::ranges::any_of(file.curves, [&](const FileCurve& curve) {
+           return curve.group == mapping.source && curve.component >= 0;
+         });
+}
+
+std::vector<CurveMapping> with_z_up(const std::vector<CurveMapping>& mappings,
+                                    const CurveFile& file) {
+  std::vector<CurveMapping> turned;
+  for (const CurveMapping& mapping : mappings) {
+    if (!is_of_vector(mapping, file)) {
+      turned.push_back(mapping);
+      continue;
+    }
+    const bool is_scale = split_channel(mapping.channel).second == "scale";
+    for (const FileCurve& curve : file.curves) {
+      if (mapping.component >= 0 ? curve.name != mapping.source
+                                 : curve.group != mapping.source || curve.component < 0)
+        continue;
+      constexpr int places[] = {0, 2, 1};  // of x, y and z
+      const double sign = curve.component == 1 && !is_scale ? -1 : 1;
+      turned.push_back(
+          {curve.name, mapping.channel, places[curve.component], sign * mapping.factor});
+    }
+  }
+  return turned;
+}
+
 Result<PlacedCurves> place_curves(const CurveFile& file, const std::vector<CurveMapping>& mappings,
                                   const Scene* scene, double offset, double tolerance) {
   return Placer(file, scene, offset, tolerance).place(mappings);

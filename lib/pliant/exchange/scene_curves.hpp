@@ -30,6 +30,16 @@ Result<CurveMapping> parse_mapping(std::string_view text);
 /// files by `write_curves` do.
 std::vector<CurveMapping> mappings_by_name(const CurveFile& file, const Scene& scene);
 
+/// Whether a mapping takes a vector of the file as a whole: a group of curves, or, of mappings by
+/// name, a component for the same one.
+bool is_of_vector(const CurveMapping& mapping, const CurveFile& file);
+
+/// Mappings of a file in whose space z is up: of vectors that are taken as a whole (x, y, z)
+/// becomes (x, z, -y), of a scale (x, z, y). Angles are then those of the order xzy if they were
+/// those of xyz.
+std::vector<CurveMapping> with_z_up(const std::vector<CurveMapping>& mappings,
+                                    const CurveFile& file);
+
 /// A curve for a channel.
 struct PlacedCurve {
   std::string channel;
