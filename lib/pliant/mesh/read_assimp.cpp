@@ -46,6 +46,15 @@ std::string in_one_line(std::string_view reason) {
   return reason.size() > longest ? line + "…" : line;
 }
 
+// Why assimp does not read a file. It reads FBX of all years since 2011, unlike it says.
+std::string told_reason(std::string_view reason) {
+  if (reason.find("old format version") != std::string_view::npos)
+    return "it is older than FBX 7.1 (2011); FBX 7.1 to 7.7 are read, so export it again, or "
+           "convert "
+           "it by opening and exporting it in another program";
+  return in_one_line(reason);
+}
+
 std::string format_name(const std::string& ending) { return ending == ".fbx" ? "FBX" : "Collada"; }
 
 Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
@@ -208,7 +217,7 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
     case MessageKind::OtherFormat:
       return invalid(fmt::format("the file is not {}", format));
     case MessageKind::Refused:
-      return invalid(fmt::format("the file cannot be read: {}", in_one_line(message->reason)));
+      return invalid(fmt::format("the file cannot be read: {}", told_reason(message->reason)));
     case MessageKind::TooManyObjects:
       return invalid(fmt::format("the file has more than {} objects", most_objects));
     case MessageKind::Scene:
