@@ -119,7 +119,11 @@ class BadInput(Command):
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertEqual(self.files(), before)
         self.assertEqual(result.stdout, "")
-        return result.stderr.splitlines()
+        lines = result.stderr.splitlines()
+        # What needs no solve is told by validate too, in the same words.
+        validated = self.run_pliant("validate", scene, code=2).stderr.splitlines()
+        self.assertEqual([line for line in validated if ": note: " not in line], lines)
+        return lines
 
     def test_bad_scenes(self):
         os.mkdir(self.path("folder.obj"))
@@ -131,6 +135,43 @@ class BadInput(Command):
                 self.assertEqual(len(lines), 1, lines)
                 self.assertRegex(lines[0], rf"^\S*s\.xml:{line}: error: ")
                 self.assertIn(words, lines[0])
+
+    def test_static_surfaces_that_nothing_holds(self):
+        static = '<material density="0" damping="0"/><solver region="all"/>'
+        fading = ('<material damping="0"><animate attribute="density"><key frame="1" value="9"/>'
+                  '<key frame="5" value="0"/></animate></material><solver region="all"/>')
+        lattice = [(x, y, z) for x in range(4) for z in range(4) for y in (0, 5) if (x, y, z) != (3, 5, 3)]
+        numbers = {place: k + 1 for k, place in enumerate(lattice)}
+        cells = [[numbers[x + i, y, z + j] for i, j in ((0, 0), (0, 1), (1, 1), (1, 0))]
+                 for y in (0, 5) for x in range(3) for z in range(3) if (x + 1, y, z + 1) in numbers]
+        self.write("sheets.obj", "".join("v %d %d %d\n" % place for place in lattice) +
+                   "".join("f %d %d %d %d\n" % tuple(cell) for cell in cells))
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        sides = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+        self.write("cube.obj", "".join("v %d %d %d\n" % corner for corner in corners) +
+                   "".join("f %d %d %d %d\n" % side for side in sides))
+        torus = " ".join(f"{x} {y} {x * y % 3}" for y in range(4) for x in range(4))
+        net = '<nurbs columns="4" rows="4" degreeU="2" degreeV="2" wrap="{}"><points>' + torus + "</points></nurbs>"
+        open_ring = static.replace("<solver", '<solver edges="clamped clamped free free"')
+        free = '<mesh file="sheets.obj" uv="surface" border="free"/>'
+        for parts, words in (
+                (free + static, "s.density is 0, and so is damping, but nothing holds the piece with vertex 1: give it a "
+                                "density or a damping"),
+                (free + fading, "s.density at frame 5 is 0, and so is damping"),
+                ('<mesh file="cube.obj"/>' + static, "nothing holds the piece with vertex 1"),
+                (net.format("uv") + static, "nothing holds a surface that is closed along u and v"),
+                (net.format("u") + open_ring, "or a clamped edge or two pinned ones"),
+                (GRID + static.replace("<solver", '<solver edges="free"'), "or a clamped edge or two pinned ones")):
+            with self.subTest(words=words, parts=parts[:60]):
+                line, = self.refused(self.write("s.xml", f'<scene version="1" start="1" end="9"><surface name="s">{parts}'
+                                                '</surface><uniform name="u" magnitude="1"/></scene>'))
+                self.assertIn(words, line)
+        # A border that holds, what is not static, and what is not solved.
+        for parts in (free.replace("free", "pinned") + static, free + static.replace('density="0"', ""),
+                      free + static.replace(' region="all"', ""), net.format("u") + static):
+            self.run_pliant("bake", self.write("s.xml", f'<scene version="1" start="1" end="3"><surface name="s">{parts}'
+                                               '</surface><uniform name="u" magnitude="1"/></scene>'),
+                            "-o", self.path("good.npy"))
 
     def test_a_loop_that_does_not_close(self):
         """Is found while it runs: exit code 1."""

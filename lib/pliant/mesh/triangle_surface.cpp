@@ -315,4 +315,28 @@ TriangleSurface posed(TriangleSurface surface, const Field& nodes) {
   return surface;
 }
 
+std::vector<int> pieces_of(const TriangleSurface& surface) {
+  std::vector<int> pieces(static_cast<std::size_t>(surface.node_count()), -1);
+  std::vector<int> open;
+  int count = 0;
+  for (int first = 0; first < surface.node_count(); ++first) {
+    if (pieces[first] >= 0 || surface.faces_of(first).empty()) continue;
+    pieces[first] = count;
+    open.push_back(first);
+    while (!open.empty()) {
+      const int node = open.back();
+      open.pop_back();
+      for (const int face : surface.faces_of(node)) {
+        for (const int other : surface.nodes_of(face)) {
+          if (pieces[other] >= 0) continue;
+          pieces[other] = count;
+          open.push_back(other);
+        }
+      }
+    }
+    ++count;
+  }
+  return pieces;
+}
+
 }  // namespace pliant

@@ -364,27 +364,7 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
       .nodes = surface.node_count(), .faces = surface.face_count(), .unit = surface.unit};
   summary.border_edges =
       static_cast<int>(std::count(surface.edge_sides.begin(), surface.edge_sides.end(), 1));
-  // Counts pieces by walking from each node not seen before. One whose faces all take no part is
-  // none.
-  std::vector<bool> is_seen(static_cast<std::size_t>(surface.node_count()));
-  std::vector<int> open;
-  for (int first = 0; first < surface.node_count(); ++first) {
-    if (is_seen[first] || surface.faces_of(first).empty()) continue;
-    ++summary.pieces;
-    is_seen[first] = true;
-    open.push_back(first);
-    while (!open.empty()) {
-      const int node = open.back();
-      open.pop_back();
-      for (const int face : surface.faces_of(node)) {
-        for (const int other : surface.nodes_of(face)) {
-          if (is_seen[other]) continue;
-          is_seen[other] = true;
-          open.push_back(other);
-        }
-      }
-    }
-  }
+  for (const int piece : pieces_of(surface)) summary.pieces = std::max(summary.pieces, piece + 1);
   return summary;
 }
 

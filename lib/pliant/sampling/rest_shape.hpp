@@ -127,6 +127,12 @@ struct CheckedShape {
 Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context);
 
+/// Checks what a scene asks of a shape, before any frame: what `check_maps` does, and that
+/// something holds a whole surface in its static frames. Requires: `check_channels` accepts the
+/// scene.
+std::vector<Error> check_against_shape(const Scene& scene, const Surface& surface,
+                                       const RestShape& shape);
+
 /// The note on a surface's shape as one of the scene; none if it is empty.
 std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,
                                  const SceneOrigin& origin);

@@ -242,22 +242,8 @@ class ChannelChecker {
   void check_is_held(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
     if (solver.region != SolvedRegion::All || solver.edges.hold()) return;
-    if (!surface.enabled || surface.is_driven()) return;
-    const MaterialChannels& material = surface.material;
-    const Channel<1>& density = material.density;
-    const Channel<1>& damping = material.damping_ratio ? density : material.damping;
-    const bool is_animated =
-        density.is_animated() || damping.is_animated() || solver.time_scale.is_animated();
-    const int first = std::max(first_, first_solved_frame(scene_, surface));
-    const int last = is_animated ? last_ : std::min(first, last_);
-    for (int frame = first; frame <= last; ++frame) {
-      if (density.at(frame)[0] != 0 || damping.at(frame)[0] != 0) continue;
-      if (frame_length(scene_, surface, frame) == 0) continue;
-      return add_error(surface.name, "density", is_animated, frame,
-                       "is 0, and so is damping, but nothing holds a static surface: give it a "
-                       "density or a damping, or a clamped edge or two pinned ones",
-                       scene_.origin.last_line_of(surface.name, {"density", "damping", "edges"}));
-    }
+    if (const auto found = static_frame_of(scene_, surface, {first_, last_}))
+      errors_.push_back(not_held(scene_, surface, *found, {}));
   }
 
   bool is_checked(const std::string& name, std::string_view attribute) const {
@@ -284,6 +270,37 @@ class ChannelChecker {
 };
 
 }  // namespace
+
+std::optional<StaticFrame> static_frame_of(const Scene& scene, const Surface& surface,
+                                           const FrameSpan& frames) {
+  if (!surface.enabled || surface.is_driven()) return {};
+  const MaterialChannels& material = surface.material;
+  const Channel<1>& density = material.density;
+  const Channel<1>& damping = material.damping_ratio ? density : material.damping;
+  const bool is_animated =
+      density.is_animated() || damping.is_animated() || surface.solver.time_scale.is_animated();
+  const int first = std::max(frames.first, first_solved_frame(scene, surface));
+  const int last = is_animated ? frames.last : std::min(first, frames.last);
+  for (int frame = first; frame <= last; ++frame) {
+    if (density.at(frame)[0] != 0 || damping.at(frame)[0] != 0) continue;
+    if (frame_length(scene, surface, frame) != 0) return StaticFrame{frame, is_animated};
+  }
+  return {};
+}
+
+Error not_held(const Scene& scene, const Surface& surface, const StaticFrame& at,
+               std::string_view part) {
+  const std::string when = at.is_animated ? fmt::format(" at frame {}", at.frame) : "";
+  const std::string what = part.empty() ? "a static surface" : std::string(part);
+  const bool is_grid = part.empty();
+  return scene.origin.located(
+      {.code = ErrorCode::InvalidInput,
+       .message = fmt::format(
+           "{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
+           "density or a damping{}",
+           surface.name, when, what, is_grid ? ", or a clamped edge or two pinned ones" : "")},
+      scene.origin.last_line_of(surface.name, {"density", "damping", "edges", "border"}));
+}
 
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,
                                   const StopRequest& should_stop) {

@@ -28,4 +28,20 @@ std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_ch
 std::vector<Error> check_channels_at(const Scene& scene, int frame,
                                      const ChannelFilter& is_checked = {});
 
+/// A frame in which a surface has neither density nor damping.
+struct StaticFrame {
+  int frame = 0;
+  bool is_animated = false;  ///< other frames may differ
+};
+
+/// The first frame of some in which a surface is solved as what is static; none: there is no such
+/// frame, or it is not solved.
+std::optional<StaticFrame> static_frame_of(const Scene& scene, const Surface& surface,
+                                           const FrameSpan& frames);
+
+/// The error that nothing holds a static surface, or a part of it, such as "the piece with vertex
+/// 3"; empty: all of a grid.
+Error not_held(const Scene& scene, const Surface& surface, const StaticFrame& at,
+               std::string_view part);
+
 }  // namespace pliant

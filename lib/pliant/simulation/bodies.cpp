@@ -111,7 +111,7 @@ Result<void> Bodies::make_all() {
         errors.push_back(moves.error());
     }
     if (are_sound) {
-      for (Error& error : pliant::check_maps(scene_, surface, made->shape))
+      for (Error& error : check_against_shape(scene_, surface, made->shape))
         errors.push_back(std::move(error));
     }
     shapes.push_back(*std::move(made));

@@ -16,18 +16,19 @@
 namespace pliant {
 namespace {
 
-// A cache and maps are checked against the shape, which is made for that.
-Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene, bool checks_maps,
-                                 const RunContext& context) {
-  if (!surface.is_animated() && surface.maps.empty())
+// A cache, maps and what holds a static surface are checked against the shape, which is made for
+// that.
+Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene,
+                                 bool are_channels_sound, const RunContext& context) {
+  if (!surface.is_animated() && surface.maps.empty() && surface.solver.region != SolvedRegion::All)
     return check_rest_shape(surface, scene.origin, context);
   auto made = make_rest_shape(surface, scene.origin, context);
   if (!made) return fail(made.error());
   if (surface.is_animated()) {
     if (auto moves = animate(*made, surface, scene, context); !moves) return fail(moves.error());
   }
-  if (checks_maps) {
-    std::vector<Error> errors = check_maps(scene, surface, made->shape);
+  if (are_channels_sound) {
+    std::vector<Error> errors = check_against_shape(scene, surface, made->shape);
     if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
   }
   return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
