@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -86,7 +85,8 @@ struct ProblemPlaces::Text {
   std::optional<Stretch> attribute(const Stretch& in, std::string_view message) const;
   std::optional<Stretch> element(const Stretch& in, std::string_view message) const;
   std::optional<Stretch> content(const Stretch& in, std::string_view message) const;
-  std::string_view owner_of(std::uint32_t attribute) const;
+  std::size_t owner_of(std::uint32_t attribute) const;
+  std::string_view object_around(std::size_t element) const;
   Stretch without_blanks(const Stretch& in) const;
 
   std::string text;
@@ -100,34 +100,44 @@ struct ProblemPlaces::Text {
 constexpr int most_compared = 10'000;
 
 // The attribute that the message names, in the ways in which the reader names one: best with its
-// value and its element.
+// value, its element and its object.
 std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
                                                       std::string_view message) const {
   const auto first = std::lower_bound(
       markup.attributes.begin(), markup.attributes.end(), in.begin,
       [](const xml::AttributePlace& place, std::size_t at) { return place.name.begin < at; });
+  if (has(message, "needs the attribute")) return {};
+  // `NAME.attribute …`: of the object of that name.
+  const std::string_view object = message.substr(0, message.find_first_of(". "));
+  const bool names_object =
+      object.size() < message.size() && message[object.size()] == '.' && !object.empty();
   // What was there already is the earlier one.
   const bool is_later = has(message, "already") || has(message, "twice");
   std::optional<Stretch> best;
-  std::size_t best_way = 12;
+  std::size_t best_way = 24;
   int compared = 0;
   for (auto each = first;
        each != markup.attributes.end() && each->name.begin < in.end && ++compared <= most_compared;
        ++each) {
     const std::string_view name = each->name.of(text);
-    if (!has(message, name)) continue;
     const Stretch value = stretch_of(each->value), whole = stretch_of(each->whole());
+    const bool is_animated = name == "attribute";  // its value is a name
+    const std::string_view channel = is_animated ? each->value.of(text) : name;
+    if (!has(message, name) && !has(message, channel)) continue;
     const std::array<std::pair<std::string, Stretch>, 6> ways = {
         {{fmt::format(" {}=\"{}\"", name, each->value.of(text)), value},
          {fmt::format(" {}=\"", name), value},
          {fmt::format("\"{}\"", name), stretch_of(each->name)},
-         {fmt::format(".{}:", name), value},
-         {fmt::format(".{} ", name), value},
+         {fmt::format(".{}:", channel), value},
+         {fmt::format(".{} ", channel), value},
          {fmt::format("> {}", name), whole}}};
-    const auto index = static_cast<std::uint32_t>(each - markup.attributes.begin());
-    const std::size_t is_other = has(message, fmt::format("<{}>", owner_of(index))) ? 0 : 1;
+    const std::size_t owner =
+        owner_of(static_cast<std::uint32_t>(each - markup.attributes.begin()));
+    const std::string_view tag = markup.elements[owner].name.of(text);
+    const std::size_t is_other = has(message, fmt::format("<{}>", tag)) ? 0 : 1;
+    const std::size_t is_of_other = names_object && object_around(owner) != object ? 2 : 0;
     for (std::size_t way = 0; way < ways.size(); ++way) {
-      const std::size_t own = 2 * way + is_other;
+      const std::size_t own = 4 * way + is_of_other + is_other;
       if (own > best_way || (own == best_way && !is_later) || !has(message, ways[way].first))
         continue;
       best = ways[way].second;
@@ -137,13 +147,23 @@ std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
   return best;
 }
 
-// The name of the element that has an attribute.
-std::string_view ProblemPlaces::Text::owner_of(std::uint32_t attribute) const {
+// The element that has an attribute.
+std::size_t ProblemPlaces::Text::owner_of(std::uint32_t attribute) const {
   const auto after = std::upper_bound(markup.elements.begin(), markup.elements.end(), attribute,
                                       [](std::uint32_t at, const xml::ElementPlace& element) {
                                         return at < element.first_attribute;
                                       });
-  return std::prev(after)->name.of(text);
+  return static_cast<std::size_t>(after - markup.elements.begin()) - 1;
+}
+
+// The name that an element has, or the nearest one around it that has one.
+std::string_view ProblemPlaces::Text::object_around(std::size_t element) const {
+  for (auto at = static_cast<std::uint32_t>(element); at != xml::ElementPlace::no_parent;
+       at = markup.elements[at].parent) {
+    for (const xml::AttributePlace& each : markup.attributes_of(at))
+      if (each.name.of(text) == "name") return each.value.of(text);
+  }
+  return {};
 }
 
 // The text that the message quotes as what an element contains.
@@ -158,24 +178,30 @@ std::optional<Stretch> ProblemPlaces::Text::content(const Stretch& in,
   return Stretch{found, found + quoted.size()};
 }
 
-// The name of the first element of the line that the message names, or else of the first one.
+// The name of the first element of the line that the message names, without an attribute that it
+// misses; or else of the first one.
 std::optional<Stretch> ProblemPlaces::Text::element(const Stretch& in,
                                                     std::string_view message) const {
   const auto first = std::lower_bound(
       markup.elements.begin(), markup.elements.end(), in.begin,
       [](const xml::ElementPlace& place, std::size_t at) { return place.name.begin < at; });
-  std::optional<Stretch> best;
+  std::optional<Stretch> any;
   int compared = 0;
   for (auto each = first;
        each != markup.elements.end() && each->name.begin < in.end && ++compared <= most_compared;
        ++each) {
     const std::string name(each->name.of(text));
-    if (has(message, "has no element \"" + name + '"') || has(message, '<' + name + '>')) {
-      return stretch_of(each->name);
-    }
-    if (!best) best = stretch_of(each->name);
+    if (!any) any = stretch_of(each->name);
+    if (!has(message, "has no element \"" + name + '"') && !has(message, '<' + name + '>'))
+      continue;
+    const auto index = static_cast<std::size_t>(each - markup.elements.begin());
+    const bool has_it =
+        std::ranges::any_of(markup.attributes_of(index), [&](const xml::AttributePlace& attribute) {
+          return has(message, fmt::format("\"{}\"", attribute.name.of(text)));
+        });
+    if (!has_it) return stretch_of(each->name);
   }
-  return best;
+  return any;
 }
 
 Stretch ProblemPlaces::Text::without_blanks(const Stretch& in) const {

@@ -71,6 +71,28 @@ class Validate(Command):
                          ["-1", "1", "x", "stray", "s"])
         second = [problem for problem in told("one.xml", one) if "already" in problem["message"]][0]
         self.assertGreater(second["column"], one.index("<line name=\"s\""))
+        # The same element and attribute twice on one line: the one that the message is about.
+        two = ('<scene version="1" start="1" end="9"><surface name="a"><grid columns="5" rows="5"/>{0}</surface>'
+               '<surface name="b"><grid columns="5" rows="5"/>{1}</surface></scene>')
+        whole = '<solver region="all" edges="free"/>'
+        moving = '<material><animate attribute="{}"><key frame="1" value="1"/><key frame="9" value="-1"/></animate></material>'
+        for good, bad, word in (
+                ('<material density="1"/>', '<material density="-1"/>', "-1"),
+                ('<material density="0" damping="1"/>' + whole, '<material density="0" damping="0"/>' + whole, "0"),
+                (moving.format("c"), moving.format("density"), "density"),
+                (moving.format("c"), moving.format("b"), "b"),
+                ('<transform scale="1 1 1"/>', '<transform scale="1 0 1"/>', "1 0 1"),
+                ('<material b="1" c="-1"/>', '<material b="1" c="-2"/>', "-2")):
+            for parts, is_second in (((good, bad), True), ((bad, good), False)):
+                line = two.format(*parts)
+                with self.subTest(line):
+                    problem, = told("two.xml", line)
+                    self.assertEqual(named(problem, [line]), word, problem["message"])
+                    self.assertEqual(problem["column"] > line.index('name="b"'), is_second, problem["message"])
+        line = two.replace("{1}", "").replace("{0}", "").replace('rows="5"/></surface></scene>', "/></surface></scene>")
+        problem, = told("two.xml", line)
+        self.assertEqual(named(problem, [line]), "grid")
+        self.assertGreater(problem["column"], line.index('name="b"'))
         long = text.replace("<!-- ", "<!-- " + "\u00fc\U0001f44b " * 3000)
         self.assertEqual([named(problem, long.split("\n")) for problem in told("long.xml", long)],
                          [named(problem, text.split("\n")) for problem in told("a.xml", text)])
