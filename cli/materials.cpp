@@ -50,8 +50,10 @@ constexpr Look all_looks[] = {
      .c = 0.4,
      .poisson = 0,
      .ring = "slow, and the air brakes it: one swing too far, then it lies",
-     .shape = "threads run along u and v and hardly resist a twist, so c is small, and bending one "
-              "way does not bend the other: poisson 0"},
+     .shape =
+         "threads run along u and v and hardly resist a twist, so c is small, and bending one "
+         "way does not bend the other: poisson 0. Where thin cloth would fold and wrinkle, a sheet "
+         "bends and stretches"},
     {.name = "paper",
      .summary = "light: flutters shortly, and keeps a crease",
      .frequency = 5,

@@ -96,8 +96,9 @@ class New(Command):
 
     def test_wrong_usage(self):
         for arguments, message in (
-                (["nonsense"], "nonsense not in"),
-                (["sheet", "--material", "butter"], "butter not in"),
+                (["trampolin"], '"trampolin": did you mean "trampoline"? allowed: sheet, mesh,'),
+                (["nonsense"], '"nonsense": allowed: sheet, mesh,'),
+                (["sheet", "--material", "butter"], '"butter": allowed: rubber,'),
                 (["mesh"], "mesh needs -o SCENE"),
                 (["sheet", "--schema"], "--schema needs -o SCENE"),
                 (["sheet", "--mesh", "a.obj"], "the starters with a mesh are mesh, jiggle"),
@@ -173,6 +174,32 @@ class New(Command):
         self.assertGreater(after["jelly"], 0.5)
         self.assertTrue(0.05 < after["rubber"] < after["jelly"])
         self.assertLess(max(after["cloth"], after["skin"]), 0.1)
+
+    @long
+    def test_equal_blows_leave_equal_dents(self):
+        self.run_pliant("new", "dent", "-o", "dent.xml")
+        self.run_pliant("bake", "dent.xml", "-o", "a.npy")
+        depths = -np.load(self.path("a.npy"))[:, :, 1].reshape(72, 61, 3, 27).min(axis=(1, 3))
+        peaks = depths.max(axis=0)
+        self.assertTrue((depths[-1] > 0.3 * peaks).all() and (depths[-1] < 0.7 * peaks).all(), depths[-1])
+        # Alike but for the rounding of where they are, and at rest: no blow freezes the dent before.
+        self.assertLess(np.ptp(depths[-1]), 1e-9 * peaks[0])
+        self.assertLess(np.ptp(peaks), 1e-9 * peaks[0])
+        for blow, frame in enumerate((6, 24, 42)):
+            settled = depths[frame + 17:, blow]
+            self.assertLess(np.ptp(settled), 0.01 * peaks[0])
+
+    @long
+    def test_a_flag_keeps_its_length(self):
+        for material in (None, "cloth", "jelly"):  # jelly is the softest
+            out = f"{material}.xml"
+            self.run_pliant("new", "flag", "-o", out, *(["--material", material] if material else []))
+            self.run_pliant("bake", out, "-o", "a.npy")
+            flag = np.load(self.path("a.npy")).reshape(120, 41, 61, 3)
+            for axis, length in ((2, 9), (1, 6)):
+                lengths = np.linalg.norm(np.diff(flag, axis=axis), axis=3).sum(axis=axis)
+                self.assertTrue((lengths > 0.9 * length).all() and (lengths < 1.2 * length).all(),
+                                (material, axis, lengths.min(), lengths.max()))
 
     @long
     def test_every_starter_takes_every_material(self):
