@@ -72,11 +72,12 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
   for (const std::size_t k : chosen) {
     const RestShape& shape = simulation.rest_shapes()[k];
     const Placement first = placement_at(scene.surfaces[k].transform, frames.first);
+    const Transform transform = is_world(options) ? make_transform(first) : Transform();
     plan.surfaces.push_back({.name = shape.name,
                              .mesh = &shape.mesh,
-                             .rest = is_world(options)
-                                         ? to_world(make_transform(first), shape.mesh.positions)
-                                         : shape.mesh.positions});
+                             .rest = is_world(options) ? to_world(transform, shape.mesh.positions)
+                                                       : shape.mesh.positions,
+                             .is_mirrored = transform.is_mirrored()});
   }
   return plan;
 }
@@ -192,6 +193,7 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
     summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
     if (is_world(options)) {
       pose.positions = surface.positions(std::move(pose.positions));
+      pose.is_mirrored = surface.transform().is_mirrored();
     } else {
       pose.positions = surface.object_positions();
       pose.placement = placement_at(scene.surfaces[k].transform, frame.number());

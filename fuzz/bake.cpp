@@ -114,11 +114,15 @@ AnimationPlan plan_of(const Simulation& simulation, const std::string& file, boo
   for (std::size_t k = 0; k < simulation.rest_shapes().size(); ++k) {
     const RestShape& shape = simulation.rest_shapes()[k];
     Field rest = shape.mesh.positions;
+    Transform transform;
     if (!is_placed) {
-      const Placement first = placement_at(scene.surfaces[k].transform, scene.start);
-      rest = to_world(make_transform(first), rest);
+      transform = make_transform(placement_at(scene.surfaces[k].transform, scene.start));
+      rest = to_world(transform, rest);
     }
-    plan.surfaces.push_back({.name = shape.name, .mesh = &shape.mesh, .rest = std::move(rest)});
+    plan.surfaces.push_back({.name = shape.name,
+                             .mesh = &shape.mesh,
+                             .rest = std::move(rest),
+                             .is_mirrored = transform.is_mirrored()});
   }
   return plan;
 }
@@ -130,6 +134,7 @@ std::vector<SurfacePose> poses_of(const Frame& frame, const Scene& scene, bool i
     SurfacePose& pose = poses.emplace_back();
     require(surface.object_positions().allFinite());
     pose.positions = is_placed ? surface.object_positions() : surface.positions();
+    pose.is_mirrored = !is_placed && surface.transform().is_mirrored();
     if (is_placed) pose.placement = placement_at(scene.surfaces[k].transform, frame.number());
   }
   return poses;

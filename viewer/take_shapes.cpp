@@ -51,8 +51,13 @@ Whole whole_of(const Simulation& simulation, const Frame& frame) {
       whole.rest.row(row) = still.row(vertex);
       whole.displaced[static_cast<std::size_t>(row)] = (now.row(vertex) - rest.row(vertex)).norm();
     }
+    const std::size_t first_corner = whole.triangles.size();
     for (const std::uint32_t vertex : triangle_vertices(shape.mesh))
       whole.triangles.push_back(place_of[vertex]);
+    if (surface.transform().is_mirrored()) {  // as the writers turn them
+      for (std::size_t k = first_corner; k < whole.triangles.size(); k += 3)
+        std::swap(whole.triangles[k + 1], whole.triangles[k + 2]);
+    }
     first += still.rows();
   }
   return whole;

@@ -26,8 +26,13 @@ int main(int count, char* arguments[]) {
                              .first_frame = scene->start,
                              .last_frame = scene->end,
                              .fps = scene->fps};
-  for (const pliant::RestShape& shape : simulation->rest_shapes())
-    plan.surfaces.push_back({shape.name, &shape.mesh, rest->surface(shape.name).positions()});
+  for (const pliant::RestShape& shape : simulation->rest_shapes()) {
+    const pliant::SurfaceFrame& surface = rest->surface(shape.name);
+    plan.surfaces.push_back({.name = shape.name,
+                             .mesh = &shape.mesh,
+                             .rest = surface.positions(),
+                             .is_mirrored = surface.transform().is_mirrored()});
+  }
   const auto writer = pliant::make_writer(plan);
   if (!writer) return tell(writer.error());
 
@@ -38,7 +43,8 @@ int main(int count, char* arguments[]) {
     frame = *std::move(next);
     std::vector<pliant::SurfacePose> poses;
     for (const pliant::SurfaceFrame& surface : frame.surfaces())
-      poses.push_back({.positions = surface.positions()});  // vertices x 3, world space
+      poses.push_back({.positions = surface.positions(),  // vertices x 3, world space
+                       .is_mirrored = surface.transform().is_mirrored()});
     if (auto written = (*writer)->write(number, poses); !written) return tell(written.error());
   }
   // The file appears now, whole.

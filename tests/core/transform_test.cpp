@@ -85,3 +85,17 @@ TEST_CASE("tiny and huge scales are undone, though their volume is no number",
   const Field back = vectors_to_object(transform, vectors_to_world(transform, vectors));
   CHECK((back - vectors).cwiseAbs().maxCoeff() < 1e-14);
 }
+
+TEST_CASE("a transform reflects if it has an odd number of negative scales", "[core][transform]") {
+  for (const double size : {1e-120, 1.0, 1e120}) {
+    for (int signs = 0; signs < 8; ++signs) {
+      Vector3d scale;
+      for (int axis = 0; axis < 3; ++axis) scale[axis] = (signs >> axis & 1) != 0 ? -size : size;
+      const Transform transform = make_transform({}, {10, 20, 30}, scale, RotateOrder::Zyx);
+      CAPTURE(size, signs);
+      CHECK(transform.is_mirrored() == (scale[0] / size * scale[1] / size * scale[2] / size < 0));
+    }
+  }
+  CHECK_FALSE(make_transform({}, {}, {-1, 0, 1}, RotateOrder::Xyz).is_mirrored());
+  CHECK_FALSE(Transform().is_mirrored());
+}

@@ -15,7 +15,7 @@ TEST_CASE("a .npy file holds frames x vertices x 3 in C order", "[output][npy]")
   std::vector<Field> frames;
   for (int frame = 3; frame <= 5; ++frame) {
     frames.push_back(Field::Random(20, 3));
-    REQUIRE(writer->write(frame, frames.back()));
+    REQUIRE(writer->write(frame, {frames.back()}));
   }
   CHECK_FALSE(std::filesystem::exists(folder.file("a.npy")));
   REQUIRE(writer->finish());
@@ -40,7 +40,7 @@ TEST_CASE("an unfinished .npy file leaves nothing", "[output][npy]") {
   const Mesh mesh = make_mesh({});
   {
     auto writer = make_npy_writer({folder.file("a.npy"), &mesh, 1, 2}).value();
-    REQUIRE(writer->write(1, mesh.positions));
+    REQUIRE(writer->write(1, {mesh.positions}));
   }
   CHECK(folder.entry_count() == 0);
 }

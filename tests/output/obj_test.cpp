@@ -18,7 +18,7 @@ TEST_CASE("an OBJ sequence reads back exactly, quads, order and (u,v)", "[output
   auto writer = make_obj_writer({folder.file("a.obj"), &mesh, 1, 3}).value();
   for (int frame = 1; frame <= 3; ++frame) {
     const Field positions = Field::Random(20, 3) * 1e-3;
-    REQUIRE(writer->write(frame, positions));
+    REQUIRE(writer->write(frame, {positions}));
     const Mesh back = read_obj(folder.file("a.000" + std::to_string(frame) + ".obj")).value();
     CHECK(back.positions == positions);
     CHECK(back.uvs == mesh.uvs);
@@ -35,7 +35,7 @@ TEST_CASE("materials, groups and shading come back from an OBJ", "[output][obj]"
   const Mesh mesh = dressed_sheet();
   auto writer = make_obj_writer({folder.file("a.obj"), &mesh, 1, 1}).value();
   Field positions = mesh.positions + 0.2 * Field::Random(12, 3);
-  REQUIRE(writer->write(1, positions));
+  REQUIRE(writer->write(1, {positions}));
   const Mesh back = read_obj(folder.file("a.0001.obj")).value();
   CHECK(back.object == "Sheet");
   CHECK(back.materials == mesh.materials);
@@ -48,7 +48,7 @@ TEST_CASE("names that would break a line of an OBJ do not", "[output][obj]") {
   Mesh mesh = make_mesh({});
   mesh.object = "a\nb";
   mesh.materials = {{"x # y\\"}, {0, 0, 0, 0}};
-  REQUIRE(make_obj_writer({folder.file("a.obj"), &mesh, 1, 1}).value()->write(1, mesh.positions));
+  REQUIRE(make_obj_writer({folder.file("a.obj"), &mesh, 1, 1}).value()->write(1, {mesh.positions}));
   const Mesh back = read_obj(folder.file("a.0001.obj")).value();
   CHECK(back.object == "a_b");
   CHECK(back.materials.names == std::vector<std::string>{"x _ y_"});
@@ -58,8 +58,8 @@ TEST_CASE("assimp finds the vertices of an OBJ and of a PLY", "[output][obj]") {
   const ScratchFolder folder;
   const Mesh mesh = make_mesh({.columns = 5, .rows = 4});
   const Field positions = Field::Random(20, 3);
-  REQUIRE(make_obj_writer({folder.file("a.obj"), &mesh, 1, 1}).value()->write(1, positions));
-  REQUIRE(make_ply_writer({folder.file("a.ply"), &mesh, 1, 1}).value()->write(1, positions));
+  REQUIRE(make_obj_writer({folder.file("a.obj"), &mesh, 1, 1}).value()->write(1, {positions}));
+  REQUIRE(make_ply_writer({folder.file("a.ply"), &mesh, 1, 1}).value()->write(1, {positions}));
   for (const char* name : {"a.0001.obj", "a.0001.ply"}) {
     Assimp::Importer importer;
     const aiScene* const scene = importer.ReadFile(folder.file(name).string(), 0);

@@ -50,7 +50,7 @@ struct PlyFile {
 
 PlyFile written(const ScratchFolder& folder, const Mesh& mesh) {
   auto writer = make_ply_writer({folder.file("m.ply"), &mesh, 1, 1}).value();
-  REQUIRE(writer->write(1, mesh.positions));
+  REQUIRE(writer->write(1, {mesh.positions}));
   REQUIRE(writer->finish());
   return PlyFile(folder.file("m.0001.ply"));
 }
@@ -63,7 +63,7 @@ TEST_CASE("a PLY sequence holds the same doubles, (u,v) and faces", "[output][pl
   auto writer = make_ply_writer({folder.file("a.ply"), &mesh, 1, 3}).value();
   for (int frame = 1; frame <= 3; ++frame) {
     const Field positions = Field::Random(20, 3) * 1e-3;
-    REQUIRE(writer->write(frame, positions));
+    REQUIRE(writer->write(frame, {positions}));
     const PlyFile file(folder.file("a.000" + std::to_string(frame) + ".ply"));
     CHECK(file.header ==
           std::vector<std::string>{"ply", "format binary_little_endian 1.0", "element vertex 20",

@@ -44,7 +44,7 @@ TEST_CASE("a PC2 file has its header and every position", "[output][point_cache]
       make_pc2_writer(
           {.file = folder.file("a.pc2"), .mesh = &mesh, .first_frame = -2, .last_frame = 0})
           .value();
-  for (int k = 0; k < 3; ++k) REQUIRE(writer->write(k - 2, frames[static_cast<std::size_t>(k)]));
+  for (int k = 0; k < 3; ++k) REQUIRE(writer->write(k - 2, {frames[static_cast<std::size_t>(k)]}));
   CHECK(folder.entry_count() == 2);  // both unfinished
   CHECK_FALSE(std::filesystem::exists(folder.file("a.pc2")));
   REQUIRE(writer->finish());

@@ -62,7 +62,7 @@ TEST_CASE("files of several blocks hold every number in its place", "[output][ro
                    : is_mdd ? make_mdd_writer(plan)
                             : make_pc2_writer(plan))
                       .value();
-    for (int k = 0; k < 2; ++k) REQUIRE(writer->write(k + 1, frames[k]));
+    for (int k = 0; k < 2; ++k) REQUIRE(writer->write(k + 1, {frames[k]}));
     REQUIRE(writer->finish());
     if (is_npy) {
       const NpyFile npy = NpyFile::read(plan.file);
@@ -98,7 +98,7 @@ TEST_CASE("a coordinate beyond float in a later block is named", "[output][row_o
   positions(rows_at_a_time + 6, 1) = -1e39;
   positions(rows_at_a_time + 7, 0) = 1e300;
   auto writer = make_pc2_writer({folder.file("a.pc2"), &large_mesh(), 1, 1}).value();
-  const auto written = writer->write(1, positions);
+  const auto written = writer->write(1, {positions});
   REQUIRE_FALSE(written);
   CHECK(written.error().code == ErrorCode::NotFinite);
   CHECK_THAT(written.error().message,

@@ -29,7 +29,7 @@ inline std::string write_cache(const ScratchFolder& folder, const std::string& n
                                    : make_mdd_writer(plan);
   bool is_written = true;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto written = (*writer)->write(first + static_cast<int>(k), samples[k]);
+    const auto written = (*writer)->write(first + static_cast<int>(k), {samples[k]});
     is_written = is_written && written;
   }
   const auto finished = (*writer)->finish();

@@ -144,6 +144,36 @@ TEST_CASE("the shapes of takes have their peaks", "[view][sweep]") {
   }
 }
 
+TEST_CASE("a take whose surface is mirrored has its triangles turned round", "[view][sweep]") {
+  const RunSweep sweep({"sheet.scale=2 2 2,-2 2 2"});
+  TakeShapes shapes(1000);
+  for (const std::size_t take : {0, 1}) {
+    const auto outcome = sweep->sweep().run(
+        take, {.watch = [&](const Simulation& simulation, const Frame& frame) -> Result<bool> {
+          if (auto added = shapes.add(take, simulation, frame); !added) return fail(added.error());
+          return false;
+        }});
+    REQUIRE(outcome.measures);
+  }
+  Arrays arrays;
+  const Json json = shapes.finish(arrays);
+  const std::string bytes = arrays.take();
+  std::vector<std::vector<std::uint32_t>> meshes;
+  for (const std::size_t take : {0, 1}) {
+    const std::size_t mesh = json["takes"][take]["mesh"];
+    auto triangles = array<std::uint32_t>(bytes, json["meshes"][mesh]);
+    for (std::size_t k = 3; k < triangles.size(); ++k) triangles[k] += triangles[k - 3];
+    meshes.push_back(std::move(triangles));
+  }
+  REQUIRE(meshes[0].size() == 3 * 128);
+  REQUIRE(meshes[1].size() == meshes[0].size());
+  for (std::size_t k = 0; k < meshes[0].size(); k += 3) {
+    CHECK(meshes[1][k] == meshes[0][k]);
+    CHECK(meshes[1][k + 1] == meshes[0][k + 2]);
+    CHECK(meshes[1][k + 2] == meshes[0][k + 1]);
+  }
+}
+
 TEST_CASE("the table on a page has the numbers of the sweep", "[view][sweep]") {
   const RunSweep sweep({"sheet.c=-8,0.5", "poke.direction=0 1 0,1 0 0"});
   SweepStatus status = sweep->status().value();

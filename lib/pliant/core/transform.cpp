@@ -61,16 +61,21 @@ Matrix3d adjugate_inverse(const Matrix3d& a) {
   return b;
 }
 
-// Not finite if there is no inverse. Each column is first scaled to about 1 by a power of two:
-// products of three tiny or huge numbers would otherwise underflow or overflow. The scaling changes
-// no other bit.
-Matrix3d inverse(Matrix3d a) {
-  int exponents[3];
+// Scales each column to about 1 by a power of two, since products of three tiny or huge numbers
+// would underflow or overflow. Changes no other bit. Returns the exponents.
+std::array<int, 3> scale_columns(Matrix3d& a) {
+  std::array<int, 3> exponents{};
   for (int column = 0; column < 3; ++column) {
     std::frexp(a.col(column).cwiseAbs().maxCoeff(), &exponents[column]);
     for (int row = 0; row < 3; ++row)
       a(row, column) = std::ldexp(a(row, column), -exponents[column]);
   }
+  return exponents;
+}
+
+// Not finite if there is no inverse.
+Matrix3d inverse(Matrix3d a) {
+  const std::array<int, 3> exponents = scale_columns(a);
   Matrix3d b = adjugate_inverse(a);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -101,6 +106,12 @@ std::array<int, 3> axes(RotateOrder order) {
 }
 
 bool Transform::is_invertible() const { return inverse(linear).allFinite(); }
+
+bool Transform::is_mirrored() const {
+  Matrix3d scaled = linear;
+  scale_columns(scaled);
+  return determinant(scaled) < 0;
+}
 
 Transform make_transform(const Vector3d& translate, const Vector3d& rotate_degrees,
                          const Vector3d& scale, RotateOrder order) {

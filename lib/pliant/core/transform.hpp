@@ -29,6 +29,9 @@ struct Transform {
 
   /// Whether the inverse exists: no direction is collapsed.
   bool is_invertible() const;
+
+  /// Whether it reflects: its determinant is negative, so that a face turns the other way round.
+  bool is_mirrored() const;
 };
 
 /// T + R S p, right-handed. SPEC 7. `rotate_degrees` [degrees], `scale` [1].

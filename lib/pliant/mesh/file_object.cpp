@@ -63,7 +63,7 @@ Result<std::size_t> choose_node(std::span<const std::string> nodes,
   return choose_object(!object.empty() && !is_node && is_mesh ? meshes : nodes, object);
 }
 
-Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions) {
+Result<void> to_file_space(const Eigen::Matrix4d& to_file, Mesh& mesh) {
   if (to_file == Eigen::Matrix4d::Identity()) return {};  // otherwise -0 would become 0
   const Eigen::RowVector4d last_row = to_file.row(3);
   if (!((last_row - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= affine_tolerance)) {
@@ -72,7 +72,9 @@ Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions) {
                     "{} {} {} {}, not 0 0 0 1",
                     last_row[0], last_row[1], last_row[2], last_row[3]));
   }
-  positions = to_world({to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()}, positions);
+  const Transform transform{to_file.topLeftCorner<3, 3>(), to_file.topRightCorner<3, 1>()};
+  mesh.positions = to_world(transform, mesh.positions);
+  if (transform.is_mirrored()) turn_faces(mesh);
   return {};
 }
 

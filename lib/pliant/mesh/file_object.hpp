@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
 
@@ -29,8 +29,9 @@ Result<std::size_t> choose_object(std::span<const std::string> names, const std:
 Result<std::size_t> choose_node(std::span<const std::string> nodes,
                                 std::span<const std::string> meshes, const std::string& object);
 
-/// Transforms positions of an object to the space of its file. Errors: the transform is not affine.
-Result<void> to_file_space(const Eigen::Matrix4d& to_file, Field& positions);
+/// Transforms an object to the space of its file. Its faces are turned round if that reflects them,
+/// so that they keep their outer sides. Errors: the transform is not affine.
+Result<void> to_file_space(const Eigen::Matrix4d& to_file, Mesh& mesh);
 
 /// Whether an object with `set_count` sets of (u,v) has the set `uv_set`, counted from 0. Set 0 may
 /// be missing: a mesh need not have (u,v). Errors: names the number of sets.

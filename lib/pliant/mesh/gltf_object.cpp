@@ -270,8 +270,7 @@ Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorRea
                      int uv_set, std::span<const std::string> attributes) {
   auto mesh = Merger(document, object, accessors, uv_set, attributes).merge();
   if (!mesh) return mesh;
-  if (auto applied = to_file_space(object.to_file, mesh->positions); !applied)
-    return fail(applied.error());
+  if (auto applied = to_file_space(object.to_file, *mesh); !applied) return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
 }

@@ -1,5 +1,6 @@
 #include "pliant/mesh/mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -77,6 +78,18 @@ bool operator==(const Mesh& a, const Mesh& b) {
          a.corner_normals == normals && a.materials == materials && a.groups == groups &&
          a.object == object && a.attributes == attributes && a.first_index == first &&
          a.file_vertices == numbers;
+}
+
+void turn_faces(Mesh& mesh) {
+  std::ptrdiff_t first = 0;
+  for (const int size : mesh.face_sizes) {
+    for (std::vector<int>* const corners :
+         {&mesh.corner_vertices, &mesh.corner_uvs, &mesh.corner_normals}) {
+      if (corners->empty()) continue;  // of the normals
+      std::reverse(corners->begin() + first + 1, corners->begin() + first + size);
+    }
+    first += size;
+  }
 }
 
 Result<void> check_mesh(const Mesh& mesh) {

@@ -61,6 +61,10 @@ struct Mesh {
   friend bool operator==(const Mesh& a, const Mesh& b);
 };
 
+/// Turns every face the other way round: its corners in the opposite order, from the same first one
+/// on.
+void turn_faces(Mesh& mesh);
+
 /// Whether a mesh made by a program fulfils the comments on its members. Errors, naming the face,
 /// corner or vertex, counted from `first_index`: index arrays of different lengths, faces with
 /// fewer than three corners, indices out of range, coordinates or attributes that are not finite,

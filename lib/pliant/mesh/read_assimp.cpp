@@ -229,8 +229,7 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
     return fail(reader_failed(format, "produced a different object from the one requested"));
   auto mesh = merged(*message, uv_set);
   if (!mesh) return mesh;
-  if (auto applied = to_file_space(message->to_file, mesh->positions); !applied)
-    return fail(applied.error());
+  if (auto applied = to_file_space(message->to_file, *mesh); !applied) return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
 }

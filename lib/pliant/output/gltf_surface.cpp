@@ -87,7 +87,8 @@ bool GltfKeys::is_moving() const {
 
 GltfSurface::GltfSurface(const AnimatedSurface& surface, bool is_placed)
     : name_(surface.name),
-      mesh_(*surface.mesh),
+      written_(*surface.mesh),
+      mesh_(written_.in_space(surface.is_mirrored)),
       is_placed_(is_placed),
       shape_(make_gltf_shape(mesh_)),
       keys_{{"translation", 3}, {"rotation", 4}, {"scale", 3}} {}

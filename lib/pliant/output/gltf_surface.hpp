@@ -7,6 +7,7 @@
 #include "pliant/output/gltf_buffer.hpp"
 #include "pliant/output/gltf_shape.hpp"
 #include "pliant/output/writer.hpp"
+#include "pliant/output/written_mesh.hpp"
 
 namespace pliant {
 
@@ -54,6 +55,7 @@ class GltfSurface {
   std::vector<float> normals_at(const Field& positions) const;
 
   std::string name_;
+  WrittenMesh written_;
   const Mesh& mesh_;
   bool is_placed_;
   GltfShape shape_;

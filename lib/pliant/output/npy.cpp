@@ -31,7 +31,8 @@ class NpyWriter final : public SurfaceWriter {
  public:
   explicit NpyWriter(AtomicFile file) : file_(std::move(file)) {}
 
-  Result<void> write(int, const Field& positions) override {
+  Result<void> write(int, const SurfacePose& pose) override {
+    const Field& positions = pose.positions;
     numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
     return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) {
       const std::span<double> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));

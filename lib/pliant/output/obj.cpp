@@ -1,20 +1,27 @@
+#include <array>
+#include <optional>
+
 #include "pliant/output/formats.hpp"
 #include "pliant/output/obj_text.hpp"
 #include "pliant/output/sequence.hpp"
+#include "pliant/output/written_mesh.hpp"
 
 namespace pliant {
 namespace {
 
 class ObjWriter final : public SequenceWriter {
  public:
-  explicit ObjWriter(const SurfacePlan& plan) : SequenceWriter(plan), text_(*plan.mesh) {}
+  explicit ObjWriter(const SurfacePlan& plan) : SequenceWriter(plan), mesh_(*plan.mesh) {}
 
  private:
-  Result<void> write_frame(const Field& positions, const ByteSink& sink) override {
-    return text_.write(positions, sink);
+  Result<void> write_frame(const SurfacePose& pose, const ByteSink& sink) override {
+    std::optional<ObjText>& text = texts_[pose.is_mirrored ? 1 : 0];
+    if (!text) text.emplace(mesh_.in_space(pose.is_mirrored));
+    return text->write(pose.positions, sink);
   }
 
-  ObjText text_;
+  WrittenMesh mesh_;
+  std::array<std::optional<ObjText>, 2> texts_;  // that of a mirrored space second
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "pliant/mesh/normals.hpp"
 #include "pliant/output/formats.hpp"
 #include "pliant/output/sequence.hpp"
+#include "pliant/output/written_mesh.hpp"
 
 namespace pliant {
 namespace {
@@ -68,12 +69,13 @@ class PlyWriter final : public SequenceWriter {
  public:
   explicit PlyWriter(const SurfacePlan& plan)
       : SequenceWriter(plan),
+        written_(*plan.mesh),
         mesh_(*plan.mesh),
         uvs_(vertex_uvs(mesh_)),
-        normals_(vertex_normals(mesh_)) {
-    const bool has_corner_uvs = uvs_.empty() && has_uvs(mesh_);
-    const bool has_long_counts = needs_long_counts(mesh_, has_corner_uvs ? 2 : 1);
-    const std::string_view count = has_long_counts ? "uint" : "uchar";
+        normals_(vertex_normals(mesh_)),
+        has_corner_uvs_(uvs_.empty() && has_uvs(mesh_)),
+        has_long_counts_(needs_long_counts(mesh_, has_corner_uvs_ ? 2 : 1)) {
+    const std::string_view count = has_long_counts_ ? "uint" : "uchar";
     header_ = fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment pliant\nelement vertex {}\n"
         "property double x\nproperty double y\nproperty double z\n{}{}"
@@ -81,14 +83,17 @@ class PlyWriter final : public SequenceWriter {
         mesh_.vertex_count(),
         normals_.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n",
         uvs_.empty() ? "" : "property double s\nproperty double t\n", mesh_.face_sizes.size(),
-        count, has_corner_uvs ? fmt::format("property list {} float texcoord\n", count) : "");
+        count, has_corner_uvs_ ? fmt::format("property list {} float texcoord\n", count) : "");
     make_vertices();
-    make_faces(has_corner_uvs, has_long_counts);
   }
 
  private:
-  Result<void> write_frame(const Field& positions, const ByteSink& sink) override {
-    const Field normals = normals_.empty() ? Field() : unit_normals(mesh_, positions);
+  Result<void> write_frame(const SurfacePose& pose, const ByteSink& sink) override {
+    const Field& positions = pose.positions;
+    const Mesh& mesh = written_.in_space(pose.is_mirrored);
+    std::string& faces = faces_[pose.is_mirrored ? 1 : 0];
+    if (faces.empty()) faces = faces_of(mesh);
+    const Field normals = normals_.empty() ? Field() : unit_normals(mesh, positions);
     char* vertex = vertices_.data();
     for (Eigen::Index row = 0; row < positions.rows(); ++row, vertex += vertex_size()) {
       const double position[] = {positions(row, 0), positions(row, 1), positions(row, 2)};
@@ -101,7 +106,7 @@ class PlyWriter final : public SequenceWriter {
     }
     if (auto written = sink(header_); !written) return written;
     if (auto written = sink(vertices_); !written) return written;
-    return sink(faces_);
+    return sink(faces);
   }
 
   std::size_t vertex_size() const {
@@ -119,38 +124,43 @@ class PlyWriter final : public SequenceWriter {
     }
   }
 
-  void make_faces(bool has_corner_uvs, bool has_long_counts) {
+  std::string faces_of(const Mesh& mesh) const {
+    std::string faces;
     const auto append_count = [&](int count) {
-      if (has_long_counts) {
-        append(faces_, static_cast<std::uint32_t>(count));
+      if (has_long_counts_) {
+        append(faces, static_cast<std::uint32_t>(count));
       } else {
-        append(faces_, static_cast<std::uint8_t>(count));
+        append(faces, static_cast<std::uint8_t>(count));
       }
     };
     std::size_t first = 0;
-    for (const int size : mesh_.face_sizes) {
+    for (const int size : mesh.face_sizes) {
       const std::size_t end = first + static_cast<std::size_t>(size);
       append_count(size);
       for (std::size_t k = first; k < end; ++k)
-        append(faces_, static_cast<std::int32_t>(mesh_.corner_vertices[k]));
-      if (has_corner_uvs) append_count(2 * size);
-      for (std::size_t k = first; k < end && has_corner_uvs; ++k) {
-        const int uv = mesh_.corner_uvs[k];
+        append(faces, static_cast<std::int32_t>(mesh.corner_vertices[k]));
+      if (has_corner_uvs_) append_count(2 * size);
+      for (std::size_t k = first; k < end && has_corner_uvs_; ++k) {
+        const int uv = mesh.corner_uvs[k];
         for (int n = 0; n < 2; ++n) {
-          append(faces_,
-                 uv < 0 ? 0.0f : static_cast<float>(mesh_.uvs[static_cast<std::size_t>(uv)][n]));
+          append(faces,
+                 uv < 0 ? 0.0f : static_cast<float>(mesh.uvs[static_cast<std::size_t>(uv)][n]));
         }
       }
       first = end;
     }
+    return faces;
   }
 
+  WrittenMesh written_;
   const Mesh& mesh_;
   std::vector<Uv> uvs_;       // of the vertices, if each has one
   std::vector<int> normals_;  // likewise
-  // Everything but positions and normals is the same in every frame.
+  bool has_corner_uvs_;
+  bool has_long_counts_;
+  // Everything but positions and normals is the same in every frame of a space.
   std::string header_;
-  std::string faces_;
+  std::array<std::string, 2> faces_;  // those of a mirrored space second
   std::string vertices_;
 };
 

@@ -12,6 +12,7 @@
 #include "pliant/output/obj_text.hpp"
 #include "pliant/output/row_order.hpp"
 #include "pliant/output/single_precision.hpp"
+#include "pliant/output/written_mesh.hpp"
 
 namespace pliant {
 namespace {
@@ -41,7 +42,8 @@ class PointCacheWriter final : public SurfaceWriter {
   PointCacheWriter(AtomicFile cache, AtomicFile mesh, int first_index)
       : cache_(std::move(cache)), mesh_(std::move(mesh)), first_index_(first_index) {}
 
-  Result<void> write(int frame, const Field& positions) override {
+  Result<void> write(int frame, const SurfacePose& pose) override {
+    const Field& positions = pose.positions;
     numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
     return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) -> Result<void> {
       const std::span<float> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
@@ -67,7 +69,8 @@ class PointCacheWriter final : public SurfaceWriter {
 Result<AtomicFile> write_mesh(const SurfacePlan& plan) {
   auto file = AtomicFile::create(std::filesystem::path(plan.file).replace_extension(".obj"));
   if (!file) return file;
-  auto written = ObjText(*plan.mesh)
+  WrittenMesh mesh(*plan.mesh);
+  auto written = ObjText(mesh.in_space(plan.is_mirrored))
                      .write(plan.rest ? *plan.rest : plan.mesh->positions,
                             [&](std::string_view bytes) { return file->write(bytes); });
   if (!written) return fail(written.error());

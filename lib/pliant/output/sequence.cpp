@@ -135,9 +135,9 @@ Result<void> check_sequence(const SurfacePlan& plan) {
 SequenceWriter::SequenceWriter(const SurfacePlan& plan)
     : pattern_(plan.file), resumes_(plan.resume) {}
 
-Result<void> SequenceWriter::write(int frame, const Field& positions) {
+Result<void> SequenceWriter::write(int frame, const SurfacePose& pose) {
   const std::filesystem::path name = sequence_file(pattern_, frame);
-  if (resumes_ && is_there(name, positions)) {
+  if (resumes_ && is_there(name, pose)) {
     ++counts_.kept;
     return {};
   }
@@ -145,7 +145,7 @@ Result<void> SequenceWriter::write(int frame, const Field& positions) {
   // a moment earlier.
   auto file = AtomicFile::create(name, Flush::Bytes);
   if (!file) return fail(file.error());
-  auto written = write_frame(positions, [&](std::string_view bytes) { return file->write(bytes); });
+  auto written = write_frame(pose, [&](std::string_view bytes) { return file->write(bytes); });
   if (written) written = file->commit();
   if (written) ++counts_.written;
   return written;
@@ -154,14 +154,14 @@ Result<void> SequenceWriter::write(int frame, const Field& positions) {
 Result<void> SequenceWriter::finish() { return flush_folder(pattern_); }
 
 // Whether the file has the content to be written; if so, flushes it to the disk.
-bool SequenceWriter::is_there(const std::filesystem::path& file, const Field& positions) {
+bool SequenceWriter::is_there(const std::filesystem::path& file, const SurfacePose& pose) {
   FileBytes bytes(file);
   if (!bytes.is_open()) return false;
   const auto is_next = [&](std::string_view part) -> Result<void> {
     if (bytes.next_are(part)) return {};
     return fail(ErrorCode::Unreadable, "differs");
   };
-  return write_frame(positions, is_next) && bytes.are_all_read() && bytes.flush();
+  return write_frame(pose, is_next) && bytes.are_all_read() && bytes.flush();
 }
 
 }  // namespace pliant

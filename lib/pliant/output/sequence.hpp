@@ -27,7 +27,7 @@ Result<void> check_sequence(const SurfacePlan& plan);
 /// damaged.
 class SequenceWriter : public SurfaceWriter {
  public:
-  Result<void> write(int frame, const Field& positions) final;
+  Result<void> write(int frame, const SurfacePose& pose) final;
   Result<void> finish() final;
   FileCounts file_counts() const final { return counts_; }
 
@@ -36,9 +36,9 @@ class SequenceWriter : public SurfaceWriter {
 
  private:
   /// The content of the file of one frame.
-  virtual Result<void> write_frame(const Field& positions, const ByteSink& sink) = 0;
+  virtual Result<void> write_frame(const SurfacePose& pose, const ByteSink& sink) = 0;
 
-  bool is_there(const std::filesystem::path& file, const Field& positions);
+  bool is_there(const std::filesystem::path& file, const SurfacePose& pose);
 
   std::filesystem::path pattern_;
   bool resumes_;

@@ -4,9 +4,20 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/transform.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
+
+/// One surface at one frame.
+struct SurfacePose {
+  Field positions;  ///< #vertices x 3, in the order of the mesh; in object space if it is placed
+  Placement placement = {};  ///< of a placed surface: object to world
+
+  /// Whether the transform that gave the positions reflects (`Transform::is_mirrored`): then the
+  /// faces are written turned round, so that they keep their outer sides.
+  bool is_mirrored = false;
+};
 
 /// Number of files of a sequence that were already correct, and of those written.
 struct FileCounts {
@@ -23,9 +34,9 @@ class SurfaceWriter {
   SurfaceWriter& operator=(const SurfaceWriter&) = delete;
   virtual ~SurfaceWriter() = default;
 
-  /// Positions (#vertices x 3, in the order of the mesh) of the next frame. Errors: Unwritable;
-  /// NotFinite if the format has only single precision and a coordinate is out of range.
-  virtual Result<void> write(int frame, const Field& positions) = 0;
+  /// The surface at the next frame; not its placement. Errors: Unwritable; NotFinite if the format
+  /// has only single precision and a coordinate is out of range.
+  virtual Result<void> write(int frame, const SurfacePose& pose) = 0;
 
   /// Gives the result its name. Errors: Unwritable. Requires: every frame has been written.
   virtual Result<void> finish() = 0;
@@ -42,6 +53,7 @@ struct SurfacePlan {
   int last_frame = 0;
   double fps = 24;              ///< [1/s]
   const Field* rest = nullptr;  ///< positions at rest in the frames' space; null: those of the mesh
+  bool is_mirrored = false;     ///< as of a pose, of the rest positions
   bool resume = false;          ///< keeps files of a sequence that already have the right content
 
   int frame_count() const { return last_frame - first_frame + 1; }

@@ -82,7 +82,8 @@ std::string rotate_operation(RotateOrder order) {
 UsdaSurface::UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface,
                          SpoolFile points, SpoolFile normals, SpoolFile velocities)
     : name_(surface.name),
-      mesh_(surface.mesh),
+      written_(*surface.mesh),
+      mesh_(&written_.in_space(surface.is_mirrored)),
       first_frame_(plan.first_frame),
       last_frame_(plan.last_frame),
       fps_(plan.fps),

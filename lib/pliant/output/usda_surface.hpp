@@ -7,6 +7,7 @@
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/spool_file.hpp"
 #include "pliant/output/writer.hpp"
+#include "pliant/output/written_mesh.hpp"
 
 namespace pliant {
 
@@ -48,6 +49,7 @@ class UsdaSurface {
   std::string subsets(const std::function<std::string(const std::string&)>& material_path) const;
 
   std::string name_;
+  WrittenMesh written_;
   const Mesh* mesh_;
   int first_frame_;
   int last_frame_;

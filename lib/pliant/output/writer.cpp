@@ -72,7 +72,7 @@ class SurfaceBySurface final : public AnimationWriter {
   Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
     PLIANT_EXPECTS(surfaces.size() == writers_.size());
     for (std::size_t k = 0; k < writers_.size(); ++k) {
-      if (auto written = writers_[k]->write(frame, surfaces[k].positions); !written) return written;
+      if (auto written = writers_[k]->write(frame, surfaces[k]); !written) return written;
     }
     return {};
   }
@@ -108,6 +108,7 @@ Result<std::unique_ptr<AnimationWriter>> make_surface_by_surface(const Animation
                                               .last_frame = plan.last_frame,
                                               .fps = plan.fps,
                                               .rest = &surface.rest,
+                                              .is_mirrored = surface.is_mirrored,
                                               .resume = plan.resume});
     if (!writer) return fail(writer.error());
     writers.push_back(*std::move(writer));

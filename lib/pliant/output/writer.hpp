@@ -8,17 +8,10 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/core/transform.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/output/surface_writer.hpp"
 
 namespace pliant {
-
-/// One surface at one frame.
-struct SurfacePose {
-  Field positions;  ///< #vertices x 3, in the order of the mesh; in object space if it is placed
-  Placement placement = {};  ///< of a placed surface: object to world
-};
 
 /// Writes the frames of a scene, first to last. Files appear whole or not at all: without `finish`
 /// a format of one file leaves nothing behind. After `finish` all is on the disk.
@@ -45,6 +38,10 @@ struct AnimatedSurface {
   std::string name;            ///< [A-Za-z_][A-Za-z0-9_-]*, unique
   const Mesh* mesh = nullptr;  ///< must outlive the writer
   Field rest;                  ///< #vertices x 3: at rest, in the space of the poses
+
+  /// As of a pose, of `rest`. Formats whose faces are the same at all frames turn them by this one,
+  /// so it should be that of the first frame; a sequence turns them by that of each frame.
+  bool is_mirrored = false;
 };
 
 /// The parameters of a writer.

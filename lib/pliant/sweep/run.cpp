@@ -42,7 +42,8 @@ class TakeWriter {
       const Transform transform = scene.surfaces[k].transform.at(frames.first);
       plan.surfaces.push_back({.name = shape.name,
                                .mesh = &shape.mesh,
-                               .rest = to_world(transform, shape.mesh.positions)});
+                               .rest = to_world(transform, shape.mesh.positions),
+                               .is_mirrored = transform.is_mirrored()});
     }
     auto writer = make_writer(plan);
     if (!writer) return fail(writer.error());
@@ -50,8 +51,11 @@ class TakeWriter {
   }
 
   Result<void> write(const Frame& frame) {
-    for (std::size_t k = 0; k < poses_.size(); ++k)
-      poses_[k].positions = frame.surfaces()[k].positions(std::move(poses_[k].positions));
+    for (std::size_t k = 0; k < poses_.size(); ++k) {
+      const SurfaceFrame& surface = frame.surfaces()[k];
+      poses_[k].positions = surface.positions(std::move(poses_[k].positions));
+      poses_[k].is_mirrored = surface.transform().is_mirrored();
+    }
     return writer_->write(frame.number(), poses_);
   }
 
