@@ -137,14 +137,18 @@ class Closed(Command):
         self.run_pliant("replay", "verify", "log.jsonl", "scene.xml")
 
     def test_errors_name_line_and_rule(self):
-        self.write("tube.obj", tube())
-        for wrap, rule in (("v", "are 4 apart, but wrap makes them one node"),
-                           ('none" uv="grid', 'a seam; wrap="u" or "v" closes a grid there, and uv="surface"')):
+        for wrap, is_split, rule in (
+                ("v", True, "are 4 apart, but wrap makes them one node"),
+                ('none" uv="grid', False, 'a seam; wrap="u" or "v" closes a grid there, and uv="surface"')):
+            self.write("tube.obj", tube(is_split=is_split))
             self.scene(self.poke(0), wrap=wrap)
             result = self.run_pliant("validate", "scene.xml", code=2)
-            self.assertIn('scene.xml:3: error: surface "tube", mesh tube.obj: the mesh is no even grid: vertices ',
+            self.assertIn('scene.xml:3: error: surface "tube", mesh tube.obj: the mesh is no even grid: vert',
                           result.stderr)
             self.assertIn(rule, result.stderr)
+        self.write("tube.obj", tube())
+        self.scene(self.poke(0), wrap='none" uv="grid')  # cut: both sides are there
+        self.run_pliant("validate", "scene.xml")
         self.scene(self.poke(0), wrap="uw")
         result = self.run_pliant("validate", "scene.xml", code=2)
         self.assertRegex(result.stderr, r'scene.xml:3: error: .*wrap="uw": unknown word.*none, u, v, uv')

@@ -273,6 +273,22 @@ TEST_CASE("wrap makes the first and the last column one", "[mesh][grid_mapping][
   }
 }
 
+TEST_CASE("a tube that is cut keeps the two sides of its cut apart if that is asked for",
+          "[mesh][grid_mapping][closed]") {
+  const Mesh mesh = tube(7, 5, true);
+  const GridMapping mapping = find_grid(mesh, Wrap::None, Seams::Open).value();
+  CHECK(mapping.grid == Grid{8, 5, 1.0 / 7, 0.25, false, false});
+  for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+    CHECK(mapping.vertex_nodes[vertex] == vertex);
+    CHECK(mapping.rest.row(vertex) == mesh.positions.row(vertex));
+  }
+  // One vertex cannot be two nodes.
+  const auto whole = find_grid(tube(7, 5, false), Wrap::None, Seams::Open);
+  REQUIRE_FALSE(whole);
+  CHECK_THAT(whole.error().message, Contains("has several (u,v)"));
+  CHECK(find_grid(torus(0), Wrap::U, Seams::Open)->grid == Grid{8, 6, 0.125, 0.2, true, false});
+}
+
 TEST_CASE("a torus is closed along both", "[mesh][grid_mapping][closed]") {
   const double diagonal = std::sqrt(8.0 * 8 + 2 * 2 + 8 * 8);
   for (const double gap : {0.0, 0.7e-6 * diagonal}) {  // in two directions at a corner

@@ -193,7 +193,7 @@ Result<void> check_poles(const Mesh& mesh, const GridMapping& mapping,
 
 }  // namespace
 
-Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap) {
+Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
   // The first corner with a (u,v) gives the place of its vertex; the others must agree.
   const int vertex_count = mesh.vertex_count();
   std::vector<int> vertex_uvs(vertex_count, -1);
@@ -309,6 +309,7 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap) {
     }
   }
   if (auto round = check_poles(mesh, mapping, node_vertices); !round) return fail(round.error());
+  if (seams == Seams::Open) return mapping;
   if (const auto pair = nodes_in_one_place(mapping)) {
     const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
     return invalid(fmt::format(

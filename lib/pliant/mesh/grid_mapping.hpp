@@ -22,18 +22,25 @@ struct GridMapping {
 /// Largest distance of a u (v) from its lattice value, in spacings, for a lattice to be uniform.
 inline constexpr double lattice_tolerance = 1e-2;
 
+/// What nodes in one place are at rest.
+enum class Seams {
+  Refused,  ///< a sign that the mesh is closed there, so that it is no grid
+  Open,     ///< two nodes that stay apart: the mesh is cut there
+};
+
 /// Finds the grid of a mesh: hu = (u_max - u_min) / (columns - 1), likewise hv; a node is the
 /// lattice point within `lattice_tolerance` spacings. SPEC 1. Errors, naming the vertex as its file
 /// counts: a vertex without (u,v); one with (u,v) of several nodes (a seam); a lattice that is not
 /// uniform, has empty nodes, or fewer than 3 of them in a direction; vertices of one node with
-/// different rest positions; nodes at the same rest position (on the border within 1e-6 of the
-/// bounding box's diagonal, elsewhere exactly), which is how formats that split vertices store a
-/// seam.
+/// different rest positions; unless seams are open, nodes at the same rest position (on the border
+/// within 1e-6 of the bounding box's diagonal, elsewhere exactly), which is how formats that split
+/// vertices store a seam.
 ///
 /// With `wrap` the first and last column (row) of the lattice are one, so that the grid has one
 /// less: (u,v) that differ by the whole range are one node. Errors also: their vertices are further
 /// apart than 1e-6 of the diagonal; a pole, which is a row (column) across the closed direction
 /// with all its nodes in one place.
-Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap = Wrap::None);
+Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap = Wrap::None,
+                              Seams seams = Seams::Refused);
 
 }  // namespace pliant

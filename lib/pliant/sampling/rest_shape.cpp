@@ -116,7 +116,8 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
     return on_grid(surface, std::move(mesh), std::move(mapping));
   }
   const auto* const file = std::get_if<MeshFile>(&surface.shape);
-  auto grid = find_grid(mesh, reading.wrap);
+  auto grid = find_grid(mesh, reading.wrap,
+                        reading.uv == UvReading::Grid ? Seams::Open : Seams::Refused);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
   const std::string reason = grid.error().message;
   if (reading.uv == UvReading::Grid || reading.wrap != Wrap::None) {
