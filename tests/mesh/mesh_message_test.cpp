@@ -39,7 +39,7 @@ std::optional<double> sum_of_all(const std::string& bytes) {
     for (std::size_t k = 0; k < numbers.size(); ++k) sum += static_cast<double>(numbers[k]);
   };
   add(message->reason);
-  for (const ObjectNames& names : message->objects) {
+  for (const ObjectEntry& names : message->objects) {
     add(names.node);
     add(names.mesh);
   }
@@ -66,6 +66,9 @@ TEST_CASE("the reader's answer has what the file has", "[mesh][mesh_message]") {
   CHECK(message->kind == MessageKind::Scene);
   REQUIRE(message->objects.size() == 1);
   CHECK(message->objects[0].node == "cloth");
+  CHECK(message->objects[0].vertices == 16);
+  CHECK(message->objects[0].faces == 4);
+  CHECK(message->objects[0].left_out == 0);
   CHECK(message->chosen == 0u);
   REQUIRE(message->parts.size() == 1);
   CHECK(message->parts[0].sizes.size() == 4);

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <atomic>
 #include <random>
+#include <sstream>
 #include <thread>
 
 #include <Eigen/Geometry>
 
 #include "mesh/mesh_files.hpp"
+#include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/read_obj.hpp"
+#include "support/area_vectors.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
@@ -153,13 +156,67 @@ TEST_CASE("an object is a node with faces, taken by its name",
   CHECK(left.object == "left");
   CHECK(read_assimp(file, "right")->positions.col(0) ==
         (left.positions.col(0).array() + 5).matrix());
-  CHECK_THAT(complaint(file), EndsWith("a.dae: error: the file has 2 objects; choose one with the "
-                                       "attribute object: \"left\", \"right\""));
+  CHECK_THAT(complaint(file),
+             contains_text("a.dae: error: the file has 2 objects; choose one with the "
+                           "attribute object: \"left\", \"right\""));
   CHECK_THAT(complaint(file, "empty"),
-             EndsWith("the file has no object \"empty\"; it has: \"left\", \"right\""));
+             contains_text("the file has no object \"empty\"; it has: \"left\", \"right\""));
   CHECK_THAT(complaint(file, "cloth"), contains_text("2 objects named \"cloth\""));
   const auto single = folder.write("b.dae", sheet_collada(collada_node("left", instance)));
   CHECK(read_assimp(single, "cloth")->positions == left.positions);  // the mesh's own name
+}
+
+TEST_CASE("faces keep their outer sides where FBX and Collada reflect them",
+          "[mesh][read_assimp][threads][boxed]") {
+  const ScratchFolder folder;
+  const Mesh sheet = by_corner(small_sheet(false));
+  for (const std::string scale : {"-2 2 2", "2 -2 2", "-2 -2 -2", "-2 2 -2", "2 2 2"}) {
+    std::istringstream words(scale);
+    Vector3d numbers;
+    words >> numbers[0] >> numbers[1] >> numbers[2];
+    std::string fbx = fbx_text(small_sheet(false));
+    const std::string own = "\"A\", 2, 2, 2";
+    REQUIRE(fbx.find(own) != std::string::npos);
+    fbx.replace(fbx.find(own), own.size(),
+                fmt::format("\"A\", {}, {}, {}", numbers[0], numbers[1], numbers[2]));
+    const auto scaled =
+        collada_node("p", fmt::format("<scale>{}</scale>{}", scale, collada_node("n", instance)));
+    const Matrix3d linear = numbers.asDiagonal();
+    Mesh expected = sheet;
+    if (linear.determinant() < 0) turn_faces(expected);
+    for (const auto& file :
+         {folder.write("a.fbx", fbx), folder.write("a.dae", sheet_collada(scaled))}) {
+      CAPTURE(scale, file.string());
+      const Mesh read = read_assimp(file).value();
+      CHECK(read.corner_vertices == expected.corner_vertices);
+      CHECK(read.corner_uvs == expected.corner_uvs);
+      const Field moved = moved_areas(area_vectors(sheet), linear);
+      CHECK((area_vectors(read) - moved).cwiseAbs().maxCoeff() < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("the objects of FBX and Collada are listed as they are read and chosen",
+          "[mesh][read_assimp][threads][boxed]") {
+  const ScratchFolder folder;
+  const std::string nodes = collada_node("one", instance) + collada_node("two", instance) +
+                            collada_node("one", "<translate>5 0 0</translate>" + instance);
+  const auto file = folder.write("a.dae", sheet_collada(nodes));
+  const auto objects = assimp_objects(file).value();
+  REQUIRE(objects.size() == 3);
+  const std::vector<std::string> choices = {"one#1", "two", "one#2"};
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    CHECK(objects[k].name == (k == 1 ? "two" : "one"));
+    CHECK(objects[k].choice == choices[k]);
+    const Mesh mesh = read_assimp(file, choices[k]).value();
+    CHECK(static_cast<std::uint64_t>(mesh.vertex_count()) == objects[k].vertices);
+    CHECK(mesh.face_sizes.size() == objects[k].faces);
+    CHECK(mesh.positions.col(0).minCoeff() ==
+          small_sheet(false).positions.col(0).minCoeff() + (k == 2 ? 5 : 0));
+    CHECK(read_assimp(file, fmt::format("#{}", k + 1))->positions == mesh.positions);
+  }
+  CHECK_THAT(complaint(file, "one"), contains_text("2 objects named \"one\""));
+  CHECK_THAT(complaint(file, "#4"), contains_text("no object \"#4\""));
 }
 
 TEST_CASE("a list of many objects is cut", "[mesh][read_assimp][threads][boxed]") {
@@ -167,7 +224,7 @@ TEST_CASE("a list of many objects is cut", "[mesh][read_assimp][threads][boxed]"
   std::string nodes;
   for (int k = 0; k < 30; ++k) nodes += collada_node(fmt::format("n{}", k), instance);
   CHECK_THAT(complaint(folder.write("a.dae", sheet_collada(nodes))),
-             EndsWith("\"n9\", … (30 in all)"));
+             contains_text("\"n9\", … (30 in all); "));
 }
 
 TEST_CASE("a node's meshes of several materials become one",
@@ -224,10 +281,27 @@ TEST_CASE("points and lines are passed over, and are not enough",
 TEST_CASE("coordinates that are not finite are refused", "[mesh][read_assimp][threads][boxed]") {
   const ScratchFolder folder;
   Mesh sheet = small_sheet(false);
-  SECTION("a position") { sheet.positions(4, 1) = NAN; }
-  SECTION("a (u,v)") { sheet.uvs[4][0] = NAN; }
+  sheet.positions(4, 1) = NAN;
   const auto file = folder.write("a.fbx", fbx_binary(sheet));
   CHECK_THAT(complaint(file), contains_text("a.fbx: error: ") && contains_text("not finite"));
+}
+
+TEST_CASE("what has no place in a mesh of FBX or Collada is left out and counted",
+          "[mesh][read_assimp][threads][boxed]") {
+  const ScratchFolder folder;
+  Mesh sheet = small_sheet(false);
+  sheet.uvs[4][0] = NAN;  // of four corners
+  const Mesh mesh = read_assimp(folder.write("a.fbx", fbx_binary(sheet))).value();
+  CHECK(mesh.left_out == "4 (u,v) that are no pairs of numbers");
+  CHECK(std::count(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), -1) == 4);
+  const std::string lines =
+      "<lines count=\"2\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>"
+      "<p>0 1 1 2</p></lines>\n";
+  sheet = small_sheet(false);
+  const auto both =
+      collada(sheet, lines + collada_faces(sheet, 0, 4, false), collada_node("n", instance));
+  CHECK(read_assimp(folder.write("a.dae", both))->left_out ==
+        "2 faces of fewer than three corners");
 }
 
 TEST_CASE("a transform that is not affine is refused", "[mesh][read_assimp][threads][boxed]") {

@@ -9,6 +9,7 @@
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/normals.hpp"
 #include "pliant/mesh/read_obj.hpp"
+#include "support/area_vectors.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -248,13 +249,153 @@ TEST_CASE("an object of a glTF is a node with faces, taken by its name", "[mesh]
   CHECK(parse_exactly(text, "left")->object == "left");
   CHECK(parse_exactly(text, "right")->positions == other.positions);
   CHECK(parse_exactly(text, "knit")->positions == other.positions);  // the mesh's own name
-  CHECK_THAT(gltf_complaint(text), EndsWith("a.gltf: error: the file has 2 objects; choose one "
-                                            "with the attribute object: \"left\", \"right\""));
+  CHECK_THAT(gltf_complaint(text),
+             contains_text("a.gltf: error: the file has 2 objects; choose one "
+                           "with the attribute object: \"left\", \"right\""));
   CHECK_THAT(gltf_complaint(text, "empty"),
-             EndsWith("the file has no object \"empty\"; it has: \"left\", \"right\""));
+             contains_text("the file has no object \"empty\"; it has: \"left\", \"right\"; "
+                           "`pliant info FILE` lists all of them whole"));
   const std::string nameless = R"({"children":[1,2]},{"mesh":0},{"mesh":1})";
   CHECK(parse_exactly(gltf.text(first + "," + second, nameless), "nodes[2]")->positions ==
         other.positions);
+}
+
+TEST_CASE("faces keep their outer sides in a node that reflects them", "[mesh][read_gltf]") {
+  Gltf gltf;
+  Mesh sheet = small_sheet(true);
+  for (int k = 0; k < sheet.vertex_count(); ++k) sheet.positions(k, 1) = 0.25 * (k % 3) * (k % 2);
+  const std::string meshes = gltf_mesh(gltf.primitive(sheet));
+  struct Case {
+    std::string parent, own;
+    bool is_mirrored;
+  };
+  const std::string one = R"("scale":[1,1,1])";
+  for (const Case& c :
+       {Case{one, R"("scale":[2,1,1])", false}, Case{one, R"("scale":[-1,1,1])", true},
+        Case{R"("scale":[1,-2,1])", one, true},
+        Case{R"("scale":[-1,-1,1])", R"("scale":[1,1,-1])", true},
+        Case{R"("scale":[1,-1,1])", R"("scale":[1,1,-1])", false},
+        Case{one, R"("scale":[-1,-1,-1],"rotation":[0.6,0,0,0.8])", true},
+        Case{one, R"("matrix":[0,1,0,0,1,0,0,0,0,0,1,0,5,0,0,1])", true},
+        Case{one, R"("matrix":[1,0.5,0,0,0,1,0,0,0.5,0,2,0,0,0,0,1])", false},
+        Case{one, R"("scale":[-1e-120,1e-120,1e-120])", true}}) {
+    CAPTURE(c.parent, c.own);
+    const std::string nodes =
+        fmt::format(R"({{"children":[1],{}}},{{"mesh":0,{}}})", c.parent, c.own);
+    const Mesh read = parse_exactly(gltf.text(meshes, nodes)).value();
+    Mesh expected = sheet;
+    if (c.is_mirrored) turn_faces(expected);
+    CHECK(read.corner_vertices == expected.corner_vertices);
+    CHECK(read.corner_uvs == expected.corner_uvs);
+    if (c.own.find("e-120") != std::string::npos) continue;  // its areas are no numbers
+    // The map, from what it does to the vertices.
+    const Eigen::RowVector3d origin = sheet.positions.row(0), place = read.positions.row(0);
+    const Eigen::MatrixXd before = sheet.positions.rowwise() - origin;
+    const Eigen::MatrixXd after = read.positions.rowwise() - place;
+    const Matrix3d linear =
+        (before.transpose() * before).inverse().eval() * before.transpose() * after;
+    CHECK((linear.determinant() < 0) == c.is_mirrored);
+    const Field moved = moved_areas(area_vectors(sheet), linear.transpose());
+    CHECK((area_vectors(read) - moved).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("a glTF's objects are listed as they are read and chosen", "[mesh][read_gltf]") {
+  Gltf gltf;
+  const std::string small = gltf_mesh(gltf.primitive(small_sheet(true)), "weave");
+  const std::string large =
+      gltf_mesh(gltf.primitive(make_mesh({.columns = 4, .rows = 5, .triangles = true})), "knit");
+  const std::string name(200, 'n');
+  const std::string nodes =
+      fmt::format(R"({{"name":"a/b","mesh":0}},{{"name":"a/b","mesh":1}},{{"name":"{}","mesh":0}},)"
+                  R"({{"name":"a/b#2","mesh":1}},{{"mesh":0}},{{"name":"knit","mesh":0}},)"
+                  R"({{"name":"#1","mesh":1}})",
+                  name);
+  const ScratchFolder folder;
+  const auto file = folder.write("a.gltf", gltf.text(small + "," + large, nodes, "0,1,2,3,4,5,6"));
+  const auto objects = gltf_objects(file).value();
+  std::vector<std::string> names, choices;
+  for (const FileObject& each : objects) {
+    names.push_back(each.name);
+    choices.push_back(each.choice);
+  }
+  CHECK(names == std::vector<std::string>{"a/b", "a/b", name, "a/b#2", "nodes[4]", "knit", "#1"});
+  // The second a/b has the name of another: its number is left.
+  CHECK(choices ==
+        std::vector<std::string>{"a/b#1", "#2", name, "a/b#2", "nodes[4]", "knit", "#1"});
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    const Mesh mesh = read_gltf(file, choices[k]).value();
+    CAPTURE(choices[k]);
+    CHECK(mesh.object == names[k]);
+    CHECK(static_cast<std::uint64_t>(mesh.vertex_count()) == objects[k].vertices);
+    CHECK(mesh.face_sizes.size() == objects[k].faces);
+    CHECK(mesh.vertex_count() == (k == 1 || k == 3 || k == 6 ? 20 : 9));
+  }
+  CHECK_FALSE(read_gltf(file, "a/b"));
+  CHECK_FALSE(read_gltf(file, "#8"));
+  CHECK_FALSE(read_gltf(file, "#0"));
+  CHECK(read_gltf(file, "weave#3")->object == "nodes[4]");  // the third with that mesh
+}
+
+TEST_CASE("a glTF without a scene shows all its nodes", "[mesh][read_gltf]") {
+  Gltf gltf;
+  std::string text = gltf.text(gltf_mesh(gltf.primitive(small_sheet(true))),
+                               R"({"name":"low","mesh":0},{"name":"top","children":[0],)"
+                               R"("translation":[5,0,0]})");
+  const std::string scene = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+  text.erase(text.find(scene), scene.size());
+  const Mesh mesh = parse_exactly(text).value();
+  CHECK(mesh.object == "low");
+  CHECK(mesh.positions.col(0) == (small_sheet(true).positions.col(0).array() + 5).matrix());
+}
+
+TEST_CASE("a scene that lists nodes below others shows them once", "[mesh][read_gltf]") {
+  Gltf gltf;
+  const std::string meshes = gltf_mesh(gltf.primitive(small_sheet(true)));
+  const std::string nodes =
+      R"({"name":"top","children":[1],"translation":[5,0,0]},{"name":"low","mesh":0})";
+  for (const std::string roots : {"0,1", "1,0", "0,0", "0"}) {
+    CHECK(parse_exactly(gltf.text(meshes, nodes, roots))->positions.col(0) ==
+          (small_sheet(true).positions.col(0).array() + 5).matrix());
+  }
+}
+
+TEST_CASE("a cycle of nodes is named, also outside the scene", "[mesh][read_gltf]") {
+  Gltf gltf;
+  const std::string meshes = gltf_mesh(gltf.primitive(small_sheet(true)));
+  const std::string start =
+      "a.gltf: error: the nodes of the file are in a cycle, each a child of the one before: ";
+  struct Case {
+    std::string nodes, told;
+  };
+  for (const Case& c :
+       {Case{R"({"mesh":0},{"children":[1]})", "nodes[1] > nodes[1]"},
+        Case{R"({"mesh":0},{"name":"a","children":[2]},{"name":"b","children":[1]})",
+             R"(nodes[1] "a" > nodes[2] "b" > nodes[1] "a")"},
+        Case{R"({"mesh":0},{"children":[2]},{"children":[3]},{"children":[2]})",
+             "nodes[2] > nodes[3] > nodes[2]"}}) {
+    const std::string text = gltf.text(meshes, c.nodes);
+    CHECK(gltf_complaint(text) == start + c.told);
+    // Without a scene no node of a cycle would be a root: it is no empty file.
+    std::string bare = text;
+    const std::string scene = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+    bare.erase(bare.find(scene), scene.size());
+    CHECK(gltf_complaint(bare) == start + c.told);
+  }
+  // A node with two parents is none, but has two places.
+  const std::string two = R"({"children":[1,2]},{"children":[3]},{"children":[3]},{"mesh":0})";
+  CHECK_THAT(gltf_complaint(gltf.text(meshes, two)),
+             contains_text("nodes[3] is in the tree of the scene twice"));
+}
+
+TEST_CASE("primitives of points and lines are left out and counted", "[mesh][read_gltf]") {
+  GltfParts parts = square(4);
+  parts.accessors += R"(,{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"})";
+  parts.primitives = R"({"attributes":{"POSITION":1}},{"attributes":{"POSITION":0},"mode":0},)"
+                     R"({"attributes":{"POSITION":0},"mode":1})";
+  const Mesh mesh = parse_exactly(parts.text()).value();
+  CHECK(mesh.face_sizes == std::vector{3});
+  CHECK(mesh.left_out == "2 primitives of points or lines");
 }
 
 TEST_CASE("only what the shown scene of a glTF holds is an object", "[mesh][read_gltf]") {

@@ -92,9 +92,10 @@ std::string Warning::message() const {
     case Kind::CacheOutside:
       return fmt::format(
           "the cache of \"{}\" has no sample within the scene: all are {} its frames, at frames "
-          "{:.6g} "
-          "to {:.6g}, so the surface keeps the shape of one of them; cacheStart moves them",
+          "{:.6g} to {:.6g}, so the surface keeps the shape of one of them; cacheStart moves them",
           surface, is_cache_late ? "after" : "before", cache->first, cache->last);
+    case Kind::FileLeftOut:
+      return left_out_text(surface, left_out);
   }
   return {};
 }
@@ -102,6 +103,12 @@ std::string Warning::message() const {
 std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, const Scene& scene) {
   std::vector<Warning> warnings;
   for (const RestShape& shape : rest_shapes) {
+    if (!shape.mesh.left_out.empty()) {
+      Warning& warning = warnings.emplace_back();
+      warning.kind = Warning::Kind::FileLeftOut;
+      warning.surface = shape.name;
+      warning.left_out = shape.mesh.left_out;
+    }
     if (shape.surface && shape.surface->faces_left_out > 0) {
       Warning& warning = warnings.emplace_back();
       warning.kind = Warning::Kind::FacesLeftOut;
@@ -122,7 +129,8 @@ std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, cons
 
 int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (!warning.force.empty()) return origin.line_of(warning.force);
-  if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::LoosePiece) {
+  if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
+      warning.kind == Warning::Kind::LoosePiece) {
     return origin.line_of(warning.surface, "file");
   }
   if (warning.kind == Warning::Kind::CacheOutside) {

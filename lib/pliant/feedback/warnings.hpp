@@ -28,6 +28,7 @@ struct Warning {
     LoosePiece,      ///< nothing holds a piece of a surface's region
     FacesLeftOut,    ///< faces of a mesh that its surface does not have
     CacheOutside,    ///< no frame of the scene is within the samples of a surface's cache
+    FileLeftOut,     ///< what a mesh's file has and the mesh lacks
   };
   Kind kind = Kind::RegionTooSmall;
   std::string surface;  ///< empty: all, for a force that selects nothing on any surface
@@ -36,6 +37,7 @@ struct Warning {
   std::vector<std::string> others = {};    ///< for ForcesApart: the forces besides `force`
   bool is_group = false;                   ///< whether `force` is the region of a group
   int faces = 0;                           ///< for FacesLeftOut
+  std::string left_out = {};               ///< for FileLeftOut: `Mesh::left_out`
   std::optional<CacheSummary> cache = {};  ///< for CacheOutside
   bool is_cache_late = false;              ///< whether the samples are after the scene's frames
   /// Whether it tells of frames that lack some of the scene's, which were not played: there what

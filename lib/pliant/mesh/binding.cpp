@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "pliant/mesh/triangle_tree.hpp"
 
 namespace pliant {

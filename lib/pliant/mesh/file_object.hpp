@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "pliant/core/result.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/mesh/mesh_objects.hpp"
 
 namespace pliant {
 
@@ -18,20 +21,42 @@ std::string in_quotes(std::string_view text);
 /// The first of some names, each in quotes.
 std::string listed_names(std::span<const std::string> names);
 
-/// The index of the object with the given name; if `object` is empty, of the only one. Errors,
-/// listing the first names: no object of that name, several of it, or no name given and several
-/// objects. Requires: names is not empty.
-Result<std::size_t> choose_object(std::span<const std::string> names, const std::string& object);
+/// The index of the object that `object` chooses (`find_objects`); if it is empty, of the only one.
+/// `meshes` are the names of their meshes, if the format has them. Errors, listing the first ones:
+/// there are none; no such object, several of that name, or no name given and several objects.
+Result<std::size_t> choose_object(std::span<const std::string> names,
+                                  std::span<const std::string> meshes, const std::string& object);
 
-/// The index of the object with the given name in a file that names both nodes and their meshes: by
-/// the names of the nodes; if no node has the name, by those of the meshes. Errors: there is none;
-/// those of `choose_object`. Requires: as many nodes as meshes.
-Result<std::size_t> choose_node(std::span<const std::string> nodes,
-                                std::span<const std::string> meshes, const std::string& object);
+/// Sets what chooses each of the objects of a file.
+void set_choices(std::span<const std::string> meshes, std::vector<FileObject>& objects);
 
 /// Transforms an object to the space of its file. Its faces are turned round if that reflects them,
 /// so that they keep their outer sides. Errors: the transform is not affine.
 Result<void> to_file_space(const Eigen::Matrix4d& to_file, Mesh& mesh);
+
+/// Takes (u,v) that are not finite from the corners that have them. Returns how many there were.
+int drop_invalid_uvs(Mesh& mesh);
+
+/// What a reader leaves out of a file, counted by kind.
+class LeftOut {
+ public:
+  /// The words for one of a kind and for several, such as `line` and `lines`.
+  void add(std::string_view one, std::string_view several, std::int64_t count = 1);
+
+  /// For `Mesh::left_out`: `1 line and 3 points`; empty: nothing.
+  std::string text() const;
+
+ private:
+  struct Kind {
+    std::string one, several;
+    std::int64_t count;
+  };
+  std::vector<Kind> kinds_;
+};
+
+/// The words of a kind that several formats have: faces with one or two corners.
+inline constexpr std::string_view small_face = "face of fewer than three corners";
+inline constexpr std::string_view small_faces = "faces of fewer than three corners";
 
 /// Whether an object with `set_count` sets of (u,v) has the set `uv_set`, counted from 0. Set 0 may
 /// be missing: a mesh need not have (u,v). Errors: names the number of sets.

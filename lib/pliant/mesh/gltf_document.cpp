@@ -13,15 +13,29 @@
 namespace pliant::gltf {
 namespace {
 
-// Extensions that affect appearance or other parts of a scene: the mesh is the same without them.
-bool is_known(std::string_view extension) {
+// Whether an extension affects looks, or other parts of a scene than its meshes: these are the same
+// without it. Not those that compress, replace or place them.
+bool concerns_looks(std::string_view extension) {
+  const std::size_t vendor = extension.find('_');
+  if (vendor == std::string_view::npos) return false;
+  const std::string_view name = extension.substr(vendor + 1);
+  for (const std::string_view kind :
+       {"materials_", "material_", "texture_", "image_", "lights_", "light_", "xmp", "audio"}) {
+    if (name.starts_with(kind)) return true;
+  }
   for (const std::string_view known :
-       {"KHR_mesh_quantization", "KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
-        "KHR_lights_punctual", "KHR_xmp", "KHR_xmp_json_ld"}) {
+       {"KHR_animation_pointer", "KHR_node_visibility", "KHR_node_selectability",
+        "KHR_node_hoverability", "KHR_interactivity", "KHR_physics_rigid_bodies", "MSFT_lod",
+        "MSFT_packing_normalRoughnessMetallic", "MSFT_packing_occlusionRoughnessMetallic",
+        "EXT_mesh_features", "EXT_structural_metadata", "EXT_feature_metadata",
+        "CESIUM_primitive_outline", "FB_geometry_metadata", "VRMC_vrm", "VRMC_springBone",
+        "VRMC_node_constraint"}) {
     if (extension == known) return true;
   }
-  return extension.starts_with("KHR_materials_");
+  return false;
 }
+
+bool is_read(std::string_view extension) { return extension == "KHR_mesh_quantization"; }
 
 class DocumentReader : private JsonReader {
  public:
@@ -75,7 +89,9 @@ class DocumentReader : private JsonReader {
     for (const Json& each : *required) {
       const auto* const name = each.get_ptr<const std::string*>();
       if (!name) return refuse("extensionsRequired", "has an element that is not a name");
-      if (!is_known(*name)) {
+      if (concerns_looks(*name)) {
+        document_.looks.push_back(*name);
+      } else if (!is_read(*name)) {
         return refuse(
             "extensionsRequired",
             fmt::format("names {}, which is not supported; export without it", in_quotes(*name)));
@@ -247,7 +263,8 @@ class DocumentReader : private JsonReader {
     return transform.matrix();
   }
 
-  // The roots of the scene that the file names, or of its first one.
+  // The roots of the scene that the file names, or of its first one; without a scene all nodes that
+  // are no children.
   void read_roots() {
     const auto shown = index(root_, "scene", "scenes");
     std::size_t number = 0;
@@ -255,7 +272,12 @@ class DocumentReader : private JsonReader {
       auto nodes = node_list(scene, "nodes");
       if (number++ == shown.value_or(0)) document_.roots = std::move(nodes);
     });
-    if (number == 0) refuse("scenes", "is missing: the file has no scene");
+    if (number > 0) return;
+    std::vector<bool> is_child(document_.nodes.size());
+    for (const Node& node : document_.nodes)
+      for (const std::size_t child : node.children) is_child[child] = true;
+    for (std::size_t k = 0; k < is_child.size(); ++k)
+      if (!is_child[k]) document_.roots.push_back(k);
   }
 
   Animation read_animation(Json& json) {

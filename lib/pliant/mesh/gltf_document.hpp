@@ -104,7 +104,8 @@ struct Document {
   std::vector<MeshEntry> meshes;
   std::vector<std::string> materials;  ///< their names, possibly empty
   std::vector<Node> nodes;
-  std::vector<std::size_t> roots;     ///< root nodes of the scene that the file displays
+  std::vector<std::size_t> roots;     ///< root nodes of the scene that the file displays, as listed
+  std::vector<std::string> looks;     ///< required extensions that concern looks only
   std::vector<Animation> animations;  ///< only if they were asked for
 };
 
@@ -116,7 +117,7 @@ inline constexpr std::size_t most_buffers = 1000;
 
 /// Errors: invalid JSON, with the line, but without quoting the text, which may be of any file; not
 /// glTF 2; a required extension that is not supported, by name; a member of the wrong type or out
-/// of range, by its path. A file without a scene is one only if meshes are wanted.
+/// of range, by its path. Without a scene its roots are all nodes that are no children.
 Result<Document> read_document(std::string_view json, Subject subject = Subject::Meshes);
 
 }  // namespace pliant::gltf

@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
@@ -67,12 +68,27 @@ class Merger {
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
     if (mesh_.materials.names.empty()) mesh_.materials.of_faces.clear();
     mesh_.object = object_.node_name;
+    mesh_.left_out = left_out();
     if (auto checked = check_mesh(mesh_); !checked) return fail(checked.error());
     mesh_.corner_normals = shared_normals(mesh_, shading_);
     return std::move(mesh_);
   }
 
  private:
+  std::string left_out() {
+    LeftOut left_out;
+    const std::size_t count = document_.meshes[object_.mesh].primitives.size();
+    left_out.add("primitive of points or lines", "primitives of points or lines",
+                 static_cast<std::int64_t>(count - object_.primitives.size()));
+    left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+                 drop_invalid_uvs(mesh_));
+    const std::string names = fmt::format("{}", fmt::join(document_.looks, ", "));
+    left_out.add("extension that concerns looks (" + names + ")",
+                 "extensions that concern looks (" + names + ")",
+                 static_cast<std::int64_t>(document_.looks.size()));
+    return left_out.text();
+  }
+
   const Primitive& primitive(std::size_t k) const {
     return document_.meshes[object_.mesh].primitives[k];
   }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "pliant/core/result.hpp"
+#include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/gltf_document.hpp"
 
 namespace pliant::gltf {
@@ -24,11 +26,15 @@ struct Object {
 bool has_faces(const Document& document, const Primitive& primitive);
 
 /// The objects of the displayed scene, each node before its children and these in the order of the
-/// file. Errors: a node that occurs twice in it, possibly within itself.
+/// file. Errors: nodes of the file that are within themselves, in the scene or not; a node that
+/// occurs twice in the scene.
 Result<std::vector<Object>> objects_of(const Document& document);
 
-/// The object with the given name: by the names of the nodes; if no node has it, by those of the
-/// meshes. Errors: no faces at all; those of `choose_node`.
+/// The object that `name` chooses, by the names of nodes and meshes. Errors: those of
+/// `choose_object`.
 Result<Object> choose(std::vector<Object> objects, const std::string& name);
+
+/// The objects with their names and sizes.
+std::vector<FileObject> listed(const Document& document, std::span<const Object> objects);
 
 }  // namespace pliant::gltf

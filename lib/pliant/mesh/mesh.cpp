@@ -72,12 +72,12 @@ Result<void> check_attributes(const Mesh& mesh) {
 
 bool operator==(const Mesh& a, const Mesh& b) {
   const auto& [positions, uvs, sizes, vertices, corner_uvs, normals, materials, groups, object,
-               attributes, first, numbers] = b;  // a new member has to be added here
+               left_out, attributes, first, numbers] = b;  // a new member has to be added here
   return are_equal(a.positions, positions) && a.uvs == uvs && a.face_sizes == sizes &&
          a.corner_vertices == vertices && a.corner_uvs == corner_uvs &&
          a.corner_normals == normals && a.materials == materials && a.groups == groups &&
-         a.object == object && a.attributes == attributes && a.first_index == first &&
-         a.file_vertices == numbers;
+         a.object == object && a.left_out == left_out && a.attributes == attributes &&
+         a.first_index == first && a.file_vertices == numbers;
 }
 
 void turn_faces(Mesh& mesh) {

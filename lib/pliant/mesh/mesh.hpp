@@ -42,6 +42,9 @@ struct Mesh {
   FaceNames groups = {};
   std::string object = {};  ///< its name in the file
 
+  /// What its file has and the mesh lacks, with counts: `1 line and 3 points`; empty: nothing.
+  std::string left_out = {};
+
   /// Numbers at the vertices, for maps of the material. Of a file: those asked for.
   std::vector<VertexAttribute> attributes = {};
 

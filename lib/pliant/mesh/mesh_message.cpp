@@ -83,10 +83,13 @@ std::optional<MeshPart> parse_part(MessageReader& reader) {
 }
 
 bool parse_scene(MessageReader& reader, MeshMessage& message) {
-  message.objects.resize(reader.count(2 * sizeof(std::uint32_t)));
-  for (ObjectNames& names : message.objects) {
-    names.node = reader.text();
-    names.mesh = reader.text();
+  message.objects.resize(reader.count(2 * sizeof(std::uint32_t) + 3 * sizeof(std::uint64_t)));
+  for (ObjectEntry& object : message.objects) {
+    object.node = reader.text();
+    object.mesh = reader.text();
+    object.vertices = reader.number<std::uint64_t>();
+    object.faces = reader.number<std::uint64_t>();
+    object.left_out = reader.number<std::uint64_t>();
   }
   const auto chosen = reader.number<std::uint32_t>();
   if (!reader.is_sound() || chosen == no_object) return reader.is_sound();

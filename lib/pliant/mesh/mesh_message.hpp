@@ -17,7 +17,8 @@ namespace pliant {
 //
 //   u64 message_begin, u32 kind
 //   Refused:  text (u32 length, bytes)
-//   Scene:    u32 number of objects; of each: text node, text mesh
+//   Scene:    u32 number of objects; of each: text node, text mesh,
+//               u64 vertices, u64 faces, u64 faces that are left out
 //             u32 index of the chosen object, or no_object and then nothing more
 //             16 f64, the transform by rows; u32 number of parts; of each:
 //               text material, u32 sets of (u,v) as bits, u32 is_lit, u32 has_uvs
@@ -68,15 +69,18 @@ struct MeshPart {
   PackedNumbers<std::uint32_t> corners;  ///< #corners: a vertex of this part
 };
 
-struct ObjectNames {
+struct ObjectEntry {
   std::string_view node;
-  std::string_view mesh;  ///< of the first mesh with faces
+  std::string_view mesh;       ///< of the first mesh with faces
+  std::uint64_t vertices = 0;  ///< of its parts
+  std::uint64_t faces = 0;     ///< likewise
+  std::uint64_t left_out = 0;  ///< faces of its meshes with fewer than three corners
 };
 
 struct MeshMessage {
   MessageKind kind = MessageKind::Scene;
   std::string_view reason;            ///< of Refused
-  std::vector<ObjectNames> objects;   ///< in the order of the file
+  std::vector<ObjectEntry> objects;   ///< in the order of the file
   std::optional<std::size_t> chosen;  ///< the object of these parts
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
   std::vector<MeshPart> parts;

@@ -57,14 +57,17 @@ std::string told_reason(std::string_view reason) {
 
 std::string format_name(const std::string& ending) { return ending == ".fbx" ? "FBX" : "Collada"; }
 
-Result<std::size_t> choose(const MeshMessage& message, const std::string& object) {
-  std::vector<std::string> nodes, meshes;
-  for (const ObjectNames& each : message.objects) {
-    nodes.emplace_back(each.node.empty() ? each.mesh : each.node);
-    meshes.emplace_back(each.mesh);
+// The names of the objects, and those of their meshes.
+struct Names {
+  std::vector<std::string> objects, meshes;
+
+  explicit Names(const MeshMessage& message) {
+    for (const ObjectEntry& each : message.objects) {
+      objects.emplace_back(each.node.empty() ? each.mesh : each.node);
+      meshes.emplace_back(each.mesh);
+    }
   }
-  return choose_node(nodes, meshes, object);
-}
+};
 
 Result<void> check_sets(const MeshMessage& message, int uv_set) {
   for (const MeshPart& part : message.parts) {
@@ -160,8 +163,13 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set) {
       mesh.uvs.push_back({part.uvs[k], part.uvs[k + 1]});
   }
   if (mesh.materials.names.empty()) mesh.materials.of_faces.clear();
-  const ObjectNames& names = message.objects[*message.chosen];
-  mesh.object = names.node.empty() ? names.mesh : names.node;
+  const ObjectEntry& object = message.objects[*message.chosen];
+  mesh.object = object.node.empty() ? object.mesh : object.node;
+  LeftOut left_out;
+  left_out.add(small_face, small_faces, static_cast<std::int64_t>(object.left_out));
+  left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+               drop_invalid_uvs(mesh));
+  mesh.left_out = left_out.text();
   if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
   mesh.corner_normals = shared_normals(mesh, shading);
   return mesh;
@@ -209,9 +217,8 @@ Result<void> check_end(const BoxedEnd& end, const std::string& format, const Box
   return fail(reader_failed(format, fmt::format("failed with exit code {}", end.number)));
 }
 
-Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const std::string& object,
-                     int uv_set) {
-  const auto message = parse_mesh_message(answer);
+Result<MeshMessage> to_message(std::string_view answer, const std::string& format) {
+  auto message = parse_mesh_message(answer);
   if (!message) return fail(reader_failed(format, "produced something that is not a mesh"));
   switch (message->kind) {
     case MessageKind::OtherFormat:
@@ -223,7 +230,15 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
     case MessageKind::Scene:
       break;
   }
-  const auto chosen = choose(*message, object);
+  return *std::move(message);
+}
+
+Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const std::string& object,
+                     int uv_set) {
+  const auto message = to_message(answer, format);
+  if (!message) return fail(message.error());
+  const Names names(*message);
+  const auto chosen = choose_object(names.objects, names.meshes, object);
   if (!chosen) return fail(chosen.error());
   if (message->chosen != *chosen)
     return fail(reader_failed(format, "produced a different object from the one requested"));
@@ -232,6 +247,20 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
   if (auto applied = to_file_space(message->to_file, *mesh); !applied) return fail(applied.error());
   if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
   return mesh;
+}
+
+Result<std::vector<FileObject>> to_objects(std::string_view answer, const std::string& format) {
+  const auto message = to_message(answer, format);
+  if (!message) return fail(message.error());
+  const Names names(*message);
+  std::vector<FileObject> objects;
+  for (std::size_t k = 0; k < names.objects.size(); ++k) {
+    const ObjectEntry& entry = message->objects[k];
+    objects.push_back({.name = names.objects[k], .vertices = entry.vertices, .faces = entry.faces});
+  }
+  if (objects.empty()) return invalid("the file has no faces");
+  set_choices(names.meshes, objects);
+  return objects;
 }
 
 class OpenFile {
@@ -249,8 +278,9 @@ class OpenFile {
   int descriptor_;
 };
 
-Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& file,
-                         const std::string& object, int uv_set, const RunContext& context) {
+// The answer of the program, which is the same of two runs.
+Result<std::string> answer_about(std::string_view program, const std::filesystem::path& file,
+                                 const std::string& object, int uv_set, const RunContext& context) {
   if (auto readable = check_readable(file); !readable) return fail(readable.error());
   const OpenFile opened(file);
   struct stat status {};
@@ -283,7 +313,31 @@ Result<Mesh> read_opened(std::string_view program, const std::filesystem::path& 
   }
   if (end->answer != other_end->answer)
     return fail(reader_failed(format, "produced two different meshes from this file"));
-  return to_mesh(end->answer, format, object, uv_set);
+  return end->answer;
+}
+
+// What `read` makes of the answer, with the file in its error.
+template <class Read>
+auto about_file(std::string_view program, const std::filesystem::path& file,
+                const std::string& object, int uv_set, const RunContext& context, const Read& read)
+    -> decltype(read(std::string(), std::string())) {
+  const auto in_file = [&](Error error) {
+    error.file = file.string();
+    return fail(std::move(error));
+  };
+  try {
+    const auto answer = answer_about(program, file, object, uv_set, context);
+    if (!answer) return in_file(answer.error());
+    auto made = read(*answer, format_name(ending_of(file)));
+    if (!made) return in_file(made.error());
+    return made;
+  } catch (const std::bad_alloc&) {
+    return in_file({ErrorCode::OutOfMemory, "the mesh does not fit in memory"});
+  }
+}
+
+std::string_view embedded_program() {
+  return {reinterpret_cast<const char*>(mesh_reader_program.data()), mesh_reader_program.size()};
 }
 
 }  // namespace
@@ -299,23 +353,20 @@ BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory) {
 Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
                         const std::string& object, int uv_set, const RunContext& context) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
-  const auto in_file = [&](Error error) {
-    error.file = file.string();
-    return fail(std::move(error));
-  };
-  try {
-    auto mesh = read_opened(program, file, object, uv_set, context);
-    return mesh ? std::move(mesh) : in_file(mesh.error());
-  } catch (const std::bad_alloc&) {
-    return in_file({ErrorCode::OutOfMemory, "the mesh does not fit in memory"});
-  }
+  return about_file(program, file, object, uv_set, context,
+                    [&](const std::string& answer, const std::string& format) {
+                      return to_mesh(answer, format, object, uv_set);
+                    });
 }
 
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object, int uv_set,
                          const RunContext& context) {
-  const std::string_view program(reinterpret_cast<const char*>(mesh_reader_program.data()),
-                                 mesh_reader_program.size());
-  return read_boxed(program, file, object, uv_set, context);
+  return read_boxed(embedded_program(), file, object, uv_set, context);
+}
+
+Result<std::vector<FileObject>> assimp_objects(const std::filesystem::path& file,
+                                               const RunContext& context) {
+  return about_file(embedded_program(), file, {}, 0, context, to_objects);
 }
 
 }  // namespace pliant

@@ -2,12 +2,15 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
+
+struct FileObject;
 
 /// The most texture-coordinate sets of a mesh in a file.
 inline constexpr int max_uv_sets = 8;
@@ -27,15 +30,19 @@ inline constexpr int max_uv_sets = 8;
 /// axes. Bones, morph targets and animation are ignored.
 ///
 /// There is one vertex for each corner of a face, in the order of the faces. Faces keep their
-/// corners. Points and lines are skipped. assimp stores coordinates in single precision.
+/// corners. Points and lines are left out, and `Mesh::left_out` counts them. assimp stores
+/// coordinates in single precision.
 ///
 /// (u,v) are those of the set `uv_set`, one pair per vertex, v upwards as in OBJ.
 ///
 /// Materials keep their names; corners share a normal if the file's normals and the positions are
 /// equal; without normals the surface is smooth.
 ///
-/// `object` is the name of the node or, if no node has it, of a mesh of the node. Empty: the only
-/// one.
+/// `object` chooses it by the name of the node or, if no node has it, of a mesh of the node
+/// (`find_objects`). Empty: the only one.
+///
+/// Where the transforms reflect the object, its faces are turned round, so that they keep their
+/// outer sides.
 ///
 /// Errors, naming the file: a file that assimp refuses, with its reason; one on which it crashes,
 /// does not end, or needs more memory than it may use; no faces; an object that does not exist, or
@@ -45,5 +52,9 @@ inline constexpr int max_uv_sets = 8;
 /// Thread-safe.
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object = {},
                          int uv_set = 0, const RunContext& context = {});
+
+/// The objects of the file. Errors: as `read_assimp`.
+Result<std::vector<FileObject>> assimp_objects(const std::filesystem::path& file,
+                                               const RunContext& context = {});
 
 }  // namespace pliant

@@ -72,6 +72,28 @@ Result<Mesh> read_gltf(const fs::path& file, const std::string& object, int uv_s
   return parse_gltf(*bytes, file.string(), read, object, uv_set, attributes);
 }
 
+Result<std::vector<FileObject>> gltf_objects(const fs::path& file) {
+  const auto bytes = read_file(file);
+  if (!bytes) return fail(bytes.error());
+  const auto list = [&]() -> Result<std::vector<FileObject>> {
+    const auto container = open_container(*bytes);
+    if (!container) return fail(container.error());
+    const auto document = read_document(container->json);
+    if (!document) return fail(document.error());
+    const auto objects = objects_of(*document);
+    if (!objects) return fail(objects.error());
+    if (objects->empty()) return invalid("the file has no faces");
+    return listed(*document, *objects);
+  };
+  try {
+    auto objects = list();
+    if (!objects) objects.error().file = file.string();
+    return objects;
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", file.string());
+  }
+}
+
 std::vector<fs::path> gltf_references(const fs::path& file, const fs::path& root) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return {};

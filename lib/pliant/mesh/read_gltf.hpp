@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -24,8 +25,13 @@ using ReadReference =
 /// all its ancestors are applied, in double. Skins, morph targets and animation are ignored.
 ///
 /// Vertices keep their order. Primitives with the same positions, normals and (u,v) share their
-/// vertices. Faces are the triangles, strips and fans; points and lines are skipped. Coordinates
-/// are bit-identical to the file's unless a node transforms them.
+/// vertices. Faces are the triangles, strips and fans. Coordinates are bit-identical to the file's
+/// unless a node transforms them. Where the transforms reflect the object, its faces are turned
+/// round, so that they keep their outer sides.
+///
+/// As other programs do, it leaves out primitives of points and lines, (u,v) that are no numbers,
+/// and required extensions that concern looks only; `Mesh::left_out` counts them.
+/// KHR_mesh_quantization is read. A file without a scene shows all its nodes.
 ///
 /// (u,v) are those of the set `uv_set`, one pair per vertex, v upwards as in OBJ: 1 - v of the
 /// file.
@@ -36,16 +42,16 @@ using ReadReference =
 /// `attributes` names attributes of the author's own, such as `_SOFT`, that the mesh keeps; every
 /// primitive must have them.
 ///
-/// `object` is the name of the node or, if no node has it, of a mesh of the node. Empty: the only
-/// one.
+/// `object` chooses it by the name of the node or, if no node has it, of a mesh of the node
+/// (`find_objects`). Empty: the only one.
 ///
 /// `name` is the file's name in messages. Errors, naming it: not glTF 2, with the line, but without
 /// quoting the text, which may be of any file; a required extension that is not supported; an
-/// offset, count, stride or index out of range; a node that occurs twice in the scene; a reference
-/// that cannot be read; no faces; an object that does not exist, or no name given and several
-/// objects; a UV set or an attribute that the object lacks; a transform that is not affine; more
-/// elements than the bytes allow; those of `check_mesh`; OutOfMemory. Requires: 0 <= uv_set <
-/// max_uv_sets.
+/// offset, count, stride or index out of range; nodes of the file that are within themselves; a
+/// node that occurs twice in the scene; a reference that cannot be read; no faces; an object that
+/// does not exist, or no name given and several objects; a UV set or an attribute that the object
+/// lacks; a transform that is not affine; more elements than the bytes allow; those of
+/// `check_mesh`; OutOfMemory. Requires: 0 <= uv_set < max_uv_sets.
 Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
                         const ReadReference& read_reference = {}, const std::string& object = {},
                         int uv_set = 0, std::span<const std::string> attributes = {});
@@ -56,6 +62,9 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
 Result<Mesh> read_gltf(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
                        std::span<const std::string> attributes = {});
+
+/// The objects of a file; their numbers are not read. Errors: as `read_gltf`.
+Result<std::vector<FileObject>> gltf_objects(const std::filesystem::path& file);
 
 /// The files with buffers of a glTF file, existing or not, each once; those that may not be read
 /// are omitted. Empty if the file is not glTF.

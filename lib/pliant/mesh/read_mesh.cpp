@@ -24,6 +24,13 @@ Result<Mesh> with_only_set(Result<Mesh> mesh, const std::filesystem::path& file,
   return fail(checked.error().code, checked.error().message, file.string());
 }
 
+Result<void> check_mesh_ending(const std::filesystem::path& file) {
+  const std::vector<std::string> endings = mesh_endings();
+  if (std::ranges::find(endings, ending_of(file)) != endings.end()) return {};
+  return invalid(fmt::format("no mesh format has the ending of {}; allowed: {}", file.string(),
+                             fmt::join(endings, ", ")));
+}
+
 bool is_gltf(std::string_view ending) { return ending == ".gltf" || ending == ".glb"; }
 
 }  // namespace
@@ -35,13 +42,8 @@ std::vector<std::string> mesh_endings() {
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set,
                        const std::filesystem::path& root, const RunContext& context,
                        std::span<const std::string> attributes) {
-  const std::vector<std::string> endings = mesh_endings();
+  if (auto known = check_mesh_ending(file); !known) return fail(known.error());
   const std::string ending = ending_of(file);
-  if (std::find(endings.begin(), endings.end(), ending) == endings.end()) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("no mesh format has the ending of {}; allowed: {}", file.string(),
-                            fmt::join(endings, ", ")));
-  }
   if (!attributes.empty() && ending != ".ply" && !is_gltf(ending)) {
     return fail(
         ErrorCode::InvalidInput,
@@ -54,6 +56,15 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
   if (ending == ".ply") return with_only_set(read_ply(file, object, attributes), file, uv_set);
   if (is_gltf(ending)) return read_gltf(file, object, uv_set, root, attributes);
   return read_assimp(file, object, uv_set, context);
+}
+
+Result<std::vector<FileObject>> mesh_objects(const std::filesystem::path& file,
+                                             const RunContext& context) {
+  if (auto known = check_mesh_ending(file); !known) return fail(known.error());
+  const std::string ending = ending_of(file);
+  if (ending == ".obj") return obj_objects(file);
+  if (ending == ".ply") return ply_objects(file);
+  return is_gltf(ending) ? gltf_objects(file) : assimp_objects(file, context);
 }
 
 std::vector<std::filesystem::path> mesh_references(const std::filesystem::path& file,

@@ -8,19 +8,17 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/mesh/mesh_objects.hpp"
 
 namespace pliant {
 
-/// The endings of the files that `read_mesh` can read, in lower case with their dots.
-std::vector<std::string> mesh_endings();
-
 /// Reads one object of a mesh file with the reader for the file's ending, in any case: `read_obj`,
 /// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses `context`.
-/// `object` names the object if the file has several; `uv_set`, counted from 0, is the set of
-/// (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root` or below;
-/// empty: in its own folder. `attributes` names numbers at the vertices that the mesh keeps, of PLY
-/// and glTF. Errors: InvalidInput for another ending, or for attributes of a format without; those
-/// of the readers. Requires: 0 <= uv_set < max_uv_sets.
+/// `object` chooses the object if the file has several (`find_objects`); `uv_set`, counted from 0,
+/// is the set of (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root`
+/// or below; empty: in its own folder. `attributes` names numbers at the vertices that the mesh
+/// keeps, of PLY and glTF. Errors: InvalidInput for another ending, or for attributes of a format
+/// without; those of the readers. Requires: 0 <= uv_set < max_uv_sets.
 Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
                        const RunContext& context = {},

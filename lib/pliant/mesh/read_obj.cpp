@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -115,12 +116,36 @@ class ObjReader {
     }
   }
 
-  Result<Mesh> finish(const std::string& object) {
-    check_indices();
-    if (errors_.empty() && mesh_.face_sizes.empty()) {
-      add_error(0, "the file has no faces (f)");
-    }
+  Result<std::vector<FileObject>> objects() {
+    check_faces();
     if (!errors_.empty()) return failure();
+    const std::vector<Range> ranges = ranges_of_objects();
+    std::vector<FileObject> objects;
+    std::vector<std::size_t> last_user(coordinates_.size() / 3);  // an object, counted from 1
+    std::size_t corner = 0, face = 0;
+    for (const Range& range : ranges) {
+      FileObject& object = objects.emplace_back();
+      object.name = range.name;
+      object.faces = range.last - range.first;
+      for (; face < range.last; ++face) {
+        for (int k = 0; k < mesh_.face_sizes[face]; ++k) {
+          std::size_t& user = last_user[mesh_.corner_vertices[corner++]];
+          if (user != objects.size()) ++object.vertices;
+          user = objects.size();
+        }
+      }
+    }
+    if (objects.size() == 1) objects[0].vertices = last_user.size();  // as `select` takes them
+    set_choices({}, objects);
+    return objects;
+  }
+
+  Result<Mesh> finish(const std::string& object) {
+    check_faces();
+    if (!errors_.empty()) return failure();
+    left_out_.add("texture vertex (vt) that is no number",
+                  "texture vertices (vt) that are no numbers", drop_invalid_uvs(mesh_));
+    mesh_.left_out = left_out_.text();
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
     return select(object);
@@ -128,21 +153,26 @@ class ObjReader {
 
  private:
   void read_statement(std::string_view statement) {
-    statement = statement.substr(0, statement.find('#'));
     const std::string_view keyword = next_word(statement);
+    if (keyword.starts_with('#')) return;
+    // A name goes to the end of its line, and may have a #.
+    const bool is_named = keyword == "o" || keyword == "g" || keyword == "usemtl";
+    if (!is_named) statement = statement.substr(0, statement.find('#'));
     // Checked before any text is quoted, as it may be of any file.
     if (!is_obj_ && !keyword.empty()) {
       is_obj_ = is_keyword(keyword);
       if (!is_obj_) return refuse("the file is not OBJ: no OBJ statement begins like this line");
     }
     if (keyword == "v") {
-      const auto numbers = read_numbers(statement, "vertex", 3, 7);
-      coordinates_.insert(coordinates_.end(), numbers.begin(), numbers.begin() + 3);
+      read_vertex(statement);
     } else if (keyword == "vt") {
-      const auto numbers = read_numbers(statement, "texture vertex", 1, 3);
-      mesh_.uvs.push_back({numbers[0], numbers[1]});
+      read_texture_vertex(statement);
     } else if (keyword == "f") {
       read_face(statement);
+    } else if (keyword == "l") {
+      left_out_.add("line", "lines");
+    } else if (keyword == "p") {
+      while (!next_word(statement).empty()) left_out_.add("point", "points");
     } else if (keyword == "o") {
       objects_.push_back({std::string(trim(statement, ascii_blanks)), mesh_.face_sizes.size()});
     } else if (keyword == "vn") {
@@ -174,29 +204,49 @@ class ObjReader {
     return normal;
   }
 
-  // `v x y z [w]` or `v x y z r g b`, `vt u [v [w]]`. A line that cannot be parsed still counts, as
-  // zeros, so that the indices of the faces stay right.
-  std::array<double, 7> read_numbers(std::string_view words, std::string_view thing,
-                                     std::size_t least, std::size_t most) {
-    std::array<double, 7> numbers{};
-    std::size_t count = 0;
-    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+  // `v x y z [w]` or `v x y z r g b`. A line that cannot be parsed still counts, as zeros, so that
+  // the indices of the faces stay right.
+  void read_vertex(std::string_view words) {
+    std::array<double, 3> place{};
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const std::string_view word = next_word(words);
       const auto number = to_number(word);
       if (!number) {
-        add_error(line_,
-                  fmt::format("{} has the coordinate {}, which is not a finite decimal number",
-                              thing, in_quotes(word)));
-        return {};
+        add_error(
+            line_,
+            word.empty()
+                ? fmt::format("vertex has {} numbers, but needs 3", k)
+                : fmt::format("vertex has the coordinate {}, which is not a finite decimal number",
+                              in_quotes(word)));
+        place = {};
+        break;
       }
-      if (count == most) {
-        add_error(line_, fmt::format("{} has more than {} numbers", thing, most));
-        return {};
-      }
-      numbers[count++] = *number;
+      place[k] = *number;
     }
-    if (count < least)
-      add_error(line_, fmt::format("{} has {} numbers, but needs {}", thing, count, least));
-    return numbers;
+    coordinates_.insert(coordinates_.end(), place.begin(), place.end());
+    constexpr int most_further = 4;
+    if (!are_numbers(words, most_further))
+      left_out_.add("vertex colour or further number that cannot be read",
+                    "vertex colours or further numbers that cannot be read");
+  }
+
+  // `vt u [v [w]]`. One that cannot be parsed still counts: its corners then have no (u,v).
+  void read_texture_vertex(std::string_view words) {
+    const double u = to_number(next_word(words)).value_or(not_a_number);
+    const std::string_view second = next_word(words);
+    const double v = second.empty() ? 0 : to_number(second).value_or(not_a_number);
+    mesh_.uvs.push_back({u, v});
+    if (!are_numbers(words, 1)) {
+      left_out_.add("further number of a texture vertex that cannot be read",
+                    "further numbers of texture vertices that cannot be read");
+    }
+  }
+
+  // Whether the words are numbers, and not more of them.
+  static bool are_numbers(std::string_view words, int most) {
+    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words))
+      if (!to_number(word) || --most < 0) return false;
+    return true;
   }
 
   // A corner's numbers as written: from 1, or negative, counted back from the last element so far.
@@ -206,23 +256,34 @@ class ObjReader {
     std::optional<int> normal = {};  // likewise
   };
 
-  // `v`, `v/vt`, `v//vn` or `v/vt/vn`; nullopt for anything else.
-  static std::optional<Corner> parse_corner(std::string_view word) {
+  // `v`, `v/vt`, `v//vn` or `v/vt/vn`, where the numbers after the first may be missing; nullopt
+  // for anything else.
+  std::optional<Corner> parse_corner(std::string_view word) {
     const std::size_t slash = word.find('/');
     const auto vertex = to_integer(word.substr(0, slash));
     if (!vertex) return std::nullopt;
-    if (slash == std::string_view::npos) return Corner{*vertex};
+    Corner corner{*vertex};
+    if (slash == std::string_view::npos) return corner;
     const std::string_view rest = word.substr(slash + 1);
     const std::string_view texture = rest.substr(0, rest.find('/'));
+    if (!texture.empty()) {
+      corner.uv = to_integer(texture);
+      if (!corner.uv) return std::nullopt;
+    }
     const bool has_normal = texture.size() < rest.size();
-    Corner corner{*vertex};
-    if (has_normal) {
-      corner.normal = to_integer(rest.substr(texture.size() + 1));
+    const std::string_view normal =
+        has_normal ? rest.substr(texture.size() + 1) : std::string_view();
+    if (!normal.empty()) {
+      corner.normal = to_integer(normal);
       if (!corner.normal) return std::nullopt;
     }
-    if (texture.empty()) return has_normal ? std::optional(corner) : std::nullopt;
-    corner.uv = to_integer(texture);
-    return corner.uv ? std::optional(corner) : std::nullopt;
+    if (has_normal ? normal.empty() : texture.empty()) leave_out_reference();
+    return corner;
+  }
+
+  void leave_out_reference() {
+    left_out_.add("texture or normal number of a face corner that is missing or out of range",
+                  "texture or normal numbers of face corners that are missing or out of range");
   }
 
   void read_face(std::string_view words) {
@@ -243,7 +304,7 @@ class ObjReader {
     const std::size_t size = mesh_.corner_vertices.size() - first_corner;
     if (size < 3) {
       drop_corners(first_corner);
-      return add_error(line_, fmt::format("face has {} corners, but needs at least 3", size));
+      return left_out_.add(small_face, small_faces);
     }
     mesh_.face_sizes.push_back(static_cast<int>(size));
     face_lines_.push_back(line_);
@@ -267,29 +328,37 @@ class ObjReader {
     return written == 0 || index < 0 ? missing_index : static_cast<int>(index);
   }
 
-  static std::string outside(std::string_view thing, int index, std::size_t count) {
-    if (index == missing_index) return fmt::format("a {} before the file's first", thing);
-    return fmt::format("{} {}, but the file has {}", thing, index + 1, count);
+  static std::string outside(int index, std::size_t count) {
+    if (index == missing_index) return "a vertex before the file's first";
+    return fmt::format("vertex {}, but the file has {}", index + 1, count);
   }
 
-  void check_indices() {
+  // Whether there are faces whose vertices exist. References to (u,v) and normals that do not exist
+  // count as none.
+  void check_faces() {
+    const std::size_t vertex_count = coordinates_.size() / 3;
     std::size_t corner = 0;
     for (std::size_t face = 0; face < face_lines_.size() && errors_.size() < max_errors; ++face) {
-      for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
-        const bool bad_vertex = !is_within(mesh_.corner_vertices[corner], coordinates_.size() / 3);
-        const bool bad_uv = mesh_.corner_uvs[corner] != -1 &&
-                            !is_within(mesh_.corner_uvs[corner], mesh_.uvs.size());
-        if (bad_vertex || bad_uv) {
-          add_error(face_lines_[face],
-                    fmt::format("corner {} of the face refers to {}", k + 1,
-                                bad_vertex ? outside("vertex", mesh_.corner_vertices[corner],
-                                                     coordinates_.size() / 3)
-                                           : outside("texture vertex", mesh_.corner_uvs[corner],
-                                                     mesh_.uvs.size())));
-          corner += static_cast<std::size_t>(mesh_.face_sizes[face] - k);
-          break;
-        }
-      }
+      const auto corners = std::span(mesh_.corner_vertices)
+                               .subspan(corner, static_cast<std::size_t>(mesh_.face_sizes[face]));
+      corner += corners.size();
+      const auto wrong = std::ranges::find_if_not(
+          corners, [&](int vertex) { return is_within(vertex, vertex_count); });
+      if (wrong == corners.end()) continue;
+      add_error(face_lines_[face],
+                fmt::format("corner {} of the face refers to {}", wrong - corners.begin() + 1,
+                            outside(*wrong, vertex_count)));
+    }
+    drop_references(mesh_.corner_uvs, mesh_.uvs.size());
+    drop_references(shading_.corner_normals, shading_.normals.size());
+    if (errors_.empty() && mesh_.face_sizes.empty()) add_error(0, "the file has no faces (f)");
+  }
+
+  void drop_references(std::vector<int>& indices, std::size_t count) {
+    for (int& index : indices) {
+      if (index == -1 || is_within(index, count)) continue;
+      index = -1;
+      leave_out_reference();
     }
   }
 
@@ -297,12 +366,13 @@ class ObjReader {
     return index >= 0 && static_cast<std::size_t>(index) < count;
   }
 
-  Result<Mesh> select(const std::string& object) {
-    // Objects with faces, each up to the next one; faces before the first `o` have no name.
-    struct Range {
-      std::string name;
-      std::size_t first, last;
-    };
+  struct Range {
+    std::string name;
+    std::size_t first, last;  // faces
+  };
+
+  // Objects with faces, each up to the next one; faces before the first `o` have no name.
+  std::vector<Range> ranges_of_objects() {
     std::vector<Range> ranges;
     if (objects_.empty() || objects_.front().first_face > 0)
       objects_.insert(objects_.begin(), {"", 0});
@@ -312,15 +382,20 @@ class ObjReader {
       if (last > objects_[k].first_face)
         ranges.push_back({objects_[k].name, objects_[k].first_face, last});
     }
+    return ranges;
+  }
+
+  Result<Mesh> select(const std::string& object) {
+    const std::vector<Range> ranges = ranges_of_objects();
     std::vector<std::string> names;
     names.reserve(ranges.size());
     for (const Range& range : ranges) names.push_back(range.name);
-    const auto chosen = choose_object(names, object);
+    const auto chosen = choose_object(names, {}, object);
     if (!chosen) {
       add_error(0, chosen.error().message);
       return failure();
     }
-    set_normals();
+    mesh_.corner_normals = shared_normals(mesh_, shading_);
     const Range& range = ranges[*chosen];
     Mesh mesh = ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
     mesh.object = range.name;
@@ -328,12 +403,6 @@ class ObjReader {
     mesh.materials = part_of(materials_.names(), range.first, range.last);
     mesh.groups = part_of(groups_.names(), range.first, range.last);
     return mesh;
-  }
-
-  void set_normals() {
-    for (int& normal : shading_.corner_normals)  // references to missing normals count as none
-      if (!is_within(normal, shading_.normals.size())) normal = -1;
-    mesh_.corner_normals = shared_normals(mesh_, shading_);
   }
 
   // The faces first..last with the vertices that they use.
@@ -349,6 +418,7 @@ class ObjReader {
     for (int& index : new_index) index = index < 0 ? -1 : count++;
 
     Mesh result;
+    result.left_out = mesh_.left_out;
     result.uvs = mesh_.uvs;
     result.positions.resize(count, 3);
     for (int vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
@@ -384,6 +454,7 @@ class ObjReader {
   }
 
   static constexpr int missing_index = -2;
+  static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
   std::string name_;
   int line_ = 0;
@@ -398,6 +469,7 @@ class ObjReader {
   CurrentName materials_;
   CurrentName groups_;
   std::vector<Error> errors_;
+  LeftOut left_out_;
 };
 
 }  // namespace
@@ -412,6 +484,14 @@ Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& obje
   const auto text = read_file(file);
   if (!text) return fail(text.error());
   return parse_obj(*text, file.string(), object);
+}
+
+Result<std::vector<FileObject>> obj_objects(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return fail(text.error());
+  ObjReader reader(file.string());
+  reader.read(*text);
+  return reader.objects();
 }
 
 }  // namespace pliant

@@ -19,162 +19,12 @@
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
+#include "pliant/mesh/ply_header.hpp"
 
 namespace pliant {
 namespace {
 
-enum class Encoding { Ascii, LittleEndian, BigEndian };
-
-enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
-
-std::size_t size_of(NumberType type) {
-  constexpr std::array<std::size_t, 8> sizes = {1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-std::optional<NumberType> to_type(std::string_view word) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> words = {{{"char", "int8"},
-                                                                     {"uchar", "uint8"},
-                                                                     {"short", "int16"},
-                                                                     {"ushort", "uint16"},
-                                                                     {"int", "int32"},
-                                                                     {"uint", "uint32"},
-                                                                     {"float", "float32"},
-                                                                     {"double", "float64"}}};
-  for (std::size_t k = 0; k < words.size(); ++k)
-    if (word == words[k][0] || word == words[k][1]) return static_cast<NumberType>(k);
-  return std::nullopt;
-}
-
-struct Property {
-  std::string name;
-  NumberType type = NumberType::Float32;
-  std::optional<NumberType> count_type = {};  // set for a list
-};
-
-struct Element {
-  std::string name;
-  std::int64_t count = 0;
-  std::vector<Property> properties;
-
-  // The index of the first property with one of these names; -1: there is none.
-  int find(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view each : names)
-      for (std::size_t k = 0; k < properties.size(); ++k)
-        if (properties[k].name == each) return static_cast<int>(k);
-    return -1;
-  }
-};
-
-struct Header {
-  Encoding encoding = Encoding::Ascii;
-  std::vector<Element> elements;
-  std::size_t size = 0;  // offset of the elements
-  int line_count = 0;
-};
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(ascii_blanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(ascii_blanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(ascii_blanks, end);
-  }
-  return words;
-}
-
-// `property TYPE NAME` or `property list COUNT_TYPE TYPE NAME`.
-std::optional<Property> to_property(std::span<const std::string_view> words) {
-  if (words.size() == 3) {
-    const auto type = to_type(words[1]);
-    return type ? std::optional(Property{std::string(words[2]), *type}) : std::nullopt;
-  }
-  if (words.size() != 5 || words[1] != "list") return std::nullopt;
-  const auto count_type = to_type(words[2]);
-  const auto type = to_type(words[3]);
-  const bool is_whole = count_type && *count_type < NumberType::Float32;
-  return is_whole && type ? std::optional(Property{std::string(words[4]), *type, count_type})
-                          : std::nullopt;
-}
-
-Result<Encoding> to_encoding(std::span<const std::string_view> words, int line) {
-  if (words.size() == 3 && words[2] == "1.0") {
-    if (words[1] == "ascii") return Encoding::Ascii;
-    if (words[1] == "binary_little_endian") return Encoding::LittleEndian;
-    if (words[1] == "binary_big_endian") return Encoding::BigEndian;
-  }
-  return invalid(
-      "the format must be ascii, binary_little_endian or binary_big_endian, each of version 1.0",
-      line);
-}
-
-// Adds the content of one header line.
-Result<void> read_header_line(std::span<const std::string_view> words, int line, Header& header) {
-  const std::string_view keyword = words[0];
-  if (keyword == "comment" || keyword == "obj_info") return {};
-  if (keyword == "format") {
-    const auto encoding = to_encoding(words, line);
-    if (!encoding) return fail(encoding.error());
-    header.encoding = *encoding;
-    return {};
-  }
-  if (keyword == "element" && words.size() == 3) {
-    const auto count = to_integer(words[2]);
-    if (!count || *count < 0) {
-      return invalid(fmt::format("the number of elements {} is not a whole number from 0 to {}",
-                                 in_quotes(words[2]), std::numeric_limits<int>::max()),
-                     line);
-    }
-    const auto has_name = [&](const Element& element) { return element.name == words[1]; };
-    if (std::any_of(header.elements.begin(), header.elements.end(), has_name))
-      return invalid(fmt::format("the element {} is given twice", in_quotes(words[1])), line);
-    header.elements.push_back({std::string(words[1]), *count, {}});
-    return {};
-  }
-  if (keyword == "property" && !header.elements.empty()) {
-    const auto property = to_property(words);
-    if (!property) {
-      return invalid(
-          "a property must have the form `property TYPE NAME` or `property list TYPE TYPE NAME`",
-          line);
-    }
-    Element& element = header.elements.back();
-    if (element.find({property->name}) >= 0)
-      return invalid(fmt::format("the property {} is given twice", in_quotes(property->name)),
-                     line);
-    element.properties.push_back(*property);
-    return {};
-  }
-  return invalid(
-      fmt::format("the header has a line that begins with {}, which is not part of a PLY header",
-                  in_quotes(std::string(keyword))),
-      line);
-}
-
-Result<Header> read_header(std::string_view bytes) {
-  Header header;
-  bool has_format = false;
-  for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-    const auto words = words_of(bytes.substr(at, end - at));
-    const int line = ++header.line_count;
-    at = std::min(end + 1, bytes.size());
-    if (line == 1) {
-      if (words.size() != 1 || words[0] != "ply") break;
-      continue;
-    }
-    if (words.empty()) continue;
-    if (words[0] == "end_header") {
-      if (!has_format) return invalid("the header names no format", line);
-      header.size = at;
-      return header;
-    }
-    has_format = has_format || words[0] == "format";
-    if (auto read = read_header_line(words, line, header); !read) return fail(read.error());
-  }
-  return invalid(header.line_count < 2 ? "the file is not PLY: its first line is not `ply`"
-                                       : "the file is truncated: it ends within its header");
-}
+using namespace ply;
 
 // The numbers of the elements, one after the other.
 class Numbers {
@@ -197,9 +47,8 @@ class Numbers {
   // Whether the last number was missing because the file ends there.
   bool has_run_out() const { return has_run_out_; }
 
-  bool is_at_end() const {
-    return bytes_.find_first_not_of(ascii_blanks, at_) == std::string_view::npos;
-  }
+  // 0 if only blanks are left.
+  std::size_t bytes_left() const { return trim(bytes_.substr(at_), ascii_blanks).size(); }
 
   int line() const { return encoding_ == Encoding::Ascii ? line_ : 0; }
 
@@ -263,13 +112,17 @@ class PlyReader {
     for (const Element& element : header_.elements) {
       if (auto read = read_element(element); !read) return fail(read.error());
     }
-    if (!numbers_.is_at_end()) return invalid("the file has data after its last element", line());
+    left_out_.add("byte after its last element", "bytes after its last element",
+                  static_cast<std::int64_t>(numbers_.bytes_left()));
     if (!mesh_.corner_vertices.empty()) {
       if (auto checked = check_indices(); !checked) return fail(checked.error());
     }
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
     if (mesh_.face_sizes.empty()) return invalid("the file has no faces");
+    left_out_.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+                  drop_invalid_uvs(mesh_));
+    mesh_.left_out = left_out_.text();
     if (!normals_.empty()) {
       mesh_.corner_normals =
           shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}});
@@ -278,26 +131,38 @@ class PlyReader {
   }
 
  private:
-  // One property: a number, or the numbers of its list.
+  static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+  // One property: a number, or the numbers of its list; `not_a_number` for what is no finite
+  // number.
   using Values = std::vector<std::vector<double>>;
 
   Result<void> read_element(const Element& element) {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
+    const bool is_strip = element.name == "tristrips";
     if (element.properties.empty() && element.count > 0)
       return invalid(fmt::format("the element {} has no properties", in_quotes(element.name)));
     if (is_vertex) {
       if (auto found = find_vertex_properties(element); !found) return found;
     }
-    if (is_face) {
+    if (is_face || is_strip) {
       if (auto found = find_face_properties(element); !found) return found;
     }
+    if (element.name == "edge") left_out_.add("edge", "edges", element.count);
+    needed_ = {};
+    if (is_vertex) {
+      needed_ = {x_, y_, z_};
+      needed_.insert(needed_.end(), attributes_.begin(), attributes_.end());
+    }
+    if (is_face || is_strip) needed_ = {corners_};
     Values values(element.properties.size());
     for (std::int64_t k = 0; k < element.count; ++k) {
       if (auto read = read_values(element, k, values); !read) return read;
       if (is_vertex) add_vertex(values);
-      if (!is_face) continue;
-      if (auto added = add_face(values, k); !added) return added;
+      if (is_face || is_strip) {
+        if (auto added = is_face ? add_face(values, k) : add_strip(values, k); !added) return added;
+      }
     }
     return {};
   }
@@ -350,7 +215,10 @@ class PlyReader {
     const auto is_list = [&](int k) {
       return face.properties[static_cast<std::size_t>(k)].count_type.has_value();
     };
-    if (corners_ < 0 || !is_list(corners_)) return invalid("the faces have no list vertex_indices");
+    if (corners_ < 0 || !is_list(corners_)) {
+      return invalid(fmt::format("the {} have no list vertex_indices",
+                                 face.name == "face" ? "faces" : face.name));
+    }
     if (corner_uvs_ >= 0 && !is_list(corner_uvs_)) corner_uvs_ = -1;
     return {};
   }
@@ -365,8 +233,10 @@ class PlyReader {
       values[k].clear();
       for (double n = 0; n < *count; ++n) {
         const auto number = numbers_.next(property.type);
-        if (!number) return no_number(element, index, k);
-        values[k].push_back(*number);
+        const bool is_needed =
+            std::find(needed_.begin(), needed_.end(), static_cast<int>(k)) != needed_.end();
+        if (!number && (is_needed || numbers_.has_run_out())) return no_number(element, index, k);
+        values[k].push_back(number.value_or(not_a_number));
       }
     }
     return {};
@@ -392,25 +262,53 @@ class PlyReader {
     if (u_ >= 0) mesh_.uvs.push_back({number(u_), number(v_)});
     for (std::size_t k = 0; k < attributes_.size(); ++k)
       mesh_.attributes[k].values.push_back(number(attributes_[k]));
-    if (has_normals_)
-      normals_.push_back({number(normal_[0]), number(normal_[1]), number(normal_[2])});
+    if (!has_normals_) return;
+    std::array<double, 3> normal = {number(normal_[0]), number(normal_[1]), number(normal_[2])};
+    if (!std::all_of(normal.begin(), normal.end(), [](double x) { return std::isfinite(x); }))
+      normal = {};
+    normals_.push_back(normal);
   }
 
   Result<void> add_face(const Values& values, std::int64_t index) {
     const std::vector<double>& corners = values[static_cast<std::size_t>(corners_)];
-    if (corners.size() < 3) return {};  // a point or a line
+    if (corners.size() < 3) {
+      left_out_.add(small_face, small_faces);
+      return {};
+    }
+    std::span<const double> uvs;
+    if (corner_uvs_ >= 0) uvs = values[static_cast<std::size_t>(corner_uvs_)];
+    if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
+      left_out_.add("list of texture coordinates that does not suit its face",
+                    "lists of texture coordinates that do not suit their faces");
+      uvs = {};
+    }
+    return add_corners(corners, uvs, "face", index);
+  }
+
+  // Triangles of three corners in a row, every second one the other way round; -1 ends a strip. One
+  // with a corner twice only leads from one strip to the next.
+  Result<void> add_strip(const Values& values, std::int64_t index) {
+    const std::vector<double>& list = values[static_cast<std::size_t>(corners_)];
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (list[k] == -1) first = k + 1;
+      if (k < first + 2) continue;
+      std::array<double, 3> corners = {list[k - 2], list[k - 1], list[k]};
+      if ((k - first) % 2 == 1) std::swap(corners[0], corners[1]);
+      const auto& [a, b, c] = corners;
+      if (a == b || b == c || c == a) continue;
+      if (auto added = add_corners(corners, {}, "strip", index); !added) return added;
+    }
+    return {};
+  }
+
+  Result<void> add_corners(std::span<const double> corners, std::span<const double> uvs,
+                           const char* element, std::int64_t index) {
     constexpr std::size_t most = std::numeric_limits<int>::max();
     if (corners.size() > most - mesh_.corner_vertices.size())
       return invalid(fmt::format("the faces have more than {} corners", most));
-    const std::vector<double> none;
-    const auto& uvs = corner_uvs_ < 0 ? none : values[static_cast<std::size_t>(corner_uvs_)];
-    if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
-      return invalid(fmt::format("face {} has {} corners, but {} texture coordinates", index,
-                                 corners.size(), uvs.size()),
-                     line());
-    }
     mesh_.face_sizes.push_back(static_cast<int>(corners.size()));
-    faces_.push_back(index);
+    faces_.push_back({element, index});
     for (std::size_t k = 0; k < corners.size(); ++k) {
       const bool is_index = corners[k] >= 0 && corners[k] < static_cast<double>(most) &&
                             corners[k] == std::floor(corners[k]);
@@ -436,7 +334,8 @@ class PlyReader {
       for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
         const int vertex = mesh_.corner_vertices[corner];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
-          return invalid(fmt::format("corner {} of face {} refers to {}", k, faces_[face],
+          const auto& [element, index] = faces_[face];
+          return invalid(fmt::format("corner {} of {} {} refers to {}", k, element, index,
                                      outside(vertex, vertex_count)));
         }
         int& uv = mesh_.corner_uvs[corner];
@@ -457,15 +356,17 @@ class PlyReader {
   std::span<const std::string> names_;  // of attributes
   Numbers numbers_;
   Mesh mesh_;
-  std::vector<double> coordinates_;                  // x y z of each vertex
-  std::vector<std::array<double, 3>> normals_;       // of each vertex, if it has one
-  std::vector<std::array<double, 2>> corner_pairs_;  // (u,v) of corners
-  std::vector<std::int64_t> faces_;                  // index in the file of each face kept
-  int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;   // properties of a vertex
-  std::array<int, 3> normal_ = {-1, -1, -1};         // likewise
+  std::vector<double> coordinates_;                          // x y z of each vertex
+  std::vector<std::array<double, 3>> normals_;               // of each vertex, if it has one
+  std::vector<std::array<double, 2>> corner_pairs_;          // (u,v) of corners
+  std::vector<std::pair<const char*, std::int64_t>> faces_;  // element and index of each face kept
+  int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;           // properties of a vertex
+  std::array<int, 3> normal_ = {-1, -1, -1};                 // likewise
   bool has_normals_ = false;
   std::vector<int> attributes_;         // likewise, of each name
   int corners_ = -1, corner_uvs_ = -1;  // properties of a face
+  std::vector<int> needed_;             // properties of an element that must be finite numbers
+  LeftOut left_out_;
 };
 
 Result<Mesh> parse(std::string_view bytes, const std::string& object,
@@ -475,7 +376,7 @@ Result<Mesh> parse(std::string_view bytes, const std::string& object,
   auto mesh = PlyReader(*header, bytes.substr(header->size), attributes).read();
   if (!mesh) return mesh;
   const std::vector<std::string> names = {""};
-  if (const auto chosen = choose_object(names, object); !chosen) return fail(chosen.error());
+  if (const auto chosen = choose_object(names, {}, object); !chosen) return fail(chosen.error());
   return mesh;
 }
 
@@ -497,6 +398,16 @@ Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& obje
   const auto bytes = read_file(file);
   if (!bytes) return fail(bytes.error());
   return parse_ply(*bytes, file.string(), object, attributes);
+}
+
+Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file) {
+  const auto mesh = read_ply(file);
+  if (!mesh) return fail(mesh.error());
+  std::vector<FileObject> objects(1);
+  objects[0].vertices = static_cast<std::uint64_t>(mesh->vertex_count());
+  objects[0].faces = mesh->face_sizes.size();
+  set_choices({}, objects);
+  return objects;
 }
 
 }  // namespace pliant

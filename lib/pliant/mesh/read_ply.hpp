@@ -4,8 +4,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -20,18 +22,22 @@ namespace pliant {
 /// Properties read from the element `vertex`: x, y, z, and (u,v) under the usual names: `s t`, `u
 /// v`, `texture_u texture_v`, `tx ty`; from `face`: the list `vertex_indices` or `vertex_index`,
 /// and the list `texcoord` of u v u v … for its corners, which has precedence over (u,v) of
-/// vertices. Normals `nx ny nz` decide which vertices at one place join smoothly. Everything else
-/// is skipped, also points without faces and faces of fewer than three corners, which are points
-/// and lines.
+/// vertices; from `tristrips`: the same list, of corners of strips of triangles, where -1 ends a
+/// strip. Normals `nx ny nz` decide which vertices at one place join smoothly. Everything else is
+/// skipped, also points without faces.
+///
+/// As other programs do, it leaves out faces of fewer than three corners, edges, (u,v) that are no
+/// numbers, a `texcoord` of another length than its face, and bytes after the last element.
+/// `Mesh::left_out` counts them.
 ///
 /// `attributes` names properties of the element `vertex`, numbers, that the mesh keeps as its
 /// attributes.
 ///
-/// The file's one object has no name; an `object` that is not empty is an error.
+/// The file's one object has no name; an `object` other than `#1` is an error.
 ///
 /// Errors, with the line if the file has lines: no header, or one that does not end; an element or
-/// number that is missing or not finite; an attribute that is no property; data after the last
-/// element; an index out of range; no faces. Unreadable: the file cannot be read. OutOfMemory.
+/// number that is missing; a coordinate or attribute that is not finite; an attribute that is no
+/// property; an index out of range; no faces. Unreadable: the file cannot be read. OutOfMemory.
 Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object = {},
                       std::span<const std::string> attributes = {});
 
@@ -39,5 +45,8 @@ Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& obje
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name,
                        const std::string& object = {},
                        std::span<const std::string> attributes = {});
+
+/// The one object of the file. Errors: as `read_ply`.
+Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file);
 
 }  // namespace pliant

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 namespace pliant {
 namespace {
 

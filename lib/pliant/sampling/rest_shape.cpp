@@ -116,8 +116,8 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
     return on_grid(surface, std::move(mesh), std::move(mapping));
   }
   const auto* const file = std::get_if<MeshFile>(&surface.shape);
-  auto grid = find_grid(mesh, reading.wrap,
-                        reading.uv == UvReading::Grid ? Seams::Open : Seams::Refused);
+  auto grid =
+      find_grid(mesh, reading.wrap, reading.uv == UvReading::Grid ? Seams::Open : Seams::Refused);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
   const std::string reason = grid.error().message;
   if (reading.uv == UvReading::Grid || reading.wrap != Wrap::None) {
@@ -161,7 +161,8 @@ class ShapeMaker {
     }
     auto made = make();
     if (!made) return fail(made.error());
-    return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
+    return CheckedShape{std::move(made->memory), std::move(made->shape.note),
+                        left_out_text(surface_.name, made->shape.mesh.left_out)};
   }
 
  private:
@@ -235,6 +236,7 @@ class ShapeMaker {
     if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
     auto made = subdivide(shape.mesh, cage, *surface_.subdivision);
     if (!made) return fail(about_mesh(made.error()));
+    made->mesh.left_out = std::move(shape.mesh.left_out);
     if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
     shape.mesh = std::move(made->mesh);
     shape.vertex_nodes = no_nodes(shape.mesh);
@@ -426,6 +428,11 @@ Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, cons
       **triangles, driving.transform.at(scene.start),
       to_world(own.transform.at(scene.start), shape.mesh.positions));
   return {};
+}
+
+std::string left_out_text(const std::string& surface, const std::string& left_out) {
+  if (left_out.empty()) return {};
+  return fmt::format("the mesh of \"{}\" has all of its file but {}", surface, left_out);
 }
 
 std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,

@@ -117,10 +117,14 @@ Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin&
 /// memory for it. Errors: the driver's triangles have no area; OutOfMemory.
 Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, const Scene& scene);
 
-/// The memory that a rest shape would reserve, and its note.
+/// What an author is told of a mesh with `Mesh::left_out`; empty: nothing.
+std::string left_out_text(const std::string& surface, const std::string& left_out);
+
+/// The memory that a rest shape would reserve, and the notes on it, which may be empty.
 struct CheckedShape {
   MemoryShare memory;
   std::string note = {};
+  std::string left_out = {};  ///< `left_out_text`
 };
 
 /// Checks that `make_rest_shape` would succeed, without making sheets.

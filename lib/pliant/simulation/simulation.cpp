@@ -31,7 +31,8 @@ Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene,
     std::vector<Error> errors = check_against_shape(scene, surface, made->shape);
     if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
   }
-  return CheckedShape{std::move(made->memory), std::move(made->shape.note)};
+  return CheckedShape{std::move(made->memory), std::move(made->shape.note),
+                      left_out_text(surface.name, made->shape.mesh.left_out)};
 }
 
 // What `work` returns, given what a simulation leaves of the memory.
@@ -75,7 +76,8 @@ Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
       errors.push_back(std::move(checked.error()));
       continue;
     }
-    if (auto note = note_on(surface, checked->note, scene.origin)) notes.push_back(*note);
+    for (const std::string& text : {checked->note, checked->left_out})
+      if (auto note = note_on(surface, text, scene.origin)) notes.push_back(*note);
     shapes.push_back(*std::move(checked));
   }
   if (context.is_stopped()) return interrupted_at_start();

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "pliant/mesh/mesh_message.hpp"
+#include "pliant/mesh/object_choice.hpp"
 
 namespace pliant {
 namespace {
@@ -26,6 +27,7 @@ struct Object {
   std::string mesh_name;
   Matrix4d to_file;  // the product of the transforms down to the node
   std::vector<const aiMesh*> meshes;
+  std::uint64_t small_faces = 0;  // of all meshes of the node: points and lines
 };
 
 // Buffers bytes and writes them to a descriptor.
@@ -108,6 +110,19 @@ std::vector<const aiMesh*> meshes_with_faces(const aiScene& scene, const aiNode&
   return meshes;
 }
 
+std::uint64_t small_faces(const aiScene& scene, const aiNode& node) {
+  std::uint64_t count = 0;
+  for (unsigned k = 0; k < node.mNumMeshes; ++k) {
+    const aiMesh* const mesh =
+        node.mMeshes[k] < scene.mNumMeshes ? scene.mMeshes[node.mMeshes[k]] : nullptr;
+    if (!mesh || !mesh->mFaces) continue;
+    count += static_cast<std::uint64_t>(
+        std::count_if(mesh->mFaces, mesh->mFaces + mesh->mNumFaces,
+                      [](const aiFace& face) { return !is_face(face); }));
+  }
+  return count;
+}
+
 // Depth first, in the order of the file. Explicit stack: a file may be deeply nested.
 std::vector<Object> objects_of(const aiScene& scene) {
   struct Visit {
@@ -122,29 +137,24 @@ std::vector<Object> objects_of(const aiScene& scene) {
     const Matrix4d to_file = above * to_matrix(node->mTransformation);
     if (auto meshes = meshes_with_faces(scene, *node); !meshes.empty()) {
       std::string mesh_name = meshes.front()->mName.C_Str();
-      objects.push_back({node->mName.C_Str(), std::move(mesh_name), to_file, std::move(meshes)});
+      objects.push_back({node->mName.C_Str(), std::move(mesh_name), to_file, std::move(meshes),
+                         small_faces(scene, *node)});
     }
     for (unsigned k = node->mNumChildren; k-- > 0;) visits.push_back({node->mChildren[k], to_file});
   }
   return objects;
 }
 
-// The only object of that name; if there are none or several, the receiver of the names reports it.
-std::optional<std::size_t> chosen(const std::vector<Object>& objects, const std::string& name) {
-  if (name.empty()) return objects.size() == 1 ? std::optional<std::size_t>(0) : std::nullopt;
-  const auto only = [&](auto name_of) -> std::optional<std::size_t> {
-    const auto is_it = [&](const Object& each) { return name_of(each) == name; };
-    const auto found = std::find_if(objects.begin(), objects.end(), is_it);
-    if (std::count_if(found, objects.end(), is_it) != 1) return {};
-    return static_cast<std::size_t>(found - objects.begin());
-  };
-  const auto node_name = [](const Object& each) -> const std::string& {
-    return each.node_name.empty() ? each.mesh_name : each.node_name;
-  };
-  const bool is_node = std::any_of(objects.begin(), objects.end(),
-                                   [&](const Object& each) { return node_name(each) == name; });
-  if (is_node) return only(node_name);
-  return only([](const Object& each) -> const std::string& { return each.mesh_name; });
+// The only object that the text chooses; if there are none or several, the receiver of the names
+// reports it.
+std::optional<std::size_t> chosen(const std::vector<Object>& objects, const std::string& object) {
+  std::vector<std::string> nodes, meshes;
+  for (const Object& each : objects) {
+    nodes.push_back(each.node_name.empty() ? each.mesh_name : each.node_name);
+    meshes.push_back(each.mesh_name);
+  }
+  const ObjectMatch match = find_objects(nodes, meshes, object);
+  return match.count == 1 ? std::optional(match.first) : std::nullopt;
 }
 
 std::string_view text_of(const aiString& text) {
@@ -199,6 +209,15 @@ void write_scene(MessageWriter& writer, const aiScene& scene, const std::string&
   for (const Object& each : objects) {
     writer.text(each.node_name);
     writer.text(each.mesh_name);
+    std::uint64_t vertices = 0, faces = 0;
+    for (const aiMesh* mesh : each.meshes) {
+      vertices += mesh->mNumVertices;
+      faces += static_cast<std::uint64_t>(
+          std::count_if(mesh->mFaces, mesh->mFaces + mesh->mNumFaces, is_face));
+    }
+    writer.number(vertices);
+    writer.number(faces);
+    writer.number(each.small_faces);
   }
   const auto index = chosen(objects, object);
   writer.number(index ? static_cast<std::uint32_t>(*index) : no_object);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+
+namespace pliant::ply {
+
+// The header of a PLY file: what its elements consist of. Internal to mesh.
+
+enum class Encoding { Ascii, LittleEndian, BigEndian };
+
+enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
+
+struct Property {
+  std::string name;
+  NumberType type = NumberType::Float32;
+  std::optional<NumberType> count_type = {};  ///< set for a list
+};
+
+struct Element {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<Property> properties;
+
+  /// The index of the first property with one of these names; -1: there is none.
+  int find(std::initializer_list<std::string_view> names) const;
+};
+
+struct Header {
+  Encoding encoding = Encoding::Ascii;
+  std::vector<Element> elements;
+  std::size_t size = 0;  ///< offset of the elements
+  int line_count = 0;
+};
+
+/// The bytes of a number of that type in a binary file.
+std::size_t size_of(NumberType type);
+
+/// Reads the header at the beginning of a file. Errors: there is none, it does not end, or a line
+/// of it is not part of one.
+Result<Header> read_header(std::string_view bytes);
+
+}  // namespace pliant::ply
