@@ -143,21 +143,23 @@ std::string name_of_writer(const CLI::App& command) {
 }
 
 const Files* files_of(const CLI::App& command, const CLI::Option& option) {
-  static const std::map<std::string, Files> any = {{"SCENE", {{".xml"}}},
-                                                   {"LOG", {{".replay"}}},
-                                                   {"A", {{".replay"}}},
-                                                   {"B", {{".replay"}}},
-                                                   {"FILE", {{".json", ".gltf", ".glb", ".anim"}}},
-                                                   {"--at", {}},
-                                                   {"--png", {{".png"}}},
-                                                   {"--cache", {{}, true}},
-                                                   {"--regions", {{".json"}}},
-                                                   {"--root", {{}, true}},
-                                                   {"--mesh", {}},
-                                                   {"--takes", {{".csv"}}},
-                                                   {"DIR", {{}, true}},
-                                                   {"SCENE|DIR", {{".xml"}}},
-                                                   {"--movie", {{".mp4", ".gif", ".webm"}}}};
+  static const std::map<std::string, Files> any = {
+      {"SCENE", {{".xml"}}},
+      {"SCENE|MESH", {{".xml", ".obj", ".ply", ".gltf", ".glb", ".fbx", ".dae"}}},
+      {"LOG", {{".replay"}}},
+      {"A", {{".replay"}}},
+      {"B", {{".replay"}}},
+      {"FILE", {{".json", ".gltf", ".glb", ".anim"}}},
+      {"--at", {}},
+      {"--png", {{".png"}}},
+      {"--cache", {{}, true}},
+      {"--regions", {{".json"}}},
+      {"--root", {{}, true}},
+      {"--mesh", {}},
+      {"--takes", {{".csv"}}},
+      {"DIR", {{}, true}},
+      {"SCENE|DIR", {{".xml"}}},
+      {"--movie", {{".mp4", ".gif", ".webm"}}}};
   static const std::map<std::string, Files> outputs = {
       {"bake", {known_endings()}},   {"curves", {{".csv", ".svg"}}},
       {"format", {{".xml"}}},        {"new", {{".xml"}}},

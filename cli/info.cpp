@@ -3,9 +3,13 @@
 #include <algorithm>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "info_formats.hpp"
 #include "interrupt.hpp"
+#include "pliant/core/memory_budget.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/mesh/mesh_objects.hpp"
 #include "pliant/pliant.hpp"
 #include "report.hpp"
 #include "scene_facts.hpp"
@@ -63,6 +67,27 @@ int tell(const SceneFacts& facts, const InfoOptions& options) {
   return exit_done;
 }
 
+bool is_mesh_file(const std::string& file) {
+  const std::vector<std::string> endings = mesh_endings();
+  return std::ranges::find(endings, ending_of(file)) != endings.end();
+}
+
+// Lists the objects of a mesh file.
+int run_mesh_info(const InfoOptions& options) {
+  if (!options.changes.empty()) {
+    return report({ErrorCode::InvalidInput,
+                   fmt::format("--set: {} is a mesh, not a scene", printable(options.scene))});
+  }
+  const SimulationOptions run = simulation_options(options.resources);
+  MemoryBudget memory(run.max_memory);
+  const auto objects =
+      mesh_objects(options.scene, {.memory = &memory, .should_stop = run.should_stop});
+  if (!objects) return report(objects.error());
+  print(stdout, options.is_json ? objects_json(options.scene, *objects)
+                                : objects_text(options.scene, *objects));
+  return exit_done;
+}
+
 }  // namespace
 
 std::string idle_reason(const Force& force, const Scene& scene) {
@@ -77,9 +102,9 @@ std::string idle_reason(const Force& force, const Scene& scene) {
 }
 
 void add_info(CLI::App& app, InfoOptions& options) {
-  CLI::App* info =
-      app.add_subcommand("info", "Show what is in a scene and what each force would do");
-  info->add_option("SCENE", options.scene, "Scene file")->required();
+  CLI::App* info = app.add_subcommand(
+      "info", "Show what is in a scene and what each force would do, or the objects of a mesh");
+  info->add_option("SCENE|MESH", options.scene, "Scene file, or a mesh file")->required();
   add_root(*info, options.root);
   add_changes(*info, options.changes);
   info->add_flag("--json", options.is_json, "Print JSON instead; docs/info.md describes it");
@@ -88,6 +113,7 @@ void add_info(CLI::App& app, InfoOptions& options) {
 
 int run_info(const InfoOptions& options) {
   catch_interrupts();
+  if (is_mesh_file(options.scene)) return run_mesh_info(options);
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   print_notes(scene->notes);

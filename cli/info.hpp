@@ -10,7 +10,7 @@ namespace pliant::cli {
 
 /// Options of `pliant info`.
 struct InfoOptions {
-  std::string scene;
+  std::string scene;  ///< or a mesh file
   Root root = {};
   Changes changes = {};
   bool is_json = false;
@@ -19,7 +19,8 @@ struct InfoOptions {
 
 void add_info(CLI::App& app, InfoOptions& options);
 
-/// Prints the content of a scene and a preview of each force. Returns the exit code.
+/// Prints the content of a scene and a preview of each force; of a mesh file its objects. Returns
+/// the exit code.
 int run_info(const InfoOptions& options);
 
 }  // namespace pliant::cli

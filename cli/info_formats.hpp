@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "json.hpp"
+#include "pliant/mesh/mesh_objects.hpp"
 #include "scene_facts.hpp"
 
 namespace pliant::cli {
@@ -11,10 +13,16 @@ namespace pliant::cli {
 /// names, invalid bytes become U+FFFD.
 std::string info_json(const SceneFacts& facts);
 
+/// The objects of a mesh file, likewise.
+std::string objects_json(const std::string& file, std::span<const FileObject> objects);
+
 /// A preview in that output.
 Json preview_json(const Preview& preview, const Scene& scene);
 
 /// The text that `pliant info` prints about a scene.
 std::string info_text(const SceneFacts& facts);
+
+/// The text that it prints about a mesh file.
+std::string objects_text(const std::string& file, std::span<const FileObject> objects);
 
 }  // namespace pliant::cli

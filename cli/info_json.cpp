@@ -154,6 +154,18 @@ Json preview_json(const Preview& preview, const Scene& scene) {
   return json;
 }
 
+std::string objects_json(const std::string& file, std::span<const FileObject> objects) {
+  Json json = {{"format", "pliant-mesh-1"}, {"file", file}, {"objects", Json::array()}};
+  for (const FileObject& object : objects) {
+    json["objects"].push_back({{"number", json["objects"].size() + 1},
+                               {"name", object.name},
+                               {"object", object.choice},
+                               {"vertices", object.vertices},
+                               {"faces", object.faces}});
+  }
+  return json.dump(2, ' ', true, Json::error_handler_t::replace) + '\n';
+}
+
 std::string info_json(const SceneFacts& facts) {
   const Scene& scene = facts.scene;
   Json json = {{"format", "pliant-info-1"}, {"file", facts.file},

@@ -338,6 +338,20 @@ std::string channels_text(const Scene& scene) {
 
 }  // namespace
 
+std::string objects_text(const std::string& file, std::span<const FileObject> objects) {
+  std::string text = fmt::format("{}\n{}; a scene chooses one by <mesh object=\"…\"/>\n",
+                                 printable(file), counted(objects.size(), "object"));
+  text += fmt::format("  {:>6} {:>10} {:>10}  object\n", "number", "vertices", "faces");
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    const FileObject& object = objects[k];
+    const bool is_named = object.choice.starts_with(object.name);
+    text += fmt::format("  {:>6} {:>10} {:>10}  {}{}\n", k + 1, object.vertices, object.faces,
+                        printable(object.choice),
+                        is_named ? "" : fmt::format(" (named {})", printable(object.name)));
+  }
+  return text;
+}
+
 std::string info_text(const SceneFacts& facts) {
   const Scene& scene = facts.scene;
   std::string text =

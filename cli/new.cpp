@@ -75,6 +75,11 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
     return refuse(fmt::format("--mesh: {} makes its own surface; the starters with a mesh are {}",
                               starter.name, with_mesh));
   }
+  for (const auto& [name, given] : {std::pair("--object", options.object.has_value()),
+                                    std::pair("--root", options.root.has_value())}) {
+    if (given && !options.mesh) return refuse(fmt::format("{} needs --mesh", name));
+  }
+  if (const auto folder = folder_of(options.root); !folder) return fail(folder.error());
   if (options.mesh) {
     if (const auto readable = check_readable(*options.mesh); !readable)
       return refuse(
@@ -109,11 +114,13 @@ Error about_mesh(Error error, const std::string& starter, const std::string& mes
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
+  const std::string root = options.root.value_or("");
   auto document = SceneDocument::from_text(std::string(starter.scene), std::string(starter.name),
-                                           out.parent_path().string());
+                                           out.parent_path().string(), {.root = root});
   if (!document) return fail(document.error());
   StarterSource source{.name = std::string(starter.name),
                        .folder = out.parent_path().string(),
+                       .root = root,
                        .obj = starter.mesh,
                        .options = simulation_options({})};
   if (options.mesh || options.material) {
@@ -123,7 +130,7 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
       source.obj = {};
       source.name = "the starter with --mesh";
       const std::string name = path_from(out.parent_path(), *options.mesh);
-      facts = use_own_mesh(*document, name, *facts, source);
+      facts = use_own_mesh(*document, {name, options.object.value_or("")}, *facts, source);
       if (!facts) return fail(about_mesh(facts.error(), source.name, *options.mesh));
     }
     if (options.material) {
@@ -212,6 +219,9 @@ void add_new(CLI::App& app, NewOptions& options) {
       ->check(one_of(names_of(looks())));
   create->add_option("--mesh", options.mesh,
                      "A mesh of your own for starters that have one, fitted to its size");
+  create->add_option("--object", options.object,
+                     "The object of that mesh if it has several; pliant info FILE lists them");
+  add_root(*create, options.root);
   create->add_flag("--schema", options.has_schema,
                    "Also write pliant-scene.xsd beside the scene, so that editors complete it");
   create->add_flag("--force", options.is_forced, "Replace files that exist");
@@ -219,7 +229,8 @@ void add_new(CLI::App& app, NewOptions& options) {
 
 int run_new(const NewOptions& options) {
   if (!options.name) {
-    if (options.out || options.material || options.mesh || options.has_schema) {
+    if (options.out || options.material || options.mesh || options.object || options.root ||
+        options.has_schema) {
       return report(
           {ErrorCode::InvalidInput, "new needs the NAME of a starter with these options"});
     }

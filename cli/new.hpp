@@ -4,6 +4,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "scene_input.hpp"
 
 namespace pliant::cli {
 
@@ -13,6 +14,8 @@ struct NewOptions {
   std::optional<std::string> out = {};       ///< null: prints the scene
   std::optional<std::string> material = {};  ///< of a look; null: that of the starter
   std::optional<std::string> mesh = {};      ///< file of the user's own mesh; null: the starter's
+  std::optional<std::string> object = {};    ///< of that file; null: its only one
+  Root root = {};                            ///< of that file
   bool has_schema = false;                   ///< whether the schema is written beside the scene
   bool is_forced = false;                    ///< whether existing files are replaced
 };

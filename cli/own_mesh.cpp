@@ -63,11 +63,14 @@ std::vector<Operation> placing(const Scene& scene, const StarterFacts& own,
 
 }  // namespace
 
-Result<StarterFacts> use_own_mesh(SceneDocument& scene, const std::string& file,
+Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
                                   const StarterFacts& own, const StarterSource& source) {
   const std::string surface = scene.scene().surfaces.front().name;
-  auto changed = scene.apply(
-      {edit::Set{surface + ".file", edit::literal_text(file)}, edit::Set{surface + ".uv", "auto"}});
+  std::vector<Operation> naming{edit::Set{surface + ".file", edit::literal_text(mesh.file)},
+                                edit::Set{surface + ".uv", "auto"}};
+  if (!mesh.object.empty())
+    naming.emplace_back(edit::Set{surface + ".object", edit::literal_text(mesh.object)});
+  auto changed = scene.apply(naming);
   if (!changed) return fail(changed.error());
   const auto size = measure(scene.text(), source);
   if (!size) return fail(size.error());

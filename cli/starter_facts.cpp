@@ -37,7 +37,7 @@ const Preview* find_preview(const std::vector<Preview>& previews) {
 }
 
 Result<Simulation> simulation_of(const std::string& text, const StarterSource& source) {
-  Result<Scene> scene = parse_scene(text, source.name, source.folder);
+  Result<Scene> scene = parse_scene(text, source.name, source.folder, source.root);
   if (!scene) return fail(scene.error());
   if (!source.obj.empty()) {
     Result<Mesh> mesh = parse_obj(source.obj, source.name);

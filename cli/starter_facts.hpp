@@ -14,6 +14,7 @@ namespace pliant::cli {
 struct StarterSource {
   std::string name;           ///< of the scene, in messages
   std::string folder;         ///< to which its mesh is relative
+  std::string root = {};      ///< as of `load_scene`
   std::string_view obj = {};  ///< the text of its mesh; empty: the file that the scene names
   SimulationOptions options = {};
 };

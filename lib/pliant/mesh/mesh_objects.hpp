@@ -15,8 +15,8 @@ std::vector<std::string> mesh_endings();
 
 /// An object of a mesh file, which a scene can choose.
 struct FileObject {
-  std::string name;            ///< whole; empty: it has none
-  std::string choice;          ///< what chooses it: its name, `NAME#2`, or `#3` (docs/meshes.md)
+  std::string name = {};       ///< whole; empty: it has none
+  std::string choice = {};     ///< what chooses it: its name, `NAME#2`, or `#3` (docs/meshes.md)
   std::uint64_t vertices = 0;  ///< of the mesh that is read
   std::uint64_t faces = 0;     ///< likewise
 };
