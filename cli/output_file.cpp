@@ -1,9 +1,12 @@
 #include "output_file.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/output/output_place.hpp"
 
 namespace pliant::cli {
@@ -25,12 +28,19 @@ Result<void> check_output_folder(std::string_view option, const std::filesystem:
   return {};
 }
 
-Result<void> check_output_file(std::string_view option, const std::string& file) {
+Result<void> check_output_file(std::string_view option, const std::string& file,
+                               std::span<const std::string_view> endings) {
   if (file == "-") {
     return fail(
         ErrorCode::InvalidInput,
         fmt::format("{} -: cannot write this to the standard output; name a file, such as ./-",
                     option));
+  }
+  const std::string ending = ending_of(file);
+  if (!endings.empty() && std::find(endings.begin(), endings.end(), ending) == endings.end()) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{} {}: no format has the ending \"{}\"; allowed: {}", option,
+                            printable(file), printable(ending), fmt::join(endings, ", ")));
   }
   if (auto there = check_output_folder(option, file); !there) return there;
   return check_output_place(file);

@@ -50,10 +50,11 @@ Result<void> check_view_places(const SweepViewOptions& options) {
   if (options.out && options.png && name_one_file(*options.out, *options.png))
     return refuse_output("--png", *options.png, "it is that of -o");
   if (options.out) {
-    if (auto place = check_output_file("-o", *options.out); !place) return place;
+    if (auto place = check_output_file("-o", *options.out, page_endings); !place) return place;
   }
   if (options.png) {
-    if (auto place = check_output_file("--png", *options.png); !place) return place;
+    if (auto place = check_output_file("--png", *options.png, picture_endings); !place)
+      return place;
     return check_look(options.look);
   }
   return {};

@@ -43,9 +43,9 @@ Result<void> check_places(const ViewOptions& options) {
   if (options.port) {
     return check_scene_is_file(options.scene, "--serve reads the scene again after every save");
   }
-  if (options.png) return check_output_file("--png", *options.png);
+  if (options.png) return check_output_file("--png", *options.png, picture_endings);
   if (options.movie) return check_output_file("--movie", *options.movie);
-  return check_output_file("-o", page_file(options));
+  return check_output_file("-o", page_file(options), page_endings);
 }
 
 int page_view(const ViewOptions& options, std::string_view page) {

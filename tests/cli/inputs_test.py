@@ -52,8 +52,9 @@ class Inputs(Command):
         self.refused("replay", "record", "mesh.xml", "-o", BUFFERS,
                      says="would overwrite a file that a mesh of the scene refers to")
         if HAS_PAGE:
-            self.refused("view", "mesh.xml", "-o", BUFFERS, says=refers)
-            self.refused("view", "mesh.xml", "--png", BUFFERS, says=refers)
+            for option, name in (("-o", "link.html"), ("--png", "link.png")):
+                os.link(self.path(BUFFERS), self.path(name))
+                self.refused("view", "mesh.xml", option, name, says=refers)
         for ending in ("npy", "pc2", "mdd", "glb", "usda", "csv", "svg"):
             os.rename(self.path(BUFFERS), self.path("n." + ending))
             self.refer_to("n." + ending)

@@ -116,10 +116,14 @@ class SweepPages(SweepViews):
         kept = {name: self.read(name) for name in ("s/sweep.json", "s/takes.csv", "scene.xml")}
         self.assertIn("-o F.html or --png F is missing", self.refused())
         for option in ("-o", "--png"):
-            for name, reason in (("s/sweep.json", "it is the sweep's"), ("s/takes.csv", "it is the sweep's"),
-                                 ("s/log/a.html", "its folder is the sweep's"), ("scene.xml", "it is the scene")):
-                self.assertIn(reason, self.refused(option, self.path(name)))
-        self.assertIn("it is that of -o", self.refused("-o", self.path("a"), "--png", self.path("a")))
+            ending = {"-o": ".html", "--png": ".png"}[option]
+            for name in ("s/sweep.json", "s/takes.csv", "scene.xml", "a", "a.jpg"):
+                self.assertIn(f"allowed: {ending}", self.refused(option, self.path(name)))
+            self.assertIn("its folder is the sweep's", self.refused(option, self.path(f"s/log/a{ending}")))
+        self.write("a.html", "")
+        os.symlink("a.html", self.path("a.png"))
+        self.assertIn("it is that of -o", self.refused("-o", self.path("a.html"), "--png", self.path("a.png")))
+        os.remove(self.path("a.png"))
         self.assertIn("does not exist", self.view("-o", self.path("no/s.html"), code=1).stderr)
         self.assertIn("--size", self.refused("--png", self.path("a.png"), "--size", "8x8"))
         self.assertIn("the most is", self.refused("--png", self.path("a.png"), "--size", "8000x8000"))
@@ -130,8 +134,8 @@ class SweepPages(SweepViews):
             self.assertIn(f"--look {look.split('&')[-1]}: ", message)
             self.assertIn(reason, message)
             for option in ("--png", "--movie"):
-                self.assertIn(reason, self.run_pliant("view", self.path("scene.xml"), option, self.path("a.mp4"),
-                                                      "--look", look, code=2).stderr)
+                name = self.path({"--png": "a.png", "--movie": "a.mp4"}[option])
+                self.assertIn(reason, self.run_pliant("view", self.path("scene.xml"), option, name, "--look", look, code=2).stderr)
         self.assertEqual(kept, {name: self.read(name) for name in kept})
 
     def test_a_mesh_that_was_changed_since_costs_its_pictures_only(self):
@@ -156,7 +160,8 @@ class SweepPages(SweepViews):
                       self.view("--png", self.path("s.png"), code=1, env={"PATH": self.path("bin")}).stderr)
         self.assertFalse(os.path.exists(self.path("s.png")))
         self.assertEqual(head["done"], 2)
-        self.assertIn("it is a mesh of the scene", self.refused("-o", self.path("flat.obj")))
+        os.link(self.path("flat.obj"), self.path("flat.html"))
+        self.assertIn("it is a mesh of the scene", self.refused("-o", self.path("flat.html")))
 
     def test_an_interrupt_ends_within_a_second_and_leaves_nothing(self):
         self.make("sheet.density=1..100", columns=5, end=2)

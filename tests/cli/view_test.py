@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import zlib
 
 import numpy as np
@@ -244,12 +245,27 @@ class Page(View):
         self.assertRegex(result.stdout, r"^view\.html: 12 frames, 163 vertices, [\d.]+ kB, [\d.]+ s, "
                                         r"peak displacement [\d.]+\n$")
 
+    def test_an_ending_names_the_format_ahead_of_all_work(self):
+        # Not even the scene is read.
+        for option, allowed, names in (("-o", ".html, .htm", ("a.png", "a.pdf", "a", "a.html.gz", "a.xml", ".html")),
+                                       ("--png", ".png", ("a.jpg", "a.jpeg", "a", "a.png.tif", "a.html", "png", "a.")),
+                                       ("--movie", ".mp4, .gif, .webm", ("a.png", "a.mov", "a"))):
+            for name in names:
+                result = self.run_pliant("view", "none.xml", option, name, code=2)
+                ending = os.path.splitext(name)[1]
+                self.assertEqual(result.stderr, f'pliant: error: {option} {name}: no format has the ending "{ending}"; '
+                                                f"allowed: {allowed}\n")
+        self.assertIn(".png", self.run_pliant("view", "none.xml", "--png", "a.jpg", "--contact-sheet", code=2).stderr)
+        for option, name in (("-o", "A.HTML"), ("-o", "a.htm"), ("--png", "a.PNG"), ("--movie", "a.Mp4")):
+            self.assertNotIn("ending", self.run_pliant("view", "none.xml", option, name, code=2).stderr)
+
     def test_what_cannot_be(self):
-        scene = self.scene()
+        scene = self.scene("scene.html")
+        shutil.copy(scene, self.path("scene.png"))
         for arguments, code, words in (
                 (["view", "none.xml"], 2, "none.xml"),
                 (["view", scene, "-o", scene], 2, "it is the scene"),
-                (["view", scene, "--png", scene], 2, "it is the scene"),
+                (["view", "scene.png", "--png", "scene.png"], 2, "it is the scene"),
                 (["view", scene, "--frames", "5:99"], 2, "--frames 5:99"),
                 (["view", scene, "-o", "no/where/view.html"], 1, "no/where/view.html"),
                 (["view", scene, "--serve", "99999"], 2, "must be a port"),
@@ -267,7 +283,7 @@ class Page(View):
                 result = self.run_pliant(*arguments, code=code)
                 self.assertIn(words, result.stderr)
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-                self.assertEqual(os.listdir(self.folder), ["scene.xml"])
+                self.assertEqual(sorted(os.listdir(self.folder)), ["scene.html", "scene.png"])
 
 
     def test_a_movie_without_its_programs_fails_ahead_of_the_run(self):
