@@ -190,7 +190,8 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
     const std::size_t k = output.surfaces[n];
     const SurfaceFrame& surface = frame.surfaces()[k];
     SurfacePose& pose = output.poses[n];
-    summary.peak_displacement = std::max(summary.peak_displacement, surface.peak_displacement());
+    if (surface.peak_displacement() > summary.peak_displacement)
+      summary.peak_displacement = std::max(summary.peak_displacement, surface.told_displacement());
     if (is_world(options)) {
       pose.positions = surface.positions(std::move(pose.positions));
       pose.is_mirrored = surface.transform().is_mirrored();
@@ -389,10 +390,10 @@ int run_bake(const BakeOptions& options, const BakeSource& source) {
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, peak displacement {:.6g}{}{}\n",
-                              printable(options.out), counted(summary->frame_count, "frame"),
+    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, {}{}{}\n", printable(options.out),
+                              counted(summary->frame_count, "frame"),
                               counted(summary->vertex_count, "vertex", "vertices"), elapsed.count(),
-                              summary->peak_displacement,
+                              peak_text(summary->peak_displacement, *frames, simulation->scene()),
                               options.resume ? resume_summary(summary->files) : "",
                               *store ? cache_summary(simulation->frame_counts()) : ""));
   }

@@ -66,10 +66,12 @@ void DtCheck::compare(const Frame& frame, std::span<const std::size_t> surfaces)
 
 std::string DtCheck::to_text(double peak_displacement) const {
   if (difference_ == 0) return "at half the time step all positions are the same";
-  return fmt::format(
-      "at half the time step positions differ by {:.3g} of the peak displacement at most, "
-      "{:.6g} at frame {}",
-      difference_ / peak_displacement, difference_, at_);
+  const std::string share = peak_displacement > 0
+                                ? fmt::format("{:.3g} of the peak displacement at most, ",
+                                              difference_ / peak_displacement)
+                                : "at most ";
+  return fmt::format("at half the time step positions differ by {}{:.6g} at frame {}", share,
+                     difference_, at_);
 }
 
 }  // namespace pliant::cli

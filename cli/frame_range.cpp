@@ -26,4 +26,12 @@ Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const S
   return frames;
 }
 
+std::string peak_text(double peak_displacement, const FrameRange& frames, const Scene& scene) {
+  std::string text = fmt::format("peak displacement {:.6g}", peak_displacement);
+  if (frames.first == scene.start && frames.last == scene.end) return text;
+  return text + (frames.count() == 1
+                     ? fmt::format(" at frame {}", frames.first)
+                     : fmt::format(" in frames {} to {}", frames.first, frames.last));
+}
+
 }  // namespace pliant::cli

@@ -18,4 +18,7 @@ Result<FrameRange> parse_frame_range(const std::string& text);
 /// naming --frames.
 Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene);
 
+/// The end of a summary, "peak displacement 1.58", and of which frames it is unless they are all.
+std::string peak_text(double peak_displacement, const FrameRange& frames, const Scene& scene);
+
 }  // namespace pliant::cli

@@ -63,11 +63,11 @@ int page_view(const ViewOptions& options, std::string_view page) {
   if (auto written = write_page(out, made); !written) return report(written.error());
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  print(stdout,
-        fmt::format("{}: {}, {}, {}, {:.2f} s, peak displacement {:.6g}\n", printable(out),
-                    counted(baked->frames.count(), "frame"),
-                    counted(baked->bake.vertex_count, "vertex", "vertices"),
-                    bytes_text(made.size()), elapsed.count(), baked->bake.peak_displacement));
+  print(stdout, fmt::format("{}: {}, {}, {}, {:.2f} s, {}\n", printable(out),
+                            counted(baked->frames.count(), "frame"),
+                            counted(baked->bake.vertex_count, "vertex", "vertices"),
+                            bytes_text(made.size()), elapsed.count(),
+                            peak_text(baked->bake.peak_displacement, baked->frames, baked->scene)));
   return exit_done;
 }
 

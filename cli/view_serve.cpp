@@ -123,10 +123,11 @@ std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer&
     return all;
   }
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {}, {}, peak displacement {:.6g}{}\n", printable(options.scene),
+    print(stdout, fmt::format("{}: {}, {}, {}{}\n", printable(options.scene),
                               counted(baked->frames.count(), "frame"),
                               counted(baked->bake.vertex_count, "vertex", "vertices"),
-                              baked->bake.peak_displacement, cache_summary(baked->counts)));
+                              peak_text(baked->bake.peak_displacement, baked->frames, baked->scene),
+                              cache_summary(baked->counts)));
   }
   server.publish(std::move(baked->bake.packed));
   return all;

@@ -12,7 +12,8 @@ import unittest
 
 import numpy as np
 
-from command import Command, GRID, PLIANT, SANITIZED, SCENE, main
+from command import Command, GRID, PLIANT, POINT, SANITIZED, SCENE, main
+from view_server import HAS_PAGE
 
 ONE_FILE = (".npy", ".pc2", ".mdd", ".glb", ".gltf", ".usda")
 
@@ -75,6 +76,25 @@ class Bake(Command):
         self.assertEqual(result.stderr, "")  # no progress: stderr is no terminal
         result = self.run_pliant("bake", scene, "-o", "a.npy", "--quiet")
         self.assertEqual(result.stdout + result.stderr, "")
+
+    def test_a_peak_of_some_frames_says_of_which(self):
+        scene = self.scene()
+        self.bake(scene, "-o", self.path("a.npy"), "--quiet")
+        displaced = np.linalg.norm(np.load(self.path("a.npy")) - np.load(self.path("a.npy"))[0], axis=2).max(axis=1)
+        for frames, words in (("3:7", " in frames 3 to 7"), ("2", " at frame 2"), ("1:12", ""), ("1", " at frame 1")):
+            for command in (["bake", scene, "-o", "b.npy"], *([["view", scene, "-o", "b.html"]] if HAS_PAGE else [])):
+                told = self.run_pliant(*command, "--frames", frames).stdout
+                found = re.search(r"peak displacement ([\d.e+-]+)(.*)\n", told)
+                first, _, last = frames.partition(":")
+                peak = displaced[int(first) - 1:int(last or first)].max()
+                self.assertEqual((found[1], found[2]), (f"{peak:.6g}", words), command)
+
+    def test_a_peak_that_is_rounding_is_told_as_0(self):
+        scene = self.write("s.xml", '<scene start="1" end="9"><surface name="s">' + GRID + '</surface>' +
+                           POINT.replace("3000", "1e-13") + "</scene>")
+        self.bake(scene, "-o", self.path("a.npy"), "--quiet")
+        self.assertNotEqual(np.ptp(np.load(self.path("a.npy")), axis=0).max(), 0)
+        self.assertRegex(self.run_pliant("bake", scene, "-o", "a.npy").stdout, r"peak displacement 0\n$")
 
     def test_check_dt_tells_what_half_the_step_changes(self):
         def difference(scene, *flags):

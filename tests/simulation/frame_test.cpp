@@ -25,6 +25,24 @@ TEST_CASE("a frame's surfaces are found by name and given in both spaces", "[sim
   CHECK(frame.find_surface("c") == nullptr);
 }
 
+TEST_CASE("a displacement that is no more than rounding is told as 0", "[simulation][frame]") {
+  Field points = Field::Zero(4, 3);
+  points(1, 0) = 2;
+  points(2, 2) = 5;
+  // Where the surface is does not count, its size in the world does.
+  for (const double size : {1e-6, 1.0, 1e9}) {
+    const Transform transform =
+        make_transform({1e4, 0, -1e4}, {0, 30, 0}, {size, -size, size}, RotateOrder::Xyz);
+    const auto told = [&](double share) {
+      return SurfaceFrame("a", points, transform, share * size).told_displacement() / size;
+    };
+    CHECK(told(0) == 0);
+    CHECK(told(1e-300) == 0);
+    CHECK(told(1e-15) == 0);
+    for (const double share : {1e-9, 1e-3, 1.0, 50.0}) CHECK_THAT(told(share), WithinRel(share));
+  }
+}
+
 TEST_CASE("a surface that is not there is named, with those that are", "[simulation][frame]") {
   const Field points = Field::Random(7, 3);
   const Frame frame(4, {SurfaceFrame("sheet", points, {}, 0), SurfaceFrame("ball", points, {}, 0)});

@@ -23,6 +23,15 @@ Field SurfaceFrame::positions(Field reuse) const {
   return to_world(transform_, object_positions_, std::move(reuse));
 }
 
+double SurfaceFrame::told_displacement() const {
+  if (peak_displacement_ == 0) return 0;
+  constexpr double rounding = 1e-12;
+  const Vector3d sides =
+      object_positions_.colwise().maxCoeff() - object_positions_.colwise().minCoeff();
+  const double size = (transform_.linear.cwiseAbs() * sides).maxCoeff();
+  return peak_displacement_ < rounding * size ? 0 : peak_displacement_;
+}
+
 Frame::Frame(int number, std::vector<SurfaceFrame> surfaces)
     : number_(number), surfaces_(std::move(surfaces)) {}
 

@@ -35,6 +35,10 @@ class SurfaceFrame {
   /// The largest distance of a vertex from its rest position, in world space. [length]
   double peak_displacement() const { return peak_displacement_; }
 
+  /// The same as people are to be told it: 0 if it is no more than rounding, less than 1e-12 of the
+  /// surface's size. [length]
+  double told_displacement() const;
+
  private:
   friend class Bodies;  // refills it
 
