@@ -90,21 +90,19 @@ class Browser {
   pid_t id_;
 };
 
-// One frame, or for a sheet up to twelve evenly spaced ones.
-Result<std::vector<int>> chosen_frames(const ViewOptions& options, const FrameRange& frames) {
-  if (!options.is_sheet) {
-    const int frame = options.frame.value_or(frames.first);
-    if (frame >= frames.first && frame <= frames.last) return std::vector<int>{frame};
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--frame {}: must be from {} to {}", frame, frames.first, frames.last));
-  }
+Result<void> check_frame(const ViewOptions& options, const FrameRange& frames) {
+  const int frame = options.frame.value_or(frames.first);
+  if (frame >= frames.first && frame <= frames.last) return {};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("--frame {}: must be from {} to {}", frame, frames.first, frames.last));
+}
+
+// One frame, or for a sheet up to twelve that tell the motion.
+std::vector<int> chosen_frames(const ViewOptions& options, const BakedScene& baked) {
+  if (!options.is_sheet) return {options.frame.value_or(baked.frames.first)};
   constexpr int most = 12;
-  const int count = std::min(most, frames.count());
-  std::vector<int> chosen;
-  for (int k = 0; k < count; ++k) {
-    chosen.push_back(count == 1 ? frames.first
-                                : frames.first + (frames.count() - 1) * k / (count - 1));
-  }
+  std::vector<int> chosen = viewer::telling_frames(baked.bake.course, most);
+  for (int& frame : chosen) frame += baked.frames.first;
   return chosen;
 }
 
@@ -133,14 +131,13 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   // The options are checked before the scene is run.
   const auto range = parse_frames(options.frames, *scene);
   if (!range) return fail(range.error());
-  const auto frames = chosen_frames(options, *range);
-  if (!frames) return fail(frames.error());
+  if (auto frame = check_frame(options, *range); !frame) return frame;
   auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return fail(baked.error());
 
   auto taker = PictureTaker::start(page, std::move(baked->bake.packed));
   if (!taker) return fail(taker.error());
-  taker->order(*frames, *size, options.look);
+  taker->order(chosen_frames(options, *baked), *size, options.look);
   const auto picture = taker->take();
   if (!picture) return fail(picture.error());
   return write_file(*options.png, *picture);

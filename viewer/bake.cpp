@@ -75,13 +75,15 @@ class SurfaceView {
 
   Result<void> add(const SurfaceFrame& frame, int number) {
     transforms_.push_back(transform_json(frame.transform()));
-    peak_displacement_ = std::max(peak_displacement_, frame.peak_displacement());
+    peak_displacement_ = std::max(peak_displacement_, frame.told_displacement());
     Field positions = frame.positions();
     low_ = low_.cwiseMin(positions.colwise().minCoeff().transpose());
     high_ = high_.cwiseMax(positions.colwise().maxCoeff().transpose());
     if (before_.size() > 0) {
       const double moved = (positions - before_).rowwise().norm().maxCoeff();
-      peak_speed_ = std::max(peak_speed_, moved * fps_);
+      constexpr double rounding = 1e-12;  // of the surface's size, as in `told_displacement`
+      if (moved >= rounding * (high_ - low_).maxCoeff())
+        peak_speed_ = std::max(peak_speed_, moved * fps_);
     }
     before_ = std::move(positions);
     if (rest_motion_) {
@@ -211,9 +213,11 @@ using ForceNumbers = std::map<std::string, std::size_t, std::less<>>;
 
 // Runs every frame up to the last, and adds those in `frames` to the surfaces.
 Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const ViewLimits& limits,
-                        std::vector<SurfaceView>& surfaces, const ForceNumbers& force_numbers,
-                        const std::function<void()>& advance) {
+                        std::vector<SurfaceView>& surfaces, CourseFollower& follower,
+                        const ForceNumbers& force_numbers, const std::function<void()>& advance) {
   const Scene& scene = simulation.scene();
+  std::vector<const Field*> rest;
+  for (const RestShape& shape : simulation.rest_shapes()) rest.push_back(&shape.mesh.positions);
   for (int number = scene.start; number <= frames.last; ++number) {
     if (limits.should_stop && limits.should_stop())
       return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
@@ -228,6 +232,7 @@ Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const 
         }
         surfaces[k].marks().add(number, report->surfaces[k], force_numbers);
       }
+      follower.add(*frame, rest);
     }
     advance();
   }
@@ -250,10 +255,13 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
     surfaces.emplace_back(simulation.rest_shapes()[k], scene.surfaces[k], scene.fps);
   }
 
-  if (auto run = run_frames(simulation, frames, limits, surfaces, force_numbers, advance); !run) {
+  CourseFollower follower;
+  if (auto run = run_frames(simulation, frames, limits, surfaces, follower, force_numbers, advance);
+      !run) {
     return fail(run.error());
   }
   ViewBake bake;
+  bake.course = follower.course();
   Arrays arrays;
   Json shown = Json::array();
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
@@ -268,6 +276,8 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
                      {"fps", scene.fps},
                      {"first", frames.first},
                      {"last", frames.last},
+                     {"sceneFrames", {scene.start, scene.end}},
+                     {"displaced", bake.course.displaced},
                      {"surfaces", shown},
                      {"forces", forces},
                      {"channels", view_channels(scene, frames)},

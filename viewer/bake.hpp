@@ -5,6 +5,7 @@
 
 #include "pliant/simulation/simulation.hpp"
 #include "viewer/frame_range.hpp"
+#include "viewer/telling_frames.hpp"
 
 namespace pliant::viewer {
 
@@ -12,8 +13,9 @@ namespace pliant::viewer {
 struct ViewBake {
   std::string packed;  ///< a raw deflate stream; docs/viewer.md describes its content [bytes]
   int vertex_count = 0;
-  double peak_displacement = 0;    ///< world [length]
+  double peak_displacement = 0;    ///< of its frames, world [length]
   std::size_t position_bytes = 0;  ///< of the frames once unpacked [bytes]
+  MotionCourse course;             ///< of its frames
 };
 
 /// Limits of a run for a page.

@@ -2,14 +2,21 @@
 attacker. tests/viewer tests the drawings of Chromium.
 """
 
+import importlib.machinery
+import importlib.util
 import json
 import os
+import re
 import stat
 import struct
+import subprocess
+import sys
 import unittest
 import zlib
 
-from command import Command, SANITIZED, SCENE, main
+import numpy as np
+
+from command import Command, SANITIZED, SCENE, SOURCE, main
 from view_server import HAS_PAGE
 
 # Started like Chromium. Each test appends its own code; results go to a file.
@@ -59,6 +66,8 @@ def note():  # ahead of the picture, which ends us
 
 """
 
+RENDERS = importlib.util.find_spec("matplotlib") is not None
+
 
 def size_of(png):
     return struct.unpack(">II", png[16:24])
@@ -66,9 +75,9 @@ def size_of(png):
 
 @unittest.skipUnless(HAS_PAGE, "this build has no page")
 class Picture(Command):
-    def draw(self, work, *options, code=0):
+    def draw(self, work, *options, code=0, scene=None):
         """The run, and the results of the program that replaces Chromium."""
-        scene = self.write("scene.xml", SCENE.format(end=30))
+        scene = scene or self.write("scene.xml", SCENE.format(end=30))
         program = self.write("chromium", BROWSER + work + "\ntime.sleep(60)\n")
         os.chmod(program, stat.S_IRWXU)
         path = self.folder + os.pathsep + os.environ["PATH"]
@@ -89,6 +98,68 @@ class Picture(Command):
                   "rows = -(-len(job['frames']) // job['columns'])\n"
                   "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))", "--contact-sheet")
         self.assertEqual(size_of(self.read("out.png")), (4 * 64, 3 * (48 + 28) + 76))
+
+    def job(self, *options, scene=None):
+        """What the page is to draw."""
+        _, results = self.draw("results['job'] = json.loads(send(f'GET /{token}/job HTTP/1.1\\r\\nHost: {own}\\r\\n\\r\\n').split(b'\\r\\n\\r\\n')[1])\n"
+                               "note()\njob = results['job']\nrows = -(-len(job['frames']) // job['columns'])\n"
+                               "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))", *options, scene=scene)
+        return results["job"]
+
+    def test_a_sheet_has_the_frames_that_tell_the_motion(self):
+        # It is struck, rings, is held by a damping, and struck again.
+        scene = self.write("scene.xml", '''<scene version="1" start="-5" end="90"><surface name="sheet">
+            <grid columns="13" rows="11" width="12" depth="10"/><material density="40" damping="20"/><solver region="all"/></surface>
+            <point name="poke" center="0 0 0" forceRadius="2.5"><animate attribute="magnitude">
+            <key frame="-5" value="0"/><key frame="4" value="9000"/><key frame="5" value="0"/><key frame="50" value="0"/>
+            <key frame="60" value="-5000"/><key frame="61" value="0"/></animate></point></scene>''')
+        self.run_pliant("bake", scene, "-o", "b.npy", "--quiet")
+        baked = np.load(self.path("b.npy"))
+        displaced = np.linalg.norm(baked - baked[0], axis=2).max(axis=1)
+        steps = np.diff(baked, axis=0)
+        turns = np.einsum("fvk,fvk->f", steps[:-1], steps[1:])
+        frames = self.job("--contact-sheet", scene=scene)["frames"]
+        self.assertEqual(len(frames), 12)
+        self.assertEqual(frames, sorted(set(frames)))
+        self.assertEqual((frames[0], frames[-1]), (-5, 90))
+        self.assertIn(int(displaced.argmax()) - 5, frames)
+        marks = {k - 5 for k in range(1, 95) if turns[k - 1] < 0 or displaced[k - 1] < displaced[k] >= displaced[k + 1]}
+        self.assertGreater(len(marks), 5)
+        self.assertLessEqual(marks, set(frames))
+        self.assertEqual(self.job("--contact-sheet", scene=scene)["frames"], frames)
+        some = self.job("--contact-sheet", "--frames", "10:20", scene=scene)["frames"]
+        self.assertEqual(some, list(range(10, 21)))
+        self.assertEqual(self.job("--frame", "7", scene=scene)["frames"], [7])
+
+    @unittest.skipUnless(RENDERS, "script/render needs matplotlib")
+    def test_the_script_that_renders_has_the_same_rule_and_the_peak_of_the_bake(self):
+        loader = importlib.machinery.SourceFileLoader("render", os.path.join(SOURCE, "script/render"))
+        render = importlib.util.module_from_spec(importlib.util.spec_from_loader("render", loader))
+        sys.dont_write_bytecode = True
+        loader.exec_module(render)
+        for name in ("sheet", "dent", "flag"):
+            scene = os.path.join(SOURCE, "examples", f"{name}.xml")
+            peak = re.search(r"peak displacement (\S+)", self.run_pliant("bake", scene, "-o", f"{name}.obj").stdout)[1]
+            files = render.sequence(self.path(f"{name}.obj"))
+            course = render.course(files[number] for number in sorted(files))
+            first = min(files)
+            shown = [first + k for k in render.telling_frames(*course, 12)]
+            self.assertEqual(self.job("--contact-sheet", scene=scene)["frames"], shown, name)
+            for frames in ("1", "2,5", None) if name == "dent" else ():
+                told = subprocess.run([os.path.join(SOURCE, "script/render"), f"{name}.obj", "-o", "r.png", "--dpi", "20",
+                                       *(["--frames", frames] if frames else [])],
+                                      cwd=self.folder, check=True, capture_output=True, text=True).stdout
+                self.assertIn(f"peak displacement {peak} from frame {first}, in frames {first} to {max(files)}\n", told)
+
+    @unittest.skipUnless(RENDERS, "script/render needs matplotlib")
+    def test_the_script_that_renders_says_which_files_there_are(self):
+        scene = self.write("still.xml", SCENE.format(end=9).replace("3000", "0"))
+        self.run_pliant("bake", scene, "-o", "a.obj", "--quiet")
+        for number in (2, 5, 9):
+            os.remove(self.path(f"a.{number:04}.obj"))
+        told = subprocess.run([os.path.join(SOURCE, "script/render"), "a.obj", "-o", "r.png", "--dpi", "20"],
+                              cwd=self.folder, check=True, capture_output=True, text=True).stdout
+        self.assertTrue(told.endswith("peak displacement 0 from frame 1, in 6 of frames 1 to 8\n"), told)
 
     def test_no_list_of_processes_shows_the_token(self):
         work = "note()\npost(png(64, 48))"

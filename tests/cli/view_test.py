@@ -115,9 +115,13 @@ class Page(View):
 
     def test_positions_are_those_of_a_bake(self):
         head, _ = self.compare(self.scene())
-        self.assertEqual((head["first"], head["last"], head["fps"]), (1, 12, 25))
+        self.assertEqual((head["first"], head["last"], head["fps"], head["sceneFrames"]), (1, 12, 25, [1, 12]))
         self.assertGreater(head["surfaces"][0]["peakDisplacement"], 0.1)
         self.assertEqual(head["surfaces"][1]["peakDisplacement"], 0)
+        baked = np.load(self.path("bake-sheet.npy"))
+        displaced = np.linalg.norm(baked - baked[0], axis=2).max(axis=1)
+        np.testing.assert_allclose(head["displaced"], displaced, atol=1e-12)
+        self.assertEqual(max(head["displaced"]), head["surfaces"][0]["peakDisplacement"])
 
     def test_a_moving_transform_is_kept_apart_from_the_displacement(self):
         transform = ('<transform rotate="20 30 -50" scale="1 3 -0.5"><animate attribute="translate">'
@@ -147,7 +151,8 @@ class Page(View):
 
     def test_some_of_the_frames(self):
         head, _ = self.compare(self.scene(start=-3), "--frames", "-1:7")
-        self.assertEqual((head["first"], head["last"]), (-1, 7))
+        self.assertEqual((head["first"], head["last"], head["sceneFrames"]), (-1, 7, [-3, 12]))
+        self.assertEqual(len(head["displaced"]), 9)
 
     def test_a_mesh_in_any_order_and_every_kind_of_force(self):
         for example in ("travelling", "flag", "thesis/fig10-coarse"):
