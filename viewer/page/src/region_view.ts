@@ -1,6 +1,7 @@
 // Draws the selections on the surface: the rim of each region, the box of each force (thesis 5.3,
 // fig. 5 and 12), or what it pushes on a surface of triangles.
 
+import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
@@ -109,7 +110,8 @@ function linesOfMark(surface: BakedSurface, boxes: Box[], place?: LinesPlace): L
 }
 
 const lineMaterial = (linewidth: number, opacity: number, nearness: number) =>
-  new LineMaterial({ linewidth, opacity, transparent: true, polygonOffset: true, polygonOffsetFactor: -nearness, polygonOffsetUnits: -nearness });
+  // Lines face the picture whether the surface is mirrored or not.
+  new LineMaterial({ linewidth, opacity, transparent: true, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -nearness, polygonOffsetUnits: -nearness });
 
 /** The regions and boxes of one surface. */
 export class RegionView {
