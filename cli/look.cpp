@@ -15,7 +15,7 @@
 namespace pliant::cli {
 namespace {
 
-enum class Kind { Number, Positive, Word, Names };
+enum class Kind { Number, Positive, Word, Switch, Names };
 
 struct LookWord {
   std::string_view name;
@@ -26,12 +26,14 @@ struct LookWord {
 // As readLook of viewer/page/src/look.ts.
 const std::vector<LookWord>& look_words() {
   static const std::vector<std::string_view> on_or_off = {"on", "off"};
+  static const std::vector<std::string_view> axes = {"x", "y", "z"};
   static const std::vector<LookWord> words = {
       {"frame"},
       {"turn"},
       {"tilt"},
+      {"up", Kind::Word, axes},
       {"style", Kind::Word, {"shaded", "lines", "wireframe"}},
-      {"colour", Kind::Word, {"plain", "displacement", "velocity"}},
+      {"colour", Kind::Word, {"plain", "displacement", "signed", "velocity"}},
       {"theme", Kind::Word, {"light", "dark"}},
       {"gizmos", Kind::Word, on_or_off},
       {"labels", Kind::Word, on_or_off},
@@ -39,6 +41,8 @@ const std::vector<LookWord>& look_words() {
       {"boxes", Kind::Word, on_or_off},
       {"floor", Kind::Word, on_or_off},
       {"legend", Kind::Word, on_or_off},
+      {"caption", Kind::Word, on_or_off},
+      {"clean", Kind::Switch, on_or_off},
       {"hide", Kind::Names},
       {"solo", Kind::Names},
       {"peak", Kind::Positive},
@@ -53,6 +57,9 @@ std::string complaint_of(const LookWord& word, std::string_view value) {
       return to_number(value) ? "" : "must be a number";
     case Kind::Positive:
       return to_number(value).value_or(0) > 0 ? "" : "must be a number above 0";
+    case Kind::Switch:
+      if (value.empty()) return "";  // the word alone is on
+      [[fallthrough]];
     case Kind::Word:
       if (std::find(word.allowed.begin(), word.allowed.end(), value) != word.allowed.end())
         return "";

@@ -129,7 +129,8 @@ class SweepPages(SweepViews):
         self.assertIn("the most is", self.refused("--png", self.path("a.png"), "--size", "8000x8000"))
         self.view("-o", self.path("a.html"), "--size", "100x100", code=2)
         for look, reason in (("tunr=3", 'did you mean "turn"'), ("turn=3&theme=drak", 'did you mean "dark"'), ("turn=x", "a number"),
-                             ("peak=0", "above 0"), ("turn", "a number"), ("legend=yes", "allowed: on, off")):
+                             ("peak=0", "above 0"), ("turn", "a number"), ("legend=yes", "allowed: on, off"), ("legend", "allowed: on, off"),
+                             ("clean=yes", "allowed: on, off"), ("up=w", "allowed: x, y, z"), ("colour=singed", 'did you mean "signed"')):
             message = self.refused("--png", self.path("a.png"), "--look", look)
             self.assertIn(f"--look {look.split('&')[-1]}: ", message)
             self.assertIn(reason, message)

@@ -85,6 +85,19 @@ export function sweepTests({ test, run, inFolder, example, withPage, readNpy, ne
     });
   });
 
+  test("the colours of takes reach the largest peak of the sweep, at whichever frame they are shown", async () => {
+    const url = sweepPage("early", small("early"), ["poke.magnitude=900,1500"], { viewOptions: ["--frame", "1"] });
+    await withPage(url, {}, async (view) => {
+      const { peaks, shown, high } = await view.evaluate(() => ({
+        peaks: [...window.pliant.sweep.measures[0].values],
+        shown: window.pliant.sweep.shapes.map(({ mostDisplaced }) => mostDisplaced),
+        high: Number(document.getElementById("legend-high").textContent),
+      }));
+      assert.ok(Math.max(...shown) < 0.9 * Math.max(...peaks), "the frame is not that of the peak");
+      near(high, Math.max(...peaks), 1e-3 * high, "the top colour");
+    });
+  });
+
   test("takes stand where a bake has them, coloured by their displacement", async () => {
     // At an angle, and with vertices that a coarser mesh leaves out.
     writeFileSync(inFolder("bent.xml"), scene().replace("<material", '<transform rotate="20 30 0" translate="3 0 100"/><material').replace('center="0 0 0"', 'center="3 0 100"').replace('columns="13" rows="13"', 'columns="121" rows="151"'));

@@ -623,6 +623,7 @@ test("the legend has the peak of the bake", async () => {
   const peak = Number(run("bake", scene, "-o", "peak.npy").match(/peak displacement ([\d.]+)/)[1]);
   await withPage(pageOf(scene), {}, async (page) => {
     near(Number(await page.locator("#legend-high").textContent()), peak, 1e-3, "legend");
+    assert.equal(await page.locator("#legend-frames").isVisible(), false);
     await page.keyboard.press("d");
     await page.getByText("Velocity", { exact: true }).click();
     await page.getByText("Velocity [scene units/s]").waitFor();
@@ -633,6 +634,220 @@ test("the legend has the peak of the bake", async () => {
     await page.keyboard.press("g");
     assert.equal(await page.locator("#legend").isVisible(), false);
   });
+});
+
+test("the legend of some frames says of which", async () => {
+  for (const [frames, words] of [["30:40", "in frames 30 to 40"], ["12", "at frame 12"]]) {
+    const peak = Number(run("bake", example("sheet"), "-o", "peak.npy", "--frames", frames).match(/peak displacement ([\d.]+)/)[1]);
+    await withPage(pageOf(example("sheet"), "--frames", frames), {}, async (page) => {
+      near(Number(await page.locator("#legend-high").textContent()), peak, 1e-3, frames);
+      assert.equal(await page.locator("#legend-frames").textContent(), words);
+    });
+  }
+});
+
+/** Largest and smallest number of a surface's vertices along the normal at a frame, and the length that they have. */
+const signedAt = async (page, name, frame) => {
+  await goTo(page, frame);
+  return page.evaluate((wanted) => {
+    const { signed, displacement } = window.pliant.viewer.views.find((view) => view.surface.head.name === wanted);
+    return { low: Math.min(...signed), high: Math.max(...signed), most: Math.max(...displacement) };
+  }, name);
+};
+
+/** The colours of the page: the one chosen, and the ends of the legend. */
+const coloursOf = (page) =>
+  page.evaluate(() => ({
+    colour: document.querySelector('input[name="colour"]:checked').value,
+    drawn: window.pliant.viewer.display.colour,
+    title: document.getElementById("legend-title").textContent,
+    ends: ["low", "high"].map((end) => Number(document.getElementById(`legend-${end}`).textContent)),
+  }));
+
+test("displacement has a sign where the motion goes both ways", async () => {
+  // A sheet pushed up; the same, whose push changes its sign; the same with a way back of a hundredth.
+  const sheet = (keys) => `<scene version="1" start="1" end="40"><surface name="s"><grid columns="17" rows="17" width="8" depth="8"/>
+    <material density="0.01" damping="0.1"/><solver integrator="backwardEuler"/></surface><point name="p" deformationRadius="3" forceRadius="2"><animate attribute="magnitude">${keys}</animate></point></scene>`;
+  const key = (frame, value) => `<key frame="${frame}" value="${value}"/>`;
+  for (const [back, colour] of [[0, "displacement"], [-900, "signed"], [-20, "displacement"]]) {
+    writeFileSync(inFolder("ways.xml"), sheet(key(1, 0) + key(10, 1000) + key(20, 0) + key(30, back) + key(40, 0)));
+    const peak = Number(run("bake", inFolder("ways.xml"), "-o", "ways.npy").match(/peak displacement ([\d.e+-]+)/)[1]);
+    // The normal of a sheet is y.
+    const { shape: [, vertices], numbers } = readNpy(inFolder("ways.npy"));
+    const heights = numbers.filter((_, k) => k % 3 === 1);
+    const [low, high] = [Math.min(...heights), Math.max(...heights)];
+    const frameWith = (height) => 1 + Math.floor(heights.indexOf(height) / vertices);
+    assert.ok(high === peak || Math.abs(high / peak - 1) < 1e-5);
+    await withPage(pageOf(inFolder("ways.xml")), {}, async (page) => {
+      const first = await coloursOf(page);
+      assert.deepEqual([first.colour, first.drawn], [colour, colour]);
+      near((await signedAt(page, "s", frameWith(high))).high, high, 1e-3 * peak, "up");
+      const down = await signedAt(page, "s", frameWith(low));
+      near(down.low, low, 1e-3 * peak, "down");
+      if (back === -900) {
+        assert.ok(low < -0.5 * peak);
+        near(down.most, -down.low, 1e-3 * peak, "down");
+      }
+      await page.keyboard.press("d");
+      await page.getByText("Signed", { exact: true }).click();
+      const { title, ends } = await coloursOf(page);
+      assert.match(title, /Signed displacement \[scene units\]/);
+      near(ends[1], peak, 1e-3 * peak, "top");
+      assert.equal(ends[0], -ends[1]);
+      // Blue below, red above, neither at rest.
+      const hues = await page.evaluate((frames) => {
+        const { viewer, playback } = window.pliant;
+        const colourAt = (frame) => {
+          playback.goTo(frame);
+          return [...viewer.views[0].mesh.geometry.getAttribute("color").array.slice(3 * 144, 3 * 144 + 3)];
+        };
+        return frames.map(colourAt);
+      }, [frameWith(high), 1, frameWith(low)]);
+      assert.ok(hues[0][0] > 2 * hues[0][2], `${hues[0]}`);
+      assert.ok(Math.max(...hues[1]) < 1.3 * Math.min(...hues[1]), `${hues[1]}`);
+      if (back === -900) assert.ok(hues[2][2] > 2 * hues[2][0], `${hues[2]}`);
+    });
+  }
+  await withPage(`${pageOf(inFolder("ways.xml"))}#colour=signed`, {}, async (page) => {
+    const { colour, drawn } = await coloursOf(page);
+    assert.deepEqual([colour, drawn], ["signed", "signed"]);
+  });
+});
+
+test("outwards is outwards on closed, mirrored and stretched surfaces", async () => {
+  const lines = [];
+  const [around, along] = [16, 12];
+  for (let j = 0; j <= along; ++j) {
+    for (let i = 0; i < around; ++i) {
+      const [a, b] = [(2 * Math.PI * i) / around, (Math.PI * (j + 0.5)) / (along + 1)];
+      lines.push(`v ${Math.sin(b) * Math.sin(a)} ${Math.cos(b)} ${Math.sin(b) * Math.cos(a)}`);
+    }
+  }
+  lines.push("v 0 1 0", "v 0 -1 0");
+  const at = (i, j) => 1 + j * around + (i % around);
+  for (let i = 0; i < around; ++i) {
+    lines.push(`f ${at(i, 0)} ${at(i + 1, 0)} ${around * (along + 1) + 1}`, `f ${at(i + 1, along)} ${at(i, along)} ${around * (along + 1) + 2}`);
+    for (let j = 0; j < along; ++j) lines.push(`f ${at(i, j)} ${at(i, j + 1)} ${at(i + 1, j + 1)} ${at(i + 1, j)}`);
+  }
+  writeFileSync(inFolder("ball.obj"), `${lines.join("\n")}\n`);
+  for (const [name, transform] of [["plain", ""], ["mirrored", 'scale="1 1 -1"'], ["stretched", 'scale="-3 0.5 -2" rotate="20 70 -30"'], ["turned", 'scale="-1 -1 -1"']]) {
+    writeFileSync(inFolder("ball.xml"), `<scene version="1" start="1" end="8"><surface name="s"><mesh file="ball.obj" uv="surface"/>
+      <transform ${transform} translate="4 0 1"/>
+      <material density="1" damping="5"/><solver region="all"/></surface>
+      <radial name="r" center="4 0 1" forceRadius="8" magnitude="5"/></scene>`);
+    for (const sign of [1, -1]) {
+      writeFileSync(inFolder("ball.xml"), readFileSync(inFolder("ball.xml"), "utf8").replace(/magnitude="-?5"/, `magnitude="${5 * sign}"`));
+      await withPage(pageOf(inFolder("ball.xml")), {}, async (page) => {
+        const { low, high, most } = await signedAt(page, "s", 8);
+        const [far, back] = sign > 0 ? [high, -low] : [-low, high];
+        assert.ok(far > 0.5 * most && most > 0, `${name}: ${low} to ${high} of ${most}`);
+        assert.ok(back < 0.1 * most, `${name}: ${low} to ${high} of ${most}`);
+      });
+    }
+  }
+});
+
+test("the camera frames the surfaces, and forces only while they are drawn", async () => {
+  const scene = (forces) => `<scene version="1" start="1" end="5"><surface name="s"><grid columns="9" rows="9" width="10" depth="10"/></surface>
+    <point name="a" deformationRadius="3" forceRadius="2" magnitude="1"/>${forces}</scene>`;
+  /** The share of the picture's width that the sheet has. */
+  const widthOf = (page) =>
+    page.evaluate(() => {
+      const { viewer, stage } = window.pliant;
+      stage.scene.updateMatrixWorld(true);
+      const all = Array.from(viewer.views[0].displacement, (_, k) => viewer.views[0].vertex(k).project(stage.camera));
+      const [x, y] = ["x", "y"].map((axis) => all.map((each) => each[axis]));
+      if (Math.max(...x, ...y) > 1 || Math.min(...x, ...y) < -1) return 0; // it sticks out
+      return Math.max(Math.max(...x) - Math.min(...x), Math.max(...y) - Math.min(...y)) / 2;
+    });
+  const point = (center, more = "") => `<point name="b" center="${center}" deformationRadius="2" forceRadius="1" magnitude="1" ${more}/>`;
+  const look = "gizmos=off";
+  writeFileSync(inFolder("aim.xml"), scene(""));
+  const url = pageOf(inFolder("aim.xml"));
+  let [alone, bare] = [0, 0];
+  await withPage(url, {}, async (page) => (alone = await widthOf(page)));
+  await withPage(`${url}#${look}`, {}, async (page) => (bare = await widthOf(page)));
+  assert.ok(bare >= alone && alone > 0.4 && bare > 0.6, `${bare}, ${alone}`);
+  for (const force of [point("50 0 0"), point("0 -70 20"), point("1000 1000 0"), '<line name="b" from="-60 1 0" to="60 1 0" deformationRadius="40" magnitude="1"/>',
+    '<point name="b" deformationRadius="2" magnitude="1"><animate attribute="center"><key frame="1" value="0 0 0"/><key frame="5" value="900 0 0"/></animate></point>']) {
+    writeFileSync(inFolder("aim.xml"), scene(force));
+    await withPage(pageOf(inFolder("aim.xml")), {}, async (page) => near(await widthOf(page), alone, 0.02, force));
+  }
+  // One that stands beside it is in the picture too, unless it is not drawn.
+  writeFileSync(inFolder("aim.xml"), scene(point("6.5 2 0")));
+  const beside = pageOf(inFolder("aim.xml"));
+  await withPage(beside, {}, async (page) => {
+    const wide = await widthOf(page);
+    assert.ok(wide < alone - 0.02 && wide > 0.3, `${wide}`);
+    await page.keyboard.press("g");
+    assert.equal(await widthOf(page), wide); // nothing jumps
+    await page.keyboard.press("f");
+    near(await widthOf(page), bare, 1e-3, "without forces");
+  });
+  for (const words of [look, "clean"]) await withPage(`${beside}#${words}`, {}, async (page) => near(await widthOf(page), bare, 1e-3, words));
+  for (const words of ["hide=b", "solo=a"]) await withPage(`${beside}#${words}`, {}, async (page) => near(await widthOf(page), alone, 1e-3, words));
+  writeFileSync(inFolder("aim.xml"), scene(point("6.5 2 0", 'enabled="false"')));
+  await withPage(pageOf(inFolder("aim.xml")), {}, async (page) => near(await widthOf(page), alone, 1e-3, "disabled"));
+});
+
+test("each axis can be up", async () => {
+  const url = pageOf(example("sheet"));
+  for (const [k, up] of ["x", "y", "z"].entries()) {
+    for (const words of ["", "&turn=70&tilt=-20", "&tilt=90"]) {
+      await withPage(`${url}#up=${up}${words}`, {}, async (page) => {
+        // A step along the axis goes straight up in the picture.
+        const step = () => page.evaluate((axis) => {
+          const { stage } = window.pliant;
+          stage.draw();
+          const { target } = stage.controls;
+          const [from, to] = [0, 1e-3].map((length) => target.clone().setComponent(axis, target.getComponent(axis) + length).project(stage.camera));
+          return [to.x - from.x, to.y - from.y];
+        }, k);
+        const [x, y] = await step();
+        assert.ok(Math.abs(x) < 1e-6, `${up}${words}: ${x}, ${y}`);
+        if (!words.includes("90")) assert.ok(y > 1e-5, `${up}${words}: ${x}, ${y}`);
+        // And so after a drag.
+        await page.mouse.move(450, 250);
+        await page.mouse.down();
+        await page.mouse.move(520, 280, { steps: 3 });
+        await page.mouse.up();
+        await page.waitForTimeout(300);
+        assert.ok(Math.abs((await step())[0]) < 1e-6, `${up}${words}, after a drag`);
+      });
+    }
+  }
+});
+
+test("a clean look shows the surfaces only", async () => {
+  const shown = (page) => page.evaluate(() => {
+    const { stage, viewer, labels } = window.pliant;
+    stage.draw();
+    const found = [];
+    stage.scene.traverseVisible((object) => object.isMesh && object.geometry.getAttribute("position")?.count > 0 && found.push(object.name));
+    stage.scene.traverseVisible((object) => object.isLineSegments && found.push("lines"));
+    return { found, legend: !document.getElementById("legend").hidden, labels: labels().length, caption: viewer.display.hasCaption };
+  });
+  const url = pageOf(example("sheet"));
+  for (const words of ["clean", "clean=on", "clean&frame=30"]) {
+    await withPage(`${url}#${words}`, {}, async (page) => assert.deepEqual(await shown(page), { found: ["sheet"], legend: false, labels: 0, caption: false }, words));
+  }
+  await withPage(`${url}#clean&legend=on&floor=on`, {}, async (page) => assert.deepEqual(await shown(page), { found: ["sheet", "lines"], legend: true, labels: 0, caption: false }));
+  await withPage(`${url}#clean=off`, {}, async (page) => assert.ok((await shown(page)).labels > 0));
+});
+
+test("lines on a mirrored surface are drawn as on another", async () => {
+  const draw = (scale) => {
+    writeFileSync(inFolder("mirror.xml"), `<scene version="1" start="1" end="2"><surface name="s"><grid columns="17" rows="17" width="8" depth="8"/>
+      <transform scale="${scale}"/></surface><point name="p" deformationRadius="3" forceRadius="2" magnitude="0.001"/></scene>`);
+    const take = (look) => {
+      run("view", inFolder("mirror.xml"), "--png", "m.png", "--size", "320x240", "--quiet", "--look", `clean&tilt=60&colour=plain&${look}`);
+      return pixelsOf("m.png");
+    };
+    return differing(take(""), take("regions=on&boxes=on"));
+  };
+  const plain = draw("1 1 1");
+  assert.ok(plain > 300);
+  for (const scale of ["1 -1 1", "-1 1 1", "-1 -1 -1"]) near(draw(scale), plain, 0.3 * plain, scale);
 });
 
 test("curves are chosen, and go along with the frame", async () => {
@@ -1183,6 +1398,37 @@ test("pictures have the size and the frame that was asked for", async () => {
   assert.deepEqual(readFileSync(inFolder("one.png")), readFileSync(inFolder("again.png")));
   run("view", example("sheet"), "--png", "sheet.png", "--contact-sheet", "--size", "200x160", "--quiet");
   assert.deepEqual(size("sheet.png"), [800, 3 * 188 + 76]);
+});
+
+test("pictures say which frame they show, and how far it is displaced", async () => {
+  const take = (name, look, ...more) => {
+    run("view", example("sheet"), "--png", name, "--size", "400x300", "--quiet", "--look", `clean&${look}`, ...more);
+    return pixelsOf(name);
+  };
+  const isIn = (a, b, width, [left, top, right, bottom]) => {
+    let [inside, outside] = [0, 0];
+    for (let k = 0; k < a.length; k += 3) {
+      if (Math.abs(a[k] - b[k]) <= 16) continue;
+      const [x, y] = [(k / 3) % width, Math.floor(k / 3 / width)];
+      if (x >= left && x < right && y >= top && y < bottom) ++inside;
+      else ++outside;
+    }
+    return [inside, outside];
+  };
+  const [inside, outside] = isIn(take("c0.png", "", "--frame", "12"), take("c1.png", "caption=on", "--frame", "12"), 400, [0, 0, 260, 40]);
+  assert.ok(inside > 200 && outside === 0, `${inside}, ${outside}`);
+  // The words are those of the page.
+  const peak = run("bake", example("sheet"), "-o", "caption.npy").match(/peak displacement ([\d.]+)/)[1];
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    const most = await page.evaluate(() => Math.max(...Array.from({ length: 96 }, (_, k) => {
+      window.pliant.playback.goTo(k + 1);
+      const { viewer } = window.pliant;
+      const far = Math.max(...viewer.views[0].displacement);
+      if (Math.abs(far - viewer.displaced()) > 1e-4 * viewer.ends().high) throw new Error(`frame ${k + 1}: ${far}, not ${viewer.displaced()}`);
+      return viewer.displaced();
+    })));
+    near(most, Number(peak), 1e-5, "peak");
+  });
 });
 
 // Pictures by other programs

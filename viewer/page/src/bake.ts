@@ -107,6 +107,10 @@ interface Head {
   fps: number;
   first: number;
   last: number;
+  /** The first and last frame of the scene, if this page has only some of its frames. */
+  sceneFrames?: [number, number];
+  /** The largest displacement of all surfaces at each frame, for the captions of pictures. */
+  displaced?: number[];
   surfaces: SurfaceHead[];
   forces: Force[];
   channels: Channel[];

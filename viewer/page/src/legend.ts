@@ -1,5 +1,6 @@
 // The meaning of the colours: the same text and drawing for the page and for pictures.
 
+import type { Bake } from "./bake";
 import type { Area } from "./labels";
 import { numberText } from "./curve_plot";
 import { ramps } from "./surface_view";
@@ -7,7 +8,11 @@ import type { Palette } from "./theme";
 import type { Viewer } from "./viewer";
 
 /** A scene defines no unit of length: lengths are in the units of its numbers, times in seconds. */
-export const titles = { displacement: "Displacement [scene units]", velocity: "Velocity [scene units/s]" };
+export const titles = {
+  displacement: "Displacement [scene units]",
+  signed: "Signed displacement [scene units]",
+  velocity: "Velocity [scene units/s]",
+};
 
 interface Ink {
   colour: string;
@@ -15,8 +20,8 @@ interface Ink {
 }
 
 export interface Legend {
-  /** The colours of the surfaces; null: they are plain. */
-  scale: { title: string; css: string; at: (share: number) => string; high: string } | null;
+  /** The colours of the surfaces; null: they are plain. `frames`: which frames the largest number is of; empty: all of the scene. */
+  scale: { title: string; css: string; at: (share: number) => string; low: string; high: string; frames: string } | null;
   /** The colours of the lines. */
   inks: Ink[];
 }
@@ -34,7 +39,21 @@ export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
   const { colour } = display;
   if (colour === "plain") return inks.length > 0 ? { scale: null, inks } : null;
   const ramp = ramps[colour];
-  return { scale: { title: titles[colour], css: ramp.css(), at: (share) => ramp.cssAt(share), high: numberText(viewer.peak()) }, inks };
+  const { low, high } = viewer.ends();
+  const scale = { title: titles[colour], css: ramp.css(), at: (share: number) => ramp.cssAt(share), low: numberText(low), high: numberText(high) };
+  return { scale: { ...scale, frames: display.peak === null ? framesOf(bake) : "" }, inks };
+}
+
+/** The frames of a page that has only some of its scene. */
+function framesOf({ head: { first, last, sceneFrames } }: Bake): string {
+  if (!sceneFrames || (first === sceneFrames[0] && last === sceneFrames[1])) return "";
+  return first === last ? `at frame ${first}` : `in frames ${first} to ${last}`;
+}
+
+/** The present frame and its displacement, in words for much room and for little. */
+export function captionsOf(viewer: Viewer): string[] {
+  const [frame, displaced] = [`frame ${viewer.playback.frame}`, numberText(viewer.displaced())];
+  return [`${frame} · displacement ${displaced}`, `${frame} · ${displaced}`, frame];
 }
 
 /** Shows the legend in the page. */
@@ -45,9 +64,12 @@ export function showLegend(place: HTMLElement, legend: Legend | null): void {
   part("scale").hidden = legend.scale === null;
   if (legend.scale) {
     part("title").textContent = legend.scale.title;
+    part("low").textContent = legend.scale.low;
     part("high").textContent = legend.scale.high;
+    part("frames").textContent = legend.scale.frames;
+    part("frames").hidden = legend.scale.frames === "";
     part("ramp").style.background = legend.scale.css;
-    part("ramp").setAttribute("aria-label", `Colours from 0 to ${legend.scale.high}`);
+    part("ramp").setAttribute("aria-label", `Colours from ${legend.scale.low} to ${legend.scale.high}`);
   }
   part("inks").replaceChildren(
     ...legend.inks.map(({ colour, means }) => {
@@ -67,11 +89,12 @@ export function showLegend(place: HTMLElement, legend: Legend | null): void {
 export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, left: number, bottom: number, text: number, palette: Palette): Area {
   const width = 15 * text;
   const line = 1.35 * text;
-  const rows = (legend.scale ? 2.6 : 0) + (legend.inks.length > 0 ? 1.1 : 0);
+  const rows = (legend.scale ? 2.6 : 0) + (legend.scale?.frames ? 1 : 0) + (legend.inks.length > 0 ? 1.1 : 0);
   let y = bottom - rows * line;
-  const area: Area = [left - 4, y - 0.4 * text, left + width + 4, bottom];
   context.save();
   context.font = `${text}px system-ui, sans-serif`;
+  const room = legend.scale ? context.measureText(legend.scale.title).width : 0;
+  const area: Area = [left - 4, y - 0.4 * text, left + Math.max(width, room) + 4, bottom];
   context.textBaseline = "middle";
   // A background, so that lines behind it do not cross its numbers.
   context.globalAlpha = 0.8;
@@ -97,8 +120,12 @@ export function drawLegend(context: CanvasRenderingContext2D, legend: Legend, le
       context.fillRect(Math.round(left) + x, Math.round(y), 1, height);
     }
     y += 0.95 * line;
-    put("0", left, "left");
+    put(legend.scale.low, left, "left");
     put(legend.scale.high, left + width, "right");
+    if (legend.scale.frames) {
+      y += line;
+      put(legend.scale.frames, left, "left");
+    }
     y += 1.1 * line;
   }
   let x = left;

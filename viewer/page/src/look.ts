@@ -1,12 +1,14 @@
 // The words that the page's address may have after #: `frame=12&colour=velocity&turn=30`.
 
 import type { Colour, Style } from "./surface_view";
+import type { Axis } from "./stage";
 import type { Theme } from "./theme";
 
 export interface Look {
   frame?: number;
   turn?: number;
   tilt?: number;
+  up?: Axis;
   style?: Style;
   colour?: Colour;
   theme?: Theme;
@@ -15,6 +17,7 @@ export interface Look {
   boxes?: boolean;
   labels?: boolean;
   legend?: boolean;
+  caption?: boolean;
   floor?: boolean;
   /** Names of forces and groups. */
   hide?: string[];
@@ -30,20 +33,25 @@ export function readLook(address: string): Look {
     return Number.isFinite(value) ? value : undefined;
   };
   const one = <T extends string>(name: string, allowed: readonly T[]) => allowed.find((each) => each === words.get(name));
-  const isOn = (name: string) => ({ on: true, off: false })[words.get(name) ?? ""];
+  const switched = (name: string) => ({ on: true, off: false })[words.get(name) ?? ""];
+  // Nothing but the surfaces is on, unless it is named.
+  const isClean = switched("clean") ?? words.get("clean") === "";
+  const isOn = (name: string) => switched(name) ?? (isClean ? false : undefined);
   const names = (name: string) => (words.has(name) ? words.getAll(name).flatMap((text) => text.split(",")).filter((each) => each !== "") : undefined);
   return {
     frame: number("frame"),
     turn: number("turn"),
     tilt: number("tilt"),
+    up: one("up", ["x", "y", "z"] as const),
     style: one("style", ["shaded", "lines", "wireframe"] as const),
-    colour: one("colour", ["plain", "displacement", "velocity"] as const),
+    colour: one("colour", ["plain", "displacement", "signed", "velocity"] as const),
     theme: one("theme", ["light", "dark"] as const),
     gizmos: isOn("gizmos"),
     regions: isOn("regions"),
     boxes: isOn("boxes"),
     labels: isOn("labels"),
     legend: isOn("legend"),
+    caption: isOn("caption"),
     floor: isOn("floor"),
     hide: names("hide"),
     solo: names("solo"),

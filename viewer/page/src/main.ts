@@ -172,7 +172,7 @@ const shortcuts: Record<string, (event: KeyboardEvent) => void> = {
   f: () => stage.frameAll(),
   l: toggleLoop,
   w: () => setStyle(next(["shaded", "lines", "wireframe"] as const, display.style)),
-  v: () => setColour(next(["displacement", "velocity", "plain"] as const, display.colour)),
+  v: () => setColour(next(["displacement", "signed", "velocity", "plain"] as const, display.colour)),
   g: () => {
     const isOn = !display.hasGizmos;
     for (const set of [setGizmos, setRegions, setBoxes]) set(isOn);
@@ -213,6 +213,7 @@ function load(bake: Bake): void {
   timeline.keyFrames = [...new Set(head.channels.flatMap((channel) => channel.keys.map((key) => key.at[0])))].sort((a, b) => a - b);
   readout.clear();
   viewer.load(bake);
+  setColour(display.colour);
   readout.views = viewer.views;
   curves.load(head.channels);
   forceList.load(head.forces);
@@ -224,6 +225,7 @@ function load(bake: Bake): void {
 function apply(look: Look): void {
   if (look.theme) themes.choose(look.theme);
   if (look.legend !== undefined) display.hasLegend = look.legend;
+  if (look.caption !== undefined) display.hasCaption = look.caption;
   if (look.peak !== undefined && look.peak > 0) display.peak = look.peak;
   if (look.style) setStyle(look.style);
   if (look.colour) setColour(look.colour);
@@ -233,9 +235,11 @@ function apply(look: Look): void {
   if (look.labels !== undefined) setLabels(look.labels);
   if (look.hide || look.solo) viewer.forces.set(look.hide, look.solo);
   if (look.floor !== undefined) setFloor(look.floor);
-  if (look.turn !== undefined || look.tilt !== undefined) stage.look(look.turn, look.tilt);
   if (look.frame !== undefined) playback.goTo(look.frame);
   redress();
+  if (look.up) stage.up = look.up;
+  if (look.up || look.turn !== undefined || look.tilt !== undefined) stage.look(look.turn, look.tilt);
+  else if (look.gizmos !== undefined || look.hide || look.solo) stage.frameAll(); // other forces are drawn
 }
 
 function showLive(text: string, state: string): void {

@@ -1,8 +1,8 @@
 // Pictures of the stage: one frame, or a sheet of several, with labels and legend as in the page.
 
 import { drawLabels, type Area } from "./labels";
-import { drawLegend, legendOf } from "./legend";
-import type { ThemeChoice } from "./theme";
+import { captionsOf, drawLegend, legendOf } from "./legend";
+import type { Palette, ThemeChoice } from "./theme";
 import type { Viewer } from "./viewer";
 
 export interface PictureJob {
@@ -18,6 +18,26 @@ export interface PictureJob {
 
 /** Smaller pictures show only the surfaces, without text. [px] */
 const leastForWords = { width: 240, height: 180 };
+
+/**
+ * Draws the longest caption for which there is room: below the frame of a sheet, else into its upper left corner. Returns
+ * the covered area.
+ */
+function drawCaption(context: CanvasRenderingContext2D, captions: string[], { width, height, label }: PictureJob, text: number, palette: Palette): Area {
+  context.font = `${text}px system-ui, sans-serif`;
+  const widthOf = (words: string) => context.measureText(words).width;
+  const caption = captions.find((words) => widthOf(words) <= width - 2 * text) ?? captions.at(-1)!;
+  const [x, y] = label > 0 ? [(width - widthOf(caption)) / 2, height + 19] : [text, 1.8 * text];
+  context.textAlign = "left";
+  context.textBaseline = "alphabetic";
+  context.lineJoin = "round";
+  context.lineWidth = 0.25 * text;
+  context.strokeStyle = palette.background;
+  context.strokeText(caption, x, y);
+  context.fillStyle = palette.ink;
+  context.fillText(caption, x, y);
+  return [x, y - text, x + widthOf(caption), y + 0.3 * text];
+}
 
 /**
  * A PNG of width x height pixels for one frame; several frames form a table of pictures of that
@@ -48,14 +68,9 @@ export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: Pict
     context.clip();
     context.drawImage(viewer.stage.canvas, 0, 0);
     const taken: Area[] = [];
+    if (viewer.display.hasCaption && (isSheet || hasWords)) taken.push(drawCaption(context, captionsOf(viewer), job, isSheet ? 15 : text, palette));
     if (legend && hasWords && !isSheet) taken.push(drawLegend(context, legend, text, height - 0.8 * text, text, palette));
     if (hasWords) drawLabels(context, viewer.labels(), viewer.stage.camera, { width, height, text }, taken, palette);
-    if (isSheet) {
-      context.font = "15px system-ui, sans-serif";
-      context.textAlign = "center";
-      context.fillStyle = palette.ink;
-      context.fillText(`frame ${frame}`, width / 2, height + 19);
-    }
     context.restore();
   });
   if (legend && isSheet) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);

@@ -61,4 +61,6 @@ export class Ramp {
 
 /** Rest is calm and grey-blue, the peak is warm and bright. */
 export const displacementRamp = new Ramp(["#68778c", "#4587ab", "#43ab94", "#b9cf5e", "#ffe08a"]);
+/** Against the normal, rest, along the normal. */
+export const signedRamp = new Ramp(["#2350b8", "#7ba0dd", "#c6c9cf", "#ea9a76", "#b3202c"]);
 export const velocityRamp = new Ramp(["#6a7188", "#7a66b0", "#c05f9a", "#ee8163", "#ffd27a"]);

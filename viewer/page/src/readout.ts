@@ -62,6 +62,7 @@ export class Readout {
       ["u, v", `${fixed(view.surface.uvs[2 * vertex])}, ${fixed(view.surface.uvs[2 * vertex + 1])}`],
       ["position", place.toArray().map(fixed).join(", ")],
       ["displacement", fixed(view.displacement[vertex])],
+      ["along normal", fixed(view.signed[vertex])],
       ["velocity", `${fixed(view.speed[vertex])} /s`],
     ];
     this.output.replaceChildren(

@@ -33,7 +33,15 @@ export function light(scene: THREE.Scene, camera: THREE.Camera): void {
   scene.add(camera, new THREE.AmbientLight(0xffffff, ambient));
 }
 
-/** The way to the camera: turned about the vertical and tilted up, in degrees. */
+export const axes = { x: new THREE.Vector3(1, 0, 0), y: new THREE.Vector3(0, 1, 0), z: new THREE.Vector3(0, 0, 1) };
+export type Axis = keyof typeof axes;
+
+/** Turns a scene whose vertical is y into one whose vertical is `up`. */
+function uprightTo(up: THREE.Vector3): THREE.Quaternion {
+  return new THREE.Quaternion().setFromUnitVectors(axes.y, up);
+}
+
+/** The way to the camera where y is up: turned about the vertical and tilted up, in degrees. */
 export function wayOf(turn?: number, tilt?: number): THREE.Vector3 {
   const a = turn === undefined ? restTurn : THREE.MathUtils.degToRad(turn);
   const b = tilt === undefined ? restTilt : THREE.MathUtils.degToRad(tilt);
@@ -48,11 +56,13 @@ export function bound(camera: THREE.PerspectiveCamera, box: THREE.Box3): void {
   camera.updateProjectionMatrix();
 }
 
-/** Looks at the box from `way` so that its corners fill the picture up to a margin. */
-export function fit(camera: THREE.PerspectiveCamera, box: THREE.Box3, way: THREE.Vector3): void {
+/** Looks at the box from `way`, where y is up, so that its corners fill the picture up to a margin. */
+export function fit(camera: THREE.PerspectiveCamera, box: THREE.Box3, from: THREE.Vector3): void {
   const center = box.getCenter(new THREE.Vector3());
-  const side = new THREE.Vector3(0, 1, 0).cross(way);
-  if (side.lengthSq() < 1e-9) side.set(1, 0, 0);
+  const upright = uprightTo(camera.up);
+  const way = from.clone().applyQuaternion(upright);
+  const side = camera.up.clone().cross(way);
+  if (side.lengthSq() < 1e-9) side.set(1, 0, 0).applyQuaternion(upright);
   side.normalize();
   const over = way.clone().cross(side);
   const tanV = Math.tan(THREE.MathUtils.degToRad(camera.fov / 2));
@@ -68,7 +78,9 @@ export function fit(camera: THREE.PerspectiveCamera, box: THREE.Box3, way: THREE
 }
 
 /** A grid of squares of a round size under a box. */
-export function floorUnder(box: THREE.Box3, axisColour: string, colour: string): THREE.GridHelper {
+export function floorUnder(placed: THREE.Box3, up: THREE.Vector3, axisColour: string, colour: string): THREE.GridHelper {
+  const upright = uprightTo(up);
+  const box = placed.clone().applyMatrix4(new THREE.Matrix4().makeRotationFromQuaternion(upright.clone().invert()));
   const size = box.getSize(new THREE.Vector3());
   const extent = 1.5 * Math.max(size.x, size.z, 0.3 * size.y, 1e-9);
   const power = 10 ** Math.floor(Math.log10(extent / 10));
@@ -76,7 +88,8 @@ export function floorUnder(box: THREE.Box3, axisColour: string, colour: string):
   const count = 2 * Math.ceil(extent / cell / 2);
   const grid = new THREE.GridHelper(count * cell, count, axisColour, colour);
   const center = box.getCenter(new THREE.Vector3());
-  grid.position.set(Math.round(center.x / cell) * cell, box.min.y - 0.02 * size.length(), Math.round(center.z / cell) * cell);
+  grid.position.set(Math.round(center.x / cell) * cell, box.min.y - 0.02 * size.length(), Math.round(center.z / cell) * cell).applyQuaternion(upright);
+  grid.quaternion.copy(upright);
   return grid;
 }
 
@@ -84,7 +97,9 @@ export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.1, 1000);
   readonly renderer: THREE.WebGLRenderer;
-  readonly controls: OrbitControls;
+  controls: OrbitControls;
+  /** The box that the camera frames. */
+  aim = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
   private floor = new THREE.Group();
   private box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
   private isStale = true;
@@ -96,10 +111,7 @@ export class Stage {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     light(this.scene, this.camera);
     this.scene.add(this.floor);
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.controls.dampingFactor = 0.12;
-    this.controls.addEventListener("change", () => this.invalidate());
+    this.controls = this.newControls();
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
     this.resize();
     const loop = () => {
@@ -125,19 +137,27 @@ export class Stage {
     this.listeners.push(listener);
   }
 
-  /** Sets the box that the camera shows. */
+  /** Sets the box that everything is in. */
   bound(box: THREE.Box3): void {
     this.box = box.clone();
-    const size = Math.max(box.getSize(new THREE.Vector3()).length(), 1e-12);
     bound(this.camera, box);
-    this.controls.minDistance = size / 100;
-    this.controls.maxDistance = size * 12;
+    this.boundControls();
+    this.buildFloor();
+  }
+
+  /** The axis that is upright in the picture; y at first. Call `look` after it. */
+  set up(axis: Axis) {
+    if (this.camera.up.equals(axes[axis])) return;
+    this.camera.up.copy(axes[axis]);
+    this.controls.dispose();
+    this.controls = this.newControls(); // which take the upright axis once
+    this.boundControls();
     this.buildFloor();
   }
 
   /** Fits everything into the view, from the camera's present direction. */
   frameAll(): void {
-    const toCamera = this.camera.position.clone().sub(this.controls.target);
+    const toCamera = this.camera.position.clone().sub(this.controls.target).applyQuaternion(uprightTo(this.camera.up).invert());
     if (toCamera.lengthSq() === 0) toCamera.set(0, 0, 1);
     this.lookFrom(toCamera.normalize());
   }
@@ -184,14 +204,28 @@ export class Stage {
   }
 
   private lookFrom(way: THREE.Vector3): void {
-    this.controls.target.copy(this.box.getCenter(new THREE.Vector3()));
-    fit(this.camera, this.box, way);
+    this.controls.target.copy(this.aim.getCenter(new THREE.Vector3()));
+    fit(this.camera, this.aim, way);
     this.controls.update();
     this.invalidate();
   }
 
+  private newControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    controls.dampingFactor = 0.12;
+    controls.addEventListener("change", () => this.invalidate());
+    return controls;
+  }
+
+  private boundControls(): void {
+    const size = Math.max(this.box.getSize(new THREE.Vector3()).length(), 1e-12);
+    this.controls.minDistance = size / 100;
+    this.controls.maxDistance = size * 12;
+  }
+
   private buildFloor(): void {
     this.floor.clear();
-    this.floor.add(floorUnder(this.box, this.floorColours[0], this.floorColours[1]));
+    this.floor.add(floorUnder(this.box, this.camera.up, this.floorColours[0], this.floorColours[1]));
   }
 }

@@ -37,11 +37,12 @@ export function surfaceMaterial(): THREE.MeshStandardMaterial {
   return material;
 }
 
-/** Colours of a ramp for the vertices' numbers; `peak` has the top colour. */
-export function paintNumbers(numbers: Float32Array, peak: number, ramp: Ramp, colours: Float32Array): void {
+/** Colours of a ramp for the vertices' numbers; `low` has the bottom colour, `high` the top one. */
+export function paintNumbers(numbers: Float32Array, low: number, high: number, ramp: Ramp, colours: Float32Array): void {
   const { colours: shades } = ramp;
+  const scale = high > low ? 255 / (high - low) : 0;
   for (let vertex = 0; vertex < numbers.length; ++vertex) {
-    const shade = peak > 0 ? Math.min(Math.round((255 * numbers[vertex]) / peak), 255) : 0;
+    const shade = Math.min(Math.max(Math.round(scale * (numbers[vertex] - low)), 0), 255);
     colours[3 * vertex] = shades[3 * shade];
     colours[3 * vertex + 1] = shades[3 * shade + 1];
     colours[3 * vertex + 2] = shades[3 * shade + 2];

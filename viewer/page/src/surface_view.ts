@@ -4,14 +4,16 @@ import * as THREE from "three";
 
 import { at, type BakedSurface } from "./bake";
 import { bends } from "./relief";
-import { displacementRamp, velocityRamp, type Ramp } from "./ramp";
+import { displacementRamp, signedRamp, velocityRamp, type Ramp } from "./ramp";
 import { paintNumbers, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
 import type { Palette } from "./theme";
 
 export type Style = "shaded" | "lines" | "wireframe";
-export type Colour = "plain" | "displacement" | "velocity";
+export type Colour = "plain" | "displacement" | "signed" | "velocity";
+/** The numbers at the ends of the colours. */
+export type Ends = { low: number; high: number };
 
-export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: displacementRamp, velocity: velocityRamp };
+export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: displacementRamp, signed: signedRamp, velocity: velocityRamp };
 
 /**
  * p_world = transform · (origin + p), as a three.js matrix; between frames each number is
@@ -32,11 +34,14 @@ export class SurfaceView {
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
   /** Length for each vertex at the frame shown, world space. */
   readonly displacement: Float32Array;
+  /** The displacement along the normal of the surface at rest, below 0 against it. */
+  readonly signed: Float32Array;
   readonly speed: Float32Array;
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
   private readonly restOffsets: Float32Array;
+  private readonly restNormals: Float32Array;
   private readonly edgeCounts: Uint8Array;
   private readonly size: number;
   private plain = new THREE.Color();
@@ -50,7 +55,10 @@ export class SurfaceView {
     this.offsets = new Float32Array(count);
     this.offsetsBefore = new Float32Array(count);
     this.restOffsets = new Float32Array(count);
+    this.restNormals = new Float32Array(count);
+    turnNormals(surface.rest, surface.triangles, this.restNormals);
     this.displacement = new Float32Array(count / 3);
+    this.signed = new Float32Array(count / 3);
     this.speed = new Float32Array(count / 3);
     this.edgeCounts = new Uint8Array(count / 3);
     this.size = sizeOf(surface.rest);
@@ -93,15 +101,29 @@ export class SurfaceView {
     this.measure(index, share);
   }
 
-  /** Colours the vertices by a number; `peak` has the top colour. */
-  paint(colour: Colour, peak: number): void {
+  /** The farthest that a vertex is displaced against the normal, below 0, and along it, over all frames. */
+  farthest(frameCount: number): Ends {
+    const ends = { low: 0, high: 0 };
+    for (let index = 0; index < frameCount; ++index) {
+      this.surface.displacementsAt(index, 0, this.offsets);
+      this.measureSigned(index, 0, placement(this.surface, index, 0));
+      for (const number of this.signed) {
+        if (number < ends.low) ends.low = number;
+        if (number > ends.high) ends.high = number;
+      }
+    }
+    return ends;
+  }
+
+  /** Colours the vertices by a number. */
+  paint(colour: Colour, { low, high }: Ends): void {
     const attribute = this.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
     const colours = attribute.array as Float32Array;
     if (colour === "plain") {
       for (let k = 0; k < colours.length; k += 3) this.plain.toArray(colours, k);
     } else {
-      const numbers = colour === "displacement" ? this.displacement : this.speed;
-      paintNumbers(numbers, peak, ramps[colour], colours);
+      const numbers = { displacement: this.displacement, signed: this.signed, velocity: this.speed }[colour];
+      paintNumbers(numbers, low, high, ramps[colour], colours);
     }
     attribute.needsUpdate = true;
   }
@@ -152,7 +174,7 @@ export class SurfaceView {
     const isFirst = index === 0 && share === 0;
     const before = share > 0 ? index : Math.max(index - 1, 0);
     this.surface.displacementsAt(before, 0, this.offsetsBefore);
-    this.surface.restDisplacementsAt(index, share, this.restOffsets);
+    this.measureSigned(index, share, this.group.matrix);
     const last = placement(this.surface, before, 0).elements;
     const time = (share > 0 ? share : 1) / this.fps;
     const { rest } = this.surface;
@@ -170,6 +192,23 @@ export class SurfaceView {
       }
       this.displacement[k / 3] = Math.sqrt(moved);
       this.speed[k / 3] = isFirst ? 0 : Math.sqrt(gone) / time;
+    }
+  }
+
+  // Of `offsets`. With M from object space to the world and N its inverse transposed, the normal n
+  // becomes N n / |N n|, on the same side of the surface if M is a reflection too, and with it
+  // (M d) · N n = d · n.
+  private measureSigned(index: number, share: number, placed: THREE.Matrix4): void {
+    const { rest, triangles, head } = this.surface;
+    const { offsets, restOffsets, restNormals: n } = this;
+    this.surface.restDisplacementsAt(index, share, restOffsets);
+    if (head.restMotion) turnNormals(rest.map((number, k) => number + restOffsets[k]), triangles, n);
+    const m = new THREE.Matrix3().getNormalMatrix(placed).elements;
+    for (let k = 0; k < n.length; k += 3) {
+      const [x, y, z] = [n[k], n[k + 1], n[k + 2]];
+      const along = (offsets[k] - restOffsets[k]) * x + (offsets[k + 1] - restOffsets[k + 1]) * y + (offsets[k + 2] - restOffsets[k + 2]) * z;
+      const length = Math.hypot(m[0] * x + m[3] * y + m[6] * z, m[1] * x + m[4] * y + m[7] * z, m[2] * x + m[5] * y + m[8] * z);
+      this.signed[k / 3] = length > 0 ? along / length : 0;
     }
   }
 }

@@ -2,14 +2,14 @@
 
 import * as THREE from "three";
 
-import { at, type Bake, type Vector } from "./bake";
+import { at, type Bake, type Force, type Vector } from "./bake";
 import { ForceChoice } from "./force_choice";
 import { Gizmos } from "./gizmos";
 import type { Label } from "./labels";
 import { Playback } from "./playback";
 import { RegionView } from "./region_view";
 import { Stage } from "./stage";
-import { SurfaceView, type Colour, type Style } from "./surface_view";
+import { SurfaceView, type Colour, type Ends, type Style } from "./surface_view";
 import type { ThemeChoice } from "./theme";
 
 export interface Display {
@@ -20,6 +20,8 @@ export interface Display {
   hasBoxes: boolean;
   hasLabels: boolean;
   hasLegend: boolean;
+  /** In pictures. */
+  hasCaption: boolean;
   /** The number of the top colour; null: the largest number of the animation. */
   peak: number | null;
 }
@@ -27,7 +29,7 @@ export interface Display {
 export class Viewer {
   readonly playback = new Playback();
   readonly stage: Stage;
-  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasLabels: true, hasLegend: true, peak: null };
+  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasLabels: true, hasLegend: true, hasCaption: true, peak: null };
   readonly forces = new ForceChoice();
   bake: Bake | null = null;
   views: SurfaceView[] = [];
@@ -41,10 +43,13 @@ export class Viewer {
     this.stage = new Stage(canvas);
     this.playback.onChange(() => this.show());
     themes.onChange(() => this.redress());
-    this.forces.onChange(() => this.show());
+    this.forces.onChange(() => {
+      this.aim();
+      this.show();
+    });
   }
 
-  /** Replaces the bake; camera and frame stay if there was one before. */
+  /** Replaces the bake; camera, frame and colours stay if there was one before. */
   load(bake: Bake): void {
     const isNew = this.bake === null;
     this.clear();
@@ -52,21 +57,28 @@ export class Viewer {
     const { head } = bake;
     this.views = bake.surfaces.map((surface) => new SurfaceView(surface, head.fps));
     this.regions = this.views.map((view) => new RegionView(view));
-    const box = boxOf(bake);
+    const box = boxOf(bake, () => true);
     this.gizmos = new Gizmos(head.forces, box.getSize(new THREE.Vector3()).length(), box.getCenter(new THREE.Vector3()));
     this.stage.scene.add(...this.views.map((view) => view.group), this.gizmos.group);
     this.stage.bound(box);
+    if (isNew && this.goesBothWays()) this.display.colour = "signed";
+    this.aim();
     if (isNew) this.stage.look();
     this.playback.load(head.first, head.last, head.fps, isNew);
     this.redress();
   }
 
-  /** The number of the top colour. */
-  peak(): number {
+  /** The numbers at the ends of the colours. */
+  ends(): Ends {
     const { colour, peak } = this.display;
-    if (peak !== null) return peak;
     const heads = this.bake?.head.surfaces ?? [];
-    return Math.max(0, ...heads.map((head) => (colour === "velocity" ? head.peakSpeed : head.peakDisplacement)));
+    const high = peak ?? Math.max(0, ...heads.map((head) => (colour === "velocity" ? head.peakSpeed : head.peakDisplacement)));
+    return { low: colour === "signed" ? -high : 0, high };
+  }
+
+  /** The largest displacement of all surfaces at the present frame. */
+  displaced(): number {
+    return this.bake?.head.displaced?.[this.playback.frame - this.bake.head.first] ?? 0;
   }
 
   /** Names of the forces that are drawn now. */
@@ -83,7 +95,22 @@ export class Viewer {
     for (const view of this.views) view.dress(this.display.style, palette);
     for (const region of this.regions) region.colour(palette);
     this.gizmos?.colour(palette);
+    this.aim();
     this.show();
+  }
+
+  /** Whether the surfaces are displaced along their normals and against them, each by a tenth of the peak at least. */
+  private goesBothWays(): boolean {
+    const { head, frameCount } = this.bake!;
+    const least = 0.1 * Math.max(0, ...head.surfaces.map(({ peakDisplacement }) => peakDisplacement));
+    const ends = this.views.map((view) => view.farthest(frameCount));
+    return least > 0 && Math.max(...ends.map(({ high }) => high)) >= least && Math.min(...ends.map(({ low }) => low)) <= -least;
+  }
+
+  // The camera frames what is drawn.
+  private aim(): void {
+    const { bake, display, forces } = this;
+    if (bake) this.stage.aim = boxOf(bake, (force) => display.hasGizmos && forces.isShown(force));
   }
 
   private show(): void {
@@ -95,7 +122,7 @@ export class Viewer {
     const isShown = this.bake.head.forces.map((force) => this.forces.isShown(force));
     this.views.forEach((view, k) => {
       view.show(index, playback.share);
-      view.paint(display.colour, this.peak());
+      view.paint(display.colour, this.ends());
       this.regions[k].show(playback.frame, display.hasRegions, display.hasBoxes, isIdle, isShown);
       for (const { force, push } of view.surface.marksAt(playback.frame)?.forces ?? []) {
         if (push) pushes.set(force, push);
@@ -119,20 +146,29 @@ export class Viewer {
   }
 }
 
-/** The box around the surfaces over all frames, and the forces near them. */
-function boxOf(bake: Bake): THREE.Box3 {
+/**
+ * The box around the surfaces over all frames, and around those forces that are shown, near the surfaces, and not about
+ * the whole of them.
+ */
+function boxOf(bake: Bake, isShown: (force: Force) => boolean): THREE.Box3 {
   const box = new THREE.Box3();
   for (const { low, high } of bake.head.surfaces) box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
-  const surfaces = box.clone();
-  const reach = surfaces.getSize(new THREE.Vector3()).length();
-  for (const force of bake.head.forces) {
-    const radius = Math.max(0, ...(force.deformationRadius ?? []), ...(force.forceRadius ?? []));
-    for (const place of [...(force.center ?? []), ...(force.from ?? []), ...(force.to ?? [])]) {
-      // A force that is far away or large must not make the rest small.
-      const point = new THREE.Vector3(...place);
-      if (surfaces.distanceToPoint(point) > 0.5 * reach) continue;
-      const room = Math.min(0.7 * radius, 0.2 * reach);
-      box.union(new THREE.Box3().setFromCenterAndSize(point, new THREE.Vector3().setScalar(2 * room)));
+  const reach = box.getSize(new THREE.Vector3()).length();
+  // A force that is far away or large must not make the surfaces small.
+  const room = box.clone().expandByScalar(0.25 * reach);
+  for (const force of bake.head.forces.filter(isShown)) {
+    const radii = [force.deformationRadius, force.forceRadius].flatMap((track) => (track ? [track] : []));
+    const places = [force.center, force.from, force.to].flatMap((track) => (track ? [track] : []));
+    const count = Math.max(...[force.enabled, ...radii, ...places].map((track) => track.length));
+    for (let index = 0; index < count; ++index) {
+      if (!at(force.enabled, index)) continue;
+      const radius = Math.max(0, ...radii.map((track) => at(track, index)));
+      if (radius > 0.5 * reach) continue;
+      for (const track of places) {
+        const point = new THREE.Vector3(...at(track, index));
+        if (!room.containsPoint(point)) continue;
+        box.union(new THREE.Box3().setFromCenterAndSize(point, new THREE.Vector3().setScalar(2 * Math.min(0.7 * radius, 0.2 * reach))).intersect(room));
+      }
     }
   }
   if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));

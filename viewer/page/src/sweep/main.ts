@@ -27,7 +27,7 @@ const counted = (count: number, one: string) => `${count.toLocaleString("en")} $
 
 function legendOf(studio: Studio): Legend {
   return {
-    scale: { title: titles.displacement, css: displacementRamp.css(), at: (share) => displacementRamp.cssAt(share), high: numberText(studio.peak) },
+    scale: { title: titles.displacement, css: displacementRamp.css(), at: (share) => displacementRamp.cssAt(share), low: "0", high: numberText(studio.peak), frames: "" },
     inks: [],
   };
 }
@@ -219,6 +219,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
 
   const apply = (look: Look) => {
     if (look.theme) themes.choose(look.theme);
+    if (look.up) studio.up = look.up;
     if (look.turn !== undefined || look.tilt !== undefined) studio.look(look.turn, look.tilt);
     setPeak(look.peak !== undefined && look.peak > 0 ? look.peak : null);
     const take = new URLSearchParams(location.hash.slice(1)).get("take");
@@ -238,6 +239,7 @@ async function sendPictures(): Promise<void> {
   await answerOrders<SheetJob>((order) => {
     const look = { theme: "light" as const, ...defined(readLook(order.look)) };
     themes.choose(look.theme);
+    if (look.up) studio.up = look.up;
     studio.look(look.turn, look.tilt);
     if (look.peak !== undefined && look.peak > 0) studio.setPeak(look.peak);
     return drawSheet(sweep, studio, legendOf(studio), `${sweep.head.name}: ${summaryOf(sweep)}`, themes.palette, order);

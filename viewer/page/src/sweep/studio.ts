@@ -4,7 +4,7 @@ import * as THREE from "three";
 
 import { displacementRamp } from "../ramp";
 import { bends } from "../relief";
-import { bound, fit, floorUnder, light, wayOf } from "../stage";
+import { axes, bound, fit, floorUnder, light, wayOf, type Axis } from "../stage";
 import { paintNumbers, sizeOf, surfaceMaterial, turnNormals } from "../surface_look";
 import type { Palette } from "../theme";
 import type { Sweep, TakeShape } from "./sweep";
@@ -43,7 +43,8 @@ export class Studio {
     for (const { low, high } of fitted) this.box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
     if (this.box.isEmpty()) this.box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
     bound(this.camera, this.box);
-    this.largest = Math.max(0, ...fitted.map(({ mostDisplaced }) => mostDisplaced));
+    const { values } = sweep.measures.find(({ name }) => name === "peak")!;
+    this.largest = Math.max(0, ...fitted.map(({ row }) => values[row]));
   }
 
   get canDraw(): boolean {
@@ -55,7 +56,7 @@ export class Studio {
     return this.chosenPeak ?? this.largest;
   }
 
-  /** null: the largest displacement of the takes that are fitted into the pictures. */
+  /** null: the largest displacement, over all frames, of the takes that are fitted into the pictures. */
   setPeak(peak: number | null): void {
     this.chosenPeak = peak;
   }
@@ -63,8 +64,13 @@ export class Studio {
   colour(palette: Palette): void {
     this.scene.background = new THREE.Color(palette.background);
     if (this.floor) this.scene.remove(this.floor);
-    this.floor = floorUnder(this.box, palette.floorAxis, palette.floor);
+    this.floor = floorUnder(this.box, this.camera.up, palette.floorAxis, palette.floor);
     this.scene.add(this.floor);
+  }
+
+  /** The axis that is upright in the pictures. Call `colour` after it. */
+  set up(axis: Axis) {
+    this.camera.up.copy(axes[axis]);
   }
 
   /** The camera's place, in degrees; none: as at first. */
@@ -124,7 +130,7 @@ export class Studio {
     if (take.peak === this.peak) return;
     take.peak = this.peak;
     const colours = take.mesh.geometry.getAttribute("color") as THREE.BufferAttribute;
-    paintNumbers(take.displaced, this.peak, displacementRamp, colours.array as Float32Array);
+    paintNumbers(take.displaced, 0, this.peak, displacementRamp, colours.array as Float32Array);
     colours.needsUpdate = true;
   }
 }
