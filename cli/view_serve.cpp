@@ -1,15 +1,17 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "cache.hpp"
 #include "counted.hpp"
@@ -51,16 +53,19 @@ class Watch {
   }
 
  private:
-  struct Stamp {
-    std::filesystem::file_time_type time;
-    std::uintmax_t size = 0;
-    friend bool operator==(const Stamp&, const Stamp&) = default;
-  };
+  // Differs if a file was written, deleted, or replaced by another one of the same size and age.
+  using Stamp = std::array<std::int64_t, 7>;
 
   static Stamp stamp_of(const std::filesystem::path& file) {
-    std::error_code ignored;  // a file that is briefly absent counts as empty
-    return {std::filesystem::last_write_time(file, ignored),
-            std::filesystem::file_size(file, ignored)};
+    struct stat facts = {};
+    if (stat(file.c_str(), &facts) != 0) return {};
+    return {static_cast<std::int64_t>(facts.st_dev),
+            static_cast<std::int64_t>(facts.st_ino),
+            facts.st_size,
+            facts.st_mtim.tv_sec,
+            facts.st_mtim.tv_nsec,
+            facts.st_ctim.tv_sec,
+            facts.st_ctim.tv_nsec};
   }
 
   std::map<std::filesystem::path, Stamp> stamps_;

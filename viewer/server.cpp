@@ -18,10 +18,7 @@ namespace {
 
 using Text = std::shared_ptr<const std::string>;
 
-// A server-sent event.
-std::string event_text(std::string_view name, std::string_view data) {
-  return fmt::format("event: {}\ndata: {}\n\n", name, data);
-}
+constexpr std::string_view working = "working", failed = "failed", baked = "baked";
 
 }  // namespace
 
@@ -32,9 +29,10 @@ struct ViewServer::State {
 
   std::mutex mutex;  // guards the members up to `picture`
   Text packed = std::make_shared<const std::string>();
-  int bake_number = 0;            // of `packed`; 0: none yet
-  std::string event = {};         // the last one
-  std::int64_t event_number = 0;  // counts them
+  int bake_number = 0;  // of `packed`; 0: none yet
+  std::string_view status = working;
+  std::string messages = "[]";    // of the last bake that ended, if it failed
+  std::int64_t event_number = 0;  // counts changes of these
   std::optional<PictureOrder> order = {};
   bool has_picture = false;  // one has arrived, valid or not
   std::optional<Result<std::string>> picture = {};
@@ -47,32 +45,23 @@ struct ViewServer::State {
         gate(std::move(rules)),
         server(std::move(http)) {}
 
-  // Requires: the mutex is held.
-  std::string baked_text() const { return event_text("baked", std::to_string(bake_number)); }
-
-  // Requires: the mutex is held.
-  void set_event(std::string text) {
-    event = std::move(text);
-    ++event_number;
-  }
-
-  void tell(std::string text) {
+  void tell(std::string_view what, std::optional<std::string> told = {}) {
     {
       const std::lock_guard lock(mutex);
-      set_event(std::move(text));
+      status = what;
+      if (told) messages = *std::move(told);
+      ++event_number;
     }
     server.notify();
   }
 
-  // Only the last event since `seen`, however many there were. A new page gets the last bake first.
+  // An event is all that a page needs to know, so that each page shows the same, whenever it was
+  // opened and whatever it has missed: what happens, the bake to show, and why the last one failed.
   Text next_event(std::int64_t& seen) {
     const std::lock_guard lock(mutex);
-    if (seen == event_number) return nullptr;
-    std::string text;
-    if (seen < 0 && bake_number > 0 && event != baked_text()) text = baked_text();
-    text += event;
-    seen = event_number;
-    return text.empty() ? nullptr : std::make_shared<const std::string>(std::move(text));
+    if (std::exchange(seen, event_number) == event_number) return nullptr;
+    return std::make_shared<const std::string>(fmt::format(
+        "event: {}\ndata: {{\"bake\":{},\"messages\":{}}}\n\n", status, bake_number, messages));
   }
 
   HttpVerdict judge(const HttpHead& head) {
@@ -157,20 +146,16 @@ std::string ViewServer::address() const { return state_->gate.address(); }
 void ViewServer::publish(std::string packed) {
   auto shared = std::make_shared<const std::string>(std::move(packed));
   {
-    // Both under one lock: a page that connects in between would be notified of this bake twice.
     const std::lock_guard lock(state_->mutex);
     state_->packed = std::move(shared);
     ++state_->bake_number;
-    state_->set_event(state_->baked_text());
   }
-  state_->server.notify();
+  state_->tell(baked, "[]");
 }
 
-void ViewServer::tell_working() { state_->tell(event_text("working", "")); }
+void ViewServer::tell_working() { state_->tell(working); }
 
-void ViewServer::tell_failure(const std::string& messages) {
-  state_->tell(event_text("failed", messages));
-}
+void ViewServer::tell_failure(const std::string& messages) { state_->tell(failed, messages); }
 
 void ViewServer::order_picture(PictureOrder order) {
   const std::lock_guard lock(state_->mutex);

@@ -33,10 +33,11 @@ class ViewServer {
 
   /// Makes all pages, including open ones, show this bake (see `ViewBake::packed`).
   void publish(std::string packed);
-  /// Notifies pages that a new bake has begun.
+  /// Notifies pages that a new bake has begun. They keep the messages of the last one, if it
+  /// failed.
   void tell_working();
-  /// Notifies pages that the new bake failed; open pages keep the previous one. `messages`: a JSON
-  /// array of {kind, file, line, text}.
+  /// Notifies pages that the new bake failed; all pages, also new ones, show the last one that was
+  /// published, with these messages: a JSON array of {kind, file, line, text} in one line.
   void tell_failure(const std::string& messages);
 
   /// The page at `address()`take requests the job, and sends one picture back. A new order replaces

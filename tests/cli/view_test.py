@@ -342,6 +342,11 @@ class Serve(View):
         if self.server:
             self.server.kill()
 
+    def scene(self, name="scene.xml", **values):
+        """Saves in one step, so that no incomplete save is read."""
+        os.replace(super().scene("next.xml", **values), self.path(name))
+        return self.path(name)
+
     def start(self):
         self.server = Server(self.scene())
         self.server.wait_for("baked")
@@ -374,21 +379,62 @@ class Serve(View):
         path = self.scene()
         with open(path, "a", encoding="utf-8") as file:
             file.write("<scene>")
-        messages = json.loads(server.wait_for("failed"))
+        messages = json.loads(server.wait_for("failed"))["messages"]
         self.assertEqual(messages[0]["kind"], "error")
         self.scene(magnitude='7" falof="')
-        messages = json.loads(server.wait_for("failed"))
+        messages = json.loads(server.wait_for("failed"))["messages"]
         self.assertEqual([(each["file"], each["line"]) for each in messages], [("scene.xml", 6)])
         self.assertIn("falof", messages[0]["text"])
         self.assertEqual(server.get("bake")[1], kept)
         self.scene(magnitude=5)
         server.wait_for("baked")
 
+    def told_to_a_new_page(self):
+        """The first event of a new page: its name and its data."""
+        with self.server.connect(self.server.request("events")) as link:
+            text = b""
+            while b"\n\n" not in text.partition(b"\r\n\r\n")[2]:
+                text += link.recv(65536)
+        name, told = re.match(r"event: (\w+)\ndata: (.*)\n\n", text.decode().partition("\r\n\r\n")[2]).groups()
+        return name, json.loads(told)
+
+    def test_a_new_page_is_told_what_the_others_were_told(self):
+        server = self.start()
+        self.assertEqual(self.told_to_a_new_page(), ("baked", {"bake": 1, "messages": []}))
+        kept = server.get("bake")[1]
+        scene = self.path("scene.xml")
+        for spoil, place in ((lambda: self.scene(magnitude='7" falof="'), "scene.xml"), (lambda: os.remove(scene), "scene.xml")):
+            spoil()
+            told = json.loads(server.wait_for("failed"))
+            self.assertEqual((told["bake"], told["messages"][0]["file"]), (1, place))
+            self.assertEqual(self.told_to_a_new_page(), ("failed", told))
+            self.assertEqual(server.get("bake")[1], kept)
+        with open(self.path("other.xml"), "w", encoding="utf-8") as file:
+            file.write(SCENE.format(start=1, end=12, magnitude=5, transform=""))
+        os.replace(self.path("other.xml"), scene)
+        told = json.loads(server.wait_for("baked"))
+        self.assertEqual(told, {"bake": 2, "messages": []})
+        self.assertEqual(self.told_to_a_new_page(), ("baked", told))
+
+    def test_a_file_replaced_by_one_of_the_same_size_and_age_is_seen(self):
+        server = self.start()
+        old = os.stat(self.path("scene.xml"))
+        other = self.path("other.xml")
+        with open(other, "w", encoding="utf-8") as file:
+            file.write(SCENE.format(start=1, end=12, magnitude=7000, transform=""))
+        os.utime(other, ns=(old.st_atime_ns, old.st_mtime_ns))
+        self.assertEqual(os.stat(other).st_size, old.st_size)
+        os.replace(other, self.path("scene.xml"))
+        server.wait_for("baked")
+        after, _ = unpack(server.get("bake")[1])
+        self.assertEqual(after["forces"][0]["magnitude"][4], 7000)
+
     def test_a_scene_that_is_wrong_from_the_start_is_served_all_the_same(self):
         with open(self.path("scene.xml"), "w", encoding="utf-8") as file:
             file.write("<scene")
         self.server = Server(self.path("scene.xml"))
-        self.server.wait_for("failed")
+        told = json.loads(self.server.wait_for("failed"))
+        self.assertEqual((told["bake"], self.told_to_a_new_page()), (0, ("failed", told)))
         self.assertEqual(self.server.get("bake")[0], 404)
         self.scene()
         self.server.wait_for("baked")

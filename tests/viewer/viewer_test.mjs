@@ -8,7 +8,7 @@
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { createServer } from "node:http";
-import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, statSync, utimesSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { createInterface } from "node:readline";
@@ -1280,6 +1280,128 @@ test("a save changes the page in place", async () => {
       await page.waitForFunction(() => document.querySelectorAll(".message.error").length === 0);
     });
   } finally {
+    await server.stop();
+  }
+});
+
+/** What a served page tells of the command and the scene. */
+const toldBy = (page) =>
+  page.evaluate(() => {
+    const { viewer } = window.pliant;
+    const canvas = document.getElementById("view");
+    window.pliant.stage.draw();
+    const gl = canvas.getContext("webgl2");
+    const corner = new Uint8Array(4);
+    gl.readPixels(2, canvas.height - 3, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, corner);
+    return {
+      badge: document.getElementById("live").textContent,
+      state: document.getElementById("live").dataset.state,
+      messages: [...document.querySelectorAll(".message")].map((each) => `${each.className}: ${each.textContent}`),
+      frames: viewer.bake?.frameCount ?? null,
+      peaks: viewer.bake?.head.surfaces.map((surface) => surface.peakDisplacement) ?? null,
+      corner: [...corner],
+    };
+  });
+
+test("each page shows the last sound animation and the state of the files, whenever it was opened", async () => {
+  const home = inFolder("states");
+  mkdirSync(home);
+  const at = (name) => path.join(home, name);
+  const steps = [...Array(7).keys()];
+  const corner = (i, j) => `${7 * j + i + 1}/${7 * j + i + 1}`;
+  const mesh = [
+    ...steps.flatMap((j) => steps.map((i) => `v ${i - 3} 0 ${j - 3}\nvt ${i / 6} ${j / 6}`)),
+    ...steps.slice(1).flatMap((j) => steps.slice(1).map((i) => `f ${corner(i - 1, j - 1)} ${corner(i, j - 1)} ${corner(i, j)} ${corner(i - 1, j)}`)),
+  ].join("\n");
+  const press = (targets, magnitude) => `<point name="poke" targets="${targets}" deformationRadius="3" forceRadius="3" magnitude="${magnitude}"/>`;
+  const grid = 'grid columns="9" rows="9"';
+  writeFileSync(at("still.xml"), `<scene version="1" start="1" end="6"><surface name="walker"><${grid}/></surface>${press("walker", 90)}</scene>`);
+  run("bake", at("still.xml"), "-o", at("walk.npy"), "--quiet");
+  const scene = (peak) => `<scene version="1" start="1" end="6">
+  <surface name="walker"><${grid} cache="walk.npy"/></surface>
+  <surface name="flat"><mesh file="flat.obj"/></surface>
+  <include file="forces.xml"/>
+  ${press("flat", peak)}
+</scene>
+`;
+  const forces = '<fragment>\n  <point name="push" targets="flat" deformationRadius="2" forceRadius="2" magnitude="5"/>\n</fragment>\n';
+  const sound = { "scene.xml": scene("3000"), "forces.xml": forces, "flat.obj": mesh, "walk.npy": readFileSync(at("walk.npy")) };
+  for (const [name, text] of Object.entries(sound)) writeFileSync(at(name), text);
+  // Broken from the start: a clear page with the error, which comes alive.
+  writeFileSync(at("scene.xml"), scene('1" falof="2'));
+  const server = await serve(at("scene.xml"));
+  const pages = [];
+  const openOne = async () => {
+    const page = await open(server.url);
+    page.setDefaultTimeout(30_000);
+    pages.push(page);
+    return page;
+  };
+  try {
+    const first = await openOne();
+    const has = (page, state) => page.waitForFunction((wanted) => document.getElementById("live").dataset.state === wanted, state);
+    /** All pages, one that is loaded again and a new one tell the same. */
+    const same = async (what, state) => {
+      await openOne();
+      await pages[0].reload();
+      for (const page of pages) await has(page, state);
+      await first.waitForTimeout(150); // whatever is under way has arrived
+      const [told, ...others] = await Promise.all(pages.map(toldBy));
+      for (const other of others) assert.deepEqual(other, told, what);
+      await first.screenshot({ path: path.join(pictures, `serve-${what.replaceAll(" ", "-")}.png`) });
+      assert.equal(told.badge, { ready: "live", failed: "error" }[state], what);
+      await pages.pop().context().close();
+      return told;
+    };
+    const begun = await same("broken at the start", "failed");
+    assert.equal(begun.frames, null);
+    assert.match(begun.messages.join(), /^message error: .*scene\.xml, line 5.*falof/);
+    assert.deepEqual(begun.corner, [0x15, 0x19, 0x1f, 255]); // the stage of the dark theme
+    await openOne();
+    writeFileSync(at("scene.xml"), sound["scene.xml"]);
+    for (const page of pages) await has(page, "ready");
+    const alive = await same("mended", "ready");
+    assert.equal(alive.frames, 6);
+    assert.ok(!alive.messages.some((each) => each.includes("error")), alive.messages.join());
+
+    const places = { "scene.xml": /scene\.xml, line/, "forces.xml": /forces\.xml, line 2/, "flat.obj": /flat\.obj/, "walk.npy": /walk\.npy/ };
+    const wrong = { "scene.xml": scene('1" falof="2'), "forces.xml": forces.replace("magnitude", "magnitud"), "flat.obj": "v 1 2\nf 1 1 1\n", "walk.npy": "no array" };
+    for (const [name, place] of Object.entries(places)) {
+      const mend = async (how) => {
+        how();
+        for (const page of pages) await has(page, "ready");
+        assert.deepEqual(await toldBy(first), alive, `${name} is back`);
+      };
+      writeFileSync(at(name), wrong[name]);
+      for (const page of pages) await has(page, "failed");
+      const broken = await same(`${name} broken`, "failed");
+      assert.match(broken.messages.join(), place);
+      assert.ok(broken.messages.every((each) => each.startsWith("message error")), broken.messages.join());
+      assert.deepEqual([broken.frames, broken.peaks], [alive.frames, alive.peaks]);
+      await mend(() => writeFileSync(at(name), sound[name]));
+      rmSync(at(name));
+      for (const page of pages) await has(page, "failed");
+      const gone = await same(`${name} deleted`, "failed");
+      assert.match(gone.messages.join(), new RegExp(name.replace(".", "\\.")));
+      assert.deepEqual([gone.frames, gone.peaks], [alive.frames, alive.peaks]);
+      await mend(() => {
+        writeFileSync(at("other"), sound[name]);
+        renameSync(at("other"), at(name));
+      });
+    }
+    // Another file under the name, with the same size and the same time of its last change.
+    const { atime, mtime, size } = statSync(at("scene.xml"));
+    writeFileSync(at("other"), scene("1500"));
+    utimesSync(at("other"), atime, mtime);
+    utimesSync(at("scene.xml"), atime, mtime);
+    await first.waitForTimeout(300);
+    await has(first, "ready");
+    assert.equal(statSync(at("other")).size, size);
+    renameSync(at("other"), at("scene.xml"));
+    await first.waitForFunction((peak) => window.pliant.viewer.bake.head.surfaces[1].peakDisplacement < 0.6 * peak, alive.peaks[1]);
+    for (const page of pages) assert.deepEqual(page.complaints.filter((each) => !each.includes("404")), []);
+  } finally {
+    for (const page of pages) await page.context().close();
     await server.stop();
   }
 });

@@ -1,6 +1,6 @@
 // The page: puts the bake on the stage, and connects buttons, keys and panels to it.
 
-import { bytesOf, unpack, type Bake, type Message } from "./bake";
+import { bytesOf, unpack, type Bake } from "./bake";
 import { numberText } from "./curve_plot";
 import { CurvePanel } from "./curves";
 import { element } from "./element";
@@ -249,27 +249,21 @@ function showLive(text: string, state: string): void {
   live.dataset.state = state;
 }
 
+const badges = { working: ["baking", "working"], failed: ["error", "failed"], baked: ["live", "ready"] } as const;
+
 function goLive(): void {
-  let isConnected = false;
   follow({
     baked(bake) {
       const isFirst = viewer.bake === null;
       load(bake);
       if (isFirst) apply(readLook(location.hash));
-      showLive("live", "ready");
     },
-    failed(messages: Message[]) {
-      showMessages(element("messages"), messages);
-      showLive("errors", "failed");
+    told(status, messages) {
+      if (messages.length > 0) showMessages(element("messages"), messages);
+      const [text, state] = badges[status];
+      showLive(text, state);
     },
-    working() {
-      showLive("baking", "working");
-    },
-    connected(isThere) {
-      if (isThere && !isConnected) showLive("live", "ready");
-      if (!isThere) showLive("stopped", "failed");
-      isConnected = isThere;
-    },
+    lost: () => showLive("stopped", "failed"),
   });
 }
 

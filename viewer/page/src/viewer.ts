@@ -47,6 +47,7 @@ export class Viewer {
       this.aim();
       this.show();
     });
+    this.redress(); // an empty stage has the colours of the theme too
   }
 
   /** Replaces the bake; camera, frame and colours stay if there was one before. */
