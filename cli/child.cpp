@@ -160,6 +160,8 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
   connect(streams.input, STDIN_FILENO, O_RDONLY);
   connect(streams.output, STDOUT_FILENO, O_WRONLY);
   connect(streams.errors, STDERR_FILENO, O_WRONLY);
+  if (streams.lifeline >= 0)  // the last, since it may replace one that was connected
+    posix_spawn_file_actions_adddup2(&files, streams.lifeline, ChildStreams::lifeline_end);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t signals;

@@ -21,6 +21,9 @@ struct ChildStreams {
   int input = -1;  ///< -1: /dev/null
   int output = -1;
   int errors = -1;
+  int lifeline = -1;  ///< becomes `lifeline_end` of the program; -1: none
+
+  static constexpr int lifeline_end = 3;
 };
 
 /// Starts a program of the PATH by a list of arguments, never through a shell, in its own process

@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <thread>
@@ -11,10 +10,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "child.hpp"
 #include "interrupt.hpp"
 
 namespace pliant::cli {
@@ -33,9 +30,10 @@ tl::unexpected<Error> missing(const std::string& reason) {
 
 }  // namespace
 
-Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const std::string& log) {
+Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const ScratchFolder& folder) {
   std::vector<std::string> all = {program, "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
   all.insert(all.end(), words.begin(), words.end());
+  const std::string log = folder.path() + "/log";
   const int messages = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   int ends[2];
   if (messages < 0 || pipe2(ends, O_CLOEXEC) != 0) {
@@ -43,28 +41,23 @@ Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const std::s
     if (messages >= 0) close(messages);
     return missing(std::strerror(error));
   }
-  const auto id = start_child(std::move(all), {.input = ends[0], .errors = messages});
+  auto kept = KeptProgram::start(std::move(all), {.input = ends[0], .errors = messages}, folder);
   close(messages);
   close(ends[0]);
-  if (!id) {
+  if (!kept) {
     close(ends[1]);
-    return missing(id.error().message);
+    return missing(kept.error().message);
   }
   fcntl(ends[1], F_SETFL, fcntl(ends[1], F_GETFL) | O_NONBLOCK);
-  return Ffmpeg(*id, ends[1], log);
+  return Ffmpeg(*std::move(kept), ends[1], log);
 }
 
 Ffmpeg::Ffmpeg(Ffmpeg&& other) noexcept
-    : id_(std::exchange(other.id_, 0)),
+    : program_(std::move(other.program_)),
       input_(std::exchange(other.input_, -1)),
       log_(std::move(other.log_)) {}
 
-Ffmpeg::~Ffmpeg() {
-  close_input();
-  if (id_ == 0) return;
-  kill(-id_, SIGKILL);  // its incomplete output is useless
-  waitpid(id_, nullptr, 0);
-}
+Ffmpeg::~Ffmpeg() { close_input(); }
 
 void Ffmpeg::close_input() {
   if (input_ >= 0) close(input_);
@@ -89,13 +82,7 @@ Result<void> Ffmpeg::write(std::string_view bytes) {
 Result<void> Ffmpeg::finish() {
   close_input();
   for (;;) {
-    int status = 0;
-    const pid_t ended = waitpid(id_, &status, WNOHANG);
-    if (ended == id_) {
-      id_ = 0;
-      if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-      return failure();
-    }
+    if (const auto code = program_.code()) return *code == 0 ? Result<void>() : failure();
     if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
     std::this_thread::sleep_for(poll_pause);
   }

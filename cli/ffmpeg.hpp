@@ -4,8 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include <sys/types.h>
-
+#include "kept_program.hpp"
 #include "pliant/core/result.hpp"
 
 namespace pliant::cli {
@@ -13,9 +12,10 @@ namespace pliant::cli {
 /// A running ffmpeg, which reads bytes from its standard input; killed by the destructor.
 class Ffmpeg {
  public:
-  /// `words` are arguments after those of all runs: no questions, errors only. Its messages are
-  /// written to the file `log`. Errors: Unwritable if there is no ffmpeg.
-  static Result<Ffmpeg> start(const std::vector<std::string>& words, const std::string& log);
+  /// `words` are arguments after those of all runs: no questions, errors only. Relative names are
+  /// of files in the folder; its messages are written to the file `log` there. Errors: Unwritable
+  /// if there is no ffmpeg.
+  static Result<Ffmpeg> start(const std::vector<std::string>& words, const ScratchFolder& folder);
 
   Ffmpeg(Ffmpeg&& other) noexcept;
   Ffmpeg& operator=(Ffmpeg&&) = delete;
@@ -28,13 +28,14 @@ class Ffmpeg {
   Result<void> finish();
 
  private:
-  Ffmpeg(pid_t id, int input, std::string log) : id_(id), input_(input), log_(std::move(log)) {}
+  Ffmpeg(KeptProgram program, int input, std::string log)
+      : program_(std::move(program)), input_(input), log_(std::move(log)) {}
 
   void close_input();
   tl::unexpected<Error> failure() const;
 
-  pid_t id_;   // 0: it has ended
-  int input_;  // -1: closed
+  KeptProgram program_;  // its incomplete output is useless
+  int input_;            // -1: closed
   std::string log_;
 };
 

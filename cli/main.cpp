@@ -14,6 +14,7 @@
 #include "format.hpp"
 #include "info.hpp"
 #include "interrupt.hpp"
+#include "kept_program.hpp"
 #include "new.hpp"
 #include "replay.hpp"
 #include "report.hpp"
@@ -94,6 +95,8 @@ int run(int count, char* arguments[]) {
 }  // namespace
 
 int main(int count, char* arguments[]) {
+  if (count > 1 && arguments[1] == keeper_request)
+    return run_keeper({arguments + 2, arguments + count + 1});
   own_standard_streams();
   try {
     return exit_code_after_output(run(count, arguments));

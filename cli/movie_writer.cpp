@@ -75,12 +75,13 @@ Words gif_words(const MoviePlan& plan, const std::string& pictures, const std::s
 
 struct MovieWriter::State {
   MoviePlan plan;
+  const ScratchFolder& folder;
   AtomicFile file;
   Ffmpeg ffmpeg;
   std::ofstream pictures = {};  // for a GIF, which needs two passes
 
   std::string scratch(std::string_view name) const {
-    return fmt::format("{}/{}", plan.scratch, name);
+    return fmt::format("{}/{}", folder.path(), name);
   }
 
   // The second pass, with the palette.
@@ -88,10 +89,7 @@ struct MovieWriter::State {
     pictures.close();
     if (!pictures)
       return fail(ErrorCode::Unwritable, "cannot write to the folder for temporary files");
-    auto second =
-        Ffmpeg::start(gif_words(plan, "file:" + scratch("pictures"),
-                                "file:" + scratch("palette.png"), "file:" + scratch("movie")),
-                      scratch("log"));
+    auto second = Ffmpeg::start(gif_words(plan, "pictures", "palette.png", "movie"), folder);
     if (!second) return fail(second.error());
     return second->finish();
   }
@@ -129,14 +127,13 @@ MovieWriter::MovieWriter(std::unique_ptr<State> state) : state_(std::move(state)
 MovieWriter::MovieWriter(MovieWriter&&) noexcept = default;
 MovieWriter::~MovieWriter() = default;
 
-Result<MovieWriter> MovieWriter::start(const MoviePlan& plan) {
+Result<MovieWriter> MovieWriter::start(const MoviePlan& plan, const ScratchFolder& folder) {
   auto file = AtomicFile::create(plan.file);
   if (!file) return fail(file.error());
   const bool is_gif = plan.format == MovieFormat::Gif;
-  const std::string out = fmt::format("file:{}/{}", plan.scratch, is_gif ? "palette.png" : "movie");
-  auto ffmpeg = Ffmpeg::start(words_for(plan, out), plan.scratch + "/log");
+  auto ffmpeg = Ffmpeg::start(words_for(plan, is_gif ? "palette.png" : "movie"), folder);
   if (!ffmpeg) return fail(ffmpeg.error());
-  auto state = std::make_unique<State>(State{plan, *std::move(file), *std::move(ffmpeg)});
+  auto state = std::make_unique<State>(State{plan, folder, *std::move(file), *std::move(ffmpeg)});
   if (is_gif) state->pictures.open(state->scratch("pictures"), std::ios::binary);
   return MovieWriter(std::move(state));
 }

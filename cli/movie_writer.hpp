@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "frame_rate.hpp"
+#include "kept_program.hpp"
 #include "pliant/core/result.hpp"
 
 namespace pliant::cli {
@@ -21,15 +22,15 @@ struct MoviePlan {
   std::filesystem::path file;
   MovieFormat format = MovieFormat::Mp4;
   FrameRate rate;
-  int threads = 0;      ///< of ffmpeg; 0: its own choice
-  std::string scratch;  ///< an empty folder for temporary files, removed later
+  int threads = 0;  ///< of ffmpeg; 0: its own choice
 };
 
 /// Makes a movie from pictures with ffmpeg. The file appears complete under its name or not at all.
 class MovieWriter {
  public:
-  /// Errors: Unwritable if there is no ffmpeg, or the file cannot be made.
-  static Result<MovieWriter> start(const MoviePlan& plan);
+  /// `folder`: empty, for temporary files; must outlive the writer. Errors: Unwritable if there is
+  /// no ffmpeg, or the file cannot be made.
+  static Result<MovieWriter> start(const MoviePlan& plan, const ScratchFolder& folder);
 
   MovieWriter(MovieWriter&&) noexcept;
   MovieWriter& operator=(MovieWriter&&) = delete;

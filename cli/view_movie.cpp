@@ -108,8 +108,8 @@ Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
   auto movie = MovieWriter::start({.file = *options.movie,
                                    .format = plan->format,
                                    .rate = plan->rate,
-                                   .threads = options.resources.threads,
-                                   .scratch = folder->path()});
+                                   .threads = options.resources.threads},
+                                  *folder);
   if (!movie) return fail(movie.error());
   auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return fail(baked.error());

@@ -3,23 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <csignal>
-#include <filesystem>
+#include <cstring>
 #include <fstream>
 #include <optional>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "child.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "kept_program.hpp"
 #include "look.hpp"
 #include "output_file.hpp"
 #include "pliant/core/text.hpp"
@@ -43,52 +41,35 @@ tl::unexpected<Error> no_browser(std::string_view option) {
                                                  option, fmt::join(browsers, ", ")));
 }
 
-// A headless browser, ended by the destructor.
-class Browser {
- public:
-  static Result<Browser> open(const std::string& url, const std::string& folder) {
-    std::vector<std::string> words = {"",
-                                      "--headless",
-                                      "--no-first-run",
-                                      "--disable-extensions",
-                                      "--disable-dev-shm-usage",
-                                      "--use-angle=swiftshader",
-                                      "--enable-unsafe-swiftshader",
-                                      "--user-data-dir=" + folder};
-    // Chromium does not run as root with its sandbox. It opens only our page.
-    if (geteuid() == 0) words.emplace_back("--no-sandbox");
-    words.push_back(url);
-    for (const char* program : browsers) {
-      words.front() = program;
-      if (const auto id = start_child(words, {})) return Browser(*id);
-    }
-    return no_browser("--png");
+// A headless browser.
+Result<KeptProgram> open_browser(const std::string& url, const ScratchFolder& folder) {
+  const auto* const program = std::find_if(browsers.begin(), browsers.end(), &is_on_path);
+  if (program == browsers.end()) return no_browser("--png");
+  std::vector<std::string> words = {*program,
+                                    "--headless",
+                                    "--no-first-run",
+                                    "--disable-extensions",
+                                    "--disable-dev-shm-usage",
+                                    "--use-angle=swiftshader",
+                                    "--enable-unsafe-swiftshader",
+                                    "--user-data-dir=" + folder.path()};
+  // Chromium does not run as root with its sandbox. It opens only our page.
+  if (geteuid() == 0) words.emplace_back("--no-sandbox");
+  words.push_back(url);
+  return KeptProgram::start(std::move(words), {}, folder);
+}
+
+// The address of a file, whatever bytes its path has.
+std::string address_of(const std::string& path) {
+  std::string address = "file://";
+  for (const char byte : path) {
+    const bool is_plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
+                          (byte >= '0' && byte <= '9') || std::strchr("/-._~", byte) != nullptr;
+    address +=
+        is_plain ? std::string(1, byte) : fmt::format("%{:02X}", static_cast<unsigned char>(byte));
   }
-  Browser(Browser&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
-  Browser& operator=(Browser&&) = delete;
-  ~Browser() { close(); }
-
-  bool is_running() {
-    if (id_ != 0 && waitpid(id_, nullptr, WNOHANG) == id_) id_ = 0;
-    return id_ != 0;
-  }
-
- private:
-  explicit Browser(pid_t id) : id_(id) {}
-
-  void close() {
-    if (id_ == 0) return;
-    kill(-id_, SIGTERM);
-    for (auto waited = 0ms; waited < 3s && is_running(); waited += 20ms) {
-      std::this_thread::sleep_for(20ms);
-    }
-    if (id_ == 0) return;
-    kill(-id_, SIGKILL);
-    waitpid(id_, nullptr, 0);
-  }
-
-  pid_t id_;
-};
+  return address;
+}
 
 Result<void> check_frame(const ViewOptions& options, const FrameRange& frames) {
   const int frame = options.frame.value_or(frames.first);
@@ -115,7 +96,7 @@ Result<std::string> write_way(const std::string& folder, const std::string& addr
                       address);
   file.close();
   if (!file) return fail(ErrorCode::Unwritable, "cannot write " + path);
-  return "file://" + path;
+  return address_of(path);
 }
 
 Result<void> make_picture(const ViewOptions& options, std::string_view page) {
@@ -164,25 +145,11 @@ Result<void> check_browser(std::string_view option) {
   return no_browser(option);
 }
 
-Result<ScratchFolder> ScratchFolder::make() {
-  std::error_code error;
-  std::string name = (std::filesystem::temp_directory_path(error) / "pliant-view-XXXXXX").string();
-  if (error || mkdtemp(name.data()) == nullptr) {
-    return fail(ErrorCode::Unwritable, "cannot create a folder for temporary files");
-  }
-  return ScratchFolder(name);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-}
-
 struct PictureTaker::State {
   viewer::ViewServer server;
   ScratchFolder folder;
-  std::optional<Browser> browser = {};  // from the first order on; last, so that it ends before the
-                                        // members it uses
+  std::optional<KeptProgram> browser = {};  // from the first order on; last, so that it ends before
+                                            // the members it uses
   int orders = 0;
 };
 
@@ -229,7 +196,7 @@ Result<std::string> PictureTaker::take() {
   if (!state_->browser) {
     const auto way = write_way(state_->folder.path(), state_->server.address() + "take");
     if (!way) return fail(way.error());
-    auto browser = Browser::open(*way, state_->folder.path());
+    auto browser = open_browser(*way, state_->folder);
     if (!browser) return fail(browser.error());
     state_->browser.emplace(*std::move(browser));
   }
@@ -242,7 +209,7 @@ Result<std::string> PictureTaker::take() {
       return fail(ErrorCode::Unwritable,
                   "Chromium sent an unusable picture: " + picture->error().message);
     }
-    if (!state_->browser->is_running()) {
+    if (state_->browser->code()) {
       return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
     }
     std::this_thread::sleep_for(2ms);

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -25,22 +24,6 @@ inline constexpr int longest_side = 8192;  ///< of a canvas [px]
 /// Checks that there is a browser. Errors: Unwritable if not; `option` is the option that needs
 /// one.
 Result<void> check_browser(std::string_view option);
-
-/// A temporary folder, removed by the destructor.
-class ScratchFolder {
- public:
-  static Result<ScratchFolder> make();
-  ScratchFolder(ScratchFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  ~ScratchFolder();
-
-  const std::string& path() const { return path_; }
-
- private:
-  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
-
-  std::string path_;
-};
 
 /// A headless browser that draws pictures of a bake, one after the other; ended by the destructor.
 class PictureTaker {
