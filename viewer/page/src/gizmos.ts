@@ -4,11 +4,10 @@
 
 import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
-import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import { at, between, vectorBetween, type Force, type Track, type Vector } from "./bake";
 import type { Label } from "./labels";
+import { Segments, SegmentsGeometry } from "./segments";
 import type { Palette } from "./theme";
 
 const segments = 64;
@@ -21,7 +20,7 @@ function circlePoints(turn: (a: number) => Vector): number[] {
   return points;
 }
 
-const lineGeometry = (points: number[]) => new LineSegmentsGeometry().setPositions(points);
+const lineGeometry = (points: number[]) => new SegmentsGeometry().setEnds(points);
 
 const sphere = lineGeometry([
   ...circlePoints((a) => [0, Math.cos(a), Math.sin(a)]),
@@ -54,14 +53,14 @@ class Ink {
     this.strength = 1;
   }
 
-  circles(geometry: LineSegmentsGeometry): LineSegments2 {
+  circles(geometry: SegmentsGeometry): Segments {
     const circles = this.line(geometry);
-    circles.add(new LineSegments2(geometry, this.covered));
+    circles.add(new Segments(geometry, this.covered));
     return circles;
   }
 
-  line(geometry: LineSegmentsGeometry): LineSegments2 {
-    return new LineSegments2(geometry, this.seen);
+  line(geometry: SegmentsGeometry): Segments {
+    return new Segments(geometry, this.seen);
   }
 
   set strength(share: number) {
@@ -90,7 +89,7 @@ class BackgroundInk extends Ink {
     this.seen.transparent = this.seen.depthTest = false;
   }
 
-  override circles(geometry: LineSegmentsGeometry): LineSegments2 {
+  override circles(geometry: SegmentsGeometry): Segments {
     const circles = this.line(geometry);
     circles.renderOrder = -1;
     return circles;
@@ -112,7 +111,7 @@ interface Inks {
 /** A vector with a head; the shaft is a line. */
 class Arrow {
   readonly group = new THREE.Group();
-  private readonly shaft: LineSegments2;
+  private readonly shaft: Segments;
   private readonly tip: THREE.Mesh;
 
   constructor(ink: Ink, faces: THREE.Material) {
@@ -142,10 +141,10 @@ class Gizmo {
   readonly group = new THREE.Group();
   private readonly inks: Inks;
   private readonly solid = new THREE.MeshBasicMaterial({ transparent: true });
-  private readonly deformation: LineSegments2[] = [];
-  private readonly force: LineSegments2[] = [];
+  private readonly deformation: Segments[] = [];
+  private readonly force: Segments[] = [];
   private readonly middle: THREE.Mesh;
-  private readonly course: LineSegments2;
+  private readonly course: Segments;
   private readonly arrows: Arrow[] = [];
   private readonly strongest: number;
 
@@ -203,7 +202,7 @@ class Gizmo {
     // First the forces that push now. Then by the largest magnitude at any time, so that names do
     // not flicker.
     const rank = (isFaint ? 0 : 2) + (isGroup ? 0 : this.strongest / (1 + this.strongest));
-    return { text: name, place: this.middle.position, rank, isFaint, isGroup };
+    return { text: name, place: this.middle.position.clone(), rank, isFaint, isGroup };
   }
 
   /** `middle`: the position for forces that act everywhere; `push`: the inertial force there. */
@@ -254,7 +253,7 @@ class Gizmo {
   }
 
   private placeVolumes(ends: THREE.Vector3[], deformationRadius: number, forceRadius: number, axis?: THREE.Vector3): void {
-    const place = (each: LineSegments2, k: number, radius: number) => {
+    const place = (each: Segments, k: number, radius: number) => {
       each.visible = radius > 0;
       each.position.copy(ends[Math.min(k, ends.length - 1)]);
       each.scale.setScalar(Math.max(radius, 1e-30));

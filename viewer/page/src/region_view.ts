@@ -3,10 +3,9 @@
 
 import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
-import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
 import type { BakedSurface, Box, Lines, LinesPlace } from "./bake";
+import { Segments, SegmentsGeometry } from "./segments";
 import type { SurfaceView } from "./surface_view";
 import type { Palette } from "./theme";
 
@@ -65,11 +64,11 @@ function linesOf(edges: Edge[], nodeVertices: Int32Array): Lines {
 
 /** Lines that follow the surface. */
 class FollowingLines {
-  readonly object: LineSegments2;
+  readonly object: Segments;
   private lines: Lines[] = [];
 
   constructor(name: string, material: LineMaterial) {
-    this.object = new LineSegments2(new LineSegmentsGeometry(), material);
+    this.object = new Segments(new SegmentsGeometry(), material);
     this.object.name = name;
     this.object.frustumCulled = false;
   }
@@ -77,7 +76,7 @@ class FollowingLines {
   take(lines: Lines[]): void {
     this.lines = lines.filter(({ segments }) => segments.length > 0);
     this.object.geometry.dispose();
-    this.object.geometry = new LineSegmentsGeometry();
+    this.object.geometry = new SegmentsGeometry();
     this.object.visible = this.lines.length > 0;
   }
 
@@ -100,7 +99,7 @@ class FollowingLines {
         for (let k = 0; k < 3; ++k) ends[write++] = points[3 * segments[end] + k];
       }
     }
-    this.object.geometry.setPositions(ends);
+    this.object.geometry.setEnds(ends);
   }
 }
 

@@ -1,0 +1,52 @@
+// Lines of any width, as one mesh. Three.js draws each of their segments as an instance, for which
+// drawing by the CPU takes as long as for a mesh.
+
+import * as THREE from "three";
+import type { LineMaterial } from "three/addons/lines/LineMaterial.js";
+import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+
+/** What LineSegmentsGeometry has for each segment. */
+const one = new LineSegmentsGeometry();
+const corners = one.getAttribute("position").array;
+const uvs = one.getAttribute("uv").array;
+const triangles = one.index!.array;
+const cornerCount = corners.length / 3;
+
+export class SegmentsGeometry extends THREE.BufferGeometry {
+  /** Both ends of each segment: x y z, x y z. */
+  ends = new Float32Array();
+  private buffer: THREE.InterleavedBuffer | null = null;
+
+  setEnds(ends: ArrayLike<number>): this {
+    this.ends = Float32Array.from(ends);
+    const count = this.ends.length / 6;
+    if (this.buffer?.count !== cornerCount * count) this.build(count);
+    const { array } = this.buffer!;
+    for (let segment = 0; segment < count; ++segment) {
+      const both = this.ends.subarray(6 * segment, 6 * segment + 6);
+      for (let corner = 0; corner < cornerCount; ++corner) array.set(both, 6 * (cornerCount * segment + corner));
+    }
+    this.buffer!.needsUpdate = true;
+    this.boundingSphere = new THREE.Box3().setFromArray(this.ends as unknown as number[]).getBoundingSphere(new THREE.Sphere());
+    return this;
+  }
+
+  private build(count: number): void {
+    const repeated = (numbers: ArrayLike<number>, step = 0) =>
+      Float32Array.from({ length: numbers.length * count }, (_, k) => numbers[k % numbers.length] + step * Math.floor(k / numbers.length));
+    this.dispose();
+    this.setAttribute("position", new THREE.BufferAttribute(repeated(corners), 3));
+    this.setAttribute("uv", new THREE.BufferAttribute(repeated(uvs), 2));
+    this.setIndex(new THREE.BufferAttribute(Uint32Array.from(repeated(triangles, cornerCount)), 1));
+    this.buffer = new THREE.InterleavedBuffer(new Float32Array(6 * cornerCount * count), 6).setUsage(THREE.DynamicDrawUsage);
+    this.setAttribute("instanceStart", new THREE.InterleavedBufferAttribute(this.buffer, 3, 0));
+    this.setAttribute("instanceEnd", new THREE.InterleavedBufferAttribute(this.buffer, 3, 3));
+  }
+}
+
+export class Segments extends THREE.Mesh<SegmentsGeometry, LineMaterial> {
+  override onBeforeRender = (renderer: THREE.WebGLRenderer): void => {
+    const { z, w } = renderer.getViewport(new THREE.Vector4());
+    this.material.resolution.set(z, w);
+  };
+}
