@@ -21,9 +21,12 @@ void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
 }
 
-// Input of concatenated PNG files.
-Words pictures_from(const std::string& source, const FrameRate& rate) {
-  return {"-f", "image2pipe", "-c:v", "png", "-framerate", to_text(rate), "-i", source};
+// Input of the pixels of all frames.
+Words pixels_from(const std::string& source, const MoviePlan& plan) {
+  return {"-f",         "rawvideo",         "-pix_fmt",
+          "rgba",       "-video_size",      fmt::format("{}x{}", plan.size.width, plan.size.height),
+          "-framerate", to_text(plan.rate), "-i",
+          source};
 }
 
 // Converts screen colours to BT.709, as players expect, and tags the file with it.
@@ -37,7 +40,7 @@ const Words to_yuv = {"-vf",   to_yuv_filter, "-colorspace", "bt709",        "-c
 const Words plain = {"-an", "-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"};
 
 Words words_for(const MoviePlan& plan, const std::string& out) {
-  Words words = pictures_from("pipe:0", plan.rate);
+  Words words = pixels_from("pipe:0", plan);
   if (plan.threads > 0) append(words, {"-threads", std::to_string(plan.threads)});
   switch (plan.format) {
     case MovieFormat::Mp4:
@@ -54,18 +57,36 @@ Words words_for(const MoviePlan& plan, const std::string& out) {
       append(words, {"-f", "webm", out});
       break;
     case MovieFormat::Gif:
-      // The first pass finds 256 colours for all frames, the second pass uses them.
-      append(words, {"-vf", "palettegen=stats_mode=full", "-frames:v", "1", "-f", "image2",
-                     "-update", "1", out});
+      // The first pass finds 256 colours for all frames, and keeps these without loss; the second
+      // pass uses them.
+      append(words, {"-filter_complex",
+                     "[0:v]split[kept][seen];[seen]palettegen=stats_mode=full[colours]",
+                     "-map",
+                     "[colours]",
+                     "-frames:v",
+                     "1",
+                     "-f",
+                     "image2",
+                     "-update",
+                     "1",
+                     out,
+                     "-map",
+                     "[kept]",
+                     "-c:v",
+                     "utvideo",
+                     "-pix_fmt",
+                     "gbrp",
+                     "-f",
+                     "nut",
+                     "frames"});
       break;
   }
   return words;
 }
 
-Words gif_words(const MoviePlan& plan, const std::string& pictures, const std::string& palette,
-                const std::string& out) {
-  Words words = pictures_from(pictures, plan.rate);
-  append(words, {"-i", palette, "-filter_complex", "[0:v][1:v]paletteuse=dither=sierra2_4a"});
+Words gif_words(const std::string& frames, const std::string& palette, const std::string& out) {
+  Words words = {
+      "-i", frames, "-i", palette, "-filter_complex", "[0:v][1:v]paletteuse=dither=sierra2_4a"};
   append(words, plain);
   append(words, {"-loop", "0", "-f", "gif", out});
   return words;
@@ -78,18 +99,13 @@ struct MovieWriter::State {
   const ScratchFolder& folder;
   AtomicFile file;
   Ffmpeg ffmpeg;
-  std::ofstream pictures = {};  // for a GIF, which needs two passes
-
   std::string scratch(std::string_view name) const {
     return fmt::format("{}/{}", folder.path(), name);
   }
 
   // The second pass, with the palette.
   Result<void> write_gif() {
-    pictures.close();
-    if (!pictures)
-      return fail(ErrorCode::Unwritable, "cannot write to the folder for temporary files");
-    auto second = Ffmpeg::start(gif_words(plan, "pictures", "palette.png", "movie"), folder);
+    auto second = Ffmpeg::start(gif_words("frames", "palette.png", "movie"), folder);
     if (!second) return fail(second.error());
     return second->finish();
   }
@@ -134,19 +150,10 @@ Result<MovieWriter> MovieWriter::start(const MoviePlan& plan, const ScratchFolde
   auto ffmpeg = Ffmpeg::start(words_for(plan, is_gif ? "palette.png" : "movie"), folder);
   if (!ffmpeg) return fail(ffmpeg.error());
   auto state = std::make_unique<State>(State{plan, folder, *std::move(file), *std::move(ffmpeg)});
-  if (is_gif) state->pictures.open(state->scratch("pictures"), std::ios::binary);
   return MovieWriter(std::move(state));
 }
 
-Result<void> MovieWriter::write(std::string_view picture) {
-  if (state_->pictures.is_open()) {
-    state_->pictures.write(picture.data(), static_cast<std::streamsize>(picture.size()));
-    if (!state_->pictures) {
-      return fail(ErrorCode::Unwritable, "cannot write to the folder for temporary files");
-    }
-  }
-  return state_->ffmpeg.write(picture);
-}
+Result<void> MovieWriter::write(std::string_view picture) { return state_->ffmpeg.write(picture); }
 
 Result<std::size_t> MovieWriter::finish() {
   if (auto done = state_->ffmpeg.finish(); !done) return fail(done.error());

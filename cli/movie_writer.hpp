@@ -8,6 +8,7 @@
 #include "frame_rate.hpp"
 #include "kept_program.hpp"
 #include "pliant/core/result.hpp"
+#include "viewer/png_check.hpp"
 
 namespace pliant::cli {
 
@@ -21,6 +22,7 @@ Result<MovieFormat> movie_format(const std::filesystem::path& file);
 struct MoviePlan {
   std::filesystem::path file;
   MovieFormat format = MovieFormat::Mp4;
+  viewer::PictureSize size;
   FrameRate rate;
   int threads = 0;  ///< of ffmpeg; 0: its own choice
 };
@@ -36,7 +38,7 @@ class MovieWriter {
   MovieWriter& operator=(MovieWriter&&) = delete;
   ~MovieWriter();
 
-  /// Adds the next frame, a PNG file; all have the same size. Errors: Unwritable, Interrupted.
+  /// Adds the next frame: its pixels, as `PictureForm::Pixels`. Errors: Unwritable, Interrupted.
   Result<void> write(std::string_view picture);
   /// Gives the file its name, and returns its size. [bytes] Errors: as for `write`.
   Result<std::size_t> finish();

@@ -103,20 +103,20 @@ Result<SheetPicture> sheet_picture(const SweepViewOptions& options, const SweepF
                           picture.whole.height, longest_side, longest_side));
 }
 
-Result<std::string> take_sheet(const SheetPicture& picture, const std::string& look,
-                               std::string_view page, std::string packed) {
-  auto taker = PictureTaker::start(page, std::move(packed));
-  if (!taker) return fail(taker.error());
-  taker->order({{"width", picture.tile.width},
-                {"height", picture.tile.height},
-                {"columns", picture.columns},
-                {"whole", {picture.whole.width, picture.whole.height}},
-                {"text", picture.text},
-                {"line", picture.line},
-                {"label", picture.label},
-                {"look", look}},
-               picture.whole);
-  return taker->take();
+Result<std::string> take_sheet(PictureTaker& taker, const SheetPicture& picture,
+                               const std::string& look, std::string packed) {
+  taker.publish(std::move(packed));
+  auto ordered = taker.order({{"width", picture.tile.width},
+                              {"height", picture.tile.height},
+                              {"columns", picture.columns},
+                              {"whole", {picture.whole.width, picture.whole.height}},
+                              {"text", picture.text},
+                              {"line", picture.line},
+                              {"label", picture.label},
+                              {"look", look}},
+                             picture.whole);
+  if (!ordered) return fail(ordered.error());
+  return taker.take();
 }
 
 Result<AtomicFile> written_file(const std::string& name, std::string_view content) {
@@ -213,11 +213,15 @@ int run_sweep_view(const SweepViewOptions& options) {
   const auto plan = viewer::plan_sweep_view(*folder, *status, options.frame);
   if (!plan) return report(plan.error());
   std::optional<SheetPicture> picture;
+  std::optional<PictureTaker> taker;
   if (options.png) {
     const auto sheet = sheet_picture(options, *folder, plan->takes.size());
     if (!sheet) return report(sheet.error());
     picture = *sheet;
     if (auto browser = check_browser("--png"); !browser) return report(browser.error());
+    auto started = PictureTaker::start(*page);
+    if (!started) return report(started.error());
+    taker.emplace(*std::move(started));
   }
 
   const SimulationOptions resources =
@@ -246,7 +250,7 @@ int run_sweep_view(const SweepViewOptions& options) {
     print(stderr,
           fmt::format("{}: not written, since no take has a picture\n", printable(*options.png)));
   if (picture && bake->pictured > 0) {
-    auto taken = take_sheet(*picture, options.look, *page, std::move(bake->packed));
+    auto taken = take_sheet(*taker, *picture, options.look, std::move(bake->packed));
     if (!taken) return report(with_kept(taken.error(), "nothing was written"));
     drawn = *std::move(taken);
   }

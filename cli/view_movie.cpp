@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -68,14 +70,46 @@ Result<Plan> make_plan(const ViewOptions& options, const Scene& scene) {
   return Plan{*format, *size, *rate};
 }
 
-Result<std::size_t> write_frames(PictureTaker& taker, MovieWriter& movie, const FrameRange& frames,
-                                 const Plan& plan, const ViewOptions& options) {
-  Progress progress(frames.count(), options.is_quiet);
-  taker.order({frames.first}, plan.size, options.look);
+// Orders frames of a movie, some ahead of those that it takes: the browser draws them meanwhile.
+class FrameTaker {
+ public:
+  FrameTaker(PictureTaker& taker, const FrameRange& frames, const Plan& plan, std::string look)
+      : taker_(taker), frames_(frames), plan_(plan), look_(std::move(look)), next_(frames.first) {}
+
+  Result<void> order_ahead() {
+    const std::size_t bytes = std::size_t{4} * static_cast<std::size_t>(plan_.size.width) *
+                              static_cast<std::size_t>(plan_.size.height);
+    const std::size_t ahead = std::clamp<std::size_t>(most_waiting / bytes, 1, 4);
+    for (; next_ <= frames_.last && waiting_ < ahead; ++next_, ++waiting_) {
+      auto ordered = taker_.order({next_}, plan_.size, look_, viewer::PictureForm::Pixels);
+      if (!ordered) return ordered;
+    }
+    return {};
+  }
+
+  Result<std::string> take() {
+    auto picture = taker_.take();
+    --waiting_;
+    if (auto ordered = order_ahead(); !ordered) return fail(ordered.error());
+    return picture;
+  }
+
+ private:
+  static constexpr std::size_t most_waiting = 100'000'000;  // [bytes]
+
+  PictureTaker& taker_;
+  FrameRange frames_;
+  Plan plan_;
+  std::string look_;
+  int next_;                 // to be ordered
+  std::size_t waiting_ = 0;  // ordered, and not taken yet
+};
+
+Result<void> write_frames(FrameTaker& taker, MovieWriter& movie, const FrameRange& frames,
+                          bool is_quiet) {
+  Progress progress(frames.count(), is_quiet);
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     const auto picture = taker.take();
-    // The browser draws the next picture while ffmpeg reads this one.
-    if (frame < frames.last) taker.order({frame + 1}, plan.size, options.look);
     const auto written = picture ? movie.write(*picture) : fail(picture.error());
     if (!written && written.error().code == ErrorCode::Interrupted) {
       return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame));
@@ -83,7 +117,7 @@ Result<std::size_t> write_frames(PictureTaker& taker, MovieWriter& movie, const 
     if (!written) return fail(written.error());
     progress.advance();
   }
-  return movie.finish();
+  return {};
 }
 
 // Its size in bytes and its number of frames.
@@ -107,15 +141,23 @@ Result<Movie> make_movie(const ViewOptions& options, std::string_view page) {
   if (!folder) return fail(folder.error());
   auto movie = MovieWriter::start({.file = *options.movie,
                                    .format = plan->format,
+                                   .size = plan->size,
                                    .rate = plan->rate,
                                    .threads = options.resources.threads},
                                   *folder);
   if (!movie) return fail(movie.error());
+  auto taker = PictureTaker::start(page);
+  if (!taker) return fail(taker.error());
+  FrameTaker pictures(*taker, *range, *plan, options.look);
+  // The browser starts while the scene is baked.
+  if (auto ordered = pictures.order_ahead(); !ordered) return fail(ordered.error());
   auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return fail(baked.error());
-  auto taker = PictureTaker::start(page, std::move(baked->bake.packed));
-  if (!taker) return fail(taker.error());
-  const auto size = write_frames(*taker, *movie, *range, *plan, options);
+  taker->publish(std::move(baked->bake.packed));
+  if (auto written = write_frames(pictures, *movie, *range, options.is_quiet); !written)
+    return fail(written.error());
+  taker->close();  // ahead of the rest of ffmpeg's work
+  const auto size = movie->finish();
   if (!size) return fail(size.error());
   return Movie{*size, range->count()};
 }

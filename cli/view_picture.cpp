@@ -78,9 +78,8 @@ Result<void> check_frame(const ViewOptions& options, const FrameRange& frames) {
               fmt::format("--frame {}: must be from {} to {}", frame, frames.first, frames.last));
 }
 
-// One frame, or for a sheet up to twelve that tell the motion.
-std::vector<int> chosen_frames(const ViewOptions& options, const BakedScene& baked) {
-  if (!options.is_sheet) return {options.frame.value_or(baked.frames.first)};
+// Up to twelve frames that tell the motion.
+std::vector<int> frames_of_sheet(const BakedScene& baked) {
   constexpr int most = 12;
   std::vector<int> chosen = viewer::telling_frames(baked.bake.course, most);
   for (int& frame : chosen) frame += baked.frames.first;
@@ -113,12 +112,20 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   const auto range = parse_frames(options.frames, *scene);
   if (!range) return fail(range.error());
   if (auto frame = check_frame(options, *range); !frame) return frame;
+  auto taker = PictureTaker::start(page);
+  if (!taker) return fail(taker.error());
+  // The browser starts while the scene is baked, unless the motion decides what it draws.
+  if (!options.is_sheet) {
+    const std::vector<int> frame = {options.frame.value_or(range->first)};
+    if (auto ordered = taker->order(frame, *size, options.look); !ordered) return ordered;
+  }
   auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return fail(baked.error());
-
-  auto taker = PictureTaker::start(page, std::move(baked->bake.packed));
-  if (!taker) return fail(taker.error());
-  taker->order(chosen_frames(options, *baked), *size, options.look);
+  if (options.is_sheet) {
+    auto ordered = taker->order(frames_of_sheet(*baked), *size, options.look);
+    if (!ordered) return ordered;
+  }
+  taker->publish(std::move(baked->bake.packed));
   const auto picture = taker->take();
   if (!picture) return fail(picture.error());
   return write_file(*options.png, *picture);
@@ -157,49 +164,51 @@ PictureTaker::PictureTaker(std::unique_ptr<State> state) : state_(std::move(stat
 PictureTaker::PictureTaker(PictureTaker&&) noexcept = default;
 PictureTaker::~PictureTaker() = default;
 
-Result<PictureTaker> PictureTaker::start(std::string_view page, std::string packed) {
+Result<PictureTaker> PictureTaker::start(std::string_view page) {
   auto server = viewer::ViewServer::start(std::string(page), 0);
   if (!server) return fail(server.error());
-  server->publish(std::move(packed));
   auto folder = ScratchFolder::make();
   if (!folder) return fail(folder.error());
   return PictureTaker(std::make_unique<State>(State{*std::move(server), *std::move(folder)}));
 }
 
 // A table of frames, each with its number below and one legend for all, or a single frame.
-void PictureTaker::order(const std::vector<int>& frames, viewer::PictureSize size,
-                         const std::string& look) {
+Result<void> PictureTaker::order(const std::vector<int>& frames, viewer::PictureSize size,
+                                 const std::string& look, viewer::PictureForm form) {
   constexpr int most_columns = 4;
   const int count = static_cast<int>(frames.size());
   const int label = count > 1 ? 28 : 0;
   const int strip = count > 1 ? 76 : 0;
   const int columns = std::min(most_columns, count);
   const int rows = (count + columns - 1) / columns;
-  order({{"width", size.width},
-         {"height", size.height},
-         {"frames", frames},
-         {"columns", columns},
-         {"label", label},
-         {"strip", strip},
-         {"look", look}},
-        {columns * size.width, rows * (size.height + label) + strip});
+  return order({{"width", size.width},
+                {"height", size.height},
+                {"frames", frames},
+                {"columns", columns},
+                {"label", label},
+                {"strip", strip},
+                {"hasPixels", form == viewer::PictureForm::Pixels},
+                {"look", look}},
+               {columns * size.width, rows * (size.height + label) + strip}, form);
 }
 
-// The page executes each `number` once, so it does not draw the next picture before it is ordered.
-void PictureTaker::order(viewer::Json job, viewer::PictureSize size) {
+Result<void> PictureTaker::order(viewer::Json job, viewer::PictureSize size,
+                                 viewer::PictureForm form) {
   job["number"] = ++state_->orders;
   state_->server.order_picture(
-      {job.dump(-1, ' ', false, viewer::Json::error_handler_t::replace), size});
+      {job.dump(-1, ' ', false, viewer::Json::error_handler_t::replace), size, form});
+  if (state_->browser) return {};
+  const auto way = write_way(state_->folder.path(), state_->server.address() + "take");
+  if (!way) return fail(way.error());
+  auto browser = open_browser(*way, state_->folder);
+  if (!browser) return fail(browser.error());
+  state_->browser.emplace(*std::move(browser));
+  return {};
 }
 
+void PictureTaker::publish(std::string packed) { state_->server.publish(std::move(packed)); }
+
 Result<std::string> PictureTaker::take() {
-  if (!state_->browser) {
-    const auto way = write_way(state_->folder.path(), state_->server.address() + "take");
-    if (!way) return fail(way.error());
-    auto browser = open_browser(*way, state_->folder);
-    if (!browser) return fail(browser.error());
-    state_->browser.emplace(*std::move(browser));
-  }
   constexpr auto patience = 120s;
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < patience) {
@@ -216,6 +225,8 @@ Result<std::string> PictureTaker::take() {
   }
   return fail(ErrorCode::Unwritable, "Chromium sent no picture within 120 s");
 }
+
+void PictureTaker::close() { state_->browser.reset(); }
 
 int picture_view(const ViewOptions& options, std::string_view page) {
   if (auto made = make_picture(options, page); !made) {

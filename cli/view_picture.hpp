@@ -9,6 +9,7 @@
 #include "view.hpp"
 #include "viewer/json.hpp"
 #include "viewer/png_check.hpp"
+#include "viewer/server.hpp"
 
 namespace pliant::cli {
 
@@ -28,21 +29,28 @@ Result<void> check_browser(std::string_view option);
 /// A headless browser that draws pictures of a bake, one after the other; ended by the destructor.
 class PictureTaker {
  public:
-  /// `packed`: see `ViewBake`, or `SweepBake` for the page of a sweep. Errors: Unwritable if there
-  /// is no browser.
-  static Result<PictureTaker> start(std::string_view page, std::string packed);
+  /// Errors: Unwritable if there is no folder for temporary files.
+  static Result<PictureTaker> start(std::string_view page);
 
   PictureTaker(PictureTaker&&) noexcept;
   PictureTaker& operator=(PictureTaker&&) = delete;
   ~PictureTaker();
 
   /// Requests a picture of one frame, or a sheet of several; `look` in the syntax of --look.
-  void order(const std::vector<int>& frames, viewer::PictureSize size, const std::string& look);
-  /// Requests a picture of that size; `job`: what the page shall draw, an object.
-  void order(viewer::Json job, viewer::PictureSize size);
-  /// Waits for the requested picture, a PNG file. Errors: Unwritable if the browser ended or needs
-  /// too long; Interrupted.
+  Result<void> order(const std::vector<int>& frames, viewer::PictureSize size,
+                     const std::string& look, viewer::PictureForm form = viewer::PictureForm::Png);
+  /// Requests a picture of that size; `job`: what the page shall draw, an object. The browser
+  /// starts with the first order, which may be given ahead of the bake. Errors: Unwritable if there
+  /// is no browser.
+  Result<void> order(viewer::Json job, viewer::PictureSize size,
+                     viewer::PictureForm form = viewer::PictureForm::Png);
+  /// What to draw: see `ViewBake::packed`, or `SweepBake` for the page of a sweep.
+  void publish(std::string packed);
+  /// Waits for the next of the pictures ordered. Requires: `publish` was called. Errors: Unwritable
+  /// if the browser ended or needs too long; Interrupted.
   Result<std::string> take();
+  /// Ends the browser.
+  void close();
 
  private:
   struct State;

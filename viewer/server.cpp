@@ -1,6 +1,7 @@
 #include "viewer/server.hpp"
 
 #include <cstdint>
+#include <deque>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,22 @@ using Text = std::shared_ptr<const std::string>;
 
 constexpr std::string_view working = "working", failed = "failed", baked = "baked";
 
+std::size_t pixel_bytes(PictureSize size) {
+  return std::size_t{4} * static_cast<std::size_t>(size.width) *
+         static_cast<std::size_t>(size.height);
+}
+
+std::size_t longest_picture(const PictureOrder& order) {
+  return order.form == PictureForm::Png ? longest_png(order.size) : pixel_bytes(order.size);
+}
+
+Result<void> check_picture(std::string_view bytes, const PictureOrder& order) {
+  if (order.form == PictureForm::Png) return check_png(bytes, order.size);
+  if (bytes.size() == pixel_bytes(order.size)) return {};
+  return invalid(fmt::format("it has {} bytes, not those of {} x {} pixels", bytes.size(),
+                             order.size.width, order.size.height));
+}
+
 }  // namespace
 
 struct ViewServer::State {
@@ -27,15 +44,15 @@ struct ViewServer::State {
   Text page;
   ViewGate gate;
 
-  std::mutex mutex;  // guards the members up to `picture`
+  std::mutex mutex;  // guards the members up to `pictures`
   Text packed = std::make_shared<const std::string>();
   int bake_number = 0;  // of `packed`; 0: none yet
   std::string_view status = working;
   std::string messages = "[]";    // of the last bake that ended, if it failed
   std::int64_t event_number = 0;  // counts changes of these
-  std::optional<PictureOrder> order = {};
-  bool has_picture = false;  // one has arrived, valid or not
-  std::optional<Result<std::string>> picture = {};
+  bool was_ordered = false;
+  std::deque<PictureOrder> orders = {};           // whose pictures have not arrived
+  std::deque<Result<std::string>> pictures = {};  // that have not been taken
 
   HttpServer server;  // last, so that its thread ends before the members it uses
 
@@ -78,11 +95,11 @@ struct ViewServer::State {
         return {.status = bake_number > 0 ? 200 : 404};
       case ViewRoute::PicturePage:
       case ViewRoute::Job:
-        return {.status = order ? 200 : 404};
+        return {.status = was_ordered ? 200 : 404};
       case ViewRoute::Picture:
-        if (!order) return {.status = 404};
-        if (has_picture) return {.status = 409};
-        return {.most_body = longest_png(order->size)};
+        if (!was_ordered) return {.status = 404};
+        if (orders.empty()) return {.status = 409};
+        return {.most_body = longest_picture(orders.front())};
     }
     return {.status = 404};
   }
@@ -101,23 +118,32 @@ struct ViewServer::State {
       case ViewRoute::Bake:
         return {.type = "application/octet-stream", .body = packed};
       case ViewRoute::Job:
-        return {.type = "application/json",
-                .body = std::make_shared<const std::string>(order->job)};
+        return jobs();
       case ViewRoute::Picture:
         return take(std::move(body));
     }
     return {.status = 404};
   }
 
+  // The jobs whose pictures have not arrived. Requires: the mutex is held.
+  HttpAnswer jobs() const {
+    std::string text = "[";
+    for (const PictureOrder& order : orders) text += (text.size() > 1 ? "," : "") + order.job;
+    return {.type = "application/json",
+            .body = std::make_shared<const std::string>(std::move(text) + "]")};
+  }
+
   // Requires: the mutex is held.
   HttpAnswer take(std::string body) {
-    if (std::exchange(has_picture, true)) return {.status = 409};  // another client was faster
-    if (auto checked = check_png(body, order->size); !checked) {
-      picture = fail(checked.error());
+    if (orders.empty()) return {.status = 409};  // another client was faster
+    const auto checked = check_picture(body, orders.front());
+    orders.pop_front();
+    if (!checked) {
+      pictures.emplace_back(fail(checked.error()));
       return {.status = 400};
     }
-    picture = std::move(body);
-    return {};
+    pictures.emplace_back(std::move(body));
+    return jobs();
   }
 };
 
@@ -159,14 +185,16 @@ void ViewServer::tell_failure(const std::string& messages) { state_->tell(failed
 
 void ViewServer::order_picture(PictureOrder order) {
   const std::lock_guard lock(state_->mutex);
-  state_->order = std::move(order);
-  state_->has_picture = false;
-  state_->picture.reset();
+  state_->orders.push_back(std::move(order));
+  state_->was_ordered = true;
 }
 
 std::optional<Result<std::string>> ViewServer::take_picture() {
   const std::lock_guard lock(state_->mutex);
-  return std::exchange(state_->picture, std::nullopt);
+  if (state_->pictures.empty()) return {};
+  auto picture = std::move(state_->pictures.front());
+  state_->pictures.pop_front();
+  return picture;
 }
 
 }  // namespace pliant::viewer

@@ -9,10 +9,17 @@
 
 namespace pliant::viewer {
 
+/// A picture as a page sends it.
+enum class PictureForm {
+  Png,    ///< a file, see `check_png`
+  Pixels  ///< the bytes red, green, blue and alpha of each pixel, rows from the top
+};
+
 /// An order for the page at `address()`take.
 struct PictureOrder {
   std::string job;   ///< a JSON object
   PictureSize size;  ///< of the picture that the page must send
+  PictureForm form = PictureForm::Png;
 };
 
 /// Serves the viewer's page to browsers of this machine, and notifies it of changes to the scene.
@@ -40,11 +47,11 @@ class ViewServer {
   /// published, with these messages: a JSON array of {kind, file, line, text} in one line.
   void tell_failure(const std::string& messages);
 
-  /// The page at `address()`take requests the job, and sends one picture back. A new order replaces
-  /// the last.
+  /// The page at `address()`take requests the jobs, and sends one picture for each, in their order.
+  /// Until a picture is taken it is in memory: order few ahead.
   void order_picture(PictureOrder order);
-  /// Removes and returns the picture, a PNG file; null if it has not arrived. Errors: InvalidInput
-  /// if it is not the picture ordered (see `check_png`).
+  /// Removes and returns the next picture; null if it has not arrived. Errors: InvalidInput if it
+  /// is not the picture ordered.
   std::optional<Result<std::string>> take_picture();
 
  private:

@@ -7,22 +7,24 @@ import importlib.util
 import json
 import os
 import re
+import signal
 import stat
 import struct
 import subprocess
 import sys
+import time
 import unittest
 import zlib
 
 import numpy as np
 
-from command import Command, SANITIZED, SCENE, SOURCE, main
+from command import Command, PLIANT, SANITIZED, SCENE, SOURCE, main
 from view_server import HAS_PAGE
 
 # Started like Chromium. Each test appends its own code; results go to a file.
 BROWSER = """#!/usr/bin/python3
-import json, os, re, resource, socket, struct, sys, time, zlib
-way = sys.argv[-1].removeprefix("file://")
+import json, os, re, resource, socket, struct, subprocess, sys, time, urllib.parse, zlib
+way = urllib.parse.unquote_to_bytes(sys.argv[-1].removeprefix("file://"))
 with open(way, encoding="utf-8") as file:
     address = re.search("url=([^\\"]*)", file.read()).group(1)
 port, token = re.fullmatch(r"http://127\\.0\\.0\\.1:(\\d+)/([0-9a-f]{32})/take", address).groups()
@@ -60,6 +62,14 @@ def png(width, height, value=0):
     return (b"\\x89PNG\\r\\n\\x1a\\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)) +
             chunk(b"IDAT", zlib.compress(rows, 1)) + chunk(b"IEND", b""))
 
+def jobs(method="GET", place="job", body=b""):  # those whose pictures are missing
+    head = f"{method} /{token}/{place} HTTP/1.1\\r\\nHost: {own}\\r\\nContent-Length: {len(body)}\\r\\n\\r\\n"
+    return json.loads(send(head, body).split(b"\\r\\n\\r\\n")[1])
+
+def parent(pid):
+    with open(f"/proc/{pid}/stat") as file:
+        return int(file.read().rpartition(") ")[2].split()[1])
+
 def note():  # ahead of the picture, which ends us
     with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:
         json.dump(results, file)
@@ -75,14 +85,25 @@ def size_of(png):
 
 @unittest.skipUnless(HAS_PAGE, "this build has no page")
 class Picture(Command):
-    def draw(self, work, *options, code=0, scene=None):
-        """The run, and the results of the program that replaces Chromium."""
+    def program(self, name, text):
+        """Makes a program that replaces one of that name."""
+        os.chmod(self.write(name, text), stat.S_IRWXU)
+
+    def words(self, *options, scene=None):
         scene = scene or self.write("scene.xml", SCENE.format(end=30))
-        program = self.write("chromium", BROWSER + work + "\ntime.sleep(60)\n")
-        os.chmod(program, stat.S_IRWXU)
-        path = self.folder + os.pathsep + os.environ["PATH"]
-        result = self.run_pliant("view", scene, "--png", "out.png", "--quiet", *(options if "--size" in options else ("--size", "64x48", *options)),
-                                 code=code, env={**os.environ, "PATH": path})
+        if "--movie" not in options:
+            options = ("--png", "out.png", *options)
+        if "--size" not in options:
+            options = ("--size", "64x48", *options)
+        return ("view", scene, "--quiet", *options)
+
+    def variables(self, **more):
+        return {**os.environ, "PATH": self.folder + os.pathsep + os.environ["PATH"], **more}
+
+    def draw(self, work, *options, code=0, scene=None, **variables):
+        """The run, and the results of the program that replaces Chromium."""
+        self.program("chromium", BROWSER + work + "\ntime.sleep(60)\n")
+        result = self.run_pliant(*self.words(*options, scene=scene), code=code, env=self.variables(**variables))
         try:
             with open(self.path("results.json"), encoding="utf-8") as file:
                 return result, json.load(file)
@@ -94,16 +115,16 @@ class Picture(Command):
         self.assertEqual(self.read("out.png"), self.read("sent.png"))
 
     def test_a_sheet_has_the_size_of_all_its_frames(self):
-        self.draw("job = json.loads(send(f'GET /{token}/job HTTP/1.1\\r\\nHost: {own}\\r\\n\\r\\n').split(b'\\r\\n\\r\\n')[1])\n"
+        self.draw("job, = jobs()\n"
                   "rows = -(-len(job['frames']) // job['columns'])\n"
                   "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))", "--contact-sheet")
         self.assertEqual(size_of(self.read("out.png")), (4 * 64, 3 * (48 + 28) + 76))
 
     def job(self, *options, scene=None):
         """What the page is to draw."""
-        _, results = self.draw("results['job'] = json.loads(send(f'GET /{token}/job HTTP/1.1\\r\\nHost: {own}\\r\\n\\r\\n').split(b'\\r\\n\\r\\n')[1])\n"
-                               "note()\njob = results['job']\nrows = -(-len(job['frames']) // job['columns'])\n"
-                               "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))", *options, scene=scene)
+        _, results = self.draw("job, = jobs()\nresults['job'] = job\nnote()\nrows = -(-len(job['frames']) // job['columns'])\n"
+                               "post(png(job['columns'] * job['width'], rows * (job['height'] + job['label']) + job['strip']))",
+                               *options, scene=scene)
         return results["job"]
 
     def test_a_sheet_has_the_frames_that_tell_the_motion(self):
@@ -246,10 +267,144 @@ answer = send("", one + two)
         self.draw(work)
         self.assertIn(zlib.compress((b"\0" + b"\x03" * 256) * 48, 1), self.read("out.png"))
 
+    def test_the_folder_for_temporary_files_may_have_any_name(self):
+        for name in (b"a b", b"a#b", b"a?b", b"a%41b", b"%", b"a%%d", b"a'\"\\b", b"\xff\xc3\xa9", b"a\nb", b"-a", b"a;b&c", b"x" * 240):
+            for place in (os.path.join(os.fsencode(self.folder), name), name):  # absolute, and relative
+                with self.subTest(place):
+                    os.makedirs(os.path.join(os.fsencode(self.folder), name), exist_ok=True)
+                    self.draw("note()\npost(png(64, 48, 5))", TMPDIR=os.fsdecode(place))
+                    self.assertEqual(os.listdir(os.path.join(os.fsencode(self.folder), name)), [])
+                    os.remove(self.path("out.png"))
+
+    def test_a_folder_for_temporary_files_that_cannot_be_is_refused_ahead_of_the_run(self):
+        self.write("file", "")
+        closed = self.path("closed")
+        os.mkdir(closed, 0o500)
+        places = [(self.path("none"), "No such file"), (self.path("file"), "Not a directory"), ("none", "No such file")]
+        if os.geteuid() != 0:
+            places.append((closed, "Permission denied"))
+        self.program("chromium", "#!/bin/sh\n")
+        self.program("ffmpeg", "#!/bin/sh\n")
+        for place, reason in places:
+            for options in ((), ("--contact-sheet",), ("--movie", "out.mp4"), ("--movie", "out.gif")):
+                with self.subTest(place, options=options):
+                    result = self.run_pliant(*self.words(*options), code=1, env=self.variables(TMPDIR=place))
+                    self.assertRegex(result.stderr, r"\Apliant: error: cannot make a folder for temporary files in .*, which TMPDIR names: .*\n\Z")
+                    self.assertIn(place, result.stderr)
+                    self.assertIn(reason, result.stderr)
+                    self.assertFalse({"out.png", "out.mp4", "out.gif"} & set(self.files()))
+
+    # Programs that a browser starts, in sessions and groups of their own, which ignore what can be
+    # ignored; each writes its number into a file.
+    FAMILY = """
+child = (f"import os, signal, time\\n"
+         f"for number in (1, 2, 15): signal.signal(number, signal.SIG_IGN)\\n"
+         f"open(os.path.join({folder!r}, f'child-{{os.getpid()}}'), 'w').close()\\ntime.sleep(600)")
+for options in ({}, {"start_new_session": True}, {"process_group": 0} if sys.version_info >= (3, 11) else {"start_new_session": True}):
+    subprocess.Popen([sys.executable, "-c", child], **options)
+# One whose parent ends at once.
+subprocess.run([sys.executable, "-c", f"import subprocess, sys; subprocess.Popen([sys.executable, '-c', {child!r}], start_new_session=True)"])
+open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
+"""
+
+    def family(self):
+        return [int(name.removeprefix("child-")) for name in self.files() if name.startswith("child-")]
+
+    def await_family(self, process, count):
+        deadline = time.monotonic() + 60
+        while len(self.family()) < count and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertEqual(len(self.family()), count)
+        return self.family()
+
+    def await_end_of(self, processes):
+        deadline = time.monotonic() + 20
+        def runs(each):
+            try:
+                with open(f"/proc/{each}/stat", encoding="utf-8") as file:
+                    return file.read().rpartition(") ")[2][0] not in "ZX"
+            except FileNotFoundError:
+                return False
+        while any(map(runs, processes)) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertEqual([each for each in processes if runs(each)], [])
+
+    def test_whatever_ends_the_command_ends_its_programs_and_removes_their_files(self):
+        self.program("chromium", BROWSER + self.FAMILY + "time.sleep(600)\n")
+        self.program("ffmpeg", BROWSER.partition("way =")[0] + "folder = os.path.dirname(os.path.abspath(__file__))\n" + self.FAMILY + "time.sleep(600)\n")
+        for options, count in (((), 5), (("--movie", "out.mp4"), 10)):
+            for numbers in ((signal.SIGKILL,), (signal.SIGINT,), (signal.SIGTERM,), (signal.SIGHUP,), (signal.SIGINT, signal.SIGINT), (signal.SIGABRT,)):
+                with self.subTest(options, numbers=numbers):
+                    os.mkdir(self.path("scratch"))
+                    with subprocess.Popen([PLIANT, *self.words(*options)], cwd=self.folder, stderr=subprocess.DEVNULL,
+                                          env=self.variables(TMPDIR=self.path("scratch"))) as process:
+                        family = self.await_family(process, count)
+                        for number in numbers:
+                            process.send_signal(number)
+                        process.wait(timeout=60)
+                    self.await_end_of(family)
+                    deadline = time.monotonic() + 20
+                    while os.listdir(self.path("scratch")) and time.monotonic() < deadline:
+                        time.sleep(0.02)
+                    os.rmdir(self.path("scratch"))  # only if it is empty
+                    parts = [name for name in self.files() if name.endswith(".part")]
+                    if numbers in ((signal.SIGINT,), (signal.SIGTERM,), (signal.SIGHUP,)):
+                        self.assertEqual(parts, [])
+                    for part in parts:
+                        os.remove(self.path(part))
+                    self.assertEqual([name for name in self.files() if name.startswith("out")], [])
+                    for each in family:
+                        os.remove(self.path(f"child-{each}"))
+
+    def test_what_a_browser_leaves_ends_with_the_command(self):
+        self.draw(self.FAMILY + "while len([name for name in os.listdir(folder) if name.startswith('child-')]) < 5: time.sleep(0.02)\n"
+                  "note()\npost(png(64, 48))")
+        family = self.family()
+        self.assertEqual(len(family), 5)
+        self.await_end_of(family)
+
+    # Stores its input; its output is one byte.
+    FFMPEG = """#!/usr/bin/python3
+import os, shutil, sys
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "frames"), "wb") as file:
+    shutil.copyfileobj(sys.stdin.buffer, file)
+open(sys.argv[-1], "w").write("m")
+"""
+
+    def test_a_movie_has_the_frames_in_their_order_and_few_are_ordered_ahead(self):
+        self.program("ffmpeg", self.FFMPEG)
+        _, results = self.draw("""
+results["ahead"], results["frames"] = [], []
+waiting = jobs()
+while len(results["frames"]) < 30:
+    while not waiting:
+        time.sleep(0.002)
+        waiting = jobs()
+    results["ahead"].append(len(waiting))
+    frame, = waiting[0]["frames"]
+    results["frames"].append(frame)
+    if len(results["frames"]) == 30: note()
+    waiting = jobs("POST", "picture", bytes([frame, 0, 0, 255]) * (64 * 48))
+""", "--movie", "out.mp4")
+        self.assertEqual(results["frames"], list(range(1, 31)))
+        self.assertLessEqual(max(results["ahead"]), 4)
+        self.assertEqual(self.read("frames"), b"".join(bytes([frame, 0, 0, 255]) * (64 * 48) for frame in range(1, 31)))
+        self.assertEqual(self.read("out.mp4"), b"m")
+
+    def test_a_frame_of_another_size_ends_the_movie(self):
+        self.program("ffmpeg", self.FFMPEG)
+        for size in (0, 64 * 48 * 4 - 1, 64 * 48 * 3):
+            with self.subTest(size):
+                result, _ = self.draw(f"post(bytes({size}))", "--movie", "out.mp4", code=1)
+                self.assertRegex(result.stderr, rf"\Apliant: error: Chromium sent an unusable picture: it has {size} bytes, not those of 64 x 48 pixels\n\Z")
+                self.assertNotIn("out.mp4", self.files())
+        _, results = self.draw("results['longer'] = post(bytes(64 * 48 * 4 + 1))\nnote()\npost(b'')", "--movie", "out.mp4", code=1)
+        self.assertEqual(results["longer"], [413])
+
     @unittest.skipIf(SANITIZED, "a sanitizer takes all of the address space")
     def test_too_little_memory_is_answered(self):
         work = """
-pid = os.getppid()
+pid = parent(os.getppid())  # a keeper is between us and the command
 pages = int(open(f"/proc/{pid}/statm").read().split()[0]) * resource.getpagesize()
 whole = resource.prlimit(pid, resource.RLIMIT_AS)
 resource.prlimit(pid, resource.RLIMIT_AS, (pages + 20_000_000, whole[1]))

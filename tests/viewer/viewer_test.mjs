@@ -276,7 +276,7 @@ test("the rim of a region lies on the surface, along its box", async () => {
         const at = viewer.views[0].mesh.geometry.getAttribute("position").array;
         const nodes = new Map([...nodeVertices].map((vertex, node) => [[0, 1, 2].map((k) => at[3 * vertex + k]).join(), node]));
         if (!lines.visible) return [];
-        const ends = lines.geometry.attributes.instanceStart.data.array;
+        const ends = lines.geometry.ends;
         return Array.from({ length: ends.length / 3 }, (_, k) => nodes.get([0, 1, 2].map((c) => ends[3 * k + c]).join()) ?? null).map((node) => node !== null && [node % head.columns, Math.floor(node / head.columns)]);
       });
       assert.ok(!drawn.includes(false), "an end that is no vertex");
@@ -320,7 +320,7 @@ function writeTriangles(file) {
 const segmentsOf = (page, name) =>
   page.evaluate((wanted) => {
     const lines = window.pliant.stage.scene.getObjectByName(wanted);
-    const { array } = lines.geometry.attributes.instanceStart?.data ?? { array: [] };
+    const array = lines.geometry.ends;
     return lines.visible ? Array.from({ length: array.length / 6 }, (_, k) => [...array.slice(6 * k, 6 * k + 6)]) : [];
   }, name);
 
@@ -432,7 +432,7 @@ test("vertices that are no nodes stand where a bake has them, and regions are dr
         const inside = [[a, b], [b, c], [c, a]].every(([from, to]) => to.clone().sub(from).cross(p.clone().sub(from)).dot(normal) > -1e-5);
         return inside ? Math.abs(p.clone().sub(a).dot(normal)) : Infinity;
       };
-      const { array } = stage.scene.getObjectByName("net rim").geometry.attributes.instanceStart.data;
+      const array = stage.scene.getObjectByName("net rim").geometry.ends;
       let most = 0;
       for (let k = 0; k < array.length; k += 3) {
         let least = Infinity;
@@ -995,7 +995,7 @@ test("forces are named, hidden, and shown alone", async () => {
     window.pliant.stage.draw();
     return [...window.pliant.stage.scene.getObjectByName("gizmos").children].filter((each) => each.visible).map((each) => each.name.replace("force ", "")).sort().join("");
   });
-  const boxes = (page) => page.evaluate(() => window.pliant.stage.scene.getObjectByName("s force boxes").geometry.attributes.instanceStart?.data.count ?? 0);
+  const boxes = (page) => page.evaluate(() => window.pliant.stage.scene.getObjectByName("s force boxes").geometry.ends.length / 6);
   await withPage(url, {}, async (page) => {
     assert.equal(await shown(page), "abcdg");
     assert.deepEqual((await page.evaluate(() => window.pliant.labels())).sort(), ["a", "b", "c", "d", "g"]);
@@ -1625,6 +1625,53 @@ test("movies have the frames, the size and the rate of the scene", async () => {
     assert.notDeepEqual(pixelsOf(out, 0), pixelsOf(out, 6));
   }
   assert.deepEqual(readdirSync(folder).filter((name) => name.endsWith(".part")), []);
+});
+
+test("each frame of a movie is the picture of that frame, to the bit", async () => {
+  // A program in ffmpeg's place stores its input.
+  const programs = inFolder("programs");
+  mkdirSync(programs);
+  writeFileSync(path.join(programs, "ffmpeg"), `#!/bin/sh\ncat >"${inFolder("frames.rgba")}"\nfor last; do :; done\necho >"$last"\n`, { mode: 0o755 });
+  const env = { ...process.env, PATH: `${programs}:${process.env.PATH}` };
+  const [width, height, look] = [322, 242, "colour=velocity&turn=50"];
+  for (const [name, first, last] of [["sheet", 9, 20], ["hands", 30, 33]]) {
+    const common = ["--size", `${width}x${height}`, "--look", look, "--quiet"];
+    execFileSync(pliant, ["view", example(name), "--movie", "whole.mp4", "--frames", `${first}:${last}`, ...common], { cwd: folder, env, timeout: 300_000 });
+    const frames = readFileSync(inFolder("frames.rgba"));
+    assert.equal(frames.length, (last - first + 1) * 4 * width * height);
+    const frameAt = (frame) => frames.subarray((frame - first) * 4 * width * height, (frame - first + 1) * 4 * width * height);
+    for (const frame of [first, first + 1, last - 1, last]) {
+      run("view", example(name), "--png", "one.png", "--frame", `${frame}`, "--frames", `${first}:${last}`, ...common);
+      const one = execFileSync("ffmpeg", ["-v", "error", "-i", inFolder("one.png"), "-f", "rawvideo", "-pix_fmt", "rgba", "-"], { maxBuffer: 1e9 });
+      assert.ok(one.equals(frameAt(frame)), `${name}, frame ${frame}`);
+    }
+    assert.ok(!frameAt(first).equals(frameAt(last)));
+  }
+});
+
+test("with the command Chromium and ffmpeg end, and their files go", async () => {
+  const scratch = inFolder("#scratch ?%41");
+  mkdirSync(scratch);
+  const processes = () =>
+    readdirSync("/proc").filter((name) => {
+      try {
+        return /^\d+$/.test(name) && ["environ", "cmdline"].some((file) => readFileSync(`/proc/${name}/${file}`, "utf8").includes(scratch));
+      } catch {
+        return false; // it has ended
+      }
+    });
+  for (const words of [["--movie", "never.mp4"], ["--png", "never.png", "--contact-sheet", "--size", "1000x700"]]) {
+    const command = spawn(pliant, ["view", example("sheet"), ...words], { cwd: folder, stdio: "ignore", env: { ...process.env, TMPDIR: scratch } });
+    while (command.exitCode === null && processes().length < 8) await new Promise((resume) => setTimeout(resume, 20));
+    assert.equal(command.exitCode, null);
+    await new Promise((resolve) => { command.once("exit", resolve); command.kill("SIGKILL"); });
+    for (let k = 0; k < 500 && (processes().length > 0 || readdirSync(scratch).length > 0); ++k) await new Promise((resume) => setTimeout(resume, 20));
+    assert.deepEqual([processes(), readdirSync(scratch)], [[], []]);
+    // And a picture can be drawn there.
+    execFileSync(pliant, ["view", example("sheet"), words[0], `whole${path.extname(words[1])}`, "--size", "160x100", "--frames", "1:2"], { cwd: folder, env: { ...process.env, TMPDIR: scratch }, timeout: 120_000 });
+    assert.deepEqual(readdirSync(scratch), []);
+  }
+  for (const name of readdirSync(folder).filter((each) => each.endsWith(".part"))) rmSync(inFolder(name));
 });
 
 test("a movie that is interrupted leaves nothing", async () => {

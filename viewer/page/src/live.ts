@@ -20,8 +20,19 @@ export async function fetchPacked(): Promise<Uint8Array<ArrayBuffer>> {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-export async function fetchBake(): Promise<Bake> {
+async function fetchBake(): Promise<Bake> {
   return unpack(await fetchPacked());
+}
+
+/** Waits until the command has baked. */
+export function firstBake(): Promise<Bake> {
+  return new Promise((resolve, reject) => {
+    const events = new EventSource("events");
+    events.addEventListener("baked", () => {
+      events.close();
+      fetchBake().then(resolve, reject);
+    });
+  });
 }
 
 /** Each event has the whole state: the number of the last sound bake, 0 for none, and messages. */

@@ -8,7 +8,7 @@ import { ForceList } from "./force_list";
 import { FrameAxis } from "./frame_axis";
 import { drawLabels } from "./labels";
 import { legendOf, showLegend } from "./legend";
-import { fetchBake, follow } from "./live";
+import { firstBake, follow } from "./live";
 import { defined, readLook, type Look } from "./look";
 import { showMessages } from "./messages";
 import { answerOrders, isPicture } from "./orders";
@@ -271,7 +271,8 @@ function goLive(): void {
  * `pliant view --png` and `--movie` open the page only for this: it sends one picture per order.
  */
 async function sendPictures(): Promise<void> {
-  load(await fetchBake());
+  document.documentElement.style.display = "none"; // nobody looks at the page, and drawing it takes time
+  load(await firstBake());
   await answerOrders<PictureJob>((order, isFirst) => {
     if (isFirst) apply({ theme: "light", ...defined(readLook(order.look)) });
     return takePicture(viewer, themes, order);

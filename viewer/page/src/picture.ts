@@ -14,6 +14,8 @@ export interface PictureJob {
   label: number;
   /** Pixels below a sheet for one legend of all its frames; 0: none. */
   strip: number;
+  /** The bytes of all pixels instead of a PNG. */
+  hasPixels: boolean;
 }
 
 /** Smaller pictures show only the surfaces, without text. [px] */
@@ -40,10 +42,10 @@ function drawCaption(context: CanvasRenderingContext2D, captions: string[], { wi
 }
 
 /**
- * A PNG of width x height pixels for one frame; several frames form a table of pictures of that
+ * A picture of width x height pixels for one frame; several frames form a table of pictures of that
  * size.
  */
-export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob> {
+export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: PictureJob): Promise<Blob | Uint8Array<ArrayBuffer>> {
   const { width, height, frames, columns, label, strip } = job;
   const isSheet = frames.length > 1;
   const { palette } = themes;
@@ -54,25 +56,29 @@ export async function takePicture(viewer: Viewer, themes: ThemeChoice, job: Pict
   const across = Math.min(columns, frames.length);
   const sheet = document.createElement("canvas");
   [sheet.width, sheet.height] = [width * across, (height + label) * rows + strip];
-  const context = sheet.getContext("2d")!;
+  const context = sheet.getContext("2d", { willReadFrequently: true })!; // drawn by the CPU, which needs its pixels
   context.fillStyle = palette.background;
   context.fillRect(0, 0, sheet.width, sheet.height);
   viewer.stage.pin(width, height);
-  frames.forEach((frame, k) => {
+  const drawn = frames.map((frame) => {
     viewer.playback.goTo(frame);
-    viewer.stage.draw();
+    return { picture: viewer.stage.drawPixels(), labels: viewer.labels(), captions: captionsOf(viewer) };
+  });
+  for (const [k, { picture, labels, captions }] of drawn.entries()) {
+    const pixels = await picture;
     context.save();
     context.translate((k % columns) * width, Math.floor(k / columns) * (height + label));
     context.beginPath();
     context.rect(0, 0, width, height + label);
     context.clip();
-    context.drawImage(viewer.stage.canvas, 0, 0);
+    context.putImageData(pixels, (k % columns) * width, Math.floor(k / columns) * (height + label)); // as it is
     const taken: Area[] = [];
-    if (viewer.display.hasCaption && (isSheet || hasWords)) taken.push(drawCaption(context, captionsOf(viewer), job, isSheet ? 15 : text, palette));
+    if (viewer.display.hasCaption && (isSheet || hasWords)) taken.push(drawCaption(context, captions, job, isSheet ? 15 : text, palette));
     if (legend && hasWords && !isSheet) taken.push(drawLegend(context, legend, text, height - 0.8 * text, text, palette));
-    if (hasWords) drawLabels(context, viewer.labels(), viewer.stage.camera, { width, height, text }, taken, palette);
+    if (hasWords) drawLabels(context, labels, viewer.stage.camera, { width, height, text }, taken, palette);
     context.restore();
-  });
+  }
   if (legend && isSheet) drawLegend(context, legend, 14, sheet.height - 8, 13, palette);
+  if (job.hasPixels) return new Uint8Array(context.getImageData(0, 0, sheet.width, sheet.height).data.buffer);
   return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("not enough memory for the picture"))), "image/png"));
 }

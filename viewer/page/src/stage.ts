@@ -132,6 +132,31 @@ export class Stage {
     for (const listener of this.listeners) listener();
   }
 
+  /** Draws, and returns the picture once it is finished: meanwhile the next one can be drawn. */
+  async drawPixels(): Promise<ImageData> {
+    this.draw();
+    const { width, height } = this.canvas;
+    const context = this.renderer.getContext() as WebGL2RenderingContext;
+    const buffer = context.createBuffer();
+    const picture = new ImageData(width, height);
+    context.bindBuffer(context.PIXEL_PACK_BUFFER, buffer);
+    context.bufferData(context.PIXEL_PACK_BUFFER, picture.data.length, context.STREAM_READ);
+    context.readPixels(0, 0, width, height, context.RGBA, context.UNSIGNED_BYTE, 0);
+    context.bindBuffer(context.PIXEL_PACK_BUFFER, null);
+    const end = context.fenceSync(context.SYNC_GPU_COMMANDS_COMPLETE, 0)!;
+    context.flush();
+    while (context.getSyncParameter(end, context.SYNC_STATUS) !== context.SIGNALED) await new Promise((resume) => setTimeout(resume));
+    const upwards = new Uint8Array(picture.data.length);
+    context.bindBuffer(context.PIXEL_PACK_BUFFER, buffer);
+    context.getBufferSubData(context.PIXEL_PACK_BUFFER, 0, upwards);
+    context.bindBuffer(context.PIXEL_PACK_BUFFER, null);
+    context.deleteBuffer(buffer);
+    context.deleteSync(end);
+    const row = 4 * width;
+    for (let y = 0; y < height; ++y) picture.data.set(upwards.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+    return picture;
+  }
+
   /** Calls `listener` after each drawing. */
   onDraw(listener: () => void): void {
     this.listeners.push(listener);
@@ -169,6 +194,8 @@ export class Stage {
 
   /** Fixes the size of the picture, independent of the page, and fits the view to it. */
   pin(width: number, height: number): void {
+    const { width: before, height: above } = this.canvas;
+    if (this.isPinned && before === width && above === height) return; // a new buffer for each picture takes time
     this.isPinned = true;
     this.resizeTo(width, height, 1);
     this.frameAll();
