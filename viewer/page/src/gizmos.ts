@@ -20,15 +20,13 @@ function circlePoints(turn: (a: number) => Vector): number[] {
   return points;
 }
 
-const lineGeometry = (points: number[]) => new SegmentsGeometry().setEnds(points);
-
-const sphere = lineGeometry([
+const sphere = new SegmentsGeometry(true).setEnds([
   ...circlePoints((a) => [0, Math.cos(a), Math.sin(a)]),
   ...circlePoints((a) => [Math.cos(a), 0, Math.sin(a)]),
   ...circlePoints((a) => [Math.cos(a), Math.sin(a), 0]),
 ]);
-const ring = lineGeometry(circlePoints((a) => [Math.cos(a), 0, Math.sin(a)]));
-const segment = lineGeometry([0, 0, 0, 0, 1, 0]);
+const ring = new SegmentsGeometry(true).setEnds(circlePoints((a) => [Math.cos(a), 0, Math.sin(a)]));
+const segment = new SegmentsGeometry().setEnds([0, 0, 0, 0, 1, 0]);
 const head = new THREE.ConeGeometry(0.5, 1, 20).translate(0, -0.5, 0);
 const dot = new THREE.SphereGeometry(1, 16, 10);
 const up = new THREE.Vector3(0, 1, 0);

@@ -5,21 +5,28 @@ import * as THREE from "three";
 import type { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 
-/** What LineSegmentsGeometry has for each segment. */
+/** What LineSegmentsGeometry has for each segment: two triangles between its ends, and two for each round cap. */
 const one = new LineSegmentsGeometry();
-const corners = one.getAttribute("position").array;
-const uvs = one.getAttribute("uv").array;
-const triangles = one.index!.array;
-const cornerCount = corners.length / 3;
+const capped = { corners: one.getAttribute("position").array, uvs: one.getAttribute("uv").array, triangles: one.index!.array };
+/** Without the caps. */
+const bare = { corners: capped.corners.slice(6, 18), uvs: capped.uvs.slice(4, 12), triangles: [0, 2, 1, 2, 3, 1] };
 
 export class SegmentsGeometry extends THREE.BufferGeometry {
   /** Both ends of each segment: x y z, x y z. */
   ends = new Float32Array();
   private buffer: THREE.InterleavedBuffer | null = null;
+  private readonly shape: typeof capped | typeof bare;
+
+  /** Segments of a smooth curve need no caps, and are drawn three times as fast. */
+  constructor(isSmooth = false) {
+    super();
+    this.shape = isSmooth ? bare : capped;
+  }
 
   setEnds(ends: ArrayLike<number>): this {
     this.ends = Float32Array.from(ends);
     const count = this.ends.length / 6;
+    const cornerCount = this.shape.corners.length / 3;
     if (this.buffer?.count !== cornerCount * count) this.build(count);
     const { array } = this.buffer!;
     for (let segment = 0; segment < count; ++segment) {
@@ -32,6 +39,8 @@ export class SegmentsGeometry extends THREE.BufferGeometry {
   }
 
   private build(count: number): void {
+    const { corners, uvs, triangles } = this.shape;
+    const cornerCount = corners.length / 3;
     const repeated = (numbers: ArrayLike<number>, step = 0) =>
       Float32Array.from({ length: numbers.length * count }, (_, k) => numbers[k % numbers.length] + step * Math.floor(k / numbers.length));
     this.dispose();
