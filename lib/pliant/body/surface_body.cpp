@@ -128,9 +128,9 @@ SolverCounts SurfaceBody::solver_counts() const {
 }
 
 Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
-  StepPlan fresh;
-  if (auto planned = plan(inputs, fresh); !planned) return fail(planned.error());
-  return fresh;
+  StepPlan next = plan_;  // pieces that stay need not be cut out again
+  if (auto planned = plan(inputs, next); !planned) return fail(planned.error());
+  return next;
 }
 
 Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {

@@ -71,9 +71,19 @@ bool is_near_rim(double end, double other) {
   return false;
 }
 
-std::vector<int> sorted_once(std::vector<int> numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+// The numbers of 0 to `count` - 1, ascending, each once.
+std::vector<int> sorted_once(std::vector<int> numbers, int count) {
+  if (numbers.size() < static_cast<std::size_t>(count) / 16) {
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    return numbers;
+  }
+  std::vector<char> is_there(static_cast<std::size_t>(count), 0);
+  for (const int number : numbers) is_there[number] = 1;
+  numbers.clear();
+  for (int number = 0; number < count; ++number) {
+    if (is_there[number] != 0) numbers.push_back(number);
+  }
   return numbers;
 }
 
@@ -84,7 +94,7 @@ void list_corners(const TriangleSurface& surface, LevelSet& level_set) {
     const std::span<const int> nodes = surface.nodes_of(face);
     all.insert(all.end(), nodes.begin(), nodes.end());
   }
-  level_set.nodes = sorted_once(std::move(all));
+  level_set.nodes = sorted_once(std::move(all), surface.node_count());
   // The place of each node among `all`; of other nodes nothing is written or read.
   const auto places =
       std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(surface.node_count()));
@@ -103,7 +113,7 @@ void add_faces_of(const TriangleSurface& surface, std::span<const int> nodes, Le
     const std::span<const int> faces = surface.faces_of(node);
     level_set.faces.insert(level_set.faces.end(), faces.begin(), faces.end());
   }
-  level_set.faces = sorted_once(std::move(level_set.faces));
+  level_set.faces = sorted_once(std::move(level_set.faces), surface.face_count());
 }
 
 }  // namespace
@@ -124,7 +134,7 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                });
   }
   LevelSet found;
-  add_faces_of(surface, sorted_once(std::move(inside)), found);
+  add_faces_of(surface, sorted_once(std::move(inside), surface.node_count()), found);
   list_corners(surface, found);
   found.at_nodes.assign(found.nodes.size(), -deepest);
   const PlacedNodes placed(surface.rest, transform);
