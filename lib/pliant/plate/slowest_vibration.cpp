@@ -1,13 +1,19 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/plate/small_modes.hpp"
 #include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/sparse/matrix_bytes.hpp"
 #include "pliant/plate/vibration.hpp"
 
 namespace pliant {
@@ -32,6 +38,33 @@ void add_multiple(Shape& a, double factor, const Shape& b) {
 }
 
 Shape shape_of(const Eigen::VectorXd& column) { return {column.begin(), column.end()}; }
+
+// What is kept on a shelf: the slowest vibration of a plate with this matrix and these masses.
+struct KnownVibration final : Shelf::Item {
+  KnownVibration(const SparseMatrix& of, const Eigen::VectorXd& with) : matrix(of), masses(with) {}
+
+  SparseMatrix matrix;
+  Eigen::VectorXd masses;
+  double lambda = 0;
+
+  std::array<std::string_view, 4> parts() const {
+    const auto [starts, rows, values] = matrix_bytes(matrix);
+    return {starts, rows, values, bytes_in(masses.data(), masses.size())};
+  }
+  Hash key(SolverChoice solver) const {
+    HashStream stream;
+    stream.add("slowest vibration by ");
+    stream.add(name_of(solver));
+    for (const std::string_view part : parts()) stream.add(part);
+    return stream.hash();
+  }
+  bool is_same_as(const KnownVibration& other) const { return parts() == other.parts(); }
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const std::string_view part : parts()) sum += part.size();
+    return sum;
+  }
+};
 
 // Lanczos' method with blocks of three, on the inverse of K + shift M. In the space of the basis,
 // which is orthogonal by mass, the inverse is the small matrix `projected_`, whose largest
@@ -258,7 +291,18 @@ class SlowestVibration {
 }  // namespace
 
 Result<double> smallest_eigenvalue(const VibratingPlate& plate) {
-  return SlowestVibration(plate).find();
+  Shelf* const shelf = plate.matrix ? plate.context.shelf : nullptr;
+  if (!shelf) return SlowestVibration(plate).find();
+  auto known = std::make_shared<KnownVibration>(plate.matrix(), plate.masses);
+  const Hash key = known->key(plate.solver);
+  const auto is_same = [&](const KnownVibration& one) { return one.is_same_as(*known); };
+  if (const auto found = shelf->find<KnownVibration>(key, is_same)) return found->lambda;
+  auto lambda = SlowestVibration(plate).find();
+  if (!lambda) return lambda;
+  known->lambda = *lambda;
+  const std::size_t bytes = known->bytes();
+  shelf->keep(key, std::move(known), bytes);
+  return lambda;
 }
 
 }  // namespace pliant

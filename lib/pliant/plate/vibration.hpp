@@ -20,6 +20,10 @@ struct VibratingPlate {
   double shift = 0;        ///< >= 0; > 0 if nothing holds the plate [1/uv^4]
   /// #unknowns x up to 3: motions K w = 0 that are known.
   Eigen::MatrixXd rigid = {};
+  /// Makes the upper triangle of K, and `solver` is by whose factor it is solved: a plate of equal
+  /// ones has the same slowest vibration to the bit. Empty: it is not known.
+  std::function<SparseMatrix()> matrix = {};
+  SolverChoice solver = SolverChoice::Auto;
   /// Makes a solve for another shift, perhaps in place of `solve`: for a shift < 0 too, if K +
   /// shift M is positive definite. Errors: SolverFailed if it is not. Empty: none is made.
   std::function<Result<Solve>(double shift)> shifted = {};
@@ -38,8 +42,9 @@ Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, d
 /// slowest free vibration of a plate of density rho has the angular frequency sqrt(lambda / rho)
 /// [1/s]. 0 if every motion is rigid. Right to 1e-7, usually to 1e-9, with the same bits
 /// everywhere; docs/model.md, eq. (42b). Errors: those of the solver; SolverFailed if it is not
-/// found; OutOfMemory; Interrupted. Afterwards a `shifted` plate may no longer solve. Source: Wu,
-/// Simon, Thick-restart Lanczos method for large symmetric eigenvalue problems (2000).
+/// found; OutOfMemory; Interrupted. Afterwards a `shifted` plate may no longer solve. That of a
+/// plate whose matrix is known is kept on the shelf, if there is one. Source: Wu, Simon,
+/// Thick-restart Lanczos method for large symmetric eigenvalue problems (2000).
 Result<double> smallest_eigenvalue(const VibratingPlate& plate);
 
 /// The same of a plate of a grid, whose shift is not read. Prepares the solver.

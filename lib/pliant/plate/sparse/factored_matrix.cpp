@@ -9,6 +9,7 @@
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/shelf.hpp"
 #include "pliant/plate/solver_errors.hpp"
+#include "pliant/plate/sparse/matrix_bytes.hpp"
 
 namespace pliant {
 namespace {
@@ -20,17 +21,6 @@ namespace {
 constexpr std::size_t bytes_to_analyze = 250;
 constexpr std::size_t bytes_to_factorize = 350;
 constexpr std::size_t bytes_of_entry = 12;  // of the factor: a double and an index
-
-template <class Number>
-std::string_view bytes_in(const Number* first, Eigen::Index count) {
-  return {reinterpret_cast<const char*>(first), sizeof(Number) * static_cast<std::size_t>(count)};
-}
-
-std::array<std::string_view, 3> bytes_of(const SparseMatrix& matrix) {
-  return {bytes_in(matrix.outerIndexPtr(), matrix.cols() + 1),
-          bytes_in(matrix.innerIndexPtr(), matrix.nonZeros()),
-          bytes_in(matrix.valuePtr(), matrix.nonZeros())};
-}
 
 }  // namespace
 
@@ -68,7 +58,7 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
   const Hash key = shelf_ ? key_of(matrix) : Hash();
   if (shelf_) {
     const auto kept = shelf_->find<Kept>(
-        key, [&](const Kept& one) { return bytes_of(one.matrix) == bytes_of(matrix); });
+        key, [&](const Kept& one) { return matrix_bytes(one.matrix) == matrix_bytes(matrix); });
     if (kept) return use(size, *kept);
   }
   if (!is_analyzed_) {
@@ -94,7 +84,7 @@ Hash FactoredMatrix::key_of(const SparseMatrix& matrix) const {
   HashStream stream;
   stream.add(supernodes_ ? "supernodes of " : "factor of ");
   stream.add(name_of(choice_));
-  for (const std::string_view bytes : bytes_of(matrix)) stream.add(bytes);
+  for (const std::string_view bytes : matrix_bytes(matrix)) stream.add(bytes);
   return stream.hash();
 }
 
@@ -126,7 +116,7 @@ void FactoredMatrix::keep(const Hash& key, const SparseMatrix& matrix, std::size
   }
   kept->matrix = matrix;
   std::size_t bytes = has_supernodes_ ? kept->supernode_bytes : bytes_of_entry * entries;
-  for (const std::string_view part : bytes_of(matrix)) bytes += part.size();
+  for (const std::string_view part : matrix_bytes(matrix)) bytes += part.size();
   shelf_->keep(key, std::move(kept), bytes);
 } catch (const std::bad_alloc&) {  // a shelf is not needed
 }

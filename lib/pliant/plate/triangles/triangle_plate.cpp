@@ -28,6 +28,7 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       factors_(std::move(factors)),
       elastic_(factors_ && factors_->are_elastic() ? factors_.get() : nullptr),
       context_(context),
+      solver_(choice),
       reduced_(cells_, static_cast<int>(masses_.size())),
       factor_(*this, choice, context),
       precise_share_(context.memory),

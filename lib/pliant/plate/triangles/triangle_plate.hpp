@@ -87,6 +87,7 @@ class TrianglePlate : private PreciseMatrix {
   Eigen::VectorXd weighted_masses() const;
 
   const RunContext& context() const { return context_; }
+  SolverChoice solver() const { return solver_; }
   SolverCounts counts() const { return factor_.counts() + motion_.counts(); }
   std::size_t memory() const {
     return factor_.memory() + motion_.memory() + plastic_share_.bytes();
@@ -141,6 +142,7 @@ class TrianglePlate : private PreciseMatrix {
   std::shared_ptr<const CellFactors> factors_;
   const CellFactors* elastic_;  // the same, if an elastic plate has some
   RunContext context_;
+  SolverChoice solver_;
   ReducedUnknowns reduced_;  // those of the matrix
   RefinedFactor factor_;
   bool is_factored_ = false;
