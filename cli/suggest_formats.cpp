@@ -43,6 +43,8 @@ std::string_view word_of(Obstacle obstacle) {
       return "notHeld";
     case Obstacle::TooLarge:
       return "tooLarge";
+    case Obstacle::NoCycle:
+      return "noCycle";
     case Obstacle::NotFound:
       return "notFound";
     case Obstacle::None:
@@ -148,7 +150,7 @@ std::string suggest_json(const SuggestFacts& facts) {
                      {"written", facts.is_written},
                      {"values", values},
                      {"peak", goal_json(one.peak)},
-                     {"peakIsStatic", one.is_peak_static},
+                     {"peakIsStatic", false},  // as it was in earlier versions
                      {"settlingTime", goal_json(one.settling)},
                      {"frequency", goal_json(one.frequency)},
                      {"region", one.region},
@@ -176,7 +178,6 @@ std::string suggest_text(const SuggestFacts& facts) {
   if (one.peak) {
     std::string more;
     if (one.after.played) more = fmt::format("at frame {}", one.after.played->frame);
-    if (one.is_peak_static) more = "at rest: the animation is not played here";
     add("peak", *one.peak, "", more);
   }
   if (one.settling) {

@@ -11,7 +11,7 @@ TEST_CASE("what is settled is what a massless surface comes to", "[feedback][pre
   Scene s = scene({sheet("s", 21)}, {poke("f", {0.3, 0, 0.2})}, 2);
   s.surfaces[0].tangents.su0 = Channel<3>(Value<3>{0, 3, 0});
   const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
-  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, {});
+  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, true, {});
   REQUIRE(body.reserve());
   const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   const auto settled_peak = [&](bool is_plain) {
@@ -36,7 +36,7 @@ TEST_CASE("a plain body knows no rest but its own shape", "[feedback][preview]")
   Scene s = scene({sheet("s", 21)}, {poke("f", {0, 0, 0}, 0)}, 2);
   s.surfaces[0].solver.reference = Reference::None;
   const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
-  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, {});
+  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, true, {});
   REQUIRE(body.reserve());
   const BodyInputs inputs = sample_inputs(s, SceneSampling(s), 0, 1).body;
   REQUIRE(body.settle(inputs, false));
@@ -49,7 +49,7 @@ TEST_CASE("a preview takes its memory out of the budget", "[feedback][preview]")
   const Scene s = scene({sheet("s", 21)}, {poke("f", {0, 0, 0})}, 2);
   const RestShape shape = make_rest_shape(s.surfaces[0], {})->shape;
   MemoryBudget little(1000);
-  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, {.memory = &little});
+  PreviewBody body(shape, s.surfaces[0], 1 / s.fps, true, {.memory = &little});
   const auto reserved = body.reserve();
   REQUIRE_FALSE(reserved);
   CHECK(reserved.error().code == ErrorCode::OutOfMemory);

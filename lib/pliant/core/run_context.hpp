@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <string>
 
 #include "pliant/core/stop_request.hpp"
 
@@ -14,6 +16,9 @@ struct Profile;
 /// As wide as the vectors of the machine.
 inline constexpr int widest_lanes = std::numeric_limits<int>::max();
 
+/// Called from time to time during long work: what is worked at, and how much of it is done.
+using ProgressReport = std::function<void(const std::string& work, int done, int count)>;
+
 /// What a run lets each of its parts use: a part gets it once, when it is made, and keeps a copy.
 /// No bit of a result depends on it. What it points to must outlive the part.
 struct RunContext {
@@ -23,6 +28,7 @@ struct RunContext {
   Shelf* shelf = nullptr;          ///< what is shared with other runs; null: nothing is
   Profile* profile = nullptr;      ///< receives the times, from one thread; null: no profiling
   StopRequest should_stop = {};    ///< called from any thread; empty: never stops
+  ProgressReport progressed = {};  ///< called from the thread that works; empty: not called
 
   bool is_stopped() const { return should_stop && should_stop(); }
 };

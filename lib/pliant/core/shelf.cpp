@@ -26,6 +26,7 @@ void Shelf::keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t 
   if (bytes > max_bytes_) return;
   Entries gone;  // destroyed without the lock
   const std::lock_guard lock(mutex_);
+  ++kept_;
   entries_.push_front({key, std::move(item), bytes});
   by_key_.emplace(number_of(key), entries_.begin());
   for (bytes_ += bytes; bytes_ > max_bytes_;) {
@@ -36,6 +37,11 @@ void Shelf::keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t 
     bytes_ -= oldest->bytes;
     gone.splice(gone.begin(), entries_, oldest);
   }
+}
+
+std::size_t Shelf::kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_;
 }
 
 std::size_t Shelf::bytes() const {

@@ -47,6 +47,7 @@ class Shelf {
   void keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes);
 
   std::size_t bytes() const;  ///< that all items take [bytes]
+  std::size_t kept() const;   ///< how many items it was given to keep so far
 
  private:
   struct Entry {
@@ -64,6 +65,7 @@ class Shelf {
   mutable std::mutex mutex_;
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
+  std::size_t kept_ = 0;
   Entries entries_;  // the last used one first
   std::multimap<Number, Entries::iterator> by_key_;
 };

@@ -98,6 +98,15 @@ std::vector<std::size_t> ActingForces::enabled_at(int frame) const {
   return enabled;
 }
 
+std::vector<std::size_t> ActingForces::groups_at(int frame) const {
+  std::vector<std::size_t> selecting;
+  for (const Group* const group : groups_) {
+    if (group->enabled.at(frame))
+      selecting.push_back(static_cast<std::size_t>(group - scene_.groups.data()));
+  }
+  return selecting;
+}
+
 bool ActingForces::is_enabled(std::size_t force, int frame) const {
   const auto place = std::find(forces_.begin(), forces_.end(), force) - forces_.begin();
   return pliant::is_enabled(scene_.forces[force], group_of_[static_cast<std::size_t>(place)],

@@ -25,6 +25,9 @@ class ActingForces {
   /// The forces among `at(frame).forces`, in their order; the regions of groups follow them.
   std::vector<std::size_t> enabled_at(int frame) const;
 
+  /// The groups that select at a frame, by their index in the scene.
+  std::vector<std::size_t> groups_at(int frame) const;
+
   bool is_enabled(std::size_t force, int frame) const;
 
   /// Whether any force or group is enabled.
@@ -32,6 +35,11 @@ class ActingForces {
 
   /// Whether, while enabled, only magnitudes change between frames.
   bool stand_still() const;
+
+  /// Whether its effect is that of `other` with the same scene and surface.
+  bool acts_as(const ActingForces& other) const {
+    return forces_ == other.forces_ && groups_ == other.groups_;
+  }
 
   const std::vector<std::size_t>& forces() const { return forces_; }
 

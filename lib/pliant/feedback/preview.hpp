@@ -90,23 +90,40 @@ struct Preview {
   std::vector<RegionPreview> regions;  ///< in the order given by `combine`
   std::vector<ForceShare> shares;      ///< for `Group` and `All`: in the order of the scene
 
-  std::optional<PlayedPeak> played;  ///< in the whole animation; null: too costly to play, or a
-                                     ///< loop
+  std::optional<PlayedPeak> played;  ///< in the whole animation; null: it was not played, which is
+                                     ///< too costly, not needed, or looks for a cycle
   std::optional<Gap> gap;            ///< of a force or group that selects nothing
 };
 
 /// A preview does not solve regions with more moving nodes than this.
 inline constexpr int most_previewed_unknowns = 200'000;
 
+/// A preview does not find the vibrations of larger pieces of surfaces of triangles, and of larger
+/// patches whose outline is not a rectangle: they need a sparse factor. [moving nodes]
+inline constexpr int most_vibrating_nodes = 50'000;
+
 /// For every enabled surface of a scene with these rest shapes, in this order: each force that
 /// targets it and is enabled at some frame, each such group, then all together, if anything acts.
 ///
 /// Cost: the search for the frames of greatest effect examines about 10^8 nodes in all; for longer
 /// ranges at evenly spaced frames. Animations are played, those of all forces first, until about
-/// 10^8 nodes were stepped. A few seconds each. Errors: those of the solvers; NotFinite if a custom
-/// force returns an invalid value or a state is not finite; Interrupted.
+/// 10^8 nodes were stepped. A few seconds each. With a shelf no matrix is factored twice. Errors:
+/// those of the solvers; NotFinite if a custom force returns an invalid value or a state is not
+/// finite; Interrupted.
 Result<std::vector<Preview>> preview_forces(const Scene& scene,
                                             std::span<const RestShape> rest_shapes,
                                             const RunContext& context = {});
+
+/// The preview of all forces on one surface together, of whose vibrations only the slowest is
+/// found, without shares and without the animation. Null: nothing acts. Cost: that of the static
+/// states and of one vibration for each region. Errors: as `preview_forces`.
+Result<std::optional<Preview>> preview_slowest(const Scene& scene, const RestShape& shape,
+                                               std::size_t surface, const RunContext& context = {});
+
+/// The largest displacement of a surface in the whole animation, or one that is larger than `until`
+/// as soon as there is one. Cost: that of solving its frames. Errors: as `preview_forces`;
+/// SolverFailed if a loop closes to no cycle.
+Result<PlayedPeak> play_forces(const Scene& scene, const RestShape& shape, std::size_t surface,
+                               double until, const RunContext& context = {});
 
 }  // namespace pliant

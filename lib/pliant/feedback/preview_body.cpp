@@ -5,10 +5,13 @@
 #include <limits>
 #include <numeric>
 #include <utility>
+#include <variant>
 
+#include "pliant/body/cycle.hpp"
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
+#include "pliant/mesh/vertex_weights.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/region/closed_boxes.hpp"
 
@@ -47,10 +50,11 @@ Dynamics felt_by(const RegionMotion& motion, const BodyInputs& inputs) {
 }  // namespace
 
 PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double frame_seconds,
-                         RunContext context)
+                         bool with_swings, RunContext context)
     : shape_(shape),
       surface_(surface),
       frame_seconds_(frame_seconds),
+      with_swings_(with_swings),
       context_(std::move(context)),
       share_(context_.memory) {}
 
@@ -107,15 +111,27 @@ void PreviewBody::begin(bool is_plain) {
   now.reset();
   current_ = &now;
   is_plain_ = is_plain;
-  is_at_rest_ = is_plain;
+  // Exact steps remember the loads before, also those that are 0.
+  const bool remembers = surface_.solver.integrator == Integrator::Exact;
+  is_at_rest_ = !remembers && (is_plain || pliant::is_plain(surface_));
 }
 
 Result<double> PreviewBody::step(BodyInputs inputs) {
   if (is_plain_) inputs.tangents = {};
+  const bool is_still = is_at_rest_;
   is_at_rest_ =
       is_at_rest_ && std::all_of(inputs.forces.begin(), inputs.forces.end(),
                                  [](const SampledForce& force) { return force.magnitude == 0; });
   if (is_at_rest_) return 0.0;
+  if (is_still) {
+    const auto plan = body(is_plain_).look(inputs);
+    if (auto sound = check_faults(); !sound) return fail(sound.error());
+    if (!plan) return fail(plan.error());
+    if (has_no_load(*plan)) {
+      is_at_rest_ = true;
+      return least_cost();
+    }
+  }
   const auto stepped = body(is_plain_).step(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());
   if (!stepped) return fail(stepped.error());
@@ -124,6 +140,20 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   const int solves = plan.steps.count * (plan.steps.are_exact() ? 24 : 1);
   return least_cost() + static_cast<double>(plan.unknown_count()) * solves;
 }
+
+Result<void> PreviewBody::begin_cycle(int frames, const std::function<Result<void>(int)>& advance) {
+  is_at_rest_ = false;
+  auto found = find_cycle(body(is_plain_), {.frames = frames,
+                                            .frame_time = frame_seconds_,
+                                            .memory = context_.memory,
+                                            .advance = advance});
+  if (!found) return fail(found.error());
+  cycle_ = *std::move(found);
+  return_to_cycle();
+  return {};
+}
+
+void PreviewBody::return_to_cycle() { body(is_plain_).restore(cycle_); }
 
 // The displacements of a box's nodes, row by row; object space.
 Field PreviewBody::displacements(const Box& box) const {
@@ -178,6 +208,12 @@ Vector3d PreviewBody::displacement(const Transform& transform, int node) const {
          (current_->state().positions.row(node) - current_->rest().row(node)).transpose();
 }
 
+double PreviewBody::shown_peak(const Transform& transform) const {
+  if (!shape_.weights) return peak(transform).size;
+  const Field ways = shape_.weights->apply(current_->state().positions - current_->rest());
+  return longest_vector(vectors_to_world(transform, ways)).length;
+}
+
 std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
                                                  const SampledForce& force) const {
   const Field nodes = to_world(inputs.transform, inputs.shape ? *inputs.shape : shape_.rest);
@@ -188,6 +224,22 @@ std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
   const Vector3d middle =
       0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
   return {nearest, distance(force.kind, middle)};
+}
+
+bool is_plain(const Surface& surface) {
+  const auto& [su0, su1, sv0, sv1] = surface.tangents;
+  const auto is_zero = [](const TangentChannel& tangent) {
+    return std::visit(
+        [](const auto& one) { return !one.is_animated() && one.at(0) == decltype(one.at(0)){}; },
+        tangent);
+  };
+  return surface.solver.reference == Reference::Rest && is_zero(su0) && is_zero(su1) &&
+         is_zero(sv0) && is_zero(sv1);
+}
+
+bool has_no_load(const StepPlan& plan) {
+  return plan.surface && std::ranges::all_of(plan.surface->loads,
+                                             [](const Field& load) { return load.isZero(0); });
 }
 
 std::vector<RegionPreview> regions_of(const StepPlan& plan) {
@@ -207,9 +259,10 @@ std::vector<RegionPreview> regions_of(const StepPlan& plan) {
 }
 
 Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
-                                             std::size_t k, RegionPreview region) const {
-  if (plan.surface) return piece_vibrations(inputs, *plan.surface, k, std::move(region));
-  return patch_vibrations(inputs, std::move(region));
+                                             std::size_t k, RegionPreview region,
+                                             const RegionMotion* known) const {
+  if (plan.surface) return piece_vibrations(inputs, *plan.surface, k, std::move(region), known);
+  return patch_vibrations(inputs, std::move(region), known);
 }
 
 PlateSystem PreviewBody::system_of(const BodyInputs& inputs, const Patch& patch) const {
@@ -228,7 +281,10 @@ void PreviewBody::set_natural(const BodyInputs& inputs, const Dynamics& dynamics
 }
 
 Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
-                                                   std::size_t k, RegionPreview region) const {
+                                                   std::size_t k, RegionPreview region,
+                                                   const RegionMotion* known) const {
+  region.is_held = false;
+  if (known) return moving_as(*known, inputs, std::move(region));
   const auto smallest = [&]() -> Result<double> {
     if (!plan.surface) {
       const auto solver = make_plate_solver(SolverChoice::Auto, context_);
@@ -244,17 +300,12 @@ Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, con
   };
   const auto lambda = smallest();
   if (!lambda) return fail(lambda.error());
-  region.is_held = false;
   if (*lambda == 0) return MovingRegion{std::move(region)};
-  const RegionMotion motion = motion_of(inputs, {{*lambda, 1}}, *lambda, 1);
-  const Dynamics felt = felt_by(motion, inputs);
-  set_natural(inputs, felt, *lambda, region);
-  region.animated = motion.swing(felt);
-  return MovingRegion{std::move(region), motion};
+  return moving_as(motion_of(inputs, {{*lambda, 1}}, *lambda, 1), inputs, std::move(region));
 }
 
-Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs,
-                                                   RegionPreview region) const {
+Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs, RegionPreview region,
+                                                   const RegionMotion* known) const {
   const std::vector<Patch>& patches = region.region.patches;
   const Patch* moved = &patches[0];
   int most = 0;
@@ -266,9 +317,10 @@ Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs,
     most = patch.interior_count();
     moved = &patch;
   }
+  if (known) return moving_as(*known, inputs, std::move(region));
   const Box& box = moved->box;
   const PlateSystem system = system_of(inputs, *moved);
-  if (!moved->is_rectangle() && moved->interior_count() > most_factored_unknowns) {
+  if (!moved->is_rectangle() && moved->interior_count() > most_vibrating_nodes) {
     return MovingRegion{std::move(region)};
   }
   const auto solver = make_plate_solver(SolverChoice::Auto, context_);
@@ -297,7 +349,8 @@ Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs,
 
 Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
                                                    const SurfaceSelection& selection, std::size_t k,
-                                                   RegionPreview region) const {
+                                                   RegionPreview region,
+                                                   const RegionMotion* known) const {
   const SurfacePiece& piece = selection.pieces[k];
   std::vector<int> nodes;
   for (int n = 0; n < piece.free_nodes; ++n) {
@@ -306,7 +359,8 @@ Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
   const Field ways = displacements(nodes);
   const Field world = vectors_to_world(inputs.transform, ways);
   region.static_peak = longest_vector(world).length;
-  if (piece.free_nodes > most_factored_unknowns) return MovingRegion{std::move(region)};
+  if (known) return moving_as(*known, inputs, std::move(region));
+  if (piece.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
   TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
                           factors_of(*shape_.surface, selection.level_set, piece, factors));
@@ -331,7 +385,7 @@ Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
   std::vector<ExcitedMode> modes;
   const Field world = vectors_to_world(inputs.transform, ways);
   const auto [size, node] = longest_vector(world);
-  if (size > 0) {
+  if (size > 0 && with_swings_) {
     const Eigen::VectorXd along =
         ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));
     auto excited = excited_modes(plate, along, node);
@@ -342,15 +396,19 @@ Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
   const auto lambda = smallest_eigenvalue(plate);
   if (!lambda) return fail(lambda.error());
   if (modes.empty()) modes.push_back({*lambda, 1});
-  MovingRegion moving{std::move(region),
-                      motion_of(inputs, std::move(modes), std::min(least, *lambda), drag)};
-  const RegionMotion& motion = *moving.motion;
+  return moving_as(motion_of(inputs, std::move(modes), std::min(least, *lambda), drag), inputs,
+                   std::move(region));
+}
+
+// A region that moves so, with the density and damping of the inputs.
+MovingRegion PreviewBody::moving_as(const RegionMotion& motion, const BodyInputs& inputs,
+                                    RegionPreview region) const {
   const Dynamics felt = felt_by(motion, inputs);
-  if (felt.density > 0) set_natural(inputs, felt, motion.slowest, moving.preview);
-  moving.preview.animated = motion.swing(felt);
-  moving.preview.settling = motion.settling(felt);
-  moving.preview.has_vibration = true;
-  return moving;
+  if (felt.density > 0 || !region.is_held) set_natural(inputs, felt, motion.slowest, region);
+  region.animated = motion.swing(felt);
+  if (region.is_held) region.settling = motion.settling(felt);
+  region.has_vibration = region.is_held;
+  return {std::move(region), motion};
 }
 
 RegionMotion PreviewBody::motion_of(const BodyInputs& inputs, std::vector<ExcitedMode> modes,

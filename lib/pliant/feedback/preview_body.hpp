@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,9 +17,14 @@
 
 namespace pliant {
 
-/// Surfaces, and patches whose outline is not a rectangle, need a sparse factor, which is slow for
-/// many nodes.
-inline constexpr int most_factored_unknowns = 50'000;
+// Internal to feedback.
+
+/// Whether nothing but forces moves the surface: it is elastic about its rest shape, and its edges
+/// are given no slope.
+bool is_plain(const Surface& surface);
+
+/// Whether a plan has no load at all. Of a grid that is not known: false.
+bool has_no_load(const StepPlan& plan);
 
 /// The regions of a plan, or its pieces, without their vibrations. Internal to feedback.
 std::vector<RegionPreview> regions_of(const StepPlan& plan);
@@ -34,9 +40,10 @@ struct MovingRegion {
 // without tangents, so that only forces move it.
 class PreviewBody {
  public:
-  /// `frame_seconds`: length of a frame of the scene [s]. Requires: shape and surface outlive it.
+  /// `frame_seconds`: length of a frame of the scene [s]. `with_swings`: whether more is wanted of
+  /// vibrations than the slowest one. Requires: shape and surface outlive it.
   PreviewBody(const RestShape& shape, const Surface& surface, double frame_seconds,
-              RunContext context);
+              bool with_swings, RunContext context);
 
   /// Makes the bodies, unless they exist. Errors: OutOfMemory.
   Result<void> reserve();
@@ -63,6 +70,13 @@ class PreviewBody {
   /// Advances it by a frame. Returns the cost, in steps of nodes.
   Result<double> step(BodyInputs inputs);
 
+  /// Puts the animation that begins at the beginning of its cycle, found as a run finds it.
+  /// `advance` steps it over a frame of the round. Errors: those of `pliant::find_cycle`.
+  Result<void> begin_cycle(int frames, const std::function<Result<void>(int frame)>& advance);
+
+  /// Goes there again. Requires: `begin_cycle` succeeded for this animation.
+  void return_to_cycle();
+
   struct Peak {
     double size = 0;           ///< world [length]
     Vector3d way = {0, 0, 0};  ///< world [length]
@@ -73,28 +87,39 @@ class PreviewBody {
   Peak peak(const Transform& transform, const std::optional<Box>& box = {}) const;
   Vector3d displacement(const Transform& transform, int node) const;  ///< world [length]
 
+  /// The largest present displacement of a vertex, as a frame shows it. World [length]
+  double shown_peak(const Transform& transform) const;
+
   /// From the force to the nearest node at rest and to the middle of their bounding box, in world
   /// space. [length]
   std::pair<double, double> distances(const BodyInputs& inputs, const SampledForce& force) const;
 
   /// The vibrations of a settled region when it is released, for its patch with the peak: those of
-  /// region or piece `k` of `plan`. Requires: it is settled under `inputs`; `region.is_solvable`.
+  /// region or piece `k` of `plan`. `known`: how that moves, if only its load by a factor, density
+  /// and damping are others than when it was found; null: it is found. Requires: it is settled
+  /// under `inputs`; `region.is_solvable`.
   Result<MovingRegion> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
-                                  RegionPreview region) const;
+                                  RegionPreview region, const RegionMotion* known = nullptr) const;
 
   /// The frequency of the slowest vibration and its damping ratio, of region or piece `k` of a plan
-  /// that nothing holds. Requires: `region.is_solvable`; inputs with density.
+  /// that nothing holds. `known` as for `vibrations`. Requires: `region.is_solvable`; inputs with
+  /// density.
   Result<MovingRegion> unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
-                                        std::size_t k, RegionPreview region) const;
+                                        std::size_t k, RegionPreview region,
+                                        const RegionMotion* known = nullptr) const;
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   std::unique_ptr<Body> make(Reference reference) const;
   Field displacements(const Box& box) const;
   Field displacements(std::span<const int> nodes) const;
-  Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region) const;
+  Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region,
+                                        const RegionMotion* known) const;
   Result<MovingRegion> piece_vibrations(const BodyInputs& inputs, const SurfaceSelection& selection,
-                                        std::size_t k, RegionPreview region) const;
+                                        std::size_t k, RegionPreview region,
+                                        const RegionMotion* known) const;
+  MovingRegion moving_as(const RegionMotion& motion, const BodyInputs& inputs,
+                         RegionPreview region) const;
   PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;
   void set_natural(const BodyInputs& inputs, const Dynamics& dynamics, double lambda,
                    RegionPreview& region) const;
@@ -107,6 +132,7 @@ class PreviewBody {
   const RestShape& shape_;
   const Surface& surface_;
   double frame_seconds_;
+  bool with_swings_;
   RunContext context_;
   MemoryShare share_;
   std::unique_ptr<Body> real_;   // as in the scene
@@ -114,6 +140,7 @@ class PreviewBody {
   const Body* current_ = nullptr;
   bool is_plain_ = true;     // whether the animation is of the plain body
   bool is_at_rest_ = false;  // nothing has moved yet
+  BodyState cycle_;          // at the beginning of the cycle
   std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,16 +56,21 @@ class Suggester {
         previewer_(scene_, scene_.surfaces[subject_.surface], shape_, searched_nodes, context) {}
 
   Result<Suggestion> suggest() {
-    auto before = look();
-    if (!before) return fail(before.error());
-    if (auto played = play(*before); !played) return fail(played.error());
-    for (const std::size_t force : before->acting.forces()) {
-      if (is_ever_enabled(before->acting, force)) subject_.forces.push_back(force);
+    now_.emplace(new_case());
+    if (auto looked = previewer_.look(*now_); !looked) return fail(looked.error());
+    for (const std::size_t force : now_->acting.forces()) {
+      if (is_ever_enabled(now_->acting, force)) subject_.forces.push_back(force);
     }
-    if (goals_.peak) {
-      if (auto started = start_with_one(before->preview); !started) return fail(started.error());
+    // With other goals the animation of the scene as it is tells nothing of the one that is wanted.
+    const bool is_peak_alone = goals_.peak && !goals_.settling && !goals_.frequency;
+    if (is_peak_alone || (goals_.peak && now_->preview.static_peak == 0)) {
+      if (auto played = play(*now_); !played) return fail(played.error());
     }
+    const Preview before = now_->preview;
     magnitudes_ = magnitudes();
+    if (goals_.peak) {
+      if (auto started = start_with_one(); !started) return fail(started.error());
+    }
     Suggestion best;
     for (int round = 0; round < most_rounds; ++round) {
       settling_miss_ = frequency_miss_ = peak_miss_ = {};
@@ -74,15 +80,16 @@ class Suggester {
       if (goals_.peak) {
         if (auto chosen = choose_magnitudes(); !chosen) return fail(chosen.error());
       }
-      auto after = look();
-      if (!after) return fail(after.error());
-      if (auto played = play(*after); !played) return fail(played.error());
-      Suggestion one = told(*after);
+      if (auto looked = look(); !looked) return fail(looked.error());
+      if (goals_.peak) {
+        if (auto played = play(*now_); !played) return fail(played.error());
+      }
+      Suggestion one = told(*now_);
       if (round == 0 || worst_miss(one) < worst_miss(best)) best = std::move(one);
       if (worst_miss(best) <= good_miss || is_explained()) break;
       if (plays_ + 2 > most_plays) break;  // a round has two at least
     }
-    best.before = std::move(before->preview);
+    best.before = before;
     return best;
   }
 
@@ -105,16 +112,84 @@ class Suggester {
     return std::move(*found);
   }
 
-  Result<PreviewCase> look() {
-    PreviewCase one = new_case();
-    if (auto looked = previewer_.look(one); !looked) return fail(looked.error());
-    return one;
+  // Previews the present scene, if it is not that of the preview.
+  Result<void> look() {
+    if (is_seen_) return {};
+    PreviewCase next = new_case();
+    auto looked =
+        changes_in_proportion() ? previewer_.look_again(next, *now_) : previewer_.look(next);
+    if (!looked) return looked;
+    now_.emplace(std::move(next));
+    is_seen_ = true;
+    return {};
   }
 
+  // Whether one factor is all that can happen to the loads: density changes those of inertia only.
+  bool changes_in_proportion() const {
+    const auto is_inertia = [&](std::size_t force) {
+      return std::holds_alternative<InertiaChannels>(scene_.forces[force].kind);
+    };
+    const auto count = std::ranges::count_if(subject_.forces, is_inertia);
+    const bool is_mixed = count > 0 && static_cast<std::size_t>(count) < subject_.forces.size();
+    return !is_mixed || !goals_.frequency;
+  }
+
+  // The scene was changed by more than a factor of its magnitudes.
+  void forget() {
+    played_.clear();
+    is_seen_ = false;
+  }
+
+  // Plays the present scene, unless it was.
   Result<void> play(PreviewCase& one) {
+    const auto known = std::ranges::find(played_, factor_, &Played::factor);
+    if (known != played_.end()) {
+      one.preview.played = known->peak;
+      one.open_cycle = known->open_cycle;
+      return {};
+    }
+    if (const auto peak = peak_in_proportion(one)) {
+      one.preview.played = peak;
+      return {};
+    }
     ++plays_;
-    double nodes_left = played_nodes;
-    return previewer_.play(one, nodes_left);
+    double nodes_left = std::numeric_limits<double>::infinity();
+    if (auto played = previewer_.play(one, nodes_left); !played) return played;
+    played_.push_back({factor_, one.preview.played, one.open_cycle, constants()});
+    return {};
+  }
+
+  // The magnitudes; empty: one has keys.
+  std::vector<double> constants() const {
+    std::vector<double> all;
+    for (const std::size_t force : subject_.forces) {
+      const Channel<1>& magnitude = scene_.forces[force].magnitude;
+      if (magnitude.is_animated()) return {};
+      all.push_back(magnitude.at(0)[0]);
+    }
+    return all;
+  }
+
+  // Where nothing but a factor of all loads differs from an animation that was played, so does the
+  // peak. Rounded keys do not all have the same factor.
+  std::optional<PlayedPeak> peak_in_proportion(const PreviewCase& one) const {
+    const std::vector<double> now = constants();
+    if (now.empty() || !previewer_.plays_in_proportion(one)) return {};
+    for (const Played& known : played_) {
+      if (!known.peak || known.constants.empty()) continue;
+      const auto largest = std::ranges::max_element(
+          now, [](double a, double b) { return std::abs(a) < std::abs(b); });
+      const double then = known.constants[static_cast<std::size_t>(largest - now.begin())];
+      const double factor = then != 0 ? *largest / then : 0;
+      const auto has_factor = [&](double a, double b) {
+        return std::abs(a - factor * b) <= 1e-12 * std::abs(*largest);
+      };
+      const double peak = std::abs(factor) * known.peak->peak;
+      if (factor > 0 && std::ranges::equal(now, known.constants, has_factor) &&
+          !previewer_.is_hidden_by_rounding(std::min(peak, known.peak->peak)))
+        return PlayedPeak{peak, known.peak->frame};
+    }
+    return {};
   }
 
   bool is_ever_enabled(const ActingForces& acting, std::size_t force) const {
@@ -125,11 +200,12 @@ class Suggester {
   }
 
   // If nothing moves, the response to 1 is examined, of the forces with a constant 0 that push.
-  Result<void> start_with_one(const Preview& before) {
+  Result<void> start_with_one() {
     const auto is_resting = [&](std::size_t force) {
       const Channel<1>& magnitude = scene_.forces[force].magnitude;
       return !magnitude.is_animated() && magnitude.at(0)[0] == 0;
     };
+    const Preview& before = now_->preview;
     if (before.static_peak > 0 || (before.played && before.played->peak > 0)) return {};
     // Of what is too large for a preview, only the magnitudes tell whether it moves.
     if (!before.is_solved && !std::ranges::all_of(subject_.forces, is_resting)) return {};
@@ -137,13 +213,18 @@ class Suggester {
     for (const std::size_t force : subject_.forces) {
       if (!is_resting(force)) continue;
       scene_.forces[force].magnitude = 1.0;
-      const auto one = look();
-      if (!one) return fail(one.error());
-      if (!one->preview.is_solved || one->preview.static_peak > 0) pushing.push_back(force);
+      PreviewCase one = new_case();
+      if (auto looked = previewer_.look(one); !looked) return looked;
+      if (!one.preview.is_solved || one.preview.static_peak > 0) pushing.push_back(force);
       scene_.forces[force].magnitude = 0.0;
     }
+    if (pushing.empty()) return {};
     for (const std::size_t force : pushing) scene_.forces[force].magnitude = 1.0;
-    return {};
+    magnitudes_ = magnitudes();
+    forget();
+    now_.emplace(new_case());
+    is_seen_ = true;
+    return previewer_.look(*now_);
   }
 
   std::vector<Channel<1>> magnitudes() const {
@@ -154,6 +235,8 @@ class Suggester {
 
   // The magnitudes at the beginning, times a factor.
   Result<void> set_magnitudes(double factor) {
+    factor_ = factor;
+    is_seen_ = false;
     for (std::size_t k = 0; k < subject_.forces.size(); ++k) {
       auto magnitude =
           factor == 1 ? Result<Channel<1>>(magnitudes_[k]) : scaled(magnitudes_[k], factor);
@@ -220,18 +303,18 @@ class Suggester {
 
   // Density and damping for the motion of the present scene.
   Result<void> choose_material() {
-    const auto one = look();
-    if (!one) return fail(one.error());
-    const Miss none = no_motion(*one);
+    if (auto looked = look(); !looked) return looked;
+    const PreviewCase& one = *now_;
+    const Miss none = no_motion(one);
     if (none.obstacle != Obstacle::None) {
       settling_miss_ = frequency_miss_ = none;
       return {};
     }
-    const int frame = *one->preview.frame;
+    const int frame = *one.preview.frame;
     const Material now{material().density.at(frame)[0], damping_of(material()).at(frame)[0]};
-    const bool settles = one->preview.is_held;
+    const bool settles = one.preview.is_held;
     const MaterialFound found =
-        find_material(*one->motions[region_of(*one)], now, settles ? goals_.settling : std::nullopt,
+        find_material(*one.motions[region_of(one)], now, settles ? goals_.settling : std::nullopt,
                       goals_.frequency);
     settling_miss_ = settles ? found.settling : Miss{Obstacle::NotHeld, not_held};
     frequency_miss_ = found.frequency;
@@ -240,6 +323,7 @@ class Suggester {
       auto density = with_value(first.density, frame, found.material.density);
       if (density) {
         material().density = *std::move(density);
+        forget();
       } else {
         frequency_miss_ = {Obstacle::NoInertia, no_factor("density", frame)};
       }
@@ -248,6 +332,7 @@ class Suggester {
     auto damping = with_value(damping_of(first), frame, found.material.damping);
     const bool has_ratio = first.damping_ratio.has_value();
     if (damping) {
+      forget();
       (has_ratio ? *material().damping_ratio : material().damping) = *std::move(damping);
     } else {
       settling_miss_ = {Obstacle::NoDamping,
@@ -273,28 +358,29 @@ class Suggester {
   // Magnitudes for the peak, from those of the present scene on.
   Result<void> choose_magnitudes() {
     if (subject_.forces.empty()) return {};
+    const double first = factor_;
+    bool is_open = false;
     const auto peak_at = [&](double factor) -> Result<double> {
-      if (auto set = set_magnitudes(factor_ * factor); !set) return fail(set.error());
+      if (auto set = set_magnitudes(first * factor); !set) return fail(set.error());
       PreviewCase one = new_case();
-      if (!is_peak_static_) {
-        if (auto played = play(one); !played) return fail(played.error());
-        if (one.preview.played) return one.preview.played->peak;
-        is_peak_static_ = true;
-      }
-      if (auto looked = previewer_.look(one); !looked) return fail(looked.error());
-      return one.preview.static_peak;
+      if (auto played = play(one); !played) return fail(played.error());
+      is_open = !one.preview.played;
+      return is_open ? 0 : one.preview.played->peak;
     };
     const auto found = find_factor(
         *goals_.peak, std::clamp(most_plays - plays_ - 1, 1, most_plays_of_a_round), peak_at);
     if (!found) return fail(found.error());
     peak_miss_ = miss_of(*found);
-    if (found->obstacle == Obstacle::NothingMoves) {  // also if they began with 1
-      for (const std::size_t force : subject_.forces)
-        scene_.forces[force].magnitude = original_.forces[force].magnitude;
-      return {};
+    if (is_open || found->obstacle == Obstacle::NothingMoves) {  // also if they began with 1
+      if (!is_open) {
+        for (const std::size_t force : subject_.forces)
+          scene_.forces[force].magnitude = original_.forces[force].magnitude;
+        magnitudes_ = magnitudes();
+        forget();
+      }
+      return set_magnitudes(first);
     }
-    factor_ *= found->factor;
-    return set_magnitudes(factor_);
+    return set_magnitudes(first * found->factor);
   }
 
   Miss miss_of(const FactorFound& found) const {
@@ -349,9 +435,8 @@ class Suggester {
     if (goals_.peak) {
       std::optional<double> peak;
       if (preview.played) peak = preview.played->peak;
-      if (!preview.played && preview.is_solved) peak = preview.static_peak;
-      one.is_peak_static = !preview.played && preview.is_solved;
-      if (!peak || *peak == 0) peak_miss_ = nothing_moves(after);
+      if (!peak) peak_miss_ = {Obstacle::NoCycle, after.open_cycle};
+      if (peak && *peak == 0) peak_miss_ = nothing_moves(after);
       one.peak = result_of(*goals_.peak, peak, peak_miss_);
     }
     if (goals_.settling) {
@@ -416,10 +501,18 @@ class Suggester {
   const MotionGoals& goals_;
   Subject subject_;
   SurfacePreviewer previewer_;
+  std::optional<PreviewCase> now_;      // of the present scene, or of an earlier one
+  bool is_seen_ = true;                 // whether of the present one
   std::vector<Channel<1>> magnitudes_;  // of the subject's forces at the beginning
   double factor_ = 1;                   // of them now
+  struct Played {
+    double factor;
+    std::optional<PlayedPeak> peak;
+    std::string open_cycle;
+    std::vector<double> constants;  // the magnitudes; empty: one has keys
+  };
+  std::vector<Played> played_;  // with the present density and damping
   int plays_ = 0;
-  bool is_peak_static_ = false;
   Miss settling_miss_, frequency_miss_, peak_miss_;
 };
 

@@ -44,6 +44,7 @@ enum class Obstacle {
   NoDamping,      ///< its damping acts on nothing, or is keyed to 0
   NotHeld,        ///< nothing holds the surface, so it does not settle
   TooLarge,       ///< it has too many nodes for a preview
+  NoCycle,        ///< the motion of a loop closes to no cycle
   NotFound,       ///< the animation was played too often without an end
 };
 
@@ -77,14 +78,14 @@ struct Suggestion {
   /// stays. Its notes and lines are those of the scene before.
   Scene scene;
   std::vector<SuggestedValue> values;  ///< that the goals may change, also those that are kept
-  Preview before;                      ///< of what acts, in the scene as it was
-  Preview after;                       ///< in the changed scene: the figures of the goals
-  std::size_t region = 0;              ///< of `after.regions`, whose motion is told
-  std::optional<GoalResult> peak;      ///< null: no goal
+  Preview before;                      ///< of what acts, in the scene as it was; played only if
+                                       ///< that was needed
+  Preview after;                   ///< in the changed scene: the figures of the goals; played if
+                                   ///< a peak is one
+  std::size_t region = 0;          ///< of `after.regions`, whose motion is told
+  std::optional<GoalResult> peak;  ///< null: no goal
   std::optional<GoalResult> settling;
   std::optional<GoalResult> frequency;
-  bool is_peak_static = false;  ///< the animation is not played, a loop or too long: `peak` is the
-                                ///< static one
   std::vector<std::string> notes = {};  ///< what the changes do beyond the goals, one line each
 
   /// Whether all goals are met, to `goal_tolerance`.
@@ -97,9 +98,10 @@ struct Suggestion {
 /// ratio in the scene that takes the damping's place. What cannot be reached is no error: the
 /// result has the nearest that can, and the reason.
 ///
-/// Cost: two or more previews of these forces, and at most 24 times playing the animation, usually
-/// three. Errors: InvalidInput if no goal is given, a goal is not finite and > 0, or a name is
-/// unknown, not alone, or of a surface that is not solved; those of `preview_forces`.
+/// Cost: a preview of these forces, more if the surface yields, and for a peak playing the whole
+/// animation at most 24 times, usually twice; a loop from the beginning of its cycle on. Errors:
+/// InvalidInput if no goal is given, a goal is not finite and > 0, or a name is unknown, not alone,
+/// or of a surface that is not solved; those of `preview_forces`.
 Result<Suggestion> suggest_material(const Scene& scene, std::span<const RestShape> rest_shapes,
                                     const MotionGoals& goals, const RunContext& context = {});
 

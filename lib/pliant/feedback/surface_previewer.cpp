@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/body/cycle.hpp"
 #include "pliant/body/step_facts.hpp"
 
 namespace pliant {
@@ -61,6 +62,11 @@ std::vector<PreviewCase> cases_of(const Scene& scene, const RestShape& shape, st
   return cases;
 }
 
+PreviewCase* find_together(std::vector<PreviewCase>& cases) {
+  const bool is_there = !cases.empty() && cases.back().preview.of == Preview::Of::All;
+  return is_there ? &cases.back() : nullptr;
+}
+
 // Whether the case acts at some frame.
 bool has_frames(const PreviewCase& one, const Scene& scene) {
   const Surface& surface = scene.surfaces[one.preview.surface];
@@ -76,21 +82,44 @@ bool has_frames(const PreviewCase& one, const Scene& scene) {
 
 SurfacePreviewer::SurfacePreviewer(const Scene& scene, const Surface& surface,
                                    const RestShape& rest_shape, double most_searched,
-                                   const RunContext& context)
+                                   const RunContext& context, PreviewDepth depth)
     : scene_(scene),
       surface_(surface),
-      body_(rest_shape, surface_, 1 / scene_.fps, context),
+      shape_(rest_shape),
+      depth_(depth),
+      progressed_(context.progressed),
+      body_(rest_shape, surface_, 1 / scene_.fps, depth == PreviewDepth::Whole, context),
       first_(first_solved_frame(scene_, surface_)),
       last_(surface_.solver.loop ? first_ + *surface_.solver.loop - 1
                                  : std::max(first_, scene_.end - 1)),
       most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
 
+void SurfacePreviewer::report(std::string_view work, int done, int count) const {
+  if (progressed_) progressed_(fmt::format("{} \"{}\"", work, surface_.name), done, count);
+}
+
+bool SurfacePreviewer::answers_in_proportion(const PreviewCase& one) const {
+  return !surface_.material.yield && (one.preview.of != Preview::Of::All || is_plain(surface_));
+}
+
+bool SurfacePreviewer::plays_in_proportion(const PreviewCase& one) const {
+  const BodySettings settings = body_settings(surface_, shape_.grid.has_value());
+  return answers_in_proportion(one) && settings.measure == Measure::Rest &&
+         settings.release == Release::Freeze;
+}
+
+bool SurfacePreviewer::is_hidden_by_rounding(double peak) const {
+  const double farthest = shape_.rest.size() > 0 ? shape_.rest.cwiseAbs().maxCoeff() : 0;
+  return !(peak > 1e-6 * farthest);
+}
+
 Result<void> SurfacePreviewer::look(PreviewCase& one) {
   Preview& preview = one.preview;
   if (auto sized = body_.reserve(); !sized) return sized;
   const std::vector<int> frames = frames_of(one);
-  for (const int frame : frames) {
-    if (auto looked = look_at(one, frame); !looked) return located(looked.error(), frame);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    report("looking at the frames of", static_cast<int>(k), static_cast<int>(frames.size()));
+    if (auto looked = look_at(one, frames[k]); !looked) return located(looked.error(), frames[k]);
   }
   if (!preview.frame) {
     if (preview.of == Preview::Of::All) return {};
@@ -112,27 +141,65 @@ Result<void> SurfacePreviewer::look(PreviewCase& one) {
   return {};
 }
 
-Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left) {
-  if (surface_.solver.loop) return {};  // a cycle is not what the first frames show
+Result<void> SurfacePreviewer::look_again(PreviewCase& one, const PreviewCase& before) {
+  const bool is_stronger = before.preview.static_peak > 0 || !before.preview.is_solved;
+  if (!before.preview.frame || !is_stronger || !answers_in_proportion(one)) return look(one);
+  Preview& preview = one.preview;
+  if (auto sized = body_.reserve(); !sized) return sized;
+  frames_of(one);  // for the largest magnitude
+  preview.frame = before.preview.frame;
+  preview.is_every_frame = before.preview.is_every_frame;
+  preview.static_peak = before.preview.static_peak;
+  if (auto told = tell(one, &before); !told) return located(told.error(), *preview.frame);
+  return {};
+}
+
+Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left, double until) {
   if (nodes_left < body_.least_cost() * (scene_.end - first_)) return {};
+  if (auto sized = body_.reserve(); !sized) return sized;
   PlayedPeak played{0, scene_.start};
-  const bool is_plain = one.preview.of != Preview::Of::All;
-  body_.begin(is_plain);
-  for (int frame = first_; frame < scene_.end; ++frame) {
-    if (is_solved_at(scene_, surface_, frame)) {
-      const BodyInputs inputs = inputs_of(one, frame);
-      auto stepped = body_.step(inputs);
+  body_.begin(one.preview.of != Preview::Of::All);
+  const bool is_loop = surface_.solver.loop && first_ <= scene_.end;
+  if (is_loop) {
+    const auto begun = begin_cycle(one);
+    if (!begun) return fail(begun.error());
+    if (!*begun) return {};
+    played = {body_.shown_peak(surface_.transform.at(first_)), first_};
+  }
+  for (int frame = first_; frame < scene_.end && played.peak <= until; ++frame) {
+    report("playing", frame - first_, scene_.end - first_);
+    if (is_loop && begins_cycle(scene_, surface_, frame + 1)) {
+      body_.return_to_cycle();
+    } else if (is_solved_at(scene_, surface_, frame)) {
+      auto stepped = body_.step(inputs_of(one, solved_frame(scene_, surface_, frame)));
       if (!stepped) return located(stepped.error(), frame);
       nodes_left -= *stepped;
       if (nodes_left <= 0) return {};
     }
     if (frame + 1 < scene_.start) continue;  // of the preroll, which is not shown
-    const Transform shown = surface_.transform.at(frame + 1);
-    const double peak = body_.peak(shown).size;
+    const double peak = body_.shown_peak(surface_.transform.at(frame + 1));
     if (peak > played.peak) played = {peak, frame + 1};
   }
   one.preview.played = played;
   return {};
+}
+
+// Puts the body at the beginning of its cycle; false: it has none.
+Result<bool> SurfacePreviewer::begin_cycle(PreviewCase& one) {
+  const int frames = *surface_.solver.loop;
+  int round = 0, at = first_;
+  const auto begun = body_.begin_cycle(frames, [&](int frame) -> Result<void> {
+    if (frame == 0) report("looking for the cycle of", ++round, max_rounds);
+    at = first_ + frame;
+    if (!is_solved_at(scene_, surface_, at)) return {};
+    const auto stepped = body_.step(inputs_of(one, at));
+    if (!stepped) return fail(stepped.error());
+    return {};
+  });
+  if (begun) return true;
+  if (begun.error().code != ErrorCode::SolverFailed) return located(begun.error(), at);
+  one.open_cycle = begun.error().message;
+  return false;
 }
 
 BodyInputs SurfacePreviewer::inputs_of(const PreviewCase& one, int frame) {
@@ -162,6 +229,7 @@ std::vector<int> SurfacePreviewer::frames_of(PreviewCase& one) {
   }
   if (enabled.empty()) return {};
   if (is_force && one.acting.stand_still()) return {preview.largest_magnitude_frame};
+  if (one.acting.stand_still() && answers_in_proportion(one)) return strongest_of(one, enabled);
   const auto count = static_cast<double>(enabled.size());
   preview.is_every_frame = count <= most_frames_;
   if (preview.is_every_frame) return enabled;
@@ -176,6 +244,36 @@ std::vector<int> SurfacePreviewer::frames_of(PreviewCase& one) {
   return frames;
 }
 
+// Of frames between which only magnitudes differ, by a factor, the strongest: others have no
+// greater effect.
+std::vector<int> SurfacePreviewer::strongest_of(const PreviewCase& one,
+                                                const std::vector<int>& frames) const {
+  struct Strongest {
+    double size = -1;
+    int frame = 0;
+  };
+  std::map<std::pair<std::vector<std::size_t>, std::vector<double>>, Strongest> strongest;
+  for (const int frame : frames) {
+    std::vector<std::size_t> acting = one.acting.enabled_at(frame);
+    std::vector<double> shares;
+    double size = 0;
+    for (const std::size_t force : acting) {
+      const double magnitude = scene_.forces[force].magnitude.at(frame)[0];
+      size = std::abs(magnitude) > std::abs(size) ? magnitude : size;
+      shares.push_back(magnitude);
+    }
+    for (double& share : shares) share = size != 0 ? share / size : 0;
+    for (const std::size_t group : one.acting.groups_at(frame))
+      acting.push_back(scene_.forces.size() + group);
+    Strongest& known = strongest[{std::move(acting), std::move(shares)}];
+    if (std::abs(size) > known.size) known = {std::abs(size), frame};
+  }
+  std::vector<int> found;
+  for (const auto& [key, each] : strongest) found.push_back(each.frame);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 // Sets the case's frame to this one if its effect is the greatest so far.
 Result<void> SurfacePreviewer::look_at(PreviewCase& one, int frame) {
   Preview& preview = one.preview;
@@ -186,7 +284,8 @@ Result<void> SurfacePreviewer::look_at(PreviewCase& one, int frame) {
   if (!step->selects()) return {};
   double peak = 0;
   const int unknowns = step->unknown_count();
-  if (unknowns > 0 && unknowns <= most_previewed_unknowns && step->is_held()) {
+  const bool is_still = answers_in_proportion(one) && has_no_load(*step);
+  if (unknowns > 0 && unknowns <= most_previewed_unknowns && step->is_held() && !is_still) {
     if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
     peak = body_.peak(inputs.transform).size;
   }
@@ -197,8 +296,9 @@ Result<void> SurfacePreviewer::look_at(PreviewCase& one, int frame) {
   return {};
 }
 
-// Fills in the results at the frame of greatest effect.
-Result<void> SurfacePreviewer::tell(PreviewCase& one) {
+// Fills in the results at the frame of greatest effect. `before`: of the same effect, times a
+// factor.
+Result<void> SurfacePreviewer::tell(PreviewCase& one, const PreviewCase* before) {
   Preview& preview = one.preview;
   const BodyInputs inputs = inputs_of(one, *preview.frame);
   const bool is_plain = preview.of != Preview::Of::All;
@@ -218,26 +318,32 @@ Result<void> SurfacePreviewer::tell(PreviewCase& one) {
   preview.is_solved = preview.is_solvable && preview.is_held && unknowns <= most_previewed_unknowns;
   if (preview.is_solved) {
     if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
+    preview.static_peak = body_.peak(inputs.transform).size;
   }
   preview.regions = regions_of(*step);
   for (std::size_t k = 0; k < preview.regions.size(); ++k) {
     RegionPreview& region = preview.regions[k];
     preview.counts = preview.counts + region.counts;
     const bool is_free = preview.is_solvable && !preview.is_held && region.is_solvable &&
-                         unknowns <= most_factored_unknowns && inputs.dynamics.density > 0;
+                         unknowns <= most_vibrating_nodes && inputs.dynamics.density > 0;
     one.motions.emplace_back();
     const bool is_settled = preview.is_solved && region.is_solvable;
     if (!is_free && !is_settled) continue;
-    auto moving = is_free ? body_.unheld_vibration(inputs, *step, k, std::move(region))
-                          : body_.vibrations(inputs, *step, k, std::move(region));
+    const RegionMotion* const known =
+        before && k < before->motions.size() && before->motions[k] ? &*before->motions[k] : nullptr;
+    report("finding the vibrations of", static_cast<int>(k),
+           static_cast<int>(preview.regions.size()));
+    auto moving = is_free ? body_.unheld_vibration(inputs, *step, k, std::move(region), known)
+                          : body_.vibrations(inputs, *step, k, std::move(region), known);
     if (!moving) return fail(moving.error());
     region = std::move(moving->preview);
+    if (known) region.solver_memory = before->preview.regions[k].solver_memory;
     one.motions.back() = std::move(moving->motion);
   }
-  if (preview.is_solved && preview.of != Preview::Of::Force) {
-    return share(one, inputs, unknowns);
-  }
-  return {};
+  if (before) preview.shares = before->preview.shares;
+  const bool has_shares = preview.is_solved && preview.of != Preview::Of::Force && !before;
+  if (!has_shares || depth_ == PreviewDepth::Slowest) return {};
+  return share(one, inputs, unknowns);
 }
 
 // Computes the share of each force in the peak. Requires: the body is settled under all of them.

@@ -45,7 +45,10 @@ auto beside(const Simulation& simulation, const SimulationOptions& options, cons
   if (!surfaces.try_resize(std::min(options.max_memory, bytes))) {
     return fail(ErrorCode::OutOfMemory, "simulating the surfaces " + surfaces.complaint(bytes));
   }
-  return work(RunContext{.memory = &memory, .should_stop = options.should_stop});
+  return work(RunContext{.memory = &memory,
+                         .shelf = options.shelf,
+                         .should_stop = options.should_stop,
+                         .progressed = options.progressed});
 }
 
 }  // namespace
@@ -138,6 +141,21 @@ Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options) {
   return beside(simulation, options, [&](const RunContext& context) {
     return preview_forces(simulation.scene(), simulation.rest_shapes(), context);
+  });
+}
+
+Result<std::optional<Preview>> preview_slowest(const Simulation& simulation, std::size_t surface,
+                                               const SimulationOptions& options) {
+  return beside(simulation, options, [&](const RunContext& context) {
+    return preview_slowest(simulation.scene(), simulation.rest_shapes()[surface], surface, context);
+  });
+}
+
+Result<PlayedPeak> play_forces(const Simulation& simulation, std::size_t surface, double until,
+                               const SimulationOptions& options) {
+  return beside(simulation, options, [&](const RunContext& context) {
+    return play_forces(simulation.scene(), simulation.rest_shapes()[surface], surface, until,
+                       context);
   });
 }
 

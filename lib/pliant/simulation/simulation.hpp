@@ -66,13 +66,17 @@ struct SimulationOptions {
   /// displacement.
   std::function<void(std::string_view surface, int round, double gap)> round_done = {};
 
+  /// Called during the long work of previews and suggestions: what is worked at, and how much of it
+  /// is done.
+  ProgressReport progressed = {};
+
   /// Stores states beyond this simulation, so that another simulation, of the same or an edited
   /// scene, need not solve unchanged frames again. Outlives the simulation; null: states are not
   /// stored.
   StateStore* store = nullptr;
 
-  /// Shares rest shapes and sparse factors with other simulations. Outlives the simulation; null:
-  /// all are made anew.
+  /// Shares rest shapes, sparse factors and slowest vibrations with other simulations, previews and
+  /// suggestions. Outlives the simulation; null: all are made anew.
   Shelf* shelf = nullptr;
 };
 
@@ -181,6 +185,16 @@ class Simulation {
 /// `options.max_memory`. Errors: further OutOfMemory.
 Result<std::vector<Preview>> preview_forces(const Simulation& simulation,
                                             const SimulationOptions& options = {});
+
+/// Previews the slowest vibration of a surface, as `preview_slowest` of feedback/preview.hpp,
+/// within `options.max_memory`. Errors: further OutOfMemory.
+Result<std::optional<Preview>> preview_slowest(const Simulation& simulation, std::size_t surface,
+                                               const SimulationOptions& options = {});
+
+/// Plays a surface's animation, as `play_forces` of feedback/preview.hpp, within
+/// `options.max_memory`. Errors: further OutOfMemory.
+Result<PlayedPeak> play_forces(const Simulation& simulation, std::size_t surface, double until,
+                               const SimulationOptions& options = {});
 
 /// Finds numbers for a motion, as `suggest_material` of feedback/suggestion.hpp, within
 /// `options.max_memory`. Errors: further OutOfMemory.
