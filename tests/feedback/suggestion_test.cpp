@@ -273,7 +273,9 @@ TEST_CASE("with a shelf no matrix is factored twice", "[feedback][suggest]") {
     Shelf shelf(std::size_t{1} << 30);
     SimulationOptions options;
     options.shelf = &shelf;
-    const auto simulation = Simulation::make(s, options).value();
+    const auto made = Simulation::make(s, options);
+    if (!made) FAIL(made.error().message);
+    const Simulation& simulation = *made;
     // The mesh is one item, and so is the slowest vibration. Of factors there are the static one,
     // and one for the steps with each density.
     const std::size_t of_mesh = shelf.kept();

@@ -238,8 +238,8 @@ bool is_plain(const Surface& surface) {
 }
 
 bool has_no_load(const StepPlan& plan) {
-  return plan.surface && std::ranges::all_of(plan.surface->loads,
-                                             [](const Field& load) { return load.isZero(0); });
+  return plan.surface &&
+         std::ranges::all_of(plan.surface->loads, [](const Field& load) { return load.isZero(0); });
 }
 
 std::vector<RegionPreview> regions_of(const StepPlan& plan) {
