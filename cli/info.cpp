@@ -8,9 +8,11 @@
 #include "info_formats.hpp"
 #include "interrupt.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/mesh_objects.hpp"
 #include "pliant/pliant.hpp"
+#include "progress.hpp"
 #include "report.hpp"
 #include "scene_facts.hpp"
 #include "scene_input.hpp"
@@ -22,8 +24,7 @@ BoundingBox bounding_box(const Field& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
-// Computes all facts that need the meshes. Returns whether there is a first frame; if not, its
-// error is printed.
+// Computes all facts that need the meshes. Returns whether there is a first frame.
 Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                               const SimulationOptions& run) {
   auto previews = preview_forces(simulation, run);
@@ -32,7 +33,7 @@ Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
   const auto first = simulation.at(facts.scene.start);
   if (!first && first.error().code != ErrorCode::SolverFailed) return fail(first.error());
   // A loop that does not close has no first frame, but all else that helps to close it.
-  if (!first) report(first.error());
+  if (!first) facts.no_first_frame = first.error();
   for (std::size_t k = 0; k < facts.scene.surfaces.size(); ++k) {
     const RestShape& shape = simulation.rest_shapes()[k];
     facts.surfaces.push_back(
@@ -108,6 +109,7 @@ void add_info(CLI::App& app, InfoOptions& options) {
   add_root(*info, options.root);
   add_changes(*info, options.changes);
   info->add_flag("--json", options.is_json, "Print JSON instead; docs/info.md describes it");
+  info->add_flag("--quiet", options.is_quiet, "No progress");
   add_memory(*info, options.resources);
 }
 
@@ -117,19 +119,26 @@ int run_info(const InfoOptions& options) {
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
   print_notes(scene->notes);
-  const SimulationOptions run = simulation_options(options.resources);
+  SimulationOptions run = simulation_options(options.resources);
   if (scene->surfaces.empty()) {
     if (const auto checked = Simulation::check(*scene, run); !checked) {
       return report(checked.error());
     }
     return tell({.file = title_of_scene(options.scene), .scene = *scene}, options);
   }
+  Shelf shelf(part_for_shelf(run));
+  run.shelf = &shelf;
+  WorkLine line(options.is_quiet);
+  run.progressed = line.report();
+  run.round_done = line.report_of_rounds();
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(simulation.error());
-  print_notes(notes_on_shapes(*simulation));
   SceneFacts facts{.file = title_of_scene(options.scene), .scene = simulation->scene()};
   const auto looked = look_at_surfaces(facts, *simulation, run);
+  line.erase();
+  print_notes(notes_on_shapes(*simulation));
   if (!looked) return report(looked.error());
+  if (facts.no_first_frame) report(*facts.no_first_frame);
   const int told = tell(facts, options);
   return *looked ? told : exit_failed;
 }

@@ -14,6 +14,7 @@ struct InfoOptions {
   Root root = {};
   Changes changes = {};
   bool is_json = false;
+  bool is_quiet = false;
   ResourceOptions resources;
 };
 

@@ -159,12 +159,13 @@ Result<double> find_yield(const SceneDocument& scene, const Look& look, const Nu
     trial.yield = std::sqrt(low * high);
     const auto text = text_with(scene, look, trial);
     if (!text) return fail(text.error());
-    const auto peak = played_peak(*text, source);
+    const double most = (1 + look.give) * elastic_peak;
+    const auto peak = played_peak(*text, source, most);
     if (!peak && peak.error().code != ErrorCode::SolverFailed &&
         peak.error().code != ErrorCode::NotFinite) {
       return fail(peak.error());
     }
-    const bool is_too_low = !peak || *peak > (1 + look.give) * elastic_peak;
+    const bool is_too_low = !peak || *peak > most;
     (is_too_low ? low : high) = trial.yield;
   }
   return high;
@@ -174,21 +175,22 @@ Result<double> find_yield(const SceneDocument& scene, const Look& look, const Nu
 
 std::span<const Look> looks() { return all_looks; }
 
-Result<void> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,
-                        const StarterSource& source) {
+Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,
+                                const StarterSource& source) {
   // A density and a stiffness of 1 show what others make: frequency² and peak are proportional to
   // 1/density and 1/stiffness, as long as nothing yields.
   Numbers numbers{.density = 1, .stiffness = 1};
-  const auto look_with = [&]() -> Result<StarterFacts> {
-    const auto text = text_with(scene, look, numbers);
-    if (!text) return fail(text.error());
-    return look_at(*text, source);
-  };
-  auto facts = look_with();
-  if (!facts) return fail(facts.error());
+  auto text = text_with(scene, look, numbers);
+  if (!text) return fail(text.error());
+  auto facts = look_at(*text, source);
+  if (!facts) return facts;
+  if (auto moves = check_moves(*facts); !moves) return fail(moves.error());
   numbers.density = std::pow(facts->frequency / look.frequency, 2);
-  facts = look_with();
-  if (!facts) return fail(facts.error());
+  text = text_with(scene, look, numbers);
+  if (!text) return fail(text.error());
+  const auto peak = played_peak(*text, source);
+  if (!peak) return fail(peak.error());
+  facts->peak = *peak;
   if (!facts->is_by_inertia) {
     numbers.stiffness = facts->peak / (look.softness * own.peak);
     numbers.density *= numbers.stiffness;
@@ -200,11 +202,12 @@ Result<void> apply_look(SceneDocument& scene, const Look& look, const StarterFac
     auto found = find_yield(scene, look, numbers, facts->peak, source);
     if (!found) return fail(found.error());
     numbers.yield = *found;
+    facts->peak *= 1 + look.give;
   }
   const auto changed =
       scene.apply({part_of(scene, look, numbers, comment_of(look, numbers, facts->is_by_inertia))});
   if (!changed) return fail(changed.error());
-  return {};
+  return facts;
 }
 
 }  // namespace pliant::cli

@@ -14,10 +14,12 @@
 #include "output_file.hpp"
 #include "own_mesh.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/scene/schema.hpp"
+#include "progress.hpp"
 #include "report.hpp"
 #include "resources.hpp"
 #include "shell_word.hpp"
@@ -103,9 +105,11 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
   return {};
 }
 
-// An error of the starter's text with a mesh is one of the mesh, on no line that anybody sees.
+// An error of the starter's text with a mesh, or of no file, is one of the mesh, on no line that
+// anybody sees.
 Error about_mesh(Error error, const std::string& starter, const std::string& mesh) {
-  if (error.file != starter) return error;
+  if (error.code == ErrorCode::Interrupted || (!error.file.empty() && error.file != starter))
+    return error;
   error.file = mesh;
   error.line = 0;
   return error;
@@ -123,21 +127,30 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
                        .root = root,
                        .obj = starter.mesh,
                        .options = simulation_options({})};
+  Shelf shelf(part_for_shelf(source.options));
+  source.options.shelf = &shelf;
+  WorkLine line(options.is_quiet);
+  source.options.progressed = line.report();
   if (options.mesh || options.material) {
-    auto facts = look_at(document->text(), source);
+    auto facts = look_and_play(document->text(), source);
     if (!facts) return fail(facts.error());
     if (options.mesh) {
+      const auto piece = measure(document->text(), source);
+      if (!piece) return fail(piece.error());
       source.obj = {};
       source.name = "the starter with --mesh";
       const std::string name = path_from(out.parent_path(), *options.mesh);
-      facts = use_own_mesh(*document, {name, options.object.value_or("")}, *facts, source);
+      facts = use_own_mesh(*document, {name, options.object.value_or("")}, *facts, *piece, source);
       if (!facts) return fail(about_mesh(facts.error(), source.name, *options.mesh));
     }
     if (options.material) {
-      const auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);
+      auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);
       if (!applied) {
         return fail(options.mesh ? about_mesh(applied.error(), source.name, *options.mesh)
                                  : applied.error());
+      }
+      if (options.mesh) {
+        if (auto held = keep_in_frame(*document, *applied); !held) return fail(held.error());
       }
     }
   }
@@ -225,6 +238,7 @@ void add_new(CLI::App& app, NewOptions& options) {
   create->add_flag("--schema", options.has_schema,
                    "Also write pliant-scene.xsd beside the scene, so that editors complete it");
   create->add_flag("--force", options.is_forced, "Replace files that exist");
+  create->add_flag("--quiet", options.is_quiet, "No progress");
 }
 
 int run_new(const NewOptions& options) {

@@ -18,6 +18,7 @@ struct NewOptions {
   Root root = {};                            ///< of that file
   bool has_schema = false;                   ///< whether the schema is written beside the scene
   bool is_forced = false;                    ///< whether existing files are replaced
+  bool is_quiet = false;                     ///< whether no progress is shown
 };
 
 void add_new(CLI::App& app, NewOptions& options);

@@ -33,18 +33,20 @@ std::vector<std::string> animated(const Scene& scene, std::string_view attribute
   return paths;
 }
 
-// The vertex of the mesh that is nearest to the place that `point` has in the starter's box.
-Vector3d same_place(const Vector3d& point, const StarterFacts& own, const StarterFacts& mesh) {
-  const auto share = (point - own.low).cwiseQuotient(own.high - own.low);
-  const Vector3d wanted = mesh.low + share.cwiseProduct(mesh.high - mesh.low);
-  Eigen::Index nearest = 0;
-  (mesh.vertices.rowwise() - wanted.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-  return mesh.vertices.row(nearest).transpose();
+// Inwards at a vertex: to the middle of the piece, or against its normal where that leads along it.
+Vector3d inwards_at(const MeshPiece& piece, Eigen::Index vertex) {
+  const Vector3d at = piece.vertices.row(vertex).transpose();
+  const Vector3d normal = piece.normals.row(vertex).transpose();
+  const Vector3d to_middle = (piece.low + piece.high) / 2 - at;
+  const double along = to_middle.norm() > 0 ? normal.dot(to_middle.normalized()) : 0;
+  if (std::abs(along) > 0.3 || (normal.isZero(0) && to_middle.norm() > 0))
+    return to_middle.normalized();
+  if (normal.isZero(0)) return {0, -1, 0};
+  return along > 0 ? normal : -normal;
 }
 
 // Scales lengths, and moves each point force to the same place, with its direction inwards.
-std::vector<Operation> placing(const Scene& scene, const StarterFacts& own,
-                               const StarterFacts& mesh) {
+std::vector<Operation> placing(const Scene& scene, const MeshPiece& own, const MeshPiece& mesh) {
   const double size = mesh.diagonal() / own.diagonal();
   std::vector<Operation> operations{scaling_of(animated(scene, ".translate"), size)};
   for (const Force& force : scene.forces) {
@@ -53,18 +55,55 @@ std::vector<Operation> placing(const Scene& scene, const StarterFacts& own,
     operations.emplace_back(
         scaling_of({force.name + ".deformationRadius", force.name + ".forceRadius"}, size));
     const Value<3> center = point->center.at(scene.start);
-    const Vector3d at = same_place({center[0], center[1], center[2]}, own, mesh);
-    const Vector3d inwards = ((mesh.low + mesh.high) / 2 - at).normalized();
-    operations.emplace_back(edit::Set{force.name + ".center", place_text(at, mesh.diagonal())});
-    operations.emplace_back(edit::Set{force.name + ".direction", direction_text(inwards)});
+    const Vector3d share =
+        (Vector3d(center[0], center[1], center[2]) - own.low).cwiseQuotient(own.high - own.low);
+    const Vector3d wanted = mesh.low + share.cwiseProduct(mesh.high - mesh.low);
+    const Eigen::Index vertex =
+        pushed_vertex(mesh, wanted, size * force.force_radius.at(scene.start)[0]);
+    operations.emplace_back(
+        edit::Set{force.name + ".center",
+                  place_text(mesh.vertices.row(vertex).transpose(), mesh.diagonal())});
+    operations.emplace_back(
+        edit::Set{force.name + ".direction", direction_text(inwards_at(mesh, vertex))});
   }
   return operations;
+}
+
+// The radii of point forces.
+std::vector<std::string> radii_of(const Scene& scene) {
+  std::vector<std::string> paths;
+  for (const Force& force : scene.forces) {
+    if (!std::holds_alternative<PointChannels>(force.kind)) continue;
+    paths.push_back(force.name + ".deformationRadius");
+    paths.push_back(force.name + ".forceRadius");
+  }
+  return paths;
+}
+
+// Makes the spheres of the forces larger until something in them can move, or smaller until
+// something holds it.
+Result<StarterFacts> fit_radii(SceneDocument& scene, const StarterSource& source) {
+  constexpr int most_turns = 12;
+  double factor = 1;
+  for (int turn = 0;; ++turn) {
+    auto facts = look_at(scene.text(), source);
+    if (!facts) return facts;
+    const bool is_too_small = !facts->selects || !facts->is_solvable;
+    const std::vector<std::string> radii = radii_of(scene.scene());
+    if ((!is_too_small && facts->is_held) || radii.empty() || turn == most_turns) return facts;
+    const double next = is_too_small ? 1.5 : 0.7;
+    if (turn > 0 && (next > 1) != (factor > 1)) return facts;
+    factor = next;
+    if (auto changed = scene.apply({scaling_of(radii, factor)}); !changed)
+      return fail(changed.error());
+  }
 }
 
 }  // namespace
 
 Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
-                                  const StarterFacts& own, const StarterSource& source) {
+                                  const StarterFacts& own, const MeshPiece& own_piece,
+                                  const StarterSource& source) {
   const std::string surface = scene.scene().surfaces.front().name;
   std::vector<Operation> naming{edit::Set{surface + ".file", edit::literal_text(mesh.file)},
                                 edit::Set{surface + ".uv", "auto"}};
@@ -72,28 +111,49 @@ Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
     naming.emplace_back(edit::Set{surface + ".object", edit::literal_text(mesh.object)});
   auto changed = scene.apply(naming);
   if (!changed) return fail(changed.error());
-  const auto size = measure(scene.text(), source);
-  if (!size) return fail(size.error());
-  changed = scene.apply(placing(scene.scene(), own, *size));
+  const auto piece = measure(scene.text(), source);
+  if (!piece) return fail(piece.error());
+  if (!(piece->diagonal() > 0)) return invalid("all vertices of the mesh are in one place");
+  std::vector<Operation> fitting = placing(scene.scene(), own_piece, *piece);
+  if (!piece->is_grid) fitting.emplace_back(edit::Set{surface + ".uv", "surface"});
+  changed = scene.apply(fitting);
   if (!changed) return fail(changed.error());
-  auto trial = look_at(scene.text(), source);
-  if (!trial) return trial;
-  if (!trial->is_held) {
-    return invalid(
-        "nothing holds the mesh: it has no border; this starter needs one, such as the rim of a "
-        "bowl");
-  }
+  auto facts = fit_radii(scene, source);
+  if (!facts) return facts;
+  if (auto moves = check_moves(*facts); !moves) return fail(moves.error());
   changed = scene.apply(
-      {scaling_of({surface + ".density"}, std::pow(trial->frequency / own.frequency, 2))});
+      {scaling_of({surface + ".density"}, std::pow(facts->frequency / own.frequency, 2))});
   if (!changed) return fail(changed.error());
-  const double wanted = own.peak * trial->diagonal() / own.diagonal();
-  auto moved = look_at(scene.text(), source);
-  if (!moved || moved->is_by_inertia || !(moved->peak > 0)) return moved;
-  changed = scene.apply({scaling_of(animated(scene.scene(), ".magnitude"), wanted / moved->peak)});
+  const auto peak = played_peak(scene.text(), source);
+  if (!peak) return fail(peak.error());
+  if (!(*peak > 0)) {
+    return invalid(
+        "the starter moves nothing of the mesh: no force reaches a part of it that can move");
+  }
+  facts->peak = *peak;
+  if (facts->is_by_inertia) {
+    if (auto held = keep_in_frame(scene, *facts); !held) return fail(held.error());
+    return facts;
+  }
+  const double wanted = own.peak * facts->size / own.size;
+  changed = scene.apply({scaling_of(animated(scene.scene(), ".magnitude"), wanted / *peak)});
   if (!changed) return fail(changed.error());
-  StarterFacts facts = *moved;
-  facts.peak = wanted;
+  facts->peak = wanted;
   return facts;
+}
+
+Result<void> keep_in_frame(SceneDocument& scene, StarterFacts& facts) {
+  const double most = 0.5 * facts.size;
+  if (!facts.is_by_inertia || !(facts.peak > most)) return {};
+  std::vector<std::string> magnitudes;
+  for (const Force& force : scene.scene().forces) {
+    if (std::holds_alternative<InertiaChannels>(force.kind))
+      magnitudes.push_back(force.name + ".magnitude");
+  }
+  const auto changed = scene.apply({scaling_of(std::move(magnitudes), most / facts.peak)});
+  if (!changed) return fail(changed.error());
+  facts.peak = most;
+  return {};
 }
 
 }  // namespace pliant::cli

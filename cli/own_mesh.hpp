@@ -16,9 +16,14 @@ struct OwnMesh {
 /// Puts a mesh of the user's own in place of that of a starter: scales its lengths, moves its
 /// forces to the same place of the mesh, and finds the density and the magnitudes with which the
 /// motion is as fast and, for its size, as large as the starter's. `own` are the facts of the
-/// starter. Returns the facts of the result. Errors: those of `look_at`; InvalidInput if nothing
-/// holds the mesh.
+/// starter, and `own_piece` its mesh. Of several pieces the forces stand on the largest, whose size
+/// counts. Returns the facts of the result. Errors: those of `look_at` and `check_moves`;
+/// InvalidInput if nothing moves.
 Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
-                                  const StarterFacts& own, const StarterSource& source);
+                                  const StarterFacts& own, const MeshPiece& own_piece,
+                                  const StarterSource& source);
+
+/// Makes inertia weaker if it moves the first surface by more than half its size.
+Result<void> keep_in_frame(SceneDocument& scene, StarterFacts& facts);
 
 }  // namespace pliant::cli

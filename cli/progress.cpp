@@ -20,6 +20,18 @@ void draw(const std::string& line) {
   std::fflush(stderr);
 }
 
+// So much is done of `count`.
+std::string bar_of(int done, int count) {
+  constexpr int width = 30;
+  const int filled = static_cast<int>(static_cast<long>(width) * done / std::max(1, count));
+  return fmt::format("[{}{}] {}/{}", std::string(filled, '#'), std::string(width - filled, '.'),
+                     done, count);
+}
+
+std::string cycle_text(std::string_view surface, int round, double gap) {
+  return fmt::format("looking for the cycle of \"{}\": round {}, gap {:.1e}", surface, round, gap);
+}
+
 bool is_visible(bool is_quiet) { return !is_quiet && isatty(STDERR_FILENO) != 0; }
 
 }  // namespace
@@ -40,8 +52,6 @@ void Progress::reach(int done) {
 }
 
 void Progress::draw_bar(Clock::time_point now) const {
-  constexpr int width = 30;
-  const int filled = static_cast<int>(static_cast<long>(width) * done_ / count_);
   const double elapsed = std::chrono::duration<double>(now - begin_).count();
   const double rate = elapsed > 0 ? done_ / elapsed : 0;
   std::string time;
@@ -50,8 +60,37 @@ void Progress::draw_bar(Clock::time_point now) const {
     const long left = std::lround(seconds_left);
     time = fmt::format(", {:.1f} {}/s, {}:{:02} left", rate, unit_, left / 60, left % 60);
   }
-  draw(fmt::format("[{}{}] {}/{} {}{}{}", std::string(filled, '#'),
-                   std::string(width - filled, '.'), done_, count_, unit_, time, note_));
+  draw(fmt::format("{} {}{}{}", bar_of(done_, count_), unit_, time, note_));
+}
+
+WorkLine::WorkLine(bool is_quiet) : is_shown_(is_visible(is_quiet)) {}
+
+void WorkLine::erase() {
+  if (is_drawn_) draw("");
+  is_drawn_ = false;
+}
+
+void WorkLine::tell(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  const auto now = Clock::now();
+  if (is_drawn_ && now - drawn_ < std::chrono::milliseconds(100)) return;
+  drawn_ = now;
+  is_drawn_ = true;
+  draw(line);
+}
+
+std::function<void(const std::string&, int, int)> WorkLine::report() {
+  if (!is_shown_) return {};
+  return [this](const std::string& work, int done, int count) {
+    tell(fmt::format("{} {}", bar_of(done, count), work));
+  };
+}
+
+std::function<void(std::string_view, int, double)> WorkLine::report_of_rounds() {
+  if (!is_shown_) return {};
+  return [this](std::string_view surface, int round, double gap) {
+    tell(cycle_text(surface, round, gap));
+  };
 }
 
 std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {
@@ -65,7 +104,7 @@ std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {
     const auto now = std::chrono::steady_clock::now();
     if (now - line->drawn < std::chrono::milliseconds(100)) return;
     line->drawn = now;
-    draw(fmt::format("looking for the cycle of \"{}\": round {}, gap {:.1e}", surface, round, gap));
+    draw(cycle_text(surface, round, gap));
   };
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,34 @@ class Progress {
   int done_ = 0;
   bool is_shown_;
   Clock::time_point begin_ = Clock::now();
+  Clock::time_point drawn_ = {};
+};
+
+/// A line on stderr with the work that goes on and a bar of how much of it is done; not shown if
+/// stderr is not a terminal.
+class WorkLine {
+ public:
+  explicit WorkLine(bool is_quiet);
+  WorkLine(const WorkLine&) = delete;
+  WorkLine& operator=(const WorkLine&) = delete;
+  ~WorkLine() { erase(); }
+
+  void erase();  ///< until more is told
+
+  /// For `SimulationOptions::progressed`: draws the line at most ten times a second. Empty if it
+  /// would not be shown. The line outlives it.
+  std::function<void(const std::string& work, int done, int count)> report();
+
+  /// The same for `SimulationOptions::round_done`.
+  std::function<void(std::string_view surface, int round, double gap)> report_of_rounds();
+
+ private:
+  void tell(const std::string& line);
+
+  using Clock = std::chrono::steady_clock;
+
+  std::mutex mutex_;  // several surfaces are solved in parallel
+  bool is_shown_, is_drawn_ = false;
   Clock::time_point drawn_ = {};
 };
 

@@ -88,4 +88,10 @@ SimulationOptions simulation_options(const ResourceOptions& options, std::size_t
           .should_stop = &was_interrupted};
 }
 
+std::size_t part_for_shelf(SimulationOptions& options) {
+  const std::size_t part = options.max_memory / 8;
+  options.max_memory -= part;
+  return part;
+}
+
 }  // namespace pliant::cli

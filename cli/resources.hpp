@@ -28,4 +28,7 @@ void add_memory(CLI::App& command, ResourceOptions& options);
 /// far as it grows with its input. [bytes]
 SimulationOptions simulation_options(const ResourceOptions& options, std::size_t own = 0);
 
+/// Takes from the memory of a command's simulation what a shelf may keep for it. [bytes]
+std::size_t part_for_shelf(SimulationOptions& options);
+
 }  // namespace pliant::cli

@@ -31,8 +31,9 @@ struct SceneFacts {
   };
   std::vector<SurfaceFacts> surfaces = {};
   std::vector<Preview> previews = {};
-  std::size_t surface_memory = 0;  ///< [bytes]
-  std::size_t solver_memory = 0;   ///< of the largest region previewed [bytes]
+  std::optional<Error> no_first_frame = {};  ///< why there is none: a loop closes to no cycle
+  std::size_t surface_memory = 0;            ///< [bytes]
+  std::size_t solver_memory = 0;             ///< of the largest region previewed [bytes]
 };
 
 /// Why a force has no preview: "never enabled", or that no surface is solved while it is enabled.

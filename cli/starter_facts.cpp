@@ -28,14 +28,6 @@ double reach_of(const Scene& scene, const RestShape& shape, const Preview& previ
   return radius / summary_of(shape)->unit[0];
 }
 
-// The preview of all forces on the first surface; null: nothing moves.
-const Preview* find_preview(const std::vector<Preview>& previews) {
-  const auto found = std::ranges::find_if(previews, [](const Preview& each) {
-    return each.of == Preview::Of::All && each.surface == 0;
-  });
-  return found != previews.end() && found->frame ? &*found : nullptr;
-}
-
 Result<Simulation> simulation_of(const std::string& text, const StarterSource& source) {
   Result<Scene> scene = parse_scene(text, source.name, source.folder, source.root);
   if (!scene) return fail(scene.error());
@@ -47,70 +39,71 @@ Result<Simulation> simulation_of(const std::string& text, const StarterSource& s
   return Simulation::make(*std::move(scene), source.options);
 }
 
-StarterFacts facts_of(const Simulation& simulation) {
-  const Field& vertices = simulation.rest_shapes().front().mesh.positions;
-  return {.low = vertices.colwise().minCoeff().transpose(),
-          .high = vertices.colwise().maxCoeff().transpose(),
-          .vertices = vertices};
-}
-
-Result<double> peak_of(Simulation& simulation) {
-  double peak = 0;
-  Frame frame;
-  for (const int number : simulation.frames()) {
-    auto next = simulation.at(number, std::move(frame));
-    if (!next) return fail(next.error());
-    frame = *std::move(next);
-    peak = std::max(peak, frame.surfaces().front().peak_displacement());
-  }
-  return peak;
-}
-
 }  // namespace
 
-Result<StarterFacts> measure(const std::string& text, const StarterSource& source) {
+Result<MeshPiece> measure(const std::string& text, const StarterSource& source) {
   const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  return facts_of(*simulation);
+  return largest_piece(simulation->rest_shapes().front());
 }
 
 Result<StarterFacts> look_at(const std::string& text, const StarterSource& source) {
-  auto simulation = simulation_of(text, source);
+  const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  const auto previews = preview_forces(*simulation, source.options);
-  if (!previews) return fail(previews.error());
-  const Preview* const preview = find_preview(*previews);
-  if (!preview) return invalid("no force of the starter selects a vertex of the mesh");
-
+  const auto preview = preview_slowest(*simulation, 0, source.options);
+  if (!preview) return fail(preview.error());
   const Scene& scene = simulation->scene();
-  StarterFacts facts = facts_of(*simulation);
-  facts.is_held = preview->is_held;
-  const auto peak = peak_of(*simulation);
-  if (!peak) return fail(peak.error());
-  facts.peak = *peak;
-  facts.reach = reach_of(scene, simulation->rest_shapes().front(), *preview);
-  for (const RegionPreview& region : preview->regions) {
+  const RestShape& shape = simulation->rest_shapes().front();
+  StarterFacts facts{.size = largest_piece(shape).diagonal()};
+  facts.is_by_inertia = std::ranges::any_of(scene.forces, [](const Force& force) {
+    return std::holds_alternative<InertiaChannels>(force.kind);
+  });
+  if (!*preview || !(*preview)->frame) return facts;
+  facts.selects = true;
+  facts.is_solvable = (*preview)->is_solvable;
+  facts.is_held = (*preview)->is_held;
+  facts.reach = reach_of(scene, shape, **preview);
+  for (const RegionPreview& region : (*preview)->regions) {
     if (!region.has_vibration) continue;
     facts.frequency = facts.frequency == 0 ? region.first_frequency
                                            : std::min(facts.frequency, region.first_frequency);
   }
-  facts.is_by_inertia = std::ranges::any_of(scene.forces, [](const Force& force) {
-    return std::holds_alternative<InertiaChannels>(force.kind);
-  });
-  if (!preview->is_solvable) return invalid("no node of the mesh can move: all are on its border");
-  if (facts.is_held && facts.frequency == 0) {
-    return invalid(
-        fmt::format("the mesh has too many nodes to find its frequency: more than {} "
-                    "would move; choose a coarser one",
-                    most_previewed_unknowns));
-  }
   return facts;
 }
 
-Result<double> played_peak(const std::string& text, const StarterSource& source) {
-  auto simulation = simulation_of(text, source);
+Result<void> check_moves(const StarterFacts& facts) {
+  if (!facts.selects) return invalid("no force of the starter selects a vertex of the mesh");
+  if (!facts.is_solvable) return invalid("no node of the mesh can move: all are on its border");
+  if (!facts.is_held) {
+    return invalid(
+        "nothing holds the mesh: it, or a piece of it, has no border; this starter needs one, such "
+        "as the rim of a bowl");
+  }
+  if (facts.frequency == 0) {
+    return invalid(
+        fmt::format("the mesh has too many nodes to find its frequency: more than {} "
+                    "would move; choose a coarser one",
+                    most_vibrating_nodes));
+  }
+  return {};
+}
+
+Result<double> played_peak(const std::string& text, const StarterSource& source, double until) {
+  const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  return peak_of(*simulation);
+  const auto played = play_forces(*simulation, 0, until, source.options);
+  if (!played) return fail(played.error());
+  return played->peak;
+}
+
+Result<StarterFacts> look_and_play(const std::string& text, const StarterSource& source) {
+  auto facts = look_at(text, source);
+  if (!facts) return facts;
+  if (auto moves = check_moves(*facts); !moves) return fail(moves.error());
+  const auto peak = played_peak(text, source);
+  if (!peak) return fail(peak.error());
+  facts->peak = *peak;
+  return facts;
 }
 
 }  // namespace pliant::cli

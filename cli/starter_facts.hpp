@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "mesh_piece.hpp"
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/simulation/simulation.hpp"
@@ -21,30 +23,37 @@ struct StarterSource {
 
 /// What the first surface of a scene does under all its forces, to choose numbers.
 struct StarterFacts {
-  Vector3d low;  ///< corners of the box around its vertices, its own [length]
-  Vector3d high;
-  Field vertices;              ///< its own [length]
-  bool is_held = true;         ///< whether anything holds it
+  double size = 0;             ///< of its largest piece: the diagonal of a box around it [length]
+  bool selects = false;        ///< whether anything is selected; false: the following are unknown
+  bool is_solvable = false;    ///< whether any node moves
+  bool is_held = true;         ///< whether something holds all that moves
   double frequency = 0;        ///< of the slowest vibration of what moves [Hz]; 0: unknown
-  double peak = 0;             ///< `played_peak` [length]
+  double peak = 0;             ///< `played_peak` [length]; 0: unknown
   double reach = 0;            ///< half the width of what moves [uv]
   bool is_by_inertia = false;  ///< whether a force is <inertia>, whose load is the density's
 
-  double diagonal() const { return (high - low).norm(); }  ///< [length]
   double bend() const {
     return peak / (reach * reach);
   }  ///< the size of its curvature [length/uv²]
 };
 
-/// The box and the vertices of the first surface; no more. Errors: as `look_at`.
-Result<StarterFacts> measure(const std::string& text, const StarterSource& source);
+/// The largest piece of the first surface. Errors: those of `parse_scene` and `Simulation::make`.
+Result<MeshPiece> measure(const std::string& text, const StarterSource& source);
 
-/// Reads a scene, and previews it. Errors: those of `parse_scene` and `Simulation::make`;
-/// InvalidInput if nothing moves, or the surface has too many nodes for a preview.
+/// Reads a scene, and finds its slowest vibration; the peak is left out. Errors: those of
+/// `parse_scene`, `Simulation::make` and `preview_slowest`.
 Result<StarterFacts> look_at(const std::string& text, const StarterSource& source);
 
-/// The largest displacement of the first surface in the whole animation, world [length]. Errors:
-/// those of `parse_scene`, `Simulation::make` and `Simulation::at`.
-Result<double> played_peak(const std::string& text, const StarterSource& source);
+/// Checks that something moves, is held and vibrates. Errors: InvalidInput with the reason.
+Result<void> check_moves(const StarterFacts& facts);
+
+/// The largest displacement of the first surface in the whole animation, world [length], or one
+/// larger than `until` if there is one. Errors: those of `parse_scene`, `Simulation::make` and
+/// `play_forces`.
+Result<double> played_peak(const std::string& text, const StarterSource& source,
+                           double until = std::numeric_limits<double>::infinity());
+
+/// `look_at`, `check_moves` and `played_peak`.
+Result<StarterFacts> look_and_play(const std::string& text, const StarterSource& source);
 
 }  // namespace pliant::cli

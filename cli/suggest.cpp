@@ -11,9 +11,11 @@
 #include <fmt/format.h>
 
 #include "interrupt.hpp"
+#include "pliant/core/shelf.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/pliant.hpp"
+#include "progress.hpp"
 #include "report.hpp"
 #include "scene_input.hpp"
 #include "suggest_formats.hpp"
@@ -109,11 +111,16 @@ MotionGoals goals_of(const SuggestOptions& options, double fps) {
 // Without a document nothing is written.
 int suggest(const SuggestOptions& options, Scene scene, SceneDocument* document) {
   print_notes(scene.notes);
-  const SimulationOptions run = simulation_options(options.resources);
+  SimulationOptions run = simulation_options(options.resources);
+  Shelf shelf(part_for_shelf(run));
+  run.shelf = &shelf;
+  WorkLine line(options.is_quiet);
+  run.progressed = line.report();
   auto simulation = Simulation::make(std::move(scene), run);
   if (!simulation) return report(simulation.error());
   const double fps = simulation->scene().fps;
   auto suggestion = suggest_material(*simulation, goals_of(options, fps), run);
+  line.erase();
   if (!suggestion) return report(suggestion.error());
   SuggestFacts facts{.file = title_of_scene(options.scene),
                      .surface = simulation->scene().surfaces[suggestion->after.surface].name,
@@ -175,6 +182,7 @@ void add_suggest(CLI::App& app, SuggestOptions& options) {
                       "A force, or a group, that acts alone; all forces together by default");
   suggest->add_option("--surface", options.surface, "The surface, if forces act on several");
   suggest->add_flag("--write", options.writes, "Write the numbers into the scene");
+  suggest->add_flag("--quiet", options.is_quiet, "No progress");
   suggest->add_flag("--json", options.is_json, "Print JSON instead; docs/info.md describes it");
   add_root(*suggest, options.root);
   add_memory(*suggest, options.resources);

@@ -19,6 +19,7 @@ struct SuggestOptions {
   std::string surface;
   bool writes = false;
   bool is_json = false;
+  bool is_quiet = false;
   Root root = {};
   ResourceOptions resources;
 };
