@@ -1,11 +1,14 @@
 """`pliant new --mesh`: meshes of every kind move, and stay within their frame, or it is told why not."""
 
 import itertools
+import os
+import pty
+import subprocess
 import unittest
 
 import numpy as np
 
-from command import SANITIZED, Command, main
+from command import PLIANT, SANITIZED, Command, main
 
 MATERIALS = ("rubber", "jelly", "metal", "cloth", "paper", "skin")
 
@@ -159,6 +162,34 @@ class OwnMesh(Command):
             self.run_pliant("new", "mesh", "--mesh", self.obj(mesh), "-o", "a.xml", "--force")
             texts.append(self.read("a.xml"))
         self.assertEqual(*texts)
+
+    def on_terminal(self, *arguments):
+        """What the command writes to a stderr that is a terminal."""
+        ours, theirs = pty.openpty()
+        with subprocess.Popen([PLIANT, *arguments], stdout=subprocess.DEVNULL, stderr=theirs, cwd=self.folder) as process:
+            os.close(theirs)
+            text = b""
+            try:
+                while part := os.read(ours, 4096):
+                    text += part
+            except OSError:  # the end of a terminal
+                pass
+            os.close(ours)
+            self.assertEqual(process.wait(), 0, text)
+        return text
+
+    def test_long_work_shows_itself_on_a_terminal_only(self):
+        self.obj(sheet())
+        commands = (["new", "mesh", "--mesh", "m.obj", "-o", "a.xml", "--force"], ["info", "a.xml"],
+                    ["suggest", "a.xml", "--peak", "0.5"])
+        for command in commands:
+            with self.subTest(command=command[0]):
+                shown = self.on_terminal(*command)
+                self.assertRegex(shown, rb'\r\x1b\[K\[[#.]{30}\] \d+/\d+ [a-z ]+"body"')
+                left = shown.rsplit(b"\r\x1b[K", 1)[1]  # once the line is erased
+                self.assertRegex(left, rb"^$|^[^\r\n]*: note: [^\r\n]*\r\n$")
+                for quiet in (self.on_terminal(*command, "--quiet"), self.run_pliant(*command).stderr.encode()):
+                    self.assertNotIn(b"\x1b", quiet)
 
 
 if __name__ == "__main__":
