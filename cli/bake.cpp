@@ -91,16 +91,9 @@ void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan) 
     const Vector3d there = plan.is_placed
                                ? Vector3d(0, 0, 0)
                                : placement_at(surface.transform, plan.first_frame).translate;
-    print_warning(
-        scene.origin.place_of(name),
-        fmt::format(
-            "\"{}\" is so far from the origin that the single precision of {} moves its "
-            "vertices by up to {:.2g}, {:.2g} % of its size; <transform translate=\"{}\"/>{} "
-            "brings it to the origin, if its forces move along; .npy, .obj and .ply have "
-            "double precision",
-            name, ending_of(plan.file), loss.error, 100 * loss.error / loss.size,
-            place_text(there - loss.centre, 1000 * loss.size),
-            plan.is_placed ? " and --space world" : ""));
+    print_warning(scene.origin.place_of(name),
+                  precision_text(fmt::format("\"{}\"", name), ending_of(plan.file), loss, there) +
+                      (plan.is_placed ? "; with --space world" : ""));
   }
 }
 

@@ -22,6 +22,7 @@
 #include "progress.hpp"
 #include "report.hpp"
 #include "resources.hpp"
+#include "rounded.hpp"
 #include "shell_word.hpp"
 #include "starters.hpp"
 #include "usage.hpp"
@@ -115,6 +116,17 @@ Error about_mesh(Error error, const std::string& starter, const std::string& mes
   return error;
 }
 
+// Warns of a mesh that most formats would tear.
+void warn_of_precision(const SceneDocument& document, const std::string& mesh,
+                       const StarterSource& source, WorkLine& line) {
+  const auto piece = measure(document.text(), source);
+  const auto loss = piece ? precision_loss_in(piece->low, piece->high) : std::nullopt;
+  if (!loss) return;
+  line.erase();
+  print(stderr, fmt::format("{}: warning: {}\n", printable(mesh),
+                            precision_text("it", ".glb, .usda and others", *loss, {0, 0, 0})));
+}
+
 // The text of the scene, fitted to the mesh and the material.
 Result<std::string> scene_text(const NewOptions& options, const Starter& starter,
                                const fs::path& out) {
@@ -142,6 +154,7 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
       const std::string name = path_from(out.parent_path(), *options.mesh);
       facts = use_own_mesh(*document, {name, options.object.value_or("")}, *facts, *piece, source);
       if (!facts) return fail(about_mesh(facts.error(), source.name, *options.mesh));
+      warn_of_precision(*document, *options.mesh, source, line);
     }
     if (options.material) {
       auto applied = apply_look(*document, find(looks(), *options.material), *facts, source);

@@ -25,4 +25,14 @@ std::string place_text(const Vector3d& at, double size) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
+std::string precision_text(const std::string& what, std::string_view formats,
+                           const PrecisionLoss& loss, const Vector3d& there) {
+  return fmt::format(
+      "{} is so far from the origin that the single precision of {} moves its vertices by up to "
+      "{:.2g}, {:.2g} % of its size; <transform translate=\"{}\"/> brings it to the origin, if its "
+      "forces move along, and .npy, .obj and .ply have double precision",
+      what, formats, loss.error, 100 * loss.error / loss.size,
+      place_text(there - loss.centre, 1000 * loss.size));
+}
+
 }  // namespace pliant::cli

@@ -227,7 +227,7 @@ class Bake(Command):
             near = scene(" ".join(map(repr, map(float, moved))), f'<transform translate="{translate}"/>')
             for ending in ONE_FILE:
                 self.assertEqual(self.run_pliant("bake", near, "-o", "a" + ending).stderr, "")
-            self.assertIn("and --space world", self.run_pliant("bake", near, "-o", "a.glb", "--space", "object").stderr)
+            self.assertIn("with --space world", self.run_pliant("bake", near, "-o", "a.glb", "--space", "object").stderr)
 
     def test_threads_change_no_bit(self):
         scene = self.write("two.xml", SCENE.format(end=6).replace(

@@ -151,7 +151,11 @@ class OwnMesh(Command):
     def test_places_are_told_apart(self):
         for scale, offset in ((1, (500000, 5400000, 300)), (1e-3, (3000, 0, 0)), (1e5, (0, 0, 0))):
             mesh = moved(ball(cut=3), offset, scale)
-            self.run_pliant("new", "mesh", "--mesh", self.obj(mesh), "-o", "a.xml", "--force")
+            told = self.run_pliant("new", "mesh", "--mesh", self.obj(mesh), "-o", "a.xml", "--force").stderr
+            self.assertEqual("single precision" in told, any(offset), told)
+            if any(offset):
+                moved_back = np.array(told.split('translate="')[1].split('"')[0].split(), float)
+                self.assertLess(np.abs(mesh[0].mean(axis=0) + moved_back).max(), 2 * scale)
             text = self.read("a.xml").decode()
             center = np.array([float(x) for x in text.split(' center="')[1].split('"')[0].split()])
             self.assertLess(np.linalg.norm(mesh[0] - center, axis=1).min(), 2e-3 * scale)

@@ -131,6 +131,14 @@ Result<void> check_ending(const std::string& file) {
                           fmt::join(known_endings(), ", ")));
 }
 
+std::optional<PrecisionLoss> precision_loss_in(const Vector3d& low, const Vector3d& high) {
+  constexpr double rounding = 0x1p-24;  // of a number, half a unit in the last place at most
+  const double error = rounding * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  const double size = (high - low).norm();
+  if (!(error > most_precision_loss * size)) return {};
+  return PrecisionLoss{.error = error, .size = size, .centre = (low + high) / 2};
+}
+
 std::vector<PrecisionLoss> precision_losses(const AnimationPlan& plan) {
   const Format* const format = find_format(plan.file);
   PLIANT_EXPECTS(format);
@@ -143,10 +151,10 @@ std::vector<PrecisionLoss> precision_losses(const AnimationPlan& plan) {
       low = low.cwiseMin(rest.row(vertex).transpose());
       high = high.cwiseMax(rest.row(vertex).transpose());
     }
-    constexpr double rounding = 0x1p-24;  // of a number, half a unit in the last place at most
-    const double error = rounding * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
-    const double size = (high - low).norm();
-    if (error > most_precision_loss * size) losses.push_back({k, error, size, (low + high) / 2});
+    auto loss = precision_loss_in(low, high);
+    if (!loss) continue;
+    loss->surface = k;
+    losses.push_back(*loss);
   }
   return losses;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,15 +64,19 @@ std::vector<std::string> known_endings();
 /// Whether the file's ending is that of a format. Errors: InvalidInput, listing the endings.
 Result<void> check_ending(const std::string& file);
 
-/// A surface whose vertices the single precision of a format moves by more than 1e-4 of its size.
+/// What single precision does to vertices in a box that is far from the origin.
 struct PrecisionLoss {
-  std::size_t surface = 0;  ///< of the plan
-  double error = 0;         ///< the farthest that a vertex at rest may be moved [length]
-  double size = 0;          ///< the diagonal of the box around the surface at rest [length]
-  Vector3d centre;          ///< of this box, in the space of the poses [length]
+  std::size_t surface = 0;  ///< of a plan
+  double error = 0;         ///< the farthest that a vertex may be moved [length]
+  double size = 0;          ///< the diagonal of the box [length]
+  Vector3d centre;          ///< of the box [length]
 };
 
-/// The surfaces of a plan that are so far from the origin. Requires: check_ending(plan.file).
+/// None: no vertex in the box is moved by more than 1e-4 of its size.
+std::optional<PrecisionLoss> precision_loss_in(const Vector3d& low, const Vector3d& high);
+
+/// The surfaces at rest to which the format of a plan does so, in the space of the poses. Requires:
+/// check_ending(plan.file).
 std::vector<PrecisionLoss> precision_losses(const AnimationPlan& plan);
 
 /// All files of the plan's writer whose names are known in advance, including those of a sequence.
