@@ -114,12 +114,15 @@ void add_view(CLI::App& app, ViewOptions& options) {
       ->excludes(frame);
   auto* size =
       view->add_option("--size", options.size,
-                       "Size in pixels of the picture, of each frame in a sheet, or of the movie")
+                       "Size in pixels of the picture, of each frame in a sheet (480x300 by "
+                       "default), or of the movie")
           ->capture_default_str();
   auto* look = view->add_option("--look", options.look,
                                 "Look of the picture or movie, written as in the page's address: "
                                 "\"turn=30&tilt=20&colour=velocity&theme=dark\"");
-  view->callback([=] {
+  view->callback([=, &options] {
+    // Words have the same size in all pictures, and twelve of them are seen at once.
+    if (options.is_sheet && size->count() == 0) options.size = "480x300";
     const CLI::Option* given = size->count() > 0 ? size : look;
     if (given->count() > 0 && png->count() == 0 && movie->count() == 0) {
       throw CLI::RequiresError(given->get_name(), "--png or --movie");

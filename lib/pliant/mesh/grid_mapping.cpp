@@ -234,7 +234,7 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
       if (axis->count > 1 && !axis->is_even(value)) {
         return invalid(fmt::format(
             "vertex {} has {} = {}, which is more than {} of a spacing away from the even lattice "
-            "of {} values {} apart",
+            "of {} values {:.6g} apart",
             mesh.number_of(vertex), name, value, lattice_tolerance, axis->count, axis->spacing));
       }
     }
