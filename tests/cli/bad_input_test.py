@@ -185,7 +185,7 @@ class BadInput(Command):
                                 capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertRegex(result.stderr, r's\.xml:2: error: surface "quad", frame \d: its motion does '
-                         r"not close to a cycle of 4 frames: after 1000 rounds .* damping")
+                         r"not close to a cycle of 4 frames: after \d+ rounds .* damping")
 
     def test_all_at_once(self):
         text = SCENE.format(end=9)

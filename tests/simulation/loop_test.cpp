@@ -172,7 +172,33 @@ TEST_CASE("cycles are stored", "[simulation][loop]") {
   CHECK(rounds_of(other, &store) == 0);
 }
 
-TEST_CASE("what flies away has no cycle, and the error tells the gap", "[simulation][loop]") {
+TEST_CASE("what is carried away has no cycle, whatever rounding makes of it",
+          "[simulation][loop]") {
+  Surface free = sheet("s");
+  free.tangents = {};
+  free.solver.region = SolvedRegion::All;
+  free.solver.edges = {Edge::Free, Edge::Free, Edge::Free, Edge::Free};
+  if (GENERATE(false, true)) {
+    free.reading.uv = UvReading::Surface;
+    free.reading.border = Border::Free;
+    free.solver.edges = {};
+  }
+  free.solver.loop = 20;
+  free.solver.integrator =
+      GENERATE(Integrator::BackwardEuler, Integrator::Newmark, Integrator::Exact);
+  free.material.density = GENERATE(0.0, 3.0);
+  free.material.damping = 1;
+  Force wind = poke("wind", {}, 5);
+  wind.kind = UniformChannels{};
+  wind.force_radius = 99;
+  const Scene s = scene({free}, {wind}, 24);
+  const auto refused = Simulation::make(s).value().at(2);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::SolverFailed);
+  CHECK_THAT(refused.error().message, Contains("cycle of 20 frames") && Contains("carried away"));
+}
+
+TEST_CASE("what flies away has no cycle, and the error tells how far", "[simulation][loop]") {
   Surface quad;
   quad.name = "quad";
   quad.shape = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {{0, 3, 2, 1}});
@@ -193,8 +219,7 @@ TEST_CASE("what flies away has no cycle, and the error tells the gap", "[simulat
   CHECK(refused.error().code == ErrorCode::SolverFailed);
   CHECK_THAT(refused.error().message,
              Contains("surface \"quad\"") && Contains("cycle of 4 frames") &&
-                 Contains("1000 rounds") && Contains("of the largest displacement") &&
-                 Contains("damping"));
+                 Contains("rounds it is still carried away, by ") && Contains("damping"));
   CHECK(simulation.at(1));
   CHECK_FALSE(simulation.at(9));
   // Without a load it rests, which is a cycle.

@@ -22,6 +22,11 @@ constexpr double wanted_gap = 1e-10;  // at little cost
 constexpr double largest_part = 1e-2;
 constexpr int most_rounds_for_more = 20;
 
+// A state that is carried so many times farther than the first round is none of a cycle, which a
+// resonance makes larger by the rounds that it needs at most: there rounding hides any gap.
+constexpr double farthest = 1e6;
+constexpr int most_rounds_carried = 30;
+
 // The acceleration starts anew if the gap grows by this factor, and rests if it has not halved the
 // gap for a while. What it did to stiff modes may take plain rounds long to forget, so these begin
 // where the gap was shortest, and each rest is twice as long as the one before.
@@ -64,7 +69,9 @@ class Search {
 
   Result<BodyState> run() {
     state_ = body_.rest_state();
+    int rounds = 0;
     for (int round = 1; round <= max_rounds; ++round) {
+      rounds = round;
       if (auto gone = go_round(); !gone) {
         if (!may_go_back(gone.error())) return fail(gone.error());
         state_ = *std::move(plain_);
@@ -72,7 +79,8 @@ class Search {
         mixing_.clear();
         continue;
       }
-      if (round == 1) first_gap_ = gap_.length;
+      if (round == 1) first_ = gap_;
+      if (is_carried_away(gap_) && ++rounds_carried_ > most_rounds_carried) break;
       if (round_.told) round_.told(round, gap_.share());
       const bool is_better = is_closed(gap_)
                                  ? !is_closed(best_gap_) || gap_.share() < best_gap_.share()
@@ -90,6 +98,15 @@ class Search {
       go_on(round);
     }
     if (is_closed(best_gap_)) return std::move(best_);
+    if (rounds_carried_ > 0) {
+      return fail(
+          ErrorCode::SolverFailed,
+          fmt::format(
+              "its motion does not close to a cycle of {} frame{}: after {} rounds it is still "
+              "carried away, by {:.3g} in the first, since nothing holds it and its loads do "
+              "not cancel over the cycle; no damping changes that",
+              round_.frames, round_.frames == 1 ? "" : "s", rounds, first_.length));
+    }
     return fail(
         ErrorCode::SolverFailed,
         fmt::format("its motion does not close to a cycle of {} frame{}: after {} rounds the "
@@ -119,9 +136,12 @@ class Search {
   double displacement() const { return largest_length(body_.state().positions, body_.rest()); }
 
   bool is_closed(const Gap& gap) const {
-    return (gap.share() <= largest_gap && gap.length <= largest_part * first_gap_) ||
+    if (is_carried_away(gap)) return false;
+    return (gap.share() <= largest_gap && gap.length <= largest_part * first_.length) ||
            gap.length <= rounding_;
   }
+
+  bool is_carried_away(const Gap& gap) const { return gap.peak > farthest * first_.peak; }
 
   // A combination of states may be one from which no motion leads on.
   bool may_go_back(const Error& error) const {
@@ -158,13 +178,13 @@ class Search {
   const CycleRound& round_;
   AndersonMixing mixing_;
   double rounding_ = 0;  // of positions [length]
-  double first_gap_ = 0;
+  Gap first_ = {};       // of the first round
   BodyState state_, image_, best_;
   BodyState best_image_;            // what the shortest gap led to
   std::optional<BodyState> plain_;  // what the last round led to, if state_ is not that
   Gap gap_, best_gap_;
   double before_ = std::numeric_limits<double>::infinity();
-  int last_gain_ = 0, rounds_for_more_ = 0;
+  int last_gain_ = 0, rounds_for_more_ = 0, rounds_carried_ = 0;
   int rest_ = first_rest, rest_end_ = 0;  // of the acceleration; the round in which it ends
   bool is_plain_ = false;
 };
