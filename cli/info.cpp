@@ -68,11 +68,6 @@ int tell(const SceneFacts& facts, const InfoOptions& options) {
   return exit_done;
 }
 
-bool is_mesh_file(const std::string& file) {
-  const std::vector<std::string> endings = mesh_endings();
-  return std::ranges::find(endings, ending_of(file)) != endings.end();
-}
-
 // Lists the objects of a mesh file.
 int run_mesh_info(const InfoOptions& options) {
   if (!options.changes.empty()) {

@@ -1,5 +1,6 @@
 #include "scene_input.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -10,6 +11,8 @@
 
 #include "interrupt.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/mesh/mesh_objects.hpp"
 #include "pliant/scene/change.hpp"
 #include "pliant/scene/read.hpp"
 
@@ -63,6 +66,11 @@ Result<std::filesystem::path> folder_of(const Root& root) {
 
 bool is_standard_input(std::string_view scene) { return scene == "-"; }
 
+bool is_mesh_file(const std::string& file) {
+  const std::vector<std::string> endings = mesh_endings();
+  return std::ranges::find(endings, ending_of(file)) != endings.end();
+}
+
 std::string title_of_scene(const std::string& scene) {
   return is_standard_input(scene) ? name : scene;
 }
@@ -80,6 +88,12 @@ void add_changes(CLI::App& command, Changes& changes) {
 }
 
 Result<SceneSource> read_scene_text(const std::string& scene) {
+  if (is_mesh_file(scene)) {
+    return fail(ErrorCode::InvalidInput,
+                "it is a mesh, not a scene; pliant info lists its objects, and pliant new mesh "
+                "--mesh writes a scene for it",
+                scene);
+  }
   if (!is_standard_input(scene)) {
     auto text = read_file(scene, largest_scene_file);
     if (!text && was_interrupted()) return interruption();  // while waiting for a pipe

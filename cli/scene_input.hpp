@@ -28,6 +28,9 @@ Result<std::filesystem::path> folder_of(const Root& root);
 /// Whether a command's SCENE means the standard input: "-". A file of that name is "./-".
 bool is_standard_input(std::string_view scene);
 
+/// Whether a file has the ending of a mesh.
+bool is_mesh_file(const std::string& file);
+
 /// What messages and results call a command's SCENE: the name of its file, or `standard input`.
 std::string title_of_scene(const std::string& scene);
 

@@ -108,6 +108,13 @@ class Validate(Command):
         notes = json.loads(self.run_pliant("validate", self.write("n.xml", noted), "--json").stdout)["problems"]
         self.assertEqual({note["severity"] for note in notes}, {"information"})
 
+    def test_a_mesh_in_the_place_of_a_scene_is_told(self):
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\n")
+        for words in (("bake", "m.obj", "-o", "a.npy"), ("validate", "m.obj"), ("view", "m.obj", "-o", "a.html"),
+                      ("suggest", "m.obj", "--peak", "1"), ("curves", "m.obj")):
+            told = self.run_pliant(*words, code=2).stderr
+            self.assertRegex(told, r"^m\.obj: error: it is a mesh, not a scene; [^\n]*\n$")
+
     def test_a_scene_without_a_surface_is_legal(self):
         scene = self.write("curves.xml", '<scene version="1" start="1" end="9"><point name="p"/></scene>')
         self.run_pliant("validate", scene)
