@@ -15,7 +15,7 @@ double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 }
 
 // The corners of a face projected along its mean normal, counter-clockwise.
-std::vector<Vector2d> flattened(const Mesh& mesh, int first, int size) {
+std::vector<Vector2d> laid_flat(const Mesh& mesh, int first, int size) {
   const auto at = [&](int k) -> Vector3d {
     return mesh.positions.row(
         mesh.corner_vertices[static_cast<std::size_t>(first) + static_cast<std::size_t>(k)]);
@@ -55,7 +55,7 @@ void cut(const Mesh& mesh, int first, int size, std::vector<std::array<int, 3>>&
   std::vector<int> left(static_cast<std::size_t>(size));
   std::iota(left.begin(), left.end(), 0);
   const std::vector<Vector2d> points =
-      size > 3 ? flattened(mesh, first, size) : std::vector<Vector2d>();
+      size > 3 ? laid_flat(mesh, first, size) : std::vector<Vector2d>();
   while (left.size() > 3) {
     const std::size_t n = left.size();
     std::size_t tip = 1;
