@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "support/catch.hpp"
 
@@ -66,6 +68,25 @@ TEST_CASE("trimming takes blanks from the ends only", "[core][trim]") {
   CHECK(trim(" \t ", " \t").empty());
   CHECK(trim("", " ").empty());
   CHECK(trim("\na ", " ") == "\na");
+}
+
+TEST_CASE("words are what stands between blanks", "[core][text]") {
+  const std::vector<std::string_view> words = {"a", "b#1", ",", "\xc3\xa4"};
+  for (const std::string_view blank : {" ", "\t\t", " \r\n"}) {
+    for (const std::string_view end : {std::string_view(), blank}) {
+      std::string text(end);
+      for (std::size_t k = 0; k < words.size(); ++k)
+        text.append(k > 0 ? blank : "").append(words[k]);
+      text += end;
+      CHECK(words_of(text, ascii_blanks) == words);
+      std::string_view rest = text;
+      for (const std::string_view word : words) CHECK(next_word(rest, ascii_blanks) == word);
+      CHECK(next_word(rest, ascii_blanks).empty());
+      CHECK(rest.empty());
+    }
+  }
+  CHECK(words_of(" \n", ascii_blanks).empty());
+  CHECK(words_of("a\vb", " ") == std::vector<std::string_view>{"a\vb"});
 }
 
 TEST_CASE("an ending is that of the name, in lower case", "[core][file_ending]") {

@@ -53,6 +53,14 @@ std::string ending_of(const std::filesystem::path& file) {
   return ending;
 }
 
+std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks) {
+  std::vector<std::string_view> words;
+  for (std::string_view word = next_word(text, blanks); !word.empty();
+       word = next_word(text, blanks))
+    words.push_back(word);
+  return words;
+}
+
 std::size_t length_of_character(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned char first = byte(0);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pliant {
 
@@ -28,6 +30,18 @@ inline std::string_view trim(std::string_view text, std::string_view blanks) {
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
+
+/// Removes the first word, up to one of `blanks`, from the front of the text; empty: it has none.
+inline std::string_view next_word(std::string_view& text, std::string_view blanks) {
+  const std::size_t begin = std::min(text.find_first_not_of(blanks), text.size());
+  const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+  const std::string_view word = text.substr(begin, end - begin);
+  text.remove_prefix(end);
+  return word;
+}
+
+/// All words of a text: parts of it.
+std::vector<std::string_view> words_of(std::string_view text, std::string_view blanks);
 
 /// The number of bytes of the first character; 0 if it is not UTF-8 (RFC 3629). Requires: not
 /// empty.

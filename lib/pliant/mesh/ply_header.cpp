@@ -27,16 +27,6 @@ std::optional<NumberType> to_type(std::string_view word) {
   return std::nullopt;
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(ascii_blanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(ascii_blanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(ascii_blanks, end);
-  }
-  return words;
-}
-
 // `property TYPE NAME` or `property list COUNT_TYPE TYPE NAME`.
 std::optional<Property> to_property(std::span<const std::string_view> words) {
   if (words.size() == 3) {
@@ -124,7 +114,7 @@ Result<Header> read_header(std::string_view bytes) {
   bool has_format = false;
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-    const auto words = words_of(bytes.substr(at, end - at));
+    const auto words = words_of(bytes.substr(at, end - at), ascii_blanks);
     const int line = ++header.line_count;
     at = std::min(end + 1, bytes.size());
     if (line == 1) {

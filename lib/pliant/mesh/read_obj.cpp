@@ -21,15 +21,6 @@ namespace {
 
 constexpr std::size_t max_errors = 20;
 
-// Removes the next word from the front of `text`; empty at its end.
-std::string_view next_word(std::string_view& text) {
-  const std::size_t begin = std::min(text.find_first_not_of(ascii_blanks), text.size());
-  const std::size_t end = std::min(text.find_first_of(ascii_blanks, begin), text.size());
-  const std::string_view word = text.substr(begin, end - begin);
-  text.remove_prefix(end);
-  return word;
-}
-
 // Whether a word begins a statement of the format, including statements that are skipped.
 bool is_keyword(std::string_view word) {
   constexpr std::string_view keywords[] = {
@@ -153,7 +144,7 @@ class ObjReader {
 
  private:
   void read_statement(std::string_view statement) {
-    const std::string_view keyword = next_word(statement);
+    const std::string_view keyword = next_word(statement, ascii_blanks);
     if (keyword.starts_with('#')) return;
     // A name goes to the end of its line, and may have a #.
     const bool is_named = keyword == "o" || keyword == "g" || keyword == "usemtl";
@@ -172,7 +163,7 @@ class ObjReader {
     } else if (keyword == "l") {
       left_out_.add("line", "lines");
     } else if (keyword == "p") {
-      while (!next_word(statement).empty()) left_out_.add("point", "points");
+      while (!next_word(statement, ascii_blanks).empty()) left_out_.add("point", "points");
     } else if (keyword == "o") {
       objects_.push_back({std::string(trim(statement, ascii_blanks)), mesh_.face_sizes.size()});
     } else if (keyword == "vn") {
@@ -182,7 +173,7 @@ class ObjReader {
     } else if (keyword == "g") {
       groups_.set(trim(statement, ascii_blanks));
     } else if (keyword == "s") {
-      const std::string_view word = next_word(statement);
+      const std::string_view word = next_word(statement, ascii_blanks);
       const auto group = word == "off" ? Shading::flat : to_integer(word).value_or(-1);
       smoothing_ = group >= 0 ? group : Shading::unsaid;
     }
@@ -197,7 +188,7 @@ class ObjReader {
   static std::array<double, 3> read_normal(std::string_view words) {
     std::array<double, 3> normal{};
     for (double& component : normal) {
-      const auto number = to_number(next_word(words));
+      const auto number = to_number(next_word(words, ascii_blanks));
       if (!number) return {};
       component = *number;
     }
@@ -209,7 +200,7 @@ class ObjReader {
   void read_vertex(std::string_view words) {
     std::array<double, 3> place{};
     for (std::size_t k = 0; k < place.size(); ++k) {
-      const std::string_view word = next_word(words);
+      const std::string_view word = next_word(words, ascii_blanks);
       const auto number = to_number(word);
       if (!number) {
         add_error(
@@ -232,8 +223,8 @@ class ObjReader {
 
   // `vt u [v [w]]`. One that cannot be parsed still counts: its corners then have no (u,v).
   void read_texture_vertex(std::string_view words) {
-    const double u = to_number(next_word(words)).value_or(not_a_number);
-    const std::string_view second = next_word(words);
+    const double u = to_number(next_word(words, ascii_blanks)).value_or(not_a_number);
+    const std::string_view second = next_word(words, ascii_blanks);
     const double v = second.empty() ? 0 : to_number(second).value_or(not_a_number);
     mesh_.uvs.push_back({u, v});
     if (!are_numbers(words, 1)) {
@@ -244,7 +235,8 @@ class ObjReader {
 
   // Whether the words are numbers, and not more of them.
   static bool are_numbers(std::string_view words, int most) {
-    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words))
+    for (std::string_view word = next_word(words, ascii_blanks); !word.empty();
+         word = next_word(words, ascii_blanks))
       if (!to_number(word) || --most < 0) return false;
     return true;
   }
@@ -288,7 +280,8 @@ class ObjReader {
 
   void read_face(std::string_view words) {
     const std::size_t first_corner = mesh_.corner_vertices.size();
-    for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
+    for (std::string_view word = next_word(words, ascii_blanks); !word.empty();
+         word = next_word(words, ascii_blanks)) {
       const auto corner = parse_corner(word);
       if (!corner) {
         drop_corners(first_corner);

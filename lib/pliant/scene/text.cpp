@@ -77,13 +77,7 @@ Reading<double> parse_finite(std::string_view word) {
 std::string_view trimmed(std::string_view text) { return trim(text, blanks); }
 
 std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = text.find_first_not_of(blanks, end);
-  }
-  return words;
+  return pliant::words_of(text, blanks);
 }
 
 Reading<double> parse_number(std::string_view text) {
