@@ -12,6 +12,8 @@
 
 #include <Eigen/Geometry>  // cross
 
+#include "pliant/core/joined_sets.hpp"
+
 namespace pliant::cli {
 namespace {
 
@@ -51,23 +53,6 @@ std::vector<NodeFace> faces_of(const RestShape& shape) {
   return faces;
 }
 
-// Sets of nodes that faces join.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
-
-  int find(int node) {
-    while (of_[at(node)] != node) node = of_[at(node)] = of_[at(of_[at(node)])];
-    return node;
-  }
-  void join(int a, int b) { of_[at(find(a))] = find(b); }
-
- private:
-  static std::size_t at(int node) { return static_cast<std::size_t>(node); }
-
-  std::vector<int> of_;
-};
-
 // Whether each node is on an edge of one face.
 std::vector<bool> border_of(const std::vector<NodeFace>& faces, std::size_t count) {
   std::vector<std::pair<int, int>> edges;
@@ -93,13 +78,13 @@ std::vector<bool> border_of(const std::vector<NodeFace>& faces, std::size_t coun
 MeshPiece largest_piece(const RestShape& shape) {
   const auto count = static_cast<std::size_t>(shape.rest.rows());
   const std::vector<NodeFace> faces = faces_of(shape);
-  Sets sets(count);
+  JoinedSets sets(count);  // of nodes that faces join
   for (const NodeFace& face : faces) {
     for (const int node : face.nodes) sets.join(node, face.nodes.front());
   }
   std::map<int, double> areas;
   for (const NodeFace& face : faces)
-    areas[sets.find(face.nodes.front())] += face.area_normal.norm();
+    areas[sets.first_of(face.nodes.front())] += face.area_normal.norm();
   MeshPiece piece;
   piece.is_grid = shape.grid.has_value();
   std::vector<int> nodes;
@@ -121,7 +106,7 @@ MeshPiece largest_piece(const RestShape& shape) {
       for (const int node : face.nodes) is_used[static_cast<std::size_t>(node)] = true;
     }
     for (int node = 0; node < static_cast<int>(count); ++node) {
-      if (is_used[static_cast<std::size_t>(node)] && sets.find(node) == largest)
+      if (is_used[static_cast<std::size_t>(node)] && sets.first_of(node) == largest)
         nodes.push_back(node);
     }
     is_border = border_of(faces, count);

@@ -2,36 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "pliant/core/joined_sets.hpp"
 #include "pliant/mesh/point_tree.hpp"
 
 namespace pliant {
 namespace {
-
-// Sets of points; the first of a set stands for it.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parents_(count) {
-    std::iota(parents_.begin(), parents_.end(), 0);
-  }
-
-  int first_of(int point) {
-    while (parents_[point] != point) {
-      parents_[point] = parents_[parents_[point]];
-      point = parents_[point];
-    }
-    return point;
-  }
-
-  void join(int a, int b) {
-    a = first_of(a), b = first_of(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parents_;
-};
 
 double squared(const Vector3d& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
 
@@ -106,7 +82,7 @@ class Welding {
 
   const PointTree& tree_;
   double squared_distance_, distance_;
-  Sets sets_;
+  JoinedSets sets_;
 };
 
 }  // namespace
