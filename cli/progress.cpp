@@ -28,10 +28,6 @@ std::string bar_of(int done, int count) {
                      done, count);
 }
 
-std::string cycle_text(std::string_view surface, int round, double gap) {
-  return fmt::format("looking for the cycle of \"{}\": round {}, gap {:.1e}", surface, round, gap);
-}
-
 bool is_visible(bool is_quiet) { return !is_quiet && isatty(STDERR_FILENO) != 0; }
 
 }  // namespace
@@ -89,22 +85,16 @@ std::function<void(const std::string&, int, int)> WorkLine::report() {
 std::function<void(std::string_view, int, double)> WorkLine::report_of_rounds() {
   if (!is_shown_) return {};
   return [this](std::string_view surface, int round, double gap) {
-    tell(cycle_text(surface, round, gap));
+    tell(fmt::format("looking for the cycle of \"{}\": round {}, gap {:.1e}", surface, round, gap));
   };
 }
 
 std::function<void(std::string_view, int, double)> round_line(bool is_quiet) {
-  if (!is_visible(is_quiet)) return {};
-  struct Line {
-    std::mutex mutex;  // several surfaces are solved in parallel
-    std::chrono::steady_clock::time_point drawn = {};
-  };
-  return [line = std::make_shared<Line>()](std::string_view surface, int round, double gap) {
-    const std::lock_guard lock(line->mutex);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - line->drawn < std::chrono::milliseconds(100)) return;
-    line->drawn = now;
-    draw(cycle_text(surface, round, gap));
+  const auto line = std::make_shared<WorkLine>(is_quiet);
+  auto report = line->report_of_rounds();
+  if (!report) return {};
+  return [line, report](std::string_view surface, int round, double gap) {
+    report(surface, round, gap);
   };
 }
 
