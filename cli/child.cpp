@@ -198,7 +198,7 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
   const auto stop = [&] {
     kill(-*id, SIGKILL);
     (void)code_of(*id, {});
-    return fail(ErrorCode::Interrupted, "interrupted");
+    return interrupted();
   };
   while (output.reading.get() >= 0 || errors.reading.get() >= 0) {
     if (run.should_stop && run.should_stop()) return stop();

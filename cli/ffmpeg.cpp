@@ -66,7 +66,7 @@ void Ffmpeg::close_input() {
 
 Result<void> Ffmpeg::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (was_interrupted()) return interrupted();
     pollfd ready = {input_, POLLOUT, 0};
     if (poll(&ready, 1, static_cast<int>(std::chrono::milliseconds(100).count())) <= 0) continue;
     const ssize_t written = ::write(input_, bytes.data(), bytes.size());
@@ -83,7 +83,7 @@ Result<void> Ffmpeg::finish() {
   close_input();
   for (;;) {
     if (const auto code = program_.code()) return *code == 0 ? Result<void>() : failure();
-    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (was_interrupted()) return interrupted();
     std::this_thread::sleep_for(poll_pause);
   }
 }

@@ -116,7 +116,7 @@ struct MovieWriter::State {
     std::string piece(1 << 20, '\0');
     std::size_t size = 0;
     while (movie) {
-      if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+      if (was_interrupted()) return interrupted();
       movie.read(piece.data(), static_cast<std::streamsize>(piece.size()));
       const auto count = static_cast<std::size_t>(movie.gcount());
       if (auto written = file.write(std::string_view(piece).substr(0, count)); !written) {

@@ -228,7 +228,7 @@ Result<std::string> active_job(const std::string& script, const std::optional<Sl
       has_ending |= *activity == Activity::Ending;
     }
     if (!has_ending || std::chrono::steady_clock::now() - begin > patience) return std::string();
-    if (!sleep_for(500ms)) return fail(ErrorCode::Interrupted, "interrupted");
+    if (!sleep_for(500ms)) return interrupted();
   }
 }
 
@@ -289,7 +289,7 @@ Result<void> wait_for(const SlurmJob& job, const std::function<void(bool)>& mean
     times_gone = *presence == Presence::Gone ? times_gone + 1 : 0;
     if (times_gone == certain) return {};
     if (!sleep_for(times_gone > 0 ? 1'000ms : pause, [&] { meanwhile(has_run); }))
-      return fail(ErrorCode::Interrupted, "interrupted");
+      return interrupted();
     pause = std::min(pause * 3 / 2, longest_pause);
   }
 }

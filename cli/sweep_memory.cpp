@@ -64,13 +64,13 @@ Result<std::size_t> memory_of_part(const Sweep& sweep, int threads,
   };
   for (const std::size_t take : chosen_takes(count, sweep.scenes().size())) {
     auto simulation = simulation_of(sweep, take, run);
-    if (is_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (is_interrupted()) return interrupted();
     is_short |= !simulation && simulation.error().code == ErrorCode::OutOfMemory;
     if (simulation && is_larger(*simulation)) largest = *std::move(simulation);
   }
   deadline = std::chrono::steady_clock::now() + patience;
   const std::size_t of_take = largest ? most_reserved(*largest) : 0;
-  if (is_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_interrupted()) return interrupted();
   const std::size_t of_takes =
       is_short ? options.max_memory
                : std::min(options.max_memory,

@@ -108,7 +108,7 @@ int print_plan(const SweepRequest& request, const SweepRunOptions& options) {
   const auto written =
       write_table(*sweep, request.scenes, {}, [](std::string_view text) -> Result<void> {
         print_bytes(stdout, text);
-        if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+        if (was_interrupted()) return interrupted();
         return {};
       });
   return written ? exit_done : report(written.error());

@@ -316,7 +316,7 @@ class Submission {
   }
 
   Result<void> send(const std::vector<std::string>& words) {
-    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (was_interrupted()) return interrupted();
     const auto job = submit(words);
     if (!job) return fail(job.error());
     // Of two submissions at once each sees the other's job now: the one with the lesser number

@@ -140,7 +140,7 @@ Result<void> write_view(const SweepViewOptions& options, const std::optional<std
   };
   if (auto added = add(options.out, made); !added) return added;
   if (auto added = add(options.png, picture); !added) return added;
-  if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (was_interrupted()) return interrupted();
   for (AtomicFile& file : files) {
     if (auto committed = file.commit(); !committed) return committed;
   }

@@ -212,7 +212,7 @@ Result<std::string> PictureTaker::take() {
   constexpr auto patience = 120s;
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < patience) {
-    if (was_interrupted()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (was_interrupted()) return interrupted();
     if (auto picture = state_->server.take_picture()) {
       if (*picture) return *std::move(picture);
       return fail(ErrorCode::Unwritable,

@@ -42,10 +42,10 @@ Result<std::string> deflated(std::string_view bytes, const StopRequest& should_s
     status = deflate(&stream, given == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
     bytes.remove_prefix(given - stream.avail_in);
     packed.append(chunk.data(), chunk.size() - stream.avail_out);
-    is_stopped = should_stop && should_stop();
+    is_stopped = pliant::is_stopped(should_stop);
   }
   deflateEnd(&stream);
-  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_stopped) return interrupted();
   if (status != Z_STREAM_END) return no_memory();
   return packed;
 }

@@ -128,7 +128,7 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
   const auto is_stopped = [&] { return run.should_stop && run.should_stop(); };
   Arrays arrays;
   const std::vector<std::size_t> rows = table_rows(folder, status, plan.takes, run.should_stop);
-  if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_stopped()) return interrupted();
   Json failures = Json::array();
   for (const auto& [take, reason] : bake.failed)
     failures.push_back({{"take", take}, {"text", reason}});
@@ -144,7 +144,7 @@ Result<SweepBake> bake_sweep(const SweepFolder& folder, const SweepStatus& statu
                      {"shapes", shapes.finish(arrays)},
                      {"failures", std::move(failures)},
                      {"conflicts", conflicts_of(status)}};
-  if (is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_stopped()) return interrupted();
   auto packed = deflated(joined(head, arrays.take()), run.should_stop);
   if (!packed) return fail(packed.error());
   bake.packed = *std::move(packed);

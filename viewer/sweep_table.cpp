@@ -49,7 +49,7 @@ std::vector<Texts> texts_of(const SweepFolder& folder, const SweepStatus& status
   const std::size_t first = scenes.size() > 1 ? 1 : 0;
   std::vector<Texts> columns(first + takes.paths().size() + 1);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (row % rows_between_stops == 0 && should_stop && should_stop()) break;
+    if (row % rows_between_stops == 0 && pliant::is_stopped(should_stop)) break;
     const std::size_t take = rows[row];
     if (first > 0) columns.front().add(scenes[takes.scene_of(take)]);
     const auto texts = takes.texts(take);

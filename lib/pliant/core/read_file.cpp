@@ -47,11 +47,11 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   bool is_stopped = false;
   const auto read = read_pieces(file, [&](std::string_view piece) {
     bytes += piece;
-    is_stopped = should_stop && should_stop();
+    is_stopped = pliant::is_stopped(should_stop);
     return bytes.size() <= max_bytes && !is_stopped;
   });
   if (!read) return fail(read.error());
-  if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+  if (is_stopped) return interrupted();
   if (bytes.size() > max_bytes) {
     return cannot_read(file, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
   }

@@ -30,7 +30,7 @@ struct RunContext {
   StopRequest should_stop = {};    ///< called from any thread; empty: never stops
   ProgressReport progressed = {};  ///< called from the thread that works; empty: not called
 
-  bool is_stopped() const { return should_stop && should_stop(); }
+  bool is_stopped() const { return pliant::is_stopped(should_stop); }
 };
 
 }  // namespace pliant

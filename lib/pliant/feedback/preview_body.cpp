@@ -87,7 +87,7 @@ Result<void> PreviewBody::check_faults() const {
 
 Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
   PLIANT_EXPECTS(real_ != nullptr);
-  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (context_.is_stopped()) return interrupted();
   body(is_plain).reset();
   auto plan = body(is_plain).look(inputs);
   if (auto sound = check_faults(); !sound) return fail(sound.error());

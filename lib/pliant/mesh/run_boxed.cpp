@@ -216,7 +216,7 @@ Result<BoxedEnd> wait_for(Child& child, const Descriptor& pipe, const BoxLimits&
   bool is_answering = true;
   std::chrono::microseconds pause{50};
   for (;;) {
-    if (should_stop && should_stop()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (pliant::is_stopped(should_stop)) return interrupted();
     if (patience.is_over()) return BoxedEnd{BoxedEnd::How::TimedOut, 0, std::move(answer)};
     if (is_answering) {
       is_answering = read_some(pipe, answer);

@@ -99,7 +99,7 @@ class SlowestVibration {
     }
     int patience = first_patience;
     for (int pass = 0; pass < most_passes && !block.empty(); ++pass) {
-      if (plate_.context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+      if (plate_.context.is_stopped()) return interrupted();
       auto next = extend(std::move(block));
       if (!next) return fail(next.error());
       const SmallModes modes = small_modes(projected_, basis_.size());

@@ -26,7 +26,7 @@ Result<void> run_steps(const RunContext& context, const TimeSteps& steps, Motion
   Field& v = motion.velocity;
   const double dt = steps.solved_length();
   for (int step = 0; step < steps.count; ++step) {
-    if (context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context.is_stopped()) return interrupted();
     auto next = solve(std::as_const(w), std::as_const(v));
     if (!next) return fail(next.error());
     const auto moved = next->topRows(w.rows());

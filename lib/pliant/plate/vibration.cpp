@@ -189,7 +189,7 @@ Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,
   basis.col(0) = shape / length;
   Eigen::Index count = 1;
   for (;; ++count) {
-    if (plate.context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (plate.context.is_stopped()) return interrupted();
     Field right_hand_side = Field::Zero(shape.size(), 3);
     right_hand_side.col(0) = plate.masses.cwiseProduct(basis.col(count - 1));
     auto solved = plate.solve(right_hand_side);

@@ -191,7 +191,7 @@ Result<void> AnimatedShape::check(int first, int last, const RunContext& context
   const auto most = std::ssize(frames_) - 1;
   for (auto number = std::max<std::ptrdiff_t>(begin - 1, 0); number <= std::min(end, most);
        ++number) {
-    if (context.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context.is_stopped()) return interrupted();
     const std::lock_guard lock(mutex_);
     if (auto read = sample(static_cast<int>(number)); !read) return fail(read.error());
   }

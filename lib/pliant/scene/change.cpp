@@ -359,7 +359,7 @@ Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
   const bool is_whole = change.kind == SceneChange::Kind::Set && at->path.part.empty();
   const Adjust adjust(at->path, one);
   for (std::size_t k = 1; k < texts.size(); ++k) {
-    if (k % 256 == 0 && should_stop && should_stop())
+    if (is_stopped(should_stop, k))
       return fail(ErrorCode::Interrupted, "interrupted before the first take");
     if (is_file) {
       if (auto made = check_fully(texts[k]); !made) return made;

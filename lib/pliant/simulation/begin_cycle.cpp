@@ -34,7 +34,7 @@ Result<BodyState> Bodies::find_cycle(std::size_t index) {
                    .memory = context_.memory};
   round.advance = [&](int frame) -> Result<void> {
     step.frame = first + frame;
-    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context_.is_stopped()) return interrupted();
     if (!is_solved_at(scene_, surface, step.frame)) return {};
     inputs = sample_inputs(scene_, sampling_, index, step.frame, std::move(inputs));
     auto stepped = body.step(inputs.body);

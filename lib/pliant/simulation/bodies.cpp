@@ -214,7 +214,7 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   if (kept) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
     if (context_.is_stopped()) {
-      step.outcome = fail(ErrorCode::Interrupted, "interrupted");
+      step.outcome = interrupted();
       return;
     }
     if (auto stored = kept->read(index, frame, step.inputs, body)) {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/sweep/stops.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 

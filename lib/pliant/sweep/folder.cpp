@@ -12,13 +12,13 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/states/engine.hpp"
 #include "pliant/sweep/log.hpp"
 #include "pliant/sweep/own_folder.hpp"
-#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/sweep_file.hpp"
 
 namespace pliant {

@@ -9,8 +9,8 @@
 
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/inputs.hpp"
-#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {

@@ -19,9 +19,9 @@
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/sweep/own_folder.hpp"
-#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {

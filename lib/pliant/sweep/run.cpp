@@ -11,11 +11,11 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/shelf.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/simulation.hpp"
-#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/sweep.hpp"
 
 namespace pliant {

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/change.hpp"
 #include "pliant/scene/change_texts.hpp"
-#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {

@@ -14,10 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/writer.hpp"
-#include "pliant/sweep/stops.hpp"
 
 namespace pliant {
 namespace {

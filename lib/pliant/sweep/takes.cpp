@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/sweep/csv.hpp"
 #include "pliant/sweep/sobol.hpp"
-#include "pliant/sweep/stops.hpp"
 #include "pliant/sweep/values.hpp"
 
 namespace pliant {

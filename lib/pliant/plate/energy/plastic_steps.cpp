@@ -200,7 +200,7 @@ class SettlingSteps final : public PlasticSteps {
   }
 
   Result<void> solve(const Field& forces, Field& solution) {
-    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context_.is_stopped()) return interrupted();
     return plate_.solve(components_, forces, solution);
   }
   Result<void> solve(const Field& forces) { return solve(forces, x_); }

@@ -87,8 +87,8 @@ Result<void> ComplexFactor::factorize(const FactorPattern& pattern, const Sparse
   std::vector<Complex> row_values(static_cast<std::size_t>(size));
   std::vector<int> seen(static_cast<std::size_t>(size), -1), path(seen), stack(seen);
   for (int row = 0; row < size; ++row) {
-    if (row % 64 == 0 && should_stop && should_stop()) {
-      return fail(ErrorCode::Interrupted, "interrupted");
+    if (row % 64 == 0 && pliant::is_stopped(should_stop)) {
+      return interrupted();
     }
     seen[row] = row;
     int top = size;

@@ -270,7 +270,7 @@ Field SparseMotion::product(const Field& w) const {
 // Leaves x of each pole in `solutions_`. `lack` is K w - f, `growth` f', per second.
 Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, const Field& lack,
                                  const Field& growth, const Field& v) {
-  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (context_.is_stopped()) return interrupted();
   const int size = pattern_->size();
   const auto masses = static_cast<int>(matrix_->inertia.size());
   for_each_pole([&](std::size_t pole) {

@@ -328,7 +328,7 @@ void SchwarzPlate::turn_direction(const Sums& factor) {
 }
 
 Result<void> SchwarzPlate::correct() {
-  if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+  if (context_.is_stopped()) return interrupted();
   if (rounds_left_-- == 0) {
     return fail(ErrorCode::SolverFailed,
                 fmt::format("the plate of {} unknowns is not solved after {} rounds over its {} "

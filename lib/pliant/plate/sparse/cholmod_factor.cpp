@@ -69,7 +69,7 @@ class CholmodFactor final : public SparseFactor {
       const auto size = static_cast<std::size_t>(matrix.rows());
       double beta[2] = {0, 0};
       for (std::size_t row = 0; row < size && common_.status == CHOLMOD_OK; row += rows_at_a_time) {
-        is_stopped = should_stop && should_stop();
+        is_stopped = pliant::is_stopped(should_stop);
         if (is_stopped) break;
         cholmod_rowfac(ordered, nullptr, beta, row, std::min(size, row + rows_at_a_time),
                        factor_.get(), &common_);
@@ -77,7 +77,7 @@ class CholmodFactor final : public SparseFactor {
     }
     cholmod_sparse* rest = ordered;
     cholmod_free_sparse(&rest, &common_);
-    if (is_stopped) return fail(ErrorCode::Interrupted, "interrupted");
+    if (is_stopped) return interrupted();
     if (auto checked = check(matrix.rows()); !checked) return checked;
     // CHOLMOD factors an indefinite matrix as LDL^T without an error; D, the first entry of each
     // column of the factor, shows whether the matrix was definite. !(d > 0) is true for NaN too.

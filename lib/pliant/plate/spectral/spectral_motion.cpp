@@ -336,7 +336,7 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     return size_of_motion(std::sqrt(displacement), swings ? std::sqrt(speed) : 0, steps.length);
   };
   for (bool is_done = false; !is_done;) {
-    if (context_.is_stopped()) return fail(ErrorCode::Interrupted, "interrupted");
+    if (context_.is_stopped()) return interrupted();
     const SubStep length{choice.length()};
     const auto tables = tables_for(length.length);
     if (!tables) return fail(tables.error());
@@ -355,7 +355,7 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     const bool looks_ahead = choice.looks_ahead(doubt, before, after);
     if (!looks_ahead && !choice.accepts(doubt, std::max(before, after))) continue;
     if (!finish(choice.count(), length, **tables)) {
-      return fail(ErrorCode::Interrupted, "interrupted");
+      return interrupted();
     }
     is_done = true;
     if (!looks_ahead) continue;

@@ -149,7 +149,7 @@ class SpectralSolver final : public PlateSolver {
     const bool is_done = mirror.doubles()
                              ? advance_doubled(mirror, inertia, steps, problem.watch, state)
                              : advance_alone(grid, inertia, steps, problem.watch, state);
-    if (!is_done) return fail(ErrorCode::Interrupted, "interrupted");
+    if (!is_done) return interrupted();
     clear_rim(problem.outline, state.velocity);
     return state;
   } catch (const std::bad_alloc&) {
