@@ -7,12 +7,18 @@
 
 #include <unistd.h>
 
+#include "pliant/core/open_file.hpp"
+
 namespace pliant {
 
 namespace {
 
 tl::unexpected<Error> cannot_read(const std::filesystem::path& file, const std::string& reason) {
   return fail(ErrorCode::Unreadable, "cannot read the file: " + reason, file.string());
+}
+
+tl::unexpected<Error> too_large(const std::filesystem::path& file, std::size_t max_bytes) {
+  return cannot_read(file, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
 }
 
 }  // namespace
@@ -41,8 +47,24 @@ Result<void> read_pieces(const std::filesystem::path& file,
   return {};
 }
 
-Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes,
-                              const StopRequest& should_stop) {
+Result<void> read_pieces(const OpenFile& file, const std::function<bool(std::string_view)>& take) {
+  std::string chunk(std::size_t{1} << 20, '\0');
+  off_t offset = 0;
+  while (true) {
+    const ssize_t count = pread(file.descriptor(), chunk.data(), chunk.size(), offset);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return cannot_read(file.name(), std::strerror(errno));
+    if (count == 0) return {};
+    if (!take(std::string_view(chunk).substr(0, static_cast<std::size_t>(count)))) return {};
+    offset += count;
+  }
+}
+
+namespace {
+
+template <class File>
+Result<std::string> read_all(const File& file, const std::filesystem::path& name,
+                             std::size_t max_bytes, const StopRequest& should_stop) {
   std::string bytes;
   bool is_stopped = false;
   const auto read = read_pieces(file, [&](std::string_view piece) {
@@ -52,10 +74,21 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
   });
   if (!read) return fail(read.error());
   if (is_stopped) return interrupted();
-  if (bytes.size() > max_bytes) {
-    return cannot_read(file, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB");
-  }
+  if (bytes.size() > max_bytes) return too_large(name, max_bytes);
   return bytes;
+}
+
+}  // namespace
+
+Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes,
+                              const StopRequest& should_stop) {
+  return read_all(file, file, max_bytes, should_stop);
+}
+
+Result<std::string> read_file(const OpenFile& file, std::size_t max_bytes,
+                              const StopRequest& should_stop) {
+  if (file.size() > max_bytes) return too_large(file.name(), max_bytes);
+  return read_all(file, file.name(), max_bytes, should_stop);
 }
 
 }  // namespace pliant
