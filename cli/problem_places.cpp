@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/scene/markup.hpp"
@@ -212,14 +213,22 @@ Stretch ProblemPlaces::Text::without_blanks(const Stretch& in) const {
   return {begin, begin + inner.size()};
 }
 
-ProblemPlaces::ProblemPlaces() = default;
+ProblemPlaces::ProblemPlaces(std::vector<std::string> scenes, std::string root)
+    : scenes_(std::move(scenes)), root_(std::move(root)) {}
 ProblemPlaces::~ProblemPlaces() = default;
 
 std::optional<ProblemPlace> ProblemPlaces::find(const std::string& file, int line,
                                                 std::string_view message) {
   const auto [found, is_new] = texts_.try_emplace(file);
   if (is_new) {
-    if (auto text = read_file(file, largest_scene_file)) {
+    const bool is_scene = std::ranges::find(scenes_, file) != scenes_.end();
+    const auto read = [&]() -> Result<std::string> {
+      if (is_scene || root_.empty()) return read_file(file, largest_scene_file);
+      const auto opened = OpenFile::open(file, root_);
+      if (!opened) return fail(opened.error());
+      return read_file(*opened, largest_scene_file);
+    };
+    if (auto text = read()) {
       const std::size_t first = text->find_first_not_of(" \t\r\n\xEF\xBB\xBF");
       const bool is_xml = first != std::string::npos && (*text)[first] == '<';
       if (is_xml) found->second = std::make_unique<Text>(*std::move(text));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pliant::cli {
 
@@ -22,7 +23,8 @@ struct ProblemPlace {
 /// without the blanks around it. Each file is read once.
 class ProblemPlaces {
  public:
-  ProblemPlaces();
+  /// Files other than the `scenes` are read in the folder `root` or below; empty: anywhere.
+  ProblemPlaces(std::vector<std::string> scenes, std::string root);
   ~ProblemPlaces();
 
   /// Null: the file cannot be read, is no XML, or has no such line.
@@ -31,6 +33,8 @@ class ProblemPlaces {
  private:
   struct Text;
 
+  std::vector<std::string> scenes_;
+  std::string root_;
   std::map<std::string, std::unique_ptr<Text>> texts_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 struct Findings {
   Json scenes = Json::array();
   Json problems = Json::array();
-  ProblemPlaces places = {};
+  ProblemPlaces places;
 };
 
 std::string_view kind_of(ErrorCode code) {
@@ -107,7 +107,7 @@ void add_validate(CLI::App& app, ValidateOptions& options) {
 int run_validate(const ValidateOptions& options) {
   catch_interrupts();
   int worst = exit_done;
-  Findings findings;
+  Findings findings{.places = ProblemPlaces(options.scenes, options.root.value_or(""))};
   for (const std::string& file : options.scenes) {
     const int code = validate(file, options, options.is_json ? &findings : nullptr);
     worst = std::max(worst, code);

@@ -72,7 +72,8 @@ TEST_CASE("a reference that leads out of the root is refused", "[mesh][file_refe
   const Folders at;
   for (const std::string uri :
        {"../near.bin", "..%2Fnear.bin", "%2e%2e/near.bin", "../../outside.bin", "leaves.bin",
-        "stays.bin", "door/outside.bin", "door/none.bin", "../shot2/own.bin"}) {
+        "stays.bin", "door/outside.bin", "door/none.bin", "../shot2/own.bin", "dangling.bin",
+        "none/../../near.bin", "none/../../none.bin"}) {
     CAPTURE(uri);
     CHECK(at.bytes(uri) ==
           fmt::format(
@@ -83,9 +84,6 @@ TEST_CASE("a reference that leads out of the root is refused", "[mesh][file_refe
   fs::create_directory(at.inside / "shots");
   std::ofstream(at.inside / "shots" / "own.bin") << "another";
   CHECK_THAT(at.bytes("../shots/own.bin"), contains_text("which is outside"));
-  // The target of the link may be created later.
-  CHECK_THAT(at.bytes("dangling.bin"),
-             EndsWith("\"dangling.bin\", a symbolic link to a file that does not exist"));
   CHECK_THAT(at.bytes("/etc/passwd"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("%2Fetc%2Fpasswd"), contains_text("which is an absolute path"));
   CHECK_THAT(at.bytes("//host/a.bin"), contains_text("which is an absolute path"));
@@ -105,8 +103,8 @@ TEST_CASE("a reference is a regular file that can be read", "[mesh][file_referen
   CHECK_THAT(at.bytes("none.bin"),
              EndsWith("none.bin: cannot read the file: No such file or directory"));
   CHECK_THAT(at.bytes("pipe.bin"), EndsWith("it is not a regular file"));
-  CHECK_THAT(at.bytes("."), EndsWith("it is not a regular file"));
-  CHECK_THAT(at.bytes(""), EndsWith("it is not a regular file"));
+  CHECK_THAT(at.bytes("."), EndsWith("it is a folder"));
+  CHECK_THAT(at.bytes(""), EndsWith("it is a folder"));
   CHECK_THAT(at.bytes("loop.bin"), contains_text("loop.bin"));
   CHECK_FALSE(read_reference("own.bin", at.mesh, {}, 3));
   CHECK_FALSE(read_reference(std::string(100000, 'x'), at.mesh, {}, plenty));

@@ -6,6 +6,7 @@
 #include "mesh/boxed_programs.hpp"
 #include "mesh/mesh_files.hpp"
 #include "pliant/core/memory_budget.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/mesh/boxed_reader.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 Result<Mesh> misread(const std::filesystem::path& file, const std::string& what,
                      const RunContext& context = {}) {
-  return read_boxed(misbehaving(), file, what, 0, context);
+  return read_boxed(misbehaving(), OpenFile::open(file).value(), what, 0, context);
 }
 
 std::string boxed_complaint(const std::filesystem::path& file, const std::string& what) {

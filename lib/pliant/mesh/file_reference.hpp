@@ -12,7 +12,8 @@ namespace pliant {
 /// in its path. The URI is resolved in the mesh file's folder, unchanged or else with %20 and the
 /// like decoded. The file must be in the folder `root` or below it after links are resolved; an
 /// empty `root` is the mesh file's folder. Errors: InvalidInput, naming the URI: one with a scheme
-/// (file:, http:), an absolute path, a file outside `root`.
+/// (file:, http:), an absolute path, a file outside `root`. Who reads the file opens it below the
+/// root (`OpenFile`).
 Result<std::filesystem::path> find_reference(const std::string& uri,
                                              const std::filesystem::path& mesh_file,
                                              const std::filesystem::path& root);
@@ -21,11 +22,5 @@ Result<std::filesystem::path> find_reference(const std::string& uri,
 /// file, or has more than `max_bytes`.
 Result<std::string> read_reference(const std::string& uri, const std::filesystem::path& mesh_file,
                                    const std::filesystem::path& root, std::size_t max_bytes);
-
-/// Whether a file, existing or not, is in the folder `root` or below it after links are resolved;
-/// an empty `root` contains all. Errors: InvalidInput: it is outside, or a link to a file that does
-/// not exist. Like `find_reference`, it trusts those who can rename files in these folders
-/// meanwhile.
-Result<void> check_below(const std::filesystem::path& file, const std::filesystem::path& root);
 
 }  // namespace pliant

@@ -9,50 +9,31 @@
 #include <span>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/open_file.hpp"
 
 namespace pliant {
 namespace {
 
 class CacheFile final : public CacheBytes {
  public:
-  static Result<std::shared_ptr<const CacheBytes>> open(const std::filesystem::path& file) {
-    const auto unreadable = [&](const std::string& reason) {
-      return fail(ErrorCode::Unreadable, "cannot read the file: " + reason, file.string());
-    };
-    // Without O_NONBLOCK a pipe would wait for its writer.
-    const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (handle < 0) return unreadable(std::strerror(errno));
-    auto opened = std::shared_ptr<CacheFile>(new CacheFile(handle, file.string()));
-    struct stat status {};
-    if (fstat(handle, &status) != 0) return unreadable(std::strerror(errno));
-    if (S_ISDIR(status.st_mode)) return unreadable("it is a folder");
-    if (!S_ISREG(status.st_mode)) return unreadable("it is not a regular file");
-    opened->size_ = static_cast<std::uint64_t>(status.st_size);
-    return opened;
-  }
+  explicit CacheFile(OpenFile file) : file_(std::move(file)) {}
 
-  CacheFile(const CacheFile&) = delete;
-  CacheFile& operator=(const CacheFile&) = delete;
-  ~CacheFile() override { close(handle_); }
-
-  std::uint64_t size() const override { return size_; }
+  std::uint64_t size() const override { return file_.size(); }
 
   Result<void> read(std::uint64_t offset, void* to, std::size_t count) const override {
     auto* bytes = static_cast<char*>(to);
     while (count > 0) {
-      const ssize_t got = pread(handle_, bytes, count, static_cast<off_t>(offset));
+      const ssize_t got = pread(file_.descriptor(), bytes, count, static_cast<off_t>(offset));
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0)
         return fail(ErrorCode::Unreadable,
                     fmt::format("cannot read the file: {}",
                                 got < 0 ? std::strerror(errno) : "it has become shorter"),
-                    name_);
+                    file_.name());
       bytes += got;
       offset += static_cast<std::uint64_t>(got);
       count -= static_cast<std::size_t>(got);
@@ -61,11 +42,7 @@ class CacheFile final : public CacheBytes {
   }
 
  private:
-  CacheFile(int handle, std::string name) : handle_(handle), name_(std::move(name)) {}
-
-  int handle_;
-  std::string name_;
-  std::uint64_t size_ = 0;
+  OpenFile file_;
 };
 
 class CacheInMemory final : public CacheBytes {
@@ -123,12 +100,14 @@ PointCache::PointCache(std::string file, std::shared_ptr<const CacheBytes> bytes
                        CacheLayout layout)
     : file_(std::move(file)), bytes_(std::move(bytes)), layout_(std::move(layout)) {}
 
-Result<PointCache> PointCache::open(const std::filesystem::path& file) {
-  auto bytes = CacheFile::open(file);
-  if (!bytes) return fail(bytes.error());
-  auto layout = read_layout(**bytes, file);
+Result<PointCache> PointCache::open(const std::filesystem::path& file,
+                                    const std::filesystem::path& root) {
+  auto opened = OpenFile::open(file, root);
+  if (!opened) return fail(opened.error());
+  auto bytes = std::make_shared<const CacheFile>(*std::move(opened));
+  auto layout = read_layout(*bytes, file);
   if (!layout) return fail(layout.error());
-  return PointCache(file.string(), *std::move(bytes), *std::move(layout));
+  return PointCache(file.string(), std::move(bytes), *std::move(layout));
 }
 
 Result<PointCache> PointCache::of_bytes(std::string bytes, const std::filesystem::path& file) {

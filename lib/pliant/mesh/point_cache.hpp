@@ -16,9 +16,10 @@ namespace pliant {
 /// Only what is asked for is read. Thread-safe.
 class PointCache {
  public:
-  /// Reads how the file is laid out. Errors: Unreadable; InvalidInput as `read_layout`, or for a
-  /// name that ends in none of the three.
-  static Result<PointCache> open(const std::filesystem::path& file);
+  /// Reads how the file is laid out. Errors: those of `OpenFile::open`; InvalidInput as
+  /// `read_layout`, or for a name that ends in none of the three.
+  static Result<PointCache> open(const std::filesystem::path& file,
+                                 const std::filesystem::path& root = {});
 
   /// The same for the bytes of a file with this name.
   static Result<PointCache> of_bytes(std::string bytes, const std::filesystem::path& file);

@@ -14,14 +14,11 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
-#include "pliant/core/read_file.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/boxed_reader.hpp"
 #include "pliant/mesh/file_object.hpp"
@@ -263,42 +260,18 @@ Result<std::vector<FileObject>> to_objects(std::string_view answer, const std::s
   return objects;
 }
 
-class OpenFile {
- public:
-  explicit OpenFile(const std::filesystem::path& file)
-      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY)) {}
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  ~OpenFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
 // The answer of the program, which is the same of two runs.
-Result<std::string> answer_about(std::string_view program, const std::filesystem::path& file,
+Result<std::string> answer_about(std::string_view program, const OpenFile& file,
                                  const std::string& object, int uv_set, const RunContext& context) {
-  if (auto readable = check_readable(file); !readable) return fail(readable.error());
-  const OpenFile opened(file);
-  struct stat status {};
-  if (opened.descriptor() < 0 || fstat(opened.descriptor(), &status) != 0) {
-    return fail(ErrorCode::Unreadable,
-                fmt::format("cannot read the file: {}", std::strerror(errno)));
-  }
-  const auto file_bytes = static_cast<std::size_t>(status.st_size);  // 0 for a pipe
+  const auto file_bytes = static_cast<std::size_t>(file.size());
   if (file_bytes > max_bytes) {
     return fail(ErrorCode::Unreadable,
                 fmt::format("cannot read the file: it is larger than {} MiB", max_bytes >> 20));
   }
-  if (!S_ISREG(status.st_mode))
-    return fail(ErrorCode::Unreadable, "cannot read the file: it is not a regular file");
-  const std::string ending = ending_of(file);
+  const std::string ending = ending_of(file.name());
   const auto run = [&](const BoxLimits& box) {
-    return run_boxed(program, {ending.substr(1), object, std::to_string(uv_set)},
-                     opened.descriptor(), box, context.should_stop);
+    return run_boxed(program, {ending.substr(1), object, std::to_string(uv_set)}, file.descriptor(),
+                     box, context.should_stop);
   };
   const BoxLimits box = box_limits(file_bytes, MemoryShare(context.memory).available());
   BoxLimits other_box = box;
@@ -318,17 +291,17 @@ Result<std::string> answer_about(std::string_view program, const std::filesystem
 
 // What `read` makes of the answer, with the file in its error.
 template <class Read>
-auto about_file(std::string_view program, const std::filesystem::path& file,
-                const std::string& object, int uv_set, const RunContext& context, const Read& read)
+auto about_file(std::string_view program, const OpenFile& file, const std::string& object,
+                int uv_set, const RunContext& context, const Read& read)
     -> decltype(read(std::string(), std::string())) {
   const auto in_file = [&](Error error) {
-    error.file = file.string();
+    error.file = file.name();
     return fail(std::move(error));
   };
   try {
     const auto answer = answer_about(program, file, object, uv_set, context);
     if (!answer) return in_file(answer.error());
-    auto made = read(*answer, format_name(ending_of(file)));
+    auto made = read(*answer, format_name(ending_of(file.name())));
     if (!made) return in_file(made.error());
     return made;
   } catch (const std::bad_alloc&) {
@@ -350,8 +323,8 @@ BoxLimits box_limits(std::size_t file_bytes, std::size_t max_memory) {
   return {memory, 60 + 1e-6 * static_cast<double>(file_bytes), memory / 4};
 }
 
-Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& file,
-                        const std::string& object, int uv_set, const RunContext& context) {
+Result<Mesh> read_boxed(std::string_view program, const OpenFile& file, const std::string& object,
+                        int uv_set, const RunContext& context) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
   return about_file(program, file, object, uv_set, context,
                     [&](const std::string& answer, const std::string& format) {
@@ -361,12 +334,21 @@ Result<Mesh> read_boxed(std::string_view program, const std::filesystem::path& f
 
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object, int uv_set,
                          const RunContext& context) {
+  const auto opened = OpenFile::open(file);
+  if (!opened) return fail(opened.error());
+  return read_assimp(*opened, object, uv_set, context);
+}
+
+Result<Mesh> read_assimp(const OpenFile& file, const std::string& object, int uv_set,
+                         const RunContext& context) {
   return read_boxed(embedded_program(), file, object, uv_set, context);
 }
 
 Result<std::vector<FileObject>> assimp_objects(const std::filesystem::path& file,
                                                const RunContext& context) {
-  return about_file(embedded_program(), file, {}, 0, context, to_objects);
+  const auto opened = OpenFile::open(file);
+  if (!opened) return fail(opened.error());
+  return about_file(embedded_program(), *opened, {}, 0, context, to_objects);
 }
 
 }  // namespace pliant

@@ -11,6 +11,7 @@
 namespace pliant {
 
 struct FileObject;
+class OpenFile;
 
 /// The most texture-coordinate sets of a mesh in a file.
 inline constexpr int max_uv_sets = 8;
@@ -52,6 +53,8 @@ inline constexpr int max_uv_sets = 8;
 /// Thread-safe.
 Result<Mesh> read_assimp(const std::filesystem::path& file, const std::string& object = {},
                          int uv_set = 0, const RunContext& context = {});
+Result<Mesh> read_assimp(const OpenFile& file, const std::string& object, int uv_set,
+                         const RunContext& context);
 
 /// The objects of the file. Errors: as `read_assimp`.
 Result<std::vector<FileObject>> assimp_objects(const std::filesystem::path& file,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/file_reference.hpp"
 #include "pliant/mesh/gltf_accessor.hpp"
@@ -64,12 +65,19 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
 
 Result<Mesh> read_gltf(const fs::path& file, const std::string& object, int uv_set,
                        const fs::path& root, std::span<const std::string> attributes) {
+  const auto opened = OpenFile::open(file);
+  if (!opened) return fail(opened.error());
+  return read_gltf(*opened, object, uv_set, root, attributes);
+}
+
+Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_set,
+                       const fs::path& root, std::span<const std::string> attributes) {
   const auto bytes = read_file(file);
   if (!bytes) return fail(bytes.error());
   const auto read = [&](const std::string& uri, std::size_t max_bytes) {
-    return read_reference(uri, file, root, max_bytes);
+    return read_reference(uri, file.name(), root, max_bytes);
   };
-  return parse_gltf(*bytes, file.string(), read, object, uv_set, attributes);
+  return parse_gltf(*bytes, file.name(), read, object, uv_set, attributes);
 }
 
 Result<std::vector<FileObject>> gltf_objects(const fs::path& file) {
@@ -94,15 +102,13 @@ Result<std::vector<FileObject>> gltf_objects(const fs::path& file) {
   }
 }
 
-std::vector<fs::path> gltf_references(const fs::path& file, const fs::path& root) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return {};
+std::vector<fs::path> gltf_references(const OpenFile& file, const fs::path& root) {
   const auto bytes = read_file(file);
   if (!bytes) return {};
   std::vector<fs::path> files;
   try {
     for (const std::string& uri : uris_in(*bytes)) {
-      auto found = find_reference(uri, file, root);
+      auto found = find_reference(uri, file.name(), root);
       if (found && std::find(files.begin(), files.end(), *found) == files.end())
         files.push_back(*std::move(found));
     }

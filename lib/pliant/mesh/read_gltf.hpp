@@ -14,6 +14,8 @@
 
 namespace pliant {
 
+class OpenFile;
+
 /// Returns the bytes of the file that a relative URI in a glTF refers to, at most `max_bytes`.
 using ReadReference =
     std::function<Result<std::string>(const std::string& uri, std::size_t max_bytes)>;
@@ -62,13 +64,15 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
 Result<Mesh> read_gltf(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
                        std::span<const std::string> attributes = {});
+Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_set,
+                       const std::filesystem::path& root, std::span<const std::string> attributes);
 
 /// The objects of a file; their numbers are not read. Errors: as `read_gltf`.
 Result<std::vector<FileObject>> gltf_objects(const std::filesystem::path& file);
 
 /// The files with buffers of a glTF file, existing or not, each once; those that may not be read
-/// are omitted. Empty if the file is not glTF.
-std::vector<std::filesystem::path> gltf_references(const std::filesystem::path& file,
-                                                   const std::filesystem::path& root = {});
+/// are omitted. Empty if the file is not glTF, or is larger than 4 GiB.
+std::vector<std::filesystem::path> gltf_references(const OpenFile& file,
+                                                   const std::filesystem::path& root);
 
 }  // namespace pliant

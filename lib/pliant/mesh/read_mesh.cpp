@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/core/open_file.hpp"
+#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/read_assimp.hpp"
@@ -43,17 +46,32 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
                        const std::filesystem::path& root, const RunContext& context,
                        std::span<const std::string> attributes) {
   if (auto known = check_mesh_ending(file); !known) return fail(known.error());
-  const std::string ending = ending_of(file);
+  const auto opened = OpenFile::open(file);
+  if (!opened) return fail(opened.error());
+  return read_mesh(*opened, object, uv_set, root, context, attributes);
+}
+
+Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_set,
+                       const std::filesystem::path& root, const RunContext& context,
+                       std::span<const std::string> attributes) {
+  const std::string& name = file.name();
+  if (auto known = check_mesh_ending(name); !known) return fail(known.error());
+  const std::string ending = ending_of(name);
   if (!attributes.empty() && ending != ".ply" && !is_gltf(ending)) {
     return fail(
         ErrorCode::InvalidInput,
         fmt::format("a mesh of the format {} has no attribute {}; only .ply, .gltf and .glb "
                     "have numbers at vertices",
                     ending, in_quotes(attributes.front())),
-        file.string());
+        name);
   }
-  if (ending == ".obj") return with_only_set(read_obj(file, object), file, uv_set);
-  if (ending == ".ply") return with_only_set(read_ply(file, object, attributes), file, uv_set);
+  if (ending == ".obj" || ending == ".ply") {
+    const auto bytes = read_file(file);
+    if (!bytes) return fail(bytes.error());
+    auto mesh = ending == ".obj" ? parse_obj(*bytes, name, object)
+                                 : parse_ply(*bytes, name, object, attributes);
+    return with_only_set(std::move(mesh), name, uv_set);
+  }
   if (is_gltf(ending)) return read_gltf(file, object, uv_set, root, attributes);
   return read_assimp(file, object, uv_set, context);
 }
@@ -67,10 +85,10 @@ Result<std::vector<FileObject>> mesh_objects(const std::filesystem::path& file,
   return is_gltf(ending) ? gltf_objects(file) : assimp_objects(file, context);
 }
 
-std::vector<std::filesystem::path> mesh_references(const std::filesystem::path& file,
+std::vector<std::filesystem::path> mesh_references(const OpenFile& file,
                                                    const std::filesystem::path& root) {
-  return is_gltf(ending_of(file)) ? gltf_references(file, root)
-                                  : std::vector<std::filesystem::path>();
+  return is_gltf(ending_of(file.name())) ? gltf_references(file, root)
+                                         : std::vector<std::filesystem::path>();
 }
 
 }  // namespace pliant

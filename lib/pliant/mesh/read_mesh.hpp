@@ -12,6 +12,8 @@
 
 namespace pliant {
 
+class OpenFile;
+
 /// Reads one object of a mesh file with the reader for the file's ending, in any case: `read_obj`,
 /// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses `context`.
 /// `object` chooses the object if the file has several (`find_objects`); `uv_set`, counted from 0,
@@ -23,10 +25,13 @@ Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& obj
                        int uv_set = 0, const std::filesystem::path& root = {},
                        const RunContext& context = {},
                        std::span<const std::string> attributes = {});
+Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_set,
+                       const std::filesystem::path& root, const RunContext& context,
+                       std::span<const std::string> attributes);
 
 /// The files that `read_mesh` may open besides this one, existing or not: buffers of a glTF. Empty
 /// for a file that cannot be read.
-std::vector<std::filesystem::path> mesh_references(const std::filesystem::path& file,
-                                                   const std::filesystem::path& root = {});
+std::vector<std::filesystem::path> mesh_references(const OpenFile& file,
+                                                   const std::filesystem::path& root);
 
 }  // namespace pliant

@@ -6,11 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
-#include "pliant/mesh/file_reference.hpp"
 #include "pliant/replay/digest.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/run_header.hpp"
+#include "pliant/scene/read.hpp"
 
 namespace pliant {
 namespace {
@@ -49,20 +50,25 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
   }
   const std::filesystem::path file =
       given ? std::filesystem::path(*given) : folder / header.scene_file;
-  // The log may be a stranger's, whose scene tells nothing of what is outside.
-  if (!given) {
-    if (auto below = check_below(file, root); !below) return fail(below.error());
+  if (given) {
+    auto written = read_scene_text(file, root);
+    if (!written) return fail(written.error());
+    return FoundScene{*std::move(written)};
   }
+  // The log may be a stranger's, whose scene tells nothing of what is outside.
+  const auto opened = OpenFile::open(file, root);
   std::error_code ignored;
-  if (!given && !std::filesystem::exists(file, ignored)) {
+  if (!opened && opened.error().code == ErrorCode::Unreadable &&
+      !std::filesystem::exists(file, ignored)) {
     return FoundScene{
         {.file = file, .text = header.scene_text, .root = root},
         fmt::format("the scene {} does not exist; its text in the log is simulated instead",
                     printable(header.scene_file))};
   }
-  auto written = read_scene_text(file, root);
-  if (!written) return fail(written.error());
-  return FoundScene{*std::move(written)};
+  if (!opened) return fail(opened.error());
+  auto text = read_file(*opened, largest_scene_file);
+  if (!text) return fail(text.error());
+  return FoundScene{{.file = file, .text = *std::move(text), .root = root}};
 }
 
 // A recorded run, open at its first frame.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash_stream.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/plate/solver_choice.hpp"
@@ -75,12 +76,12 @@ ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs
   header.scene_text = written.text;
   header.changes = written.changes;
   for (const SceneInput& input : inputs_of(scene)) {
-    // The scene is stored as text. Reading a pipe or a device could block, or never end.
-    std::error_code ignored;
-    if (input.file == scene.origin.file || !fs::is_regular_file(input.file, ignored)) continue;
+    if (input.file == scene.origin.file) continue;  // the scene is stored as text
+    const auto opened = OpenFile::open(input.file, input.root);
+    if (!opened) continue;
     // In pieces: a cache may be larger than the memory.
     HashStream stream;
-    const auto read = read_pieces(input.file, [&](std::string_view piece) {
+    const auto read = read_pieces(*opened, [&](std::string_view piece) {
       stream.add(piece);
       return true;
     });

@@ -218,7 +218,7 @@ Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& s
     return fail(
         scene.origin.located(std::move(error), scene.origin.line_of(surface.name, "cache")));
   };
-  auto cache = PointCache::open(file.path);
+  auto cache = PointCache::open(file.path, scene.origin.root);
   if (!cache) return located(cache.error());
   const auto vertices = std::ssize(made.shape.cache_nodes());
   if (cache->vertex_count() != vertices) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/npy_grid.hpp"
@@ -45,12 +44,11 @@ class MapReader {
   Result<std::vector<double>> values_of(const MaterialMap& map) {
     if (!map.values.empty()) return of_program(map.values);
     if (!map.attribute.empty()) return of_attribute(map.attribute);
-    if (auto readable = check_mesh_file(map.file); !readable) return fail(readable.error());
-    std::error_code unknown;  // if the file has gone, reading it reports that
-    const auto size = std::filesystem::file_size(map.file, unknown);
-    if (auto taken = take_(unknown ? 0 : static_cast<std::size_t>(size)); !taken)
+    const auto opened = OpenFile::open(map.file, origin_.root);
+    if (!opened) return fail(opened.error());
+    if (auto taken = take_(static_cast<std::size_t>(opened->size())); !taken)
       return fail(taken.error());
-    const auto bytes = read_file(map.file);
+    const auto bytes = read_file(*opened);
     if (!bytes) return fail(bytes.error());
     if (ending_of(map.file) == ".npy") return of_npy(*bytes, map.file);
     return of_picture(*bytes, map.file);

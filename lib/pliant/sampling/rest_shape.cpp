@@ -12,6 +12,7 @@
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/mesh/binding.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
@@ -35,7 +36,7 @@ struct BytesToMake {
     const auto vertex_count = static_cast<std::size_t>(sheet.columns) * sheet.rows;
     return bytes_of(sheet) + bytes_to_run(vertex_count);
   }
-  std::size_t operator()(const MeshFile& file) const { return bytes_per_byte * size_of(file.path); }
+  std::size_t operator()(const MeshFile&) const { return 0; }  // known when it is open
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
   std::size_t operator()(const NurbsNet& net) const {
     const WrittenSize size = check_net(net).value();
@@ -43,23 +44,24 @@ struct BytesToMake {
                                          static_cast<std::size_t>(net.points.rows()));
   }
 
+  static std::size_t of_file(const OpenFile& file) {
+    return bytes_per_byte * static_cast<std::size_t>(file.size());
+  }
+
   // The files that a mesh file refers to; known only after reading the file, which needs memory
   // itself.
-  static std::size_t of_references(const MeshFile& file) {
+  static std::size_t of_references(const OpenFile& file, const std::string& root) {
     std::size_t bytes = 0;
-    for (const auto& reference : mesh_references(file.path, file.root)) bytes += size_of(reference);
-    return bytes_per_byte * bytes;
+    for (const auto& reference : mesh_references(file, root)) {
+      // If it cannot be opened, reading it reports that.
+      if (const auto opened = OpenFile::open(reference, root)) bytes += of_file(*opened);
+    }
+    return bytes;
   }
 
  private:
   // The file and its mesh; a reader may need the same amount twice more while reading.
   static constexpr std::size_t bytes_per_byte = 4;
-
-  static std::size_t size_of(const std::filesystem::path& file) {
-    std::error_code unknown;  // if the file does not exist, reading it reports that
-    const std::uintmax_t bytes = std::filesystem::file_size(file, unknown);
-    return unknown ? 0 : static_cast<std::size_t>(bytes);
-  }
 };
 
 // Resizes a surface's share of the memory.
@@ -202,25 +204,26 @@ class ShapeMaker {
   }
 
   Result<Mesh> make_mesh_of_shape() {
-    const auto* const file = std::get_if<MeshFile>(&surface_.shape);
-    if (file) {
-      if (auto readable = check_mesh_file(file->path); !readable)
-        return fail(at_scene(readable.error()));
-    }
-    std::size_t ahead = std::visit(BytesToMake{}, surface_.shape);
-    if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-    if (file) {
-      ahead += BytesToMake::of_references(*file);
-      if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-      auto mesh = read_mesh(file->path, file->object, file->uv_set, file->root, context_,
-                            attributes_of_maps(surface_));
-      if (!mesh) return fail(at_scene(mesh.error()));
-      return mesh;
-    }
+    if (const auto* const file = std::get_if<MeshFile>(&surface_.shape)) return read(*file);
+    if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
+      return fail(taken.error());
     if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) return make_mesh(*sheet);
     const Mesh& own = std::get<Mesh>(surface_.shape);
     if (auto checked = check_mesh(own); !checked) return fail(at_scene(checked.error()));
     return own;
+  }
+
+  Result<Mesh> read(const MeshFile& file) {
+    const auto opened = OpenFile::open(file.path, origin_.root);
+    if (!opened) return fail(at_scene(opened.error()));
+    std::size_t ahead = BytesToMake::of_file(*opened);
+    if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
+    ahead += BytesToMake::of_references(*opened, file.root);
+    if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
+    auto mesh = read_mesh(*opened, file.object, file.uv_set, file.root, context_,
+                          attributes_of_maps(surface_));
+    if (!mesh) return fail(at_scene(mesh.error()));
+    return mesh;
   }
 
   Result<RestShape> subdivided(RestShape shape, std::size_t bytes) {

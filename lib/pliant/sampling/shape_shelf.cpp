@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -68,6 +69,7 @@ bool has_same_shape(const Surface& a, const Surface& b) {
 
 struct KeptShape final : Shelf::Item {
   Surface surface;
+  std::string root;  // as in SceneOrigin
   RestShape shape;
   std::size_t bytes = 0;
 };
@@ -80,8 +82,9 @@ Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin&
   if (!context.shelf || std::holds_alternative<Mesh>(surface.shape))
     return make_rest_shape(surface, origin, context);
   const Hash key = hash_of(surface.name);
-  const auto kept = context.shelf->find<KeptShape>(
-      key, [&](const KeptShape& one) { return has_same_shape(one.surface, surface); });
+  const auto kept = context.shelf->find<KeptShape>(key, [&](const KeptShape& one) {
+    return one.root == origin.root && has_same_shape(one.surface, surface);
+  });
   if (kept) {
     MemoryShare memory(context.memory);
     if (memory.try_resize(kept->bytes)) return ReservedShape{kept->shape, std::move(memory)};
@@ -91,6 +94,7 @@ Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin&
   if (made && !kept) {
     auto shape = std::make_shared<KeptShape>();
     shape->surface = surface;
+    shape->root = origin.root;
     shape->shape = made->shape;
     shape->bytes = made->memory.bytes();
     const std::size_t bytes = shape->bytes;

@@ -13,8 +13,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/read_file.hpp"
-#include "pliant/mesh/file_reference.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/scene/change_texts.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
@@ -133,7 +132,7 @@ Result<void> settle(Scene& scene, const ValuePath& path, const Slot& slot,
     const fs::path folder = fs::path(scene.origin.file).parent_path();
     if (!file.empty()) {
       file = (folder / file).string();
-      if (auto below = check_below(file, root); !below) return below;
+      if (auto below = find_below(file, root); !below) return fail(below.error());
     }
   }
   if (slot.attribute.name == "falloff") {
@@ -333,7 +332,7 @@ Result<void> check_files(const Scene& changed, std::span<const SceneChange> chan
   for (const SceneChange& change : changes) {
     const std::string* const file = file_at(scene, change.path);
     if (!file || file->empty()) continue;
-    if (const auto readable = check_readable(*file); !readable)
+    if (const auto readable = OpenFile::open(*file, scene.origin.root); !readable)
       return refuse(fmt::format("{}: {}", change.typed(), readable.error().message));
   }
   return {};

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/scene/description.hpp"
 #include "pliant/scene/findings.hpp"
 #include "pliant/scene/rules.hpp"
@@ -17,14 +16,6 @@ bool is_name(std::string_view text) {
   };
   const auto is_later = [&](char c) { return is_first(c) || c == '-' || (c >= '0' && c <= '9'); };
   return !text.empty() && is_first(text.front()) && std::all_of(text.begin(), text.end(), is_later);
-}
-
-Result<void> check_mesh_file(const std::filesystem::path& file) {
-  if (auto readable = check_readable(file); !readable) return readable;
-  std::error_code status_error;
-  if (std::filesystem::is_regular_file(file, status_error)) return {};
-  return fail(ErrorCode::Unreadable, "cannot read the file: it is not a regular file",
-              file.string());
 }
 
 Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,

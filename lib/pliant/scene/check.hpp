@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,10 +19,6 @@ bool is_name(std::string_view text);
 /// `Simulation::make` checks the channels over the frames. Returns all problems, in the order of
 /// their lines if known.
 std::vector<Error> check_scene(const Scene& scene);
-
-/// Checks that a mesh file exists, is readable, and is a regular file: a pipe or a device might
-/// never end. Errors: Unreadable.
-Result<void> check_mesh_file(const std::filesystem::path& file);
 
 /// The error (Unreadable) of a reader of meshes or caches as a problem of the scene: it names the
 /// surface, and the line of the attribute by which the scene names the file.

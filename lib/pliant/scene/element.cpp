@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
-#include "pliant/mesh/file_reference.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/scene/artist_words.hpp"
 #include "pliant/scene/expand.hpp"
 #include "pliant/scene/nearest.hpp"
@@ -206,7 +206,7 @@ void locate_file(const tinyxml2::XMLElement& element, Slot& row, const std::stri
                  const std::string& named_by, std::string& path, SceneFile& file) {
   if (row.line == 0 || !row.is_sound) return;
   const std::string written = std::exchange(path, (file.folder_at(row.line) / path).string());
-  if (const auto below = check_below(path, file.root); !below) {
+  if (const auto below = find_below(path, file.root); !below) {
     row.is_sound = false;
     return file.findings.add_problem(
         row.line, value_problem(element, row.attribute.name, written, below.error().message));

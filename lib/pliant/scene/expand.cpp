@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
-#include "pliant/scene/confined.hpp"
 #include "pliant/scene/definitions.hpp"
 #include "pliant/scene/element_text.hpp"
 #include "pliant/scene/expansion_rules.hpp"
@@ -512,9 +512,26 @@ bool Expander::expand_file(OpenText& text, const ElementPlace& element, const fs
 }  // namespace
 
 TextFiles files_on_disk(const fs::path& root) {
-  return {.identify = [root](const fs::path& path) { return identify_file(path, root); },
-          .read = [](const fs::path& path,
-                     std::size_t most_bytes) { return read_file(path, most_bytes); }};
+  const auto last = std::make_shared<std::optional<OpenFile>>();
+  const auto open = [root, last](const fs::path& path) -> Result<void> {
+    if (*last && (*last)->name() == path.string()) return {};
+    last->reset();
+    auto opened = OpenFile::open(path, root);
+    if (!opened) return fail(opened.error());
+    last->emplace(*std::move(opened));
+    return {};
+  };
+  const auto identify = [last, open](const fs::path& path) -> Result<std::string> {
+    last->reset();
+    if (auto opened = open(path); !opened) return fail(opened.error());
+    return (*last)->identity();
+  };
+  const auto read = [last, open](const fs::path& path,
+                                 std::size_t most_bytes) -> Result<std::string> {
+    if (auto opened = open(path); !opened) return fail(opened.error());
+    return read_file(**last, most_bytes);
+  };
+  return {.identify = identify, .read = read};
 }
 
 std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,

@@ -39,7 +39,8 @@ struct TextFiles {
   std::function<Result<std::string>(const std::filesystem::path&, std::size_t most_bytes)> read;
 };
 
-/// Regular files on the disk, in the folder `root` or below; empty: anywhere.
+/// Regular files on the disk, in the folder `root` or below; empty: anywhere. What is read is the
+/// file that was identified, if that was the last one.
 TextFiles files_on_disk(const std::filesystem::path& root);
 
 /// A text of a file before it is expanded.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/read_mesh.hpp"
 #include "pliant/scene/expand.hpp"
@@ -14,26 +15,29 @@ namespace pliant {
 std::vector<SceneInput> inputs_of(const Scene& scene) {
   std::vector<SceneInput> inputs;
   std::set<std::filesystem::path> seen;
-  const auto add = [&](std::filesystem::path file, std::string_view role) {
+  const auto add = [&](std::filesystem::path file, std::string_view role, const std::string& root) {
     const bool is_new = seen.insert(file).second;
-    if (is_new) inputs.push_back({std::move(file), role});
+    if (is_new) inputs.push_back({std::move(file), role, root});
     return is_new;
   };
-  if (!scene.origin.file.empty()) add(scene.origin.file, "the scene");
+  const std::string& root = scene.origin.root;
+  if (!scene.origin.file.empty()) add(scene.origin.file, "the scene", {});
   if (scene.origin.files) {
     for (const SceneText& text : scene.origin.files->texts()) {
-      if (text.parent != SceneText::none) add(text.file, "a file that the scene includes");
+      if (text.parent != SceneText::none) add(text.file, "a file that the scene includes", root);
     }
   }
   for (const Surface& surface : scene.surfaces) {
-    if (surface.is_animated()) add(surface.cache.path, "a cache of the scene");
+    if (surface.is_animated()) add(surface.cache.path, "a cache of the scene", root);
     for (const MaterialMap& map : surface.maps) {
-      if (!map.file.empty()) add(map.file, "a map of the scene");
+      if (!map.file.empty()) add(map.file, "a map of the scene", root);
     }
     const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (!mesh || !add(mesh->path, "a mesh of the scene")) continue;
-    for (auto& file : mesh_references(mesh->path, mesh->root))
-      add(std::move(file), "a file that a mesh of the scene refers to");
+    if (!mesh || !add(mesh->path, "a mesh of the scene", root)) continue;
+    const auto opened = OpenFile::open(mesh->path, root);
+    if (!opened) continue;
+    for (auto& file : mesh_references(*opened, mesh->root))
+      add(std::move(file), "a file that a mesh of the scene refers to", mesh->root);
   }
   return inputs;
 }

@@ -14,6 +14,7 @@ struct SceneInput {
   /// "the scene", "a file that the scene includes", "a mesh of the scene", "a cache of the scene",
   /// "a map of the scene", "…that a mesh … refers to"
   std::string_view role;
+  std::filesystem::path root = {};  ///< must contain it; empty: it may be anywhere
 };
 
 /// All files that reading a scene and its meshes opens: the scene's own, if it came from one, those

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/channels.hpp"
@@ -78,7 +79,7 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
   }
   if (file.findings.problem_count() == 0) return;
   for (const NamedMesh& mesh : file.meshes)
-    if (const auto readable = check_mesh_file(mesh.path); !readable)
+    if (const auto readable = OpenFile::open(mesh.path, file.root); !readable)
       file.findings.add_problem(
           mesh.line,
           unreadable_mesh(readable.error(), mesh.surface, scene.origin, mesh.attribute).message);
@@ -183,6 +184,7 @@ Result<Scene> xml::parse_scene_of(std::string_view text, const std::string& name
   std::optional<Scene> scene = read_document(document, file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
   scene->origin.file = name;
+  scene->origin.root = root;
   if (file.files && file.files->texts().size() > 1) scene->origin.files = std::move(file.files);
   scene->notes = file.findings.notes();
   return std::move(*scene);

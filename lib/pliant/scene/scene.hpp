@@ -293,6 +293,9 @@ struct SceneOrigin {
   std::string file;                   ///< the name given by the caller
   std::vector<SceneLine> lines;       ///< in the order of `part`, each part once
   std::optional<LineMap> files = {};  ///< absent: nothing is included
+  /// The folder that must contain all files that the scene leads to, whenever they are opened;
+  /// empty: they may be anywhere.
+  std::string root = {};
 
   /// The file and line of a line of the expanded text.
   ScenePlace place_at(int line) const;

@@ -1,13 +1,15 @@
 #include "pliant/sweep/input_hashes.hpp"
 
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "pliant/core/hash_stream.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/inputs.hpp"
@@ -15,7 +17,7 @@
 namespace pliant {
 namespace {
 
-Result<Hash> hash_of_file(const std::string& file, const StopRequest& should_stop) {
+Result<Hash> hash_of_file(const OpenFile& file, const StopRequest& should_stop) {
   HashStream stream;
   bool is_stopped = false;
   const auto read = read_pieces(file, [&](std::string_view piece) {
@@ -26,16 +28,6 @@ Result<Hash> hash_of_file(const std::string& file, const StopRequest& should_sto
   if (!read) return fail(read.error());
   if (is_stopped) return interrupted();
   return stream.hash();
-}
-
-// Changes whenever the file does, as far as the system knows; empty: there is none. A pipe or a
-// device is no input that can be read again.
-std::string stamp_of(const std::string& file) {
-  struct stat found = {};
-  if (stat(file.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return {};
-  return fmt::format("{} {} {} {}.{} {}.{}", found.st_dev, found.st_ino, found.st_size,
-                     found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_ctim.tv_sec,
-                     found.st_ctim.tv_nsec);
 }
 
 // All that decides which files a scene leads to, beside its own text.
@@ -60,13 +52,13 @@ InputHashes::InputHashes(std::vector<InputHash> files) {
 InputHashes::InputHashes(InputHashes&& other) noexcept
     : files_(std::move(other.files_)), inputs_(std::move(other.inputs_)) {}
 
-const std::vector<std::string>& InputHashes::files_of(const Scene& scene) {
+const std::vector<SceneInput>& InputHashes::files_of(const Scene& scene) {
   const auto [found, is_new] = inputs_.try_emplace(names_in(scene));
   if (!is_new) return found->second;
-  for (const SceneInput& input : inputs_of(scene)) {
+  for (SceneInput& input : inputs_of(scene)) {
     const bool is_text =
         input.role == "the scene" || input.role == "a file that the scene includes";
-    if (!is_text) found->second.push_back(input.file.string());
+    if (!is_text) found->second.push_back(std::move(input));
   }
   return found->second;
 }
@@ -74,12 +66,14 @@ const std::vector<std::string>& InputHashes::files_of(const Scene& scene) {
 Result<void> InputHashes::add(const Scene& scene, const StopRequest& should_stop) {
   if (is_stopped(should_stop)) return interrupted();
   const std::lock_guard lock(mutex_);
-  for (const std::string& file : files_of(scene)) {
+  for (const SceneInput& input : files_of(scene)) {
+    const std::string file = input.file.string();
     if (files_.contains(file)) continue;
-    std::string stamp = stamp_of(file);
-    if (stamp.empty()) continue;
-    const auto hash = hash_of_file(file, should_stop);
-    if (hash) files_[file] = {*hash, std::move(stamp)};
+    // A pipe or a device is no input that can be read again.
+    const auto opened = OpenFile::open(file, input.root);
+    if (!opened) continue;
+    const auto hash = hash_of_file(*opened, should_stop);
+    if (hash) files_[file] = {*hash, opened->stamp()};
     if (!hash && hash.error().code == ErrorCode::Interrupted) return fail(hash.error());
   }
   return {};
@@ -96,13 +90,20 @@ Result<void> InputHashes::check(const Scene& scene, const StopRequest& should_st
   const auto refuse = [](const std::string& file, std::string_view reason) {
     return fail(ErrorCode::Unreadable, fmt::format("{} {}", printable(file), reason));
   };
-  for (const std::string& file : files_of(scene)) {
+  for (const SceneInput& input : files_of(scene)) {
+    const std::string file = input.file.string();
     const auto known = files_.find(file);
     if (known == files_.end()) return refuse(file, "could not be read when the sweep was made");
-    std::string stamp = stamp_of(file);
-    if (stamp.empty()) return refuse(file, "is gone");
+    const auto opened = OpenFile::open(file, input.root);
+    if (!opened) {
+      const bool is_outside = opened.error().code == ErrorCode::InvalidInput;
+      std::error_code unknown;
+      const bool is_gone = !is_outside && !std::filesystem::is_regular_file(file, unknown);
+      return refuse(file, is_gone ? "is gone" : "cannot be read");
+    }
+    std::string stamp = opened->stamp();
     if (stamp == known->second.stamp) continue;
-    const auto hash = hash_of_file(file, should_stop);
+    const auto hash = hash_of_file(*opened, should_stop);
     if (!hash && hash.error().code == ErrorCode::Interrupted) return fail(hash.error());
     if (!hash) return refuse(file, "cannot be read");
     if (*hash != known->second.hash) return refuse(file, "has changed since the sweep was made");

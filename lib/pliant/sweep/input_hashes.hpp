@@ -8,6 +8,7 @@
 #include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/scene/inputs.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -45,11 +46,11 @@ class InputHashes {
                              // looked at yet
   };
 
-  const std::vector<std::string>& files_of(const Scene& scene);
+  const std::vector<SceneInput>& files_of(const Scene& scene);
 
   std::mutex mutex_;
   std::map<std::string, Known> files_;
-  std::map<std::vector<std::string>, std::vector<std::string>> inputs_;  // by what a scene names
+  std::map<std::vector<std::string>, std::vector<SceneInput>> inputs_;  // by what a scene names
 };
 
 }  // namespace pliant
