@@ -154,7 +154,7 @@ class Killed(Command):
             self.assertIn(self.whole("a.gltf"), known)
         self.assertLess(ended, k + 1)
         self.run_pliant("bake", scenes[0], "-o", "a.gltf")
-        self.assertEqual(len(self.numbers()), 1)  # old ones do not accumulate
+        self.assertLessEqual(len(self.numbers()), 2)  # those of a killed bake may stay, old ones do not
 
     def test_killed_ahead_of_each_flush_and_rename_a_gltf_is_whole(self):
         if SANITIZED or not SHIM:
@@ -166,7 +166,7 @@ class Killed(Command):
         for event in range(1, 20):
             self.run_pliant("bake", scenes[0], "-o", "a.gltf")
             old = self.whole("a.gltf")
-            self.assertEqual(len(self.numbers()), 1)
+            self.assertLessEqual(len(self.numbers()), 2)
             result = subprocess.run([PLIANT, "bake", scenes[1], "-o", "a.gltf"], cwd=self.folder, check=False,
                                     capture_output=True, env={**os.environ, "LD_PRELOAD": SHIM,
                                                               "PLIANT_SHIM_KILL": str(event)})

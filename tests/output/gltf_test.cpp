@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "output/animated_meshes.hpp"
@@ -337,31 +338,60 @@ TEST_CASE("a glTF's numbers are named by what they are", "[output][gltf]") {
   CHECK(numbers_of(folder, "a") == first);
 }
 
-TEST_CASE("numbers that no glTF names any more are removed, others stay", "[output][gltf]") {
+TEST_CASE("only the numbers of the glTF that is replaced are removed", "[output][gltf]") {
   const ScratchFolder folder;
   const Mesh mesh = make_mesh({});
   written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
   const std::string first = numbers_of(folder, "a").front();
-  const std::string left = "of a bake that was killed";
-  folder.write("a." + to_text(hash_of(left)).substr(0, 16) + ".bin", left);
-  const std::vector<std::string> others = {"a.bin", "a.0123456789ABCDEF.bin",
-                                           "a.123456789abcdef.bin", "b.0123456789abcdef.bin",
+  const std::string left = "of another glTF, or of a bake that was killed";
+  const std::vector<std::string> others = {"a." + to_text(hash_of(left)).substr(0, 16) + ".bin",
+                                           "a.bin",
+                                           "a.0123456789ABCDEF.bin",
+                                           "a.123456789abcdef.bin",
+                                           "b.0123456789abcdef.bin",
                                            "a.0123456789abcdef.binary"};
-  for (const std::string& other : others) folder.write(other, "not ours");
+  for (const std::string& other : others) folder.write(other, left);
   written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 3));
   const std::string second = numbers_of(folder, "a").front();
-  CHECK(numbers_of(folder, "a").size() == 1);
-  CHECK(second != first);
+  CHECK_FALSE(std::filesystem::exists(folder.file(first)));
   for (const std::string& other : others) CHECK(std::filesystem::exists(folder.file(other)));
+}
 
-  // A copy still refers to the numbers it was made with.
-  std::filesystem::copy(folder.file("a.gltf"), folder.file("copy.GLTF"));
-  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 4));
-  CHECK(numbers_of(folder, "a").size() == 2);
-  CHECK(std::filesystem::exists(folder.file(second)));
-  std::filesystem::remove(folder.file("copy.GLTF"));
-  written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 4));
-  CHECK(numbers_of(folder, "a").size() == 1);
+TEST_CASE("numbers that another glTF refers to stay, however it does so", "[output][gltf]") {
+  const Mesh mesh = make_mesh({});
+  const auto json_of = [](const std::string& uri) {
+    return R"({"asset":{"version":"2.0"},"buffers":[{"uri":")" + uri + R"("}]})";
+  };
+  const auto in_glb = [&](const std::string& text) {
+    std::string bytes = "glTF";
+    for (const std::uint32_t number : {2U, static_cast<std::uint32_t>(20 + text.size()),
+                                       static_cast<std::uint32_t>(text.size())})
+      bytes.append(reinterpret_cast<const char*>(&number), 4);
+    return bytes + "JSON" + text;
+  };
+  const auto escaped = [](const std::string& name, const std::string& form) {
+    std::string uri;
+    for (const char c : name) uri += fmt::format(fmt::runtime(form), static_cast<unsigned>(c));
+    return uri;
+  };
+  for (const std::string way : {"copy", "escaped", "escaped twice", "glb", "large glb"}) {
+    CAPTURE(way);
+    const ScratchFolder folder;
+    written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
+    const std::string numbers = numbers_of(folder, "a").front();
+    if (way == "copy") std::filesystem::copy(folder.file("a.gltf"), folder.file("copy.GLTF"));
+    if (way == "escaped") folder.write("b.gltf", json_of(escaped(numbers, "%{:02x}")));
+    if (way == "escaped twice")
+      folder.write("b.gltf", json_of(escaped(escaped(numbers, "%{:02X}"), "\\u{:04x}")));
+    if (way == "glb") folder.write("b.glb", in_glb(json_of(numbers)));
+    if (way == "large glb") {
+      folder.write("b.Glb", in_glb(json_of(numbers)));
+      std::filesystem::resize_file(folder.file("b.Glb"), std::uintmax_t{1} << 30);
+    }
+    written(folder, "a.gltf", mesh, bump(mesh.positions, 5, 3));
+    CHECK(std::filesystem::exists(folder.file(numbers)));
+    CHECK(numbers_of(folder, "a").size() == 2);
+  }
 }
 
 TEST_CASE("a placement that glTF cannot hold is an error with its place", "[output][gltf]") {

@@ -175,13 +175,19 @@ class GltfWriter final : public AnimationWriter {
     auto file = AtomicFile::create(file_);
     if (!file) return fail(file.error());
     if (auto written = file->write(text); !written) return written;
-    // Another bake with this name must not remove our numbers as unused before our .gltf refers to
-    // them.
+    // Another bake with this name must not change the .gltf between our look at it and our rename.
     const OpenFolder folder(file_);
     folder.lock();
-    auto committed = separate_->commit_as(separate_name());
-    if (committed) committed = file->commit();
-    remove_unnamed_numbers(file_);
+    std::vector<std::filesystem::path> unused = numbers_named_by(file_);
+    const std::filesystem::path numbers = separate_name();
+    std::error_code unknown;
+    const bool is_own = !std::filesystem::exists(numbers, unknown) && !unknown;
+    auto committed = separate_->commit_as(numbers);
+    if (committed) {
+      committed = file->commit();
+      if (!committed && is_own) unused.push_back(numbers);
+    }
+    remove_unnamed_numbers(file_, std::move(unused));
     return committed;
   }
 

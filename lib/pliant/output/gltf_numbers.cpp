@@ -1,7 +1,11 @@
 #include "pliant/output/gltf_numbers.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -23,29 +27,74 @@ std::string_view digits_in(std::string_view name) {
   return name.substr(name.size() - ending.size() - digit_count, digit_count);
 }
 
-struct Neighbours {
-  std::vector<fs::path> numbers;  // of the given .gltf
-  std::vector<fs::path> gltfs;    // all of them
-  bool is_complete = false;
-};
-
-Neighbours neighbours_of(const fs::path& gltf) {
-  Neighbours found;
+// Calls `use` with the path of each regular file in the folder; false: not all were found.
+template <class Use>
+bool each_neighbour(const fs::path& gltf, const Use& use) {
   std::error_code error;
   const fs::path folder = gltf.has_parent_path() ? gltf.parent_path() : fs::path(".");
   for (fs::directory_iterator place(folder, error), end; !error && place != end;
        place.increment(error)) {
     std::error_code unknown;
-    if (!place->is_regular_file(unknown)) continue;
-    if (is_numbers_file(gltf, place->path().filename().string()))
-      found.numbers.push_back(place->path());
-    if (ending_of(place->path()) != ".gltf") continue;
-    // The .gltf that most probably refers to them is first.
-    const bool is_first = place->path().filename() == gltf.filename();
-    found.gltfs.insert(is_first ? found.gltfs.begin() : found.gltfs.end(), place->path());
+    if (place->is_regular_file(unknown)) use(place->path());
   }
-  found.is_complete = !error;
-  return found;
+  return !error;
+}
+
+// The character of the hexadecimal digits of an escape, if it is an ASCII one; 0: it is none.
+char escaped(std::string_view digits) {
+  unsigned code = 0;
+  const char* const end = digits.data() + digits.size();
+  return std::from_chars(digits.data(), end, code, 16).ptr == end && code < 0x80
+             ? static_cast<char>(code)
+             : '\0';
+}
+
+// A text without the escapes of JSON and of URIs: digits in it are plain.
+std::string plain(std::string_view text) {
+  const auto without = [](std::string_view from, std::string_view mark, std::size_t digits) {
+    std::string to;
+    to.reserve(from.size());
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      const std::size_t begin = k + mark.size();
+      const bool is_escape = from.substr(k).starts_with(mark) && from.size() - begin >= digits;
+      const char c = is_escape ? escaped(from.substr(begin, digits)) : '\0';
+      to += c != '\0' ? c : from[k];
+      if (c != '\0') k = begin + digits - 1;
+    }
+    return to;
+  };
+  return without(without(text, "\\u", 4), "%", 2);
+}
+
+// The JSON of a .gltf or a .glb; null: it cannot be read, or is too large.
+std::optional<std::string> json_of(const fs::path& file) {
+  constexpr std::size_t head = 20;  // of a .glb, up to its JSON; the length of that is at 12
+  std::string text;
+  std::size_t end = longest_text;
+  const auto read = read_pieces(file, [&](std::string_view piece) {
+    const bool is_first = text.empty();
+    text += piece;
+    if (is_first && text.size() >= head && text.starts_with("glTF")) {
+      std::uint32_t length = 0;
+      std::memcpy(&length, text.data() + 12, sizeof length);
+      end = head + length;
+    }
+    return text.size() <= end;
+  });
+  const bool is_glb = end != longest_text;
+  if (!read || end > longest_text || (!is_glb && text.size() > end)) return {};
+  return text.substr(0, end);
+}
+
+// Drops the files that another one refers to. False: it cannot be known.
+bool erase_named(const fs::path& other, std::vector<fs::path>& files) {
+  const auto text = json_of(other);
+  if (!text) return false;
+  const std::string words = plain(*text);
+  std::erase_if(files, [&](const fs::path& file) {
+    return words.find(digits_in(file.filename().string())) != std::string::npos;
+  });
+  return true;
 }
 
 }  // namespace
@@ -82,21 +131,33 @@ bool is_of_its_name(const fs::path& gltf, const fs::path& file) {
 
 }  // namespace
 
-void remove_unnamed_numbers(const fs::path& gltf) {
-  Neighbours found = neighbours_of(gltf);
-  // Usually there is one, and it is in use.
-  if (!found.is_complete || found.numbers.empty()) return;
-  for (const fs::path& other : found.gltfs) {
-    const auto text = read_file(other, longest_text);
-    if (!text) return;  // it may refer to any of them
-    // Only the digits: they are the same however the rest of the name is escaped.
-    std::erase_if(found.numbers, [&](const fs::path& file) {
-      return text->find(digits_in(file.filename().string())) != std::string::npos;
-    });
-    if (found.numbers.empty()) return;
-  }
+std::vector<fs::path> numbers_named_by(const fs::path& gltf) {
+  std::vector<fs::path> files;
+  each_neighbour(gltf, [&](const fs::path& file) {
+    if (is_numbers_file(gltf, file.filename().string())) files.push_back(file);
+  });
+  if (files.empty()) return files;
+  std::vector<fs::path> others = files;
+  if (!erase_named(gltf, others)) return {};
+  std::erase_if(files, [&](const fs::path& file) {
+    return std::find(others.begin(), others.end(), file) != others.end();
+  });
+  return files;
+}
+
+void remove_unnamed_numbers(const fs::path& gltf, std::vector<fs::path> files) {
+  if (files.empty()) return;
+  erase_named(gltf, files);  // usually all of them
+  std::vector<fs::path> others;
+  const bool is_complete = each_neighbour(gltf, [&](const fs::path& file) {
+    const std::string ending = ending_of(file);
+    if (ending == ".gltf" || ending == ".glb") others.push_back(file);
+  });
+  if (!is_complete) return;
+  for (const fs::path& other : others)
+    if (files.empty() || !erase_named(other, files)) return;  // it may refer to any of them
   std::error_code ignored;
-  for (const fs::path& file : found.numbers)
+  for (const fs::path& file : files)
     if (is_of_its_name(gltf, file)) fs::remove(file, ignored);
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "pliant/core/hash.hpp"
 
@@ -17,9 +18,14 @@ std::filesystem::path numbers_file(const std::filesystem::path& gltf, const Hash
 /// write it, replace it by the same bytes, or remove it.
 bool is_numbers_file(const std::filesystem::path& gltf, std::string_view name);
 
-/// Removes number files of `gltf` to which no .gltf in the folder refers. Files that cannot be read
-/// or removed are kept, and so are those whose content does not have the hash in their name.
-/// Internal to output.
-void remove_unnamed_numbers(const std::filesystem::path& gltf);
+/// The files with numbers that `gltf` refers to as it is on the disk: those of an earlier bake to
+/// that name. Internal to output.
+std::vector<std::filesystem::path> numbers_named_by(const std::filesystem::path& gltf);
+
+/// Removes those of the files to which no .gltf or .glb in the folder refers, however it escapes
+/// their names. Files that cannot be read or removed are kept, and so are those whose content does
+/// not have the hash in their name, and all of them if it cannot be known. Internal to output.
+void remove_unnamed_numbers(const std::filesystem::path& gltf,
+                            std::vector<std::filesystem::path> files);
 
 }  // namespace pliant
