@@ -142,7 +142,6 @@ void tell_memory(std::size_t count, const SimulationOptions& resources) {
 }
 
 int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const SweepPart& part) {
-  folder.remove_half_files(&was_interrupted);
   const SimulationOptions resources =
       simulation_options(options.resources, memory_of_records(folder.sweep()));
   std::optional<Progress> progress;

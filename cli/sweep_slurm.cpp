@@ -163,7 +163,6 @@ class Submission {
 
  private:
   Result<int> run_steps() {
-    folder_.remove_half_files(&was_interrupted);
     auto status = folder_.status(&was_interrupted);
     if (!status) return fail(status.error());
     if (!has_due(*status)) return tell_status(folder_, is_quiet_);

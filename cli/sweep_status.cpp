@@ -11,7 +11,6 @@ int run_sweep_status(const SweepStatusOptions& options) {
   catch_interrupts();
   const auto folder = open_sweep(options.folder, options.root);
   if (!folder) return report(folder.error());
-  folder->remove_half_files(&was_interrupted);
   return tell_status(*folder);
 }
 

@@ -315,15 +315,16 @@ TEST_CASE("a damaged sweep.json is refused", "[sweep]") {
   CHECK_THAT(complaint_of(SweepFolder::open(place.sweep())), contains_text("has engine"));
 }
 
-TEST_CASE("half files are removed after an hour", "[sweep]") {
+TEST_CASE("a sweep removes no file that it has not made", "[sweep]") {
   const Place place;
   const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
-  const auto old = place.folder().write("sweep/.takes.csv.1-0.part", "half");
-  place.folder().write("sweep/.takes.csv.2-0.part", "half");
-  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(2));
-  folder.remove_half_files();
-  CHECK_FALSE(fs::exists(old));
-  CHECK(fs::exists(place.folder().file("sweep/.takes.csv.2-0.part")));
+  for (const char* const name : {"sweep/.mine.part", "sweep/.takes.csv.1-0.part"}) {
+    const auto old = place.folder().write(name, "mine");
+    fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(48));
+    REQUIRE(folder.run({}));
+    REQUIRE(folder.write_table(folder.status().value()));
+    CHECK(fs::exists(old));
+  }
 }
 
 TEST_CASE("takes that end in other processes are counted by what is added to the log", "[sweep]") {

@@ -57,11 +57,18 @@ std::optional<Hash> key_in(std::string_view name) {
   return to_hash(name.substr(0, key_digits));
 }
 
-// Whether it is the name of an unfinished file of this store, as made by `AtomicFile`.
+// Whether it is the name of an unfinished file of this store, as made by `AtomicFile`:
+// .KEY.N-N.part
 bool is_part(std::string_view name) {
+  constexpr std::string_view end = ".part";
   const std::size_t size = key_digits + ending.size();
-  return name.starts_with('.') && name.ends_with(".part") && name.size() > 1 + size &&
-         key_in(name.substr(1, size));
+  if (!name.starts_with('.') || !name.ends_with(end) || name.size() < 1 + size + end.size() ||
+      !key_in(name.substr(1, size)))
+    return false;
+  name.remove_prefix(1 + size);
+  name.remove_suffix(end.size());
+  return name.starts_with('.') && name.find('-') != std::string_view::npos &&
+         name.find_first_not_of("0123456789-", 1) == std::string_view::npos;
 }
 
 // The space of a file of that many bytes on a disk that allocates pages.

@@ -1,7 +1,6 @@
 #include "pliant/sweep/folder.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -458,23 +457,6 @@ Result<void> SweepFolder::write_table(const SweepStatus& status,
   auto written = pliant::write_table(sweep(), request().scenes, status.takes, write);
   if (!written) return written;
   return file->commit();
-}
-
-void SweepFolder::remove_half_files(const StopRequest& should_stop) const {
-  const auto now = fs::file_time_type::clock::now();
-  std::size_t count = 0;
-  for (const fs::path& folder : {fs::path(this->folder()), parts_->folder_of_takes()}) {
-    std::error_code ignored;
-    if (folder != this->folder() && fs::is_symlink(folder, ignored)) continue;
-    for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
-         entry.increment(ignored)) {
-      if (is_stopped(should_stop, ++count)) return;
-      if (!is_half_file(entry->path())) continue;
-      std::error_code unknown;
-      const auto written = fs::last_write_time(entry->path(), unknown);
-      if (!unknown && now - written > std::chrono::hours(1)) fs::remove(entry->path(), unknown);
-    }
-  }
 }
 
 }  // namespace pliant

@@ -129,9 +129,6 @@ class SweepFolder {
   /// its place; Unwritable.
   Result<void> make_inner_folder(const std::string& name) const;
 
-  /// Removes what killed runs left half written, if older than an hour.
-  void remove_half_files(const StopRequest& should_stop = {}) const;
-
  private:
   class Parts;
   explicit SweepFolder(std::unique_ptr<Parts> parts);
