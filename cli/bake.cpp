@@ -107,7 +107,7 @@ Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
   for (const SceneInput& input : inputs_of(scene)) {
     if (is_named_at_the_end(plan, input.file.filename().string())) return refuse(input.file);
   }
-  const InputsByName inputs(scene);
+  const InputFinder inputs(scene);
   for (const std::string& output : files_of(plan)) {
     if (const auto input = inputs.find(output)) return refuse(*input);
   }

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "pliant/scene/inputs.hpp"
 
@@ -23,18 +24,25 @@ std::string input_named(const std::filesystem::path& file, const Scene& scene) {
   return {};
 }
 
-InputsByName::InputsByName(const Scene& scene) {
+InputFinder::InputFinder(const Scene& scene) {
   for (const SceneInput& input : inputs_of(scene)) {
-    std::error_code unknown;
-    const auto real = std::filesystem::canonical(input.file, unknown);
-    for (const auto& file : {input.file, unknown ? input.file : real})
-      files_.emplace(file.filename().string(), input.file);
+    struct stat status = {};
+    if (stat(input.file.c_str(), &status) == 0) {
+      there_.try_emplace({status.st_dev, status.st_ino}, input.file);
+    } else {
+      missing_.emplace(input.file.filename().string(), input.file);
+    }
   }
 }
 
-// Compares names first: querying the disk for each of a million frames would be slow.
-std::optional<std::filesystem::path> InputsByName::find(const std::filesystem::path& output) const {
-  const auto [first, last] = files_.equal_range(output.filename().string());
+// One question for each of a million frames; more only for names that an input has.
+std::optional<std::filesystem::path> InputFinder::find(const std::filesystem::path& output) const {
+  struct stat status = {};
+  if (stat(output.c_str(), &status) == 0) {
+    const auto found = there_.find({status.st_dev, status.st_ino});
+    return found != there_.end() ? std::optional(found->second) : std::nullopt;
+  }
+  const auto [first, last] = missing_.equal_range(output.filename().string());
   for (auto each = first; each != last; ++each)
     if (name_one_file(output, each->second)) return each->second;
   return std::nullopt;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "pliant/scene/scene.hpp"
 
@@ -17,15 +19,18 @@ bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& 
 std::string input_named(const std::filesystem::path& file, const Scene& scene);
 
 /// Finds the files of a scene that an output would overwrite; fast enough for a million outputs.
-class InputsByName {
+class InputFinder {
  public:
-  explicit InputsByName(const Scene& scene);
+  explicit InputFinder(const Scene& scene);
 
-  /// The input that `output` is, directly or by a link; null: it is not an input.
+  /// The input that `output` is, directly or by a link of either kind; null: it is not an input.
   std::optional<std::filesystem::path> find(const std::filesystem::path& output) const;
 
  private:
-  std::multimap<std::string, std::filesystem::path> files_;  // by their file names without folders
+  // By their device and number there, whatever their names are.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::filesystem::path> there_;
+  // Those that are not there, by their file names without folders.
+  std::multimap<std::string, std::filesystem::path> missing_;
 };
 
 }  // namespace pliant::cli

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "inputs.hpp"
 #include "interrupt.hpp"
 #include "materials.hpp"
 #include "output_file.hpp"
@@ -37,7 +38,8 @@ constexpr const char* schema_name = "pliant-scene.xsd";
 // A file that the command writes.
 struct NewFile {
   fs::path path;
-  std::string text;
+  std::string text = {};
+  bool may_replace = false;  // a file of that name
 };
 
 template <class Items>
@@ -186,13 +188,20 @@ bool is_there(const NewFile& file) {
   return text && *text == file.text;
 }
 
-// Whether a file may be written.
-Result<void> check_place(const NewFile& file, bool is_forced) {
-  if (auto place = check_output_file("-o", file.path.string()); !place) return place;
-  std::error_code unknown;
-  if (is_forced || !fs::exists(file.path, unknown)) return {};
+tl::unexpected<Error> refuse_existing(const NewFile& file) {
   return refuse(
       fmt::format("{}: the file exists; --force replaces it", printable(file.path.string())));
+}
+
+// Whether a file may be written.
+Result<void> check_place(const NewFile& file, const NewOptions& options) {
+  if (auto place = check_output_file("-o", file.path.string()); !place) return place;
+  if (options.mesh && name_one_file(file.path, *options.mesh))
+    return refuse(
+        fmt::format("-o {}: it is the mesh; choose another name", printable(file.path.string())));
+  std::error_code unknown;
+  if (file.may_replace || !fs::exists(file.path, unknown)) return {};
+  return refuse_existing(file);
 }
 
 Result<void> write(const std::vector<NewFile>& files) {
@@ -203,8 +212,12 @@ Result<void> write(const std::vector<NewFile>& files) {
     if (auto written = created->write(file.text); !written) return written;
     open.push_back(*std::move(created));
   }
-  for (AtomicFile& file : open) {
-    if (auto committed = file.commit(); !committed) return committed;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    // One that has appeared meanwhile is replaced only if it may be.
+    const auto placed =
+        files[k].may_replace ? open[k].commit().map([] { return true; }) : open[k].commit_new();
+    if (!placed) return fail(placed.error());
+    if (!*placed) return refuse_existing(files[k]);
   }
   return {};
 }
@@ -217,12 +230,12 @@ Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& 
     files.push_back({fs::path(out).replace_extension(".obj"), std::string(starter.mesh)});
   }
   if (options.has_schema) files.push_back({out.parent_path() / schema_name, scene_schema()});
-  files.push_back({out, {}});
+  files.push_back({out});
   if (options.out) {
-    for (const NewFile& file : files) {
-      const bool may_replace =
+    for (NewFile& file : files) {
+      file.may_replace =
           options.is_forced || (file.path.filename() == schema_name && is_there(file));
-      if (auto free = check_place(file, may_replace); !free) return fail(free.error());
+      if (auto free = check_place(file, options); !free) return fail(free.error());
     }
   }
   auto text = scene_text(options, starter, out);
