@@ -275,7 +275,7 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
       with_curves(*text, options.out, std::filesystem::path(options.out).parent_path().string(),
                   root->string(), *placed);
   if (!changed) return fail(changed.error());
-  if (auto written = write_file(options.out, *changed); !written) return written;
+  if (auto written = rewrite_file(options.out, *text, *changed); !written) return written;
   if (!options.is_quiet) {
     std::vector<std::string> names;
     for (const PlacedCurve& curve : placed->curves) names.push_back(curve.channel);

@@ -67,8 +67,9 @@ int run_format(const FormatOptions& options) {
     return exit_done;
   }
   if (options.is_in_place && *text == source->text) return exit_done;
-  if (auto written = write_file(target, *text); !written)
-    return report(with_kept(written.error(), "nothing was written"));
+  auto written =
+      options.is_in_place ? rewrite_file(target, source->text, *text) : write_file(target, *text);
+  if (!written) return report(with_kept(written.error(), "nothing was written"));
   return exit_done;
 }
 

@@ -89,13 +89,6 @@ Result<bool> write(SceneDocument& document, Suggestion& suggestion) {
                     printable(edit.inserted), printable(edit.removed)));
   }
   if (document.is_saved()) return false;
-  const auto is_other = document.has_file_changed();
-  if (!is_other) return fail(is_other.error());
-  if (*is_other) {
-    return fail(ErrorCode::Unwritable,
-                "the file was changed meanwhile by another program; nothing is written",
-                document.file());
-  }
   if (auto saved = document.save(); !saved) return fail(saved.error());
   return true;
 }

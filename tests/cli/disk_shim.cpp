@@ -1,7 +1,10 @@
 // Intercepts system calls of the command (LD_PRELOAD). It logs flushes of files and folders, and
 // renames, in order to PLIANT_SHIM_LOG. PLIANT_SHIM_FAIL makes flushes fail: "file 5" or "folder
-// 22" is the errno of every fsync of that kind; EINTR only of every second one. PLIANT_SHIM_KILL=N
-// ends the program, like SIGKILL, before the Nth event.
+// 22" is the errno of every fsync of that kind; EINTR only of every second one. "exchange 22" is
+// that of every exchange of two names. PLIANT_SHIM_KILL=N
+// ends the program, like SIGKILL, before the Nth event. PLIANT_SHIM_SAVE="flush PATH" saves another
+// text at PATH, as an editor does, ahead of the first flush of a file; "exchange PATH" ahead of the
+// first exchange of two names.
 
 #include <cerrno>
 #include <csignal>
@@ -34,6 +37,18 @@ void log(const std::string& line) {
   close(descriptor);
 }
 
+void save_ahead_of(const std::string& event) {
+  static bool is_saved = false;
+  const char* const wish = std::getenv("PLIANT_SHIM_SAVE");
+  if (wish == nullptr || is_saved || !std::string(wish).starts_with(event + ' ')) return;
+  is_saved = true;
+  const std::string path = std::string(wish).substr(event.size() + 1), fresh = path + "~";
+  const int descriptor = open(fresh.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (write(descriptor, "saved", 5) != 5 || std::rename(fresh.c_str(), path.c_str()) != 0)
+    std::abort();
+  close(descriptor);
+}
+
 template <class Function>
 Function next(const char* name) {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
@@ -45,6 +60,7 @@ extern "C" int fsync(int descriptor) {
   struct stat status = {};
   fstat(descriptor, &status);
   const std::string kind = S_ISDIR(status.st_mode) ? "folder" : "file";
+  if (kind == "file") save_ahead_of("flush");
   if (const char* const wish = std::getenv("PLIANT_SHIM_FAIL")) {
     static int calls = 0;
     const std::string text = wish;
@@ -62,4 +78,17 @@ extern "C" int renameat(int from_folder, const char* from, int to_folder, const 
   log("rename " + path_of(from_folder) + '/' + from + " to " + path_of(to_folder) + '/' + to);
   return next<int (*)(int, const char*, int, const char*)>("renameat")(from_folder, from, to_folder,
                                                                        to);
+}
+
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned flags) noexcept {
+  save_ahead_of("exchange");
+  const char* const wish = std::getenv("PLIANT_SHIM_FAIL");
+  if (wish != nullptr && std::string(wish).starts_with("exchange ")) {
+    errno = std::atoi(wish + 9);
+    return -1;
+  }
+  log("exchange " + path_of(from_folder) + '/' + from + " and " + path_of(to_folder) + '/' + to);
+  return next<int (*)(int, const char*, int, const char*, unsigned)>("renameat2")(
+      from_folder, from, to_folder, to, flags);
 }

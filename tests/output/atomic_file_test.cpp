@@ -1,11 +1,15 @@
 #include "pliant/output/atomic_file.hpp"
 
 #include <csignal>
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
+#include <unistd.h>
 
 #include "pliant/core/read_file.hpp"
 #include "support/catch.hpp"
@@ -14,6 +18,7 @@
 using namespace pliant;
 using namespace pliant::testing;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 
 namespace {
 
@@ -88,6 +93,81 @@ TEST_CASE("a file keeps the permissions of the one that it replaces", "[output][
     stat(name.c_str(), &now);
     CHECK((now.st_mode & 0777U) == mode);
   }
+}
+
+TEST_CASE("a file keeps the owner and group of the one that it replaces", "[output][atomic_file]") {
+  if (geteuid() != 0) return;  // others have one user and one group
+  const ScratchFolder folder;
+  const std::string name = folder.write("a.txt", "old").string();
+  REQUIRE(chown(name.c_str(), 1234, 2345) == 0);
+  REQUIRE(chmod(name.c_str(), 04640) == 0);
+  for (const bool is_rewritten : {false, true}) {
+    REQUIRE((is_rewritten ? rewrite_file(name, "new", "newer") : write_file(name, "new")));
+    struct stat now = {};
+    REQUIRE(stat(name.c_str(), &now) == 0);
+    CHECK(now.st_uid == 1234);
+    CHECK(now.st_gid == 2345);
+    CHECK((now.st_mode & 07777U) == 0640);  // never with the rights of its owner
+  }
+}
+
+TEST_CASE("a file keeps what is attached to the one that it replaces", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  const std::string name = folder.write("a.txt", "old").string();
+  if (setxattr(name.c_str(), "user.note", "mine", 4, 0) != 0) return;  // no file system for this
+  REQUIRE(rewrite_file(name, "old", "new"));
+  char note[8] = {};
+  CHECK(getxattr(name.c_str(), "user.note", note, sizeof note) == 4);
+  CHECK(std::string(note) == "mine");
+}
+
+TEST_CASE("nobody else can open a file before it has its permissions", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  const std::string name = folder.write("a.txt", "old").string();
+  REQUIRE(chmod(name.c_str(), 0600) == 0);
+  const auto file = begun(folder, "secret");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    struct stat now = {};
+    REQUIRE(stat(entry.path().c_str(), &now) == 0);
+    CHECK((now.st_mode & 0777U) == 0600);
+  }
+}
+
+TEST_CASE("a rewrite takes the place of the bytes that it was made of", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  const auto file = folder.write("a.txt", "old");
+  CHECK(rewrite_file(file, "old", "new"));
+  CHECK(read_file(file).value() == "new");
+  for (const std::string_view old : {"", "ne", "new!", "old"}) {
+    const auto refused = rewrite_file(file, old, "newer");
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == ErrorCode::Unwritable);
+    CHECK(refused.error().file == file.string());
+    CHECK_THAT(refused.error().message, EndsWith("it has changed since it was read"));
+  }
+  CHECK(read_file(file).value() == "new");
+  std::filesystem::remove(file);
+  CHECK(rewrite_file(file, "new", "again"));
+  CHECK(read_file(file).value() == "again");
+  folder.write("a.txt", "");
+  CHECK(rewrite_file(file, "", "full"));
+  CHECK(folder.entry_count() == 1);
+}
+
+TEST_CASE("what is saved during a rewrite is never lost", "[output][atomic_file][threads]") {
+  const ScratchFolder folder;
+  const auto file = folder.write("a.txt", "");
+  for (int round = 0; round < 300; ++round) {
+    folder.write("a.txt", "old");
+    std::thread editor([&] {
+      folder.write("saved", "saved");
+      std::filesystem::rename(folder.file("saved"), file);
+    });
+    (void)rewrite_file(file, "old", "rewritten");
+    editor.join();
+    REQUIRE(read_file(file).value() == "saved");
+  }
+  CHECK(folder.entry_count() == 1);
 }
 
 TEST_CASE("what cannot be written is an error that names the file", "[output][atomic_file]") {

@@ -135,7 +135,7 @@ const std::string& SceneDocument::redo_name() const {
 }
 
 Result<void> SceneDocument::save() {
-  if (auto written = write_file(file_, text_); !written) return written;
+  if (auto written = rewrite_file(file_, saved_, text_); !written) return written;
   saved_ = text_;
   return {};
 }

@@ -58,9 +58,10 @@ class SceneDocument {
   const std::string& undo_name() const;  ///< empty: there is none
   const std::string& redo_name() const;
 
-  /// Writes the text, which appears whole in the file or not at all. Errors: Unwritable.
+  /// Writes the text, which appears whole in the file or not at all. Errors: Unwritable; among
+  /// them: the file has other bytes by now than when it was read or saved last, and keeps them.
   Result<void> save();
-  /// The same to another file, which is that of the document from then on. Errors also:
+  /// The same to any file, whatever is in it, which is that of the document from then on. Errors:
   /// InvalidInput for another folder if the scene names files relative to its own.
   Result<void> save_as(const std::string& file);
   bool is_saved() const { return text_ == saved_; }

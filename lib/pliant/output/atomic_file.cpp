@@ -1,5 +1,6 @@
 #include "pliant/output/atomic_file.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
@@ -8,9 +9,11 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/open_file.hpp"
 #include "pliant/output/open_folder.hpp"
 #include "pliant/output/output_place.hpp"
 #include "pliant/output/raw_bytes.hpp"
@@ -27,22 +30,63 @@ tl::unexpected<Error> cannot_write(const std::filesystem::path& file, int error_
 }
 
 // Opens a new file in the folder under an unused name; returns -1 and sets errno on failure.
-int open_part(const OpenFolder& folder, const std::filesystem::path& file, std::string& part) {
+int open_part(const OpenFolder& folder, const std::filesystem::path& file, mode_t mode,
+              std::string& part) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     // In the same folder, because a rename is atomic only within one file system.
     part = hidden_name(file) + "." + std::to_string(getpid()) + "-" + std::to_string(attempt) +
            ".part";
     const int descriptor =
-        openat(folder.descriptor(), part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        openat(folder.descriptor(), part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor >= 0 || errno != EEXIST) return descriptor;
   }
   return -1;
 }
 
+constexpr std::string_view access_list = "system.posix_acl_access";
+
+// Copies what users and programs have attached to a file. Whether its access list is the same.
+bool copy_attributes(const std::filesystem::path& from, int to) {
+  std::string names(std::size_t{64} << 10, '\0'), value(names.size(), '\0');
+  const ssize_t size = llistxattr(from.c_str(), names.data(), names.size());
+  names.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  fremovexattr(to, access_list.data());  // one that the folder gives to new files
+  bool is_same = true;
+  for (std::size_t begin = 0; begin < names.size(); begin += std::strlen(&names[begin]) + 1) {
+    const std::string_view name = &names[begin];
+    if (name != access_list && !name.starts_with("user.")) continue;
+    const ssize_t bytes = lgetxattr(from.c_str(), name.data(), value.data(), value.size());
+    const bool is_copied = bytes >= 0 && fsetxattr(to, name.data(), value.data(),
+                                                   static_cast<std::size_t>(bytes), 0) == 0;
+    if (!is_copied && name == access_list) is_same = false;
+  }
+  return is_same;
+}
+
+// Makes the new file one of the same user and group, with the same access. Whether it is.
+bool become(const std::filesystem::path& file, const struct stat& old, int descriptor) {
+  struct stat status = {};
+  if (fstat(descriptor, &status) != 0) return false;
+  bool is_same = true;
+  if (status.st_gid != old.st_gid)
+    is_same = fchown(descriptor, static_cast<uid_t>(-1), old.st_gid) == 0;
+  if (status.st_uid != old.st_uid)
+    is_same = fchown(descriptor, old.st_uid, static_cast<gid_t>(-1)) == 0 && is_same;
+  is_same = copy_attributes(file, descriptor) && is_same;
+  // A file system without permissions may refuse this, and needs none.
+  (void)fchmod(descriptor, old.st_mode & 0777U);
+  return is_same;
+}
+
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush)
-    : file_(std::move(file)), part_(std::move(part)), stream_(std::move(stream)), flush_(flush) {}
+AtomicFile::AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush,
+                       bool is_as_old)
+    : file_(std::move(file)),
+      part_(std::move(part)),
+      stream_(std::move(stream)),
+      flush_(flush),
+      is_as_old_(is_as_old) {}
 
 AtomicFile::~AtomicFile() {
   if (!stream_) return;
@@ -55,8 +99,12 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file, Flush f
   if (auto place = check_output_place(file); !place) return fail(place.error());
   const OpenFolder folder(file);
   if (folder.error() != 0) return cannot_write(file, folder.error());
+  struct stat old = {};
+  const bool is_old =
+      fstatat(folder.descriptor(), file.filename().c_str(), &old, AT_SYMLINK_NOFOLLOW) == 0;
   std::string part;
-  const int descriptor = open_part(folder, file, part);
+  // Until it has the older file's owner, group and permissions, nobody else may open it.
+  const int descriptor = open_part(folder, file, is_old ? 0600 : 0666, part);
   if (descriptor < 0) return cannot_write(file, errno);
   Stream stream(fdopen(descriptor, "wb"));
   if (!stream) {
@@ -65,12 +113,8 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file, Flush f
     folder.remove(part);
     return cannot_write(file, error_number);
   }
-  struct stat old = {};
-  if (lstat(file.c_str(), &old) == 0) {
-    // A file system without permissions may refuse this, and needs none.
-    (void)fchmod(descriptor, old.st_mode & 0777U);
-  }
-  return AtomicFile(file, part, std::move(stream), flush);
+  const bool is_as_old = !is_old || become(file, old, descriptor);
+  return AtomicFile(file, part, std::move(stream), flush, is_as_old);
 }
 
 Result<void> AtomicFile::write(std::string_view bytes) {
@@ -86,6 +130,59 @@ Result<void> AtomicFile::write(std::span<const double> numbers) { return write(b
 Result<void> AtomicFile::write(std::span<const float> numbers) { return write(bytes_of(numbers)); }
 
 Result<void> AtomicFile::commit() { return commit_as(file_); }
+
+Result<void> AtomicFile::commit_over(std::string_view old_bytes) {
+  PLIANT_EXPECTS(stream_);
+  const OpenFolder folder(file_);
+  Result<void> done;
+  if (folder.error() != 0) done = unwritable(folder.error());
+  if (done && !is_as_old_) {
+    done = fail(ErrorCode::Unwritable,
+                "cannot write the file: it belongs to another user or group, or has an access "
+                "list, and the new one would not",
+                file_.string());
+  }
+  // Open until it has its name, to know it again.
+  const OpenDescriptor own(dup(fileno(stream_.get())));
+  if (auto finished = finish_bytes(); done) done = std::move(finished);
+  if (done) done = replace(folder, own.number(), old_bytes);
+  if (folder.error() == 0 && folder.is(part_, own.number())) folder.remove(part_);
+  if (!done || flush_ != Flush::All) return done;
+  if (const int error = folder.flush(); error != 0) return unwritable(error);
+  return {};
+}
+
+// Requires: all bytes are written. The part has its name still if it could not be placed.
+Result<void> AtomicFile::replace(const OpenFolder& folder, int own, std::string_view old_bytes) {
+  const std::string name = file_.filename().string();
+  const auto has_changed = [&] {
+    return fail(ErrorCode::Unwritable, "cannot write the file: it has changed since it was read",
+                file_.string());
+  };
+  struct stat old = {};
+  if (fstatat(folder.descriptor(), name.c_str(), &old, AT_SYMLINK_NOFOLLOW) != 0 &&
+      errno == ENOENT) {
+    const int error = folder.rename_new(part_, name);
+    if (error == EEXIST) return has_changed();
+    return error == 0 ? Result<void>() : unwritable(error);
+  }
+  if (!folder.has(name, old_bytes)) return has_changed();
+  const int error = folder.exchange(part_, name);
+  if (error == ENOENT) return has_changed();
+  if (error != 0) {  // the file system cannot
+    const int renamed = folder.rename(part_, name);
+    return renamed == 0 ? Result<void>() : unwritable(renamed);
+  }
+  // What was saved in this very moment is the part now. It gets its name back, and what was saved
+  // even later keeps it.
+  if (folder.has(part_, old_bytes)) {
+    folder.remove(part_);
+    return {};
+  }
+  folder.exchange(part_, name);
+  if (!folder.is(part_, own)) folder.exchange(part_, name);
+  return has_changed();
+}
 
 Result<void> AtomicFile::commit_as(const std::filesystem::path& file) {
   return place(file, false).map([](bool) {});
@@ -139,6 +236,14 @@ Result<void> write_file(const std::filesystem::path& file, std::string_view byte
   if (!output) return fail(output.error());
   if (auto written = output->write(bytes); !written) return written;
   return output->commit();
+}
+
+Result<void> rewrite_file(const std::filesystem::path& file, std::string_view old_bytes,
+                          std::string_view bytes) {
+  auto output = AtomicFile::create(file);
+  if (!output) return fail(output.error());
+  if (auto written = output->write(bytes); !written) return written;
+  return output->commit_over(old_bytes);
 }
 
 Result<void> flush_folder(const std::filesystem::path& file) {

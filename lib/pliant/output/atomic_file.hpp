@@ -10,6 +10,8 @@
 
 namespace pliant {
 
+class OpenFolder;
+
 /// The parts of a file that are flushed to the disk by a commit, and so survive a power cut.
 enum class Flush {
   Nothing,  ///< nothing: for files that can be made again
@@ -20,7 +22,8 @@ enum class Flush {
 
 /// A file that appears whole under its name or not at all: written beside it under another name,
 /// then renamed by `commit`. Without a commit nothing is left behind and an older file stays. It
-/// has the permissions of the file that it replaces.
+/// has the permissions, access list, attributes (`user.`), owner and group of the file that it
+/// replaces, as far as this process may give them.
 class AtomicFile {
  public:
   /// Errors: those of `check_output_place`; Unwritable, naming the file and the reason.
@@ -42,6 +45,12 @@ class AtomicFile {
   /// it has the name now; if not, its bytes are gone.
   Result<bool> commit_new();
 
+  /// As `commit`, but only in place of a file with just these bytes: those that the new ones are
+  /// made of. What another program saves meanwhile stays, up to the last moment. Without a file of
+  /// that name, this is a new one. Errors also: Unwritable: the file has other bytes by now; it
+  /// belongs to another user or group, or has an access list, which this process cannot give it.
+  Result<void> commit_over(std::string_view old_bytes);
+
   /// As `commit`, with another name in the same folder, for a file whose name depends on its
   /// content.
   Result<void> commit_as(const std::filesystem::path& file);
@@ -52,8 +61,10 @@ class AtomicFile {
   };
   using Stream = std::unique_ptr<std::FILE, Close>;
 
-  AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush);
+  AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush,
+             bool is_as_old);
   Result<void> finish_bytes();
+  Result<void> replace(const OpenFolder& folder, int own, std::string_view old_bytes);
   Result<bool> place(const std::filesystem::path& file, bool only_new);
   tl::unexpected<Error> unwritable(int error_number) const;
 
@@ -61,10 +72,16 @@ class AtomicFile {
   std::string part_;  // its name in the folder until commit
   Stream stream_;
   Flush flush_;
+  bool is_as_old_;  // whoever may access the older file may access this one, and nobody else
 };
 
 /// Writes a whole file at once. Errors: those of `AtomicFile`.
 Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The same in place of a file that had `old_bytes` when it was read. Errors: those of
+/// `AtomicFile::commit_over`.
+Result<void> rewrite_file(const std::filesystem::path& file, std::string_view old_bytes,
+                          std::string_view bytes);
 
 /// Flushes the names in the folder of `file` to the disk; does nothing on file systems without that
 /// operation. Errors: Unwritable, naming the file.

@@ -4,10 +4,14 @@
 #include <chrono>
 #include <cstdio>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include "pliant/core/open_file.hpp"
 
 namespace pliant {
 
@@ -39,6 +43,35 @@ int OpenFolder::rename_new(const std::string& from, const std::string& to) const
   return renameat2(descriptor_, from.c_str(), descriptor_, to.c_str(), RENAME_NOREPLACE) == 0
              ? 0
              : errno;
+}
+
+int OpenFolder::exchange(const std::string& one, const std::string& other) const {
+  const int done = renameat2(descriptor_, one.c_str(), descriptor_, other.c_str(), RENAME_EXCHANGE);
+  return done == 0 ? 0 : errno;
+}
+
+bool OpenFolder::has(const std::string& name, std::string_view bytes) const {
+  const OpenDescriptor file(
+      openat(descriptor_, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status = {};
+  if (!file.is_open() || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode))
+    return false;
+  std::vector<char> piece(std::size_t{1} << 20);
+  while (true) {
+    const ssize_t count = read(file.number(), piece.data(), piece.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return count == 0 && bytes.empty();
+    const std::string_view there(piece.data(), static_cast<std::size_t>(count));
+    if (!bytes.starts_with(there)) return false;
+    bytes.remove_prefix(there.size());
+  }
+}
+
+bool OpenFolder::is(const std::string& name, int descriptor) const {
+  struct stat named = {}, open = {};
+  return fstatat(descriptor_, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+         fstat(descriptor, &open) == 0 && named.st_dev == open.st_dev &&
+         named.st_ino == open.st_ino;
 }
 
 void OpenFolder::remove(const std::string& name) const { unlinkat(descriptor_, name.c_str(), 0); }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace pliant {
@@ -25,7 +26,14 @@ class OpenFolder {
   int rename(const std::string& from, const std::string& to) const;
   /// The same, but EEXIST if there is a file with the new name.
   int rename_new(const std::string& from, const std::string& to) const;
+  /// Two files have each other's name, in one step.
+  int exchange(const std::string& one, const std::string& other) const;
   void remove(const std::string& name) const;
+
+  /// Whether a name is that of a regular file, not of a link, with just these bytes.
+  bool has(const std::string& name, std::string_view bytes) const;
+  /// Whether it is that of an open file.
+  bool is(const std::string& name, int descriptor) const;
 
   /// Flushes the folder's names to the disk; also returns 0 if the file system does not support
   /// this, or if the folder is writable but not readable, in which case it is impossible.
