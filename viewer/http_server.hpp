@@ -17,12 +17,14 @@ namespace pliant::viewer {
 struct HttpLimits {
   std::size_t head_bytes = 16384;
   std::size_t head_lines = 64;
-  std::size_t connections = 64;  ///< further ones are closed at once
+  std::size_t connections = 64;  ///< of known clients; the longest idle one gives way to another
+  std::size_t strangers = 16;    ///< connections of others; the oldest gives way to another
   std::size_t streams = 16;      ///< connections that receive events
   std::size_t bodies = 1;        ///< being received at the same time
   int requests = 100;            ///< per connection
 
-  std::chrono::milliseconds head{3'000};    ///< from its first byte to its last one
+  std::chrono::milliseconds head{2'000};    ///< from its first byte, or the connection, to its last
+  std::chrono::milliseconds chance{10};     ///< before a stranger gives way
   std::chrono::milliseconds idle{15'000};   ///< from an answer to the next request
   std::chrono::milliseconds body{30'000};   ///< from its first byte to its last one
   std::chrono::milliseconds write{10'000};  ///< for 256 KiB
@@ -54,9 +56,10 @@ struct HttpService {
   std::function<std::shared_ptr<const std::string>(std::int64_t& seen)> next_event;
 };
 
-/// A server of HTTP/1.1 for this machine only (127.0.0.1). It is strict: a malformed request, one
-/// with a body of unknown length, or a refused one ends the connection, so that none of its bytes
-/// can be read as another request.
+/// A server of HTTP/1.1 for this machine only (127.0.0.1). A client is known from its first request
+/// on that `judge` accepts; until then it is a stranger, and however many of these there are,
+/// others get in. The server is strict: a malformed request, one with a body of unknown length, or
+/// a refused one ends the connection, so that none of its bytes can be read as another request.
 class HttpServer {
  public:
   /// Accepts connections from now on. `port` 0: any free port. Errors: Unwritable if the port is in

@@ -9,18 +9,20 @@ import hashlib
 import os
 import random
 import re
+import resource
 import select
 import signal
 import socket
 import tempfile
+import threading
 import time
 import unittest
 
 from command import Command, SANITIZED, SCENE, main
 from view_server import HAS_PAGE, Server, exchange, statuses
 
-CONNECTIONS, STREAMS, REQUESTS = 64, 16, 100  # HttpLimits
-HEAD_SECONDS, WRITE_SECONDS = 3, 10
+CONNECTIONS, STRANGERS, STREAMS, REQUESTS = 64, 16, 16, 100  # HttpLimits
+HEAD_SECONDS, WRITE_SECONDS = 2, 10
 SLACK = 6 if SANITIZED else 3  # seconds; the machine may be busy
 
 EVENTS = '<noise name="n" frequency="0.5" rate="4" deformationRadius="300" forceRadius="300" magnitude="4000"/></scene>'
@@ -343,23 +345,116 @@ class Bounds(Serving):
         answer = self.server.send(self.server.request() + b"GET ", end=False)
         self.assertEqual(statuses(answer), [200])
 
-    def test_so_many_connections(self):
+    def is_open(self, link):
+        """Whether the server has not closed the connection, which awaits nothing."""
+        link.settimeout(0.001)
+        try:
+            return link.recv(1) != b""
+        except TimeoutError:
+            return True
+        except ConnectionError:
+            return False
+
+    def test_those_without_the_token_have_few_places_and_the_oldest_gives_way(self):
         before = self.server.open_sockets()
         links = [self.server.connect() for _ in range(250)]
-        self.until(SLACK, lambda: self.server.open_sockets() <= before + CONNECTIONS, "more than the bound are open")
-        closed = 0
-        for link in links[CONNECTIONS + 10:]:
-            link.settimeout(5)
-            try:
-                closed += link.recv(1) == b""
-            except ConnectionResetError:
-                closed += 1
-        self.assertEqual(closed, len(links) - CONNECTIONS - 10)
+        self.until(SLACK, lambda: self.server.open_sockets() <= before + STRANGERS, "more than the bound are open")
+        self.until(SLACK, lambda: sum(map(self.is_open, links)) <= STRANGERS, "the oldest stay")
         # None of them sent anything: the server must close them itself.
         self.until(HEAD_SECONDS + SLACK, lambda: self.server.open_sockets() <= before, "silent ones stay")
-        self.assertEqual(statuses(self.ask()), [200])
         for link in links:
             link.close()
+
+    def test_nobody_keeps_out_who_has_the_token(self):
+        request, page = self.server.request(), self.server.request("")
+        other = self.server.request(target="/" + "0" * 32 + "/bake")
+        mine = self.server.connect(request)  # stays connected meanwhile
+        self.assertEqual(statuses(self.read_whole(mine)), [200])
+        for begins in ([b""], [b"G"], [request[:-1]], [other[:-1]], [other], [b"POST / HTTP/1.1\r\nContent-Length: 999999999\r\n\r\nx"],
+                       [b"\0" * 9], [b"", request[:30], other, b"GET / HTTP/1.1\r\n" + b"a: b\r\n" * 60]):
+            with self.subTest(begins):
+                links = [self.server.connect(begins[k % len(begins)]) for k in range(300)]
+                for _ in range(3):
+                    self.assertEqual(statuses(self.ask()), [200])
+                    self.assertEqual(statuses(self.server.send(page, end=True)), [200])
+                    self.assertEqual(statuses(self.listen_for_a_moment()), [200])
+                    mine.sendall(request)
+                    self.assertEqual(statuses(self.read_whole(mine)), [200])
+                for link in links:
+                    link.close()
+        mine.close()
+
+    def test_a_flood_of_connections_keeps_nobody_out(self):
+        ends = threading.Event()
+        def flood():
+            links = []
+            while not ends.is_set():
+                try:
+                    links.append(socket.create_connection(("127.0.0.1", self.server.port), timeout=5))
+                except OSError:
+                    pass
+                for link in links[:-100]:
+                    link.close()
+                links = links[-100:]
+            for link in links:
+                link.close()
+        threads = [threading.Thread(target=flood) for _ in range(2)]
+        for thread in threads:
+            thread.start()
+        try:
+            for _ in range(20):
+                self.assertEqual(statuses(self.ask()), [200])
+        finally:
+            ends.set()
+            for thread in threads:
+                thread.join()
+
+    def test_of_those_with_the_token_the_longest_idle_gives_way(self):
+        request = self.server.request()
+        links = []
+        for _ in range(CONNECTIONS + 20):
+            links.append(self.server.connect(request))
+            self.assertEqual(statuses(self.read_whole(links[-1])), [200])
+        self.assertEqual([self.is_open(link) for link in links], [False] * 20 + [True] * CONNECTIONS)
+        # One that is busy stays.
+        with self.server.connect(self.server.request("events")) as listener:
+            self.read_until(listener, b"\n\n")
+            for _ in range(CONNECTIONS):
+                links.append(self.server.connect(request))
+                self.assertEqual(statuses(self.read_whole(links[-1])), [200])
+            self.assertTrue(self.is_open(listener))
+        for link in links:
+            link.close()
+
+    def test_without_descriptors_it_waits_and_lets_in_again(self):
+        pid = self.server.process.pid
+        whole = resource.prlimit(pid, resource.RLIMIT_NOFILE)
+        highest = max(map(int, os.listdir(f"/proc/{pid}/fd")))
+        try:
+            # With none for a connection, some for strangers only.
+            for more in (0, 1, 5):
+                resource.prlimit(pid, resource.RLIMIT_NOFILE, (highest + 1 + more, whole[1]))
+                links = [self.server.connect() for _ in range(30)]
+                before = self.server.processor_ticks()
+                time.sleep(0.5)
+                self.assertLess(self.server.processor_ticks() - before, 25)  # it does not spin: of 50
+                if more > 0:
+                    self.assertEqual(statuses(self.ask()), [200])
+                for link in links:
+                    link.close()
+        finally:
+            resource.prlimit(pid, resource.RLIMIT_NOFILE, whole)
+        self.assertEqual(statuses(self.ask()), [200])
+
+    def read_whole(self, link):
+        """One answer on a connection that stays open."""
+        answer = self.read_until(link, b"\r\n\r\n")
+        length = int(re.search(rb"Content-Length: (\d+)", answer)[1])
+        while len(answer.split(b"\r\n\r\n", 1)[1]) < length:
+            piece = link.recv(65536)
+            self.assertTrue(piece)
+            answer += piece
+        return answer
 
     def test_so_many_listeners(self):
         links = []

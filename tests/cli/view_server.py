@@ -99,6 +99,11 @@ class Server:
         with open(f"/proc/{self.process.pid}/status", encoding="ascii") as file:
             return 1024 * int(re.search(r"VmRSS:\s*(\d+)", file.read()).group(1))
 
+    def processor_ticks(self):
+        """The time that all its threads have computed, in hundredths of a second."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="utf-8") as file:
+            return sum(map(int, file.read().rpartition(") ")[2].split()[11:13]))
+
     def open_sockets(self):
         folder = f"/proc/{self.process.pid}/fd"
         count = 0
