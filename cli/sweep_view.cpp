@@ -122,7 +122,7 @@ Result<std::string> take_sheet(PictureTaker& taker, const SheetPicture& picture,
 Result<AtomicFile> written_file(const std::string& name, std::string_view content) {
   auto file = AtomicFile::create(name);
   if (!file) return file;
-  if (auto written = file->write(content); !written) return fail(written.error());
+  if (auto written = file->write(content, &was_interrupted); !written) return fail(written.error());
   return file;
 }
 
@@ -244,7 +244,10 @@ int run_sweep_view(const SweepViewOptions& options) {
 
   std::optional<std::string> made, drawn;
   if (options.out) {
-    made = viewer::page_with(*page, viewer::name_of_folder(options.folder), bake->packed);
+    auto whole = viewer::page_with(*page, viewer::name_of_folder(options.folder), bake->packed,
+                                   &was_interrupted);
+    if (!whole) return report(with_kept(whole.error(), "nothing was written"));
+    made = *std::move(whole);
   }
   if (picture && bake->pictured == 0)
     print(stderr,

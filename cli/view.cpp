@@ -33,7 +33,7 @@ Result<void> write_page(const std::filesystem::path& file, const std::string& pa
                             "choose fewer frames with --frames A:B",
                             bytes_text(page.size()), bytes_text(longest_page)));
   }
-  return write_file(file, page);
+  return write_file(file, page, &was_interrupted);
 }
 
 std::string page_file(const ViewOptions& options) { return options.out.value_or("view.html"); }
@@ -59,14 +59,16 @@ int page_view(const ViewOptions& options, std::string_view page) {
   }
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return report(with_kept(baked.error(), "no page was written"));
-  const std::string made = viewer::page_with(page, title_of(baked->scene), baked->bake.packed);
-  if (auto written = write_page(out, made); !written) return report(written.error());
+  const auto made =
+      viewer::page_with(page, title_of(baked->scene), baked->bake.packed, &was_interrupted);
+  const auto written = made ? write_page(out, *made) : fail(made.error());
+  if (!written) return report(with_kept(written.error(), "no page was written"));
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   print(stdout, fmt::format("{}: {}, {}, {}, {:.2f} s, {}\n", printable(out),
                             counted(baked->frames.count(), "frame"),
                             counted(baked->bake.vertex_count, "vertex", "vertices"),
-                            bytes_text(made.size()), elapsed.count(),
+                            bytes_text(made->size()), elapsed.count(),
                             peak_text(baked->bake.peak_displacement, baked->frames, baked->scene)));
   return exit_done;
 }

@@ -128,7 +128,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   taker->publish(std::move(baked->bake.packed));
   const auto picture = taker->take();
   if (!picture) return fail(picture.error());
-  return write_file(*options.png, *picture);
+  return write_file(*options.png, *picture, &was_interrupted);
 }
 
 }  // namespace

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include <zlib.h>
 
 namespace pliant::viewer {
 namespace {
 
-// Number of bytes to pass to zlib at once: its counters have fewer bits.
+// Number of bytes to pass to zlib between two asks: its counters have fewer bits, and bytes that
+// hardly need any place are many.
 uInt portion(std::size_t bytes) {
-  constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
+  constexpr std::size_t most = std::size_t{1} << 20U;
   return static_cast<uInt>(std::min(bytes, most));
 }
 

@@ -65,13 +65,21 @@ std::string policy_of(std::string_view page) {
   return std::string(rest.substr(0, rest.find('"')));
 }
 
-std::string page_with(std::string_view page, std::string_view title, std::string_view packed) {
+Result<std::string> page_with(std::string_view page, std::string_view title,
+                              std::string_view packed, const StopRequest& should_stop) {
+  constexpr std::size_t piece = 3'000'000;  // of three bytes each, so that pieces can be joined
+  std::string digits;
+  digits.reserve((packed.size() + 2) / 3 * 4);
+  for (std::size_t k = 0; k < packed.size(); k += piece) {
+    if (is_stopped(should_stop)) return interrupted();
+    digits += base64(packed.substr(k, piece));
+  }
   std::string result(page);
   if (const auto at = result.find(asks_own_server); at != std::string::npos) {
     result.replace(at, asks_own_server.size(), "connect-src 'none'");
   }
   put(result, "<title>", "</title>", escaped(title) + " – pliant");
-  put(result, "<script id=\"bake\" type=\"text/plain\">", "</script>", base64(packed));
+  put(result, "<script id=\"bake\" type=\"text/plain\">", "</script>", digits);
   return result;
 }
 

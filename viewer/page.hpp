@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant::viewer {
 
@@ -19,7 +20,8 @@ Result<std::string_view> sweep_page_template();
 std::string policy_of(std::string_view page);
 
 /// A self-contained page: `page` with a title and `packed` (see `ViewBake`, `SweepBake`) inside. It
-/// makes no requests.
-std::string page_with(std::string_view page, std::string_view title, std::string_view packed);
+/// makes no requests. Errors: Interrupted.
+Result<std::string> page_with(std::string_view page, std::string_view title,
+                              std::string_view packed, const StopRequest& should_stop = {});
 
 }  // namespace pliant::viewer

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,8 +32,20 @@ struct Chunk {
   std::string_view content;
 };
 
+constexpr std::size_t piece_bytes = std::size_t{1} << 20U;  // checked between two asks
+
+// The checksum of the bytes, or null: stopped.
+std::optional<std::uint32_t> checksum(std::string_view bytes, const StopRequest& should_stop) {
+  auto sum = crc32_z(0, nullptr, 0);
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), piece_bytes))) {
+    if (is_stopped(should_stop)) return {};
+    sum = crc32_z(sum, zlib_bytes(bytes), std::min(bytes.size(), piece_bytes));
+  }
+  return static_cast<std::uint32_t>(sum);
+}
+
 // The chunks of a file; IEND must be the last.
-Result<std::vector<Chunk>> chunks_of(std::string_view bytes) {
+Result<std::vector<Chunk>> chunks_of(std::string_view bytes, const StopRequest& should_stop) {
   if (!bytes.starts_with(signature)) return invalid("it is not a PNG");
   constexpr std::size_t frame = 12;  // length, type and checksum
   std::vector<Chunk> chunks;
@@ -41,8 +54,9 @@ Result<std::vector<Chunk>> chunks_of(std::string_view bytes) {
     const std::size_t length = number_at(bytes, 0);
     if (length > bytes.size() - frame) return invalid("it is truncated");
     const std::string_view sealed = bytes.substr(4, 4 + length);
-    const auto sum = crc32_z(crc32_z(0, nullptr, 0), zlib_bytes(sealed), sealed.size());
-    if (sum != number_at(bytes, 8 + length)) return invalid("a chunk has a wrong checksum");
+    const auto sum = checksum(sealed, should_stop);
+    if (!sum) return interrupted();
+    if (*sum != number_at(bytes, 8 + length)) return invalid("a chunk has a wrong checksum");
     chunks.push_back({sealed.substr(0, 4), sealed.substr(4)});
     bytes.remove_prefix(frame + length);
     if (chunks.back().type != "IEND") continue;
@@ -70,7 +84,8 @@ Result<std::size_t> row_bytes(const Chunk& first, PictureSize size) {
 // Unpacks rows to check their number and filters, without storing them.
 class Rows {
  public:
-  Rows(std::size_t bytes, std::size_t count) : row_bytes_(bytes), left_(bytes * count) {}
+  Rows(std::size_t bytes, std::size_t count, const StopRequest& should_stop)
+      : row_bytes_(bytes), left_(bytes * count), poll_(should_stop) {}
 
   Result<void> take(std::string_view packed) {
     if (!is_open_) return invalid("its rows cannot be decompressed");
@@ -82,7 +97,9 @@ class Rows {
       const int state = inflate(&stream_, Z_NO_FLUSH);
       if (state == Z_BUF_ERROR) return {};  // all input so far is consumed
       if (state != Z_OK && state != Z_STREAM_END) return invalid("its rows cannot be decompressed");
-      if (auto seen = look_at(piece_.size() - stream_.avail_out); !seen) return seen;
+      const std::size_t count = piece_.size() - stream_.avail_out;
+      if (auto seen = look_at(count); !seen) return seen;
+      if (poll_.after(count)) return interrupted();
       has_ended_ = state == Z_STREAM_END;
     }
     return stream_.avail_in == 0 ? Result<void>() : invalid("there is data after its rows");
@@ -111,6 +128,7 @@ class Rows {
   std::size_t row_bytes_;
   std::size_t left_;
   std::size_t place_ = 0;
+  StopPoll poll_;
   bool has_ended_ = false;
   std::array<Bytef, 65'536> piece_;
   z_stream stream_ = {};
@@ -120,12 +138,12 @@ class Rows {
 
 }  // namespace
 
-Result<void> check_png(std::string_view bytes, PictureSize size) {
-  const auto chunks = chunks_of(bytes);
+Result<void> check_png(std::string_view bytes, PictureSize size, const StopRequest& should_stop) {
+  const auto chunks = chunks_of(bytes, should_stop);
   if (!chunks) return fail(chunks.error());
   const auto width = row_bytes(chunks->front(), size);
   if (!width) return fail(width.error());
-  Rows rows(*width, static_cast<std::size_t>(size.height));
+  Rows rows(*width, static_cast<std::size_t>(size.height), should_stop);
   std::string_view before = "IHDR";
   bool has_rows = false;
   for (std::size_t k = 1; k + 1 < chunks->size(); ++k) {

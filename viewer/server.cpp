@@ -1,5 +1,6 @@
 #include "viewer/server.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -30,8 +31,9 @@ std::size_t longest_picture(const PictureOrder& order) {
   return order.form == PictureForm::Png ? longest_png(order.size) : pixel_bytes(order.size);
 }
 
-Result<void> check_picture(std::string_view bytes, const PictureOrder& order) {
-  if (order.form == PictureForm::Png) return check_png(bytes, order.size);
+Result<void> check_picture(std::string_view bytes, const PictureOrder& order,
+                           const StopRequest& should_stop) {
+  if (order.form == PictureForm::Png) return check_png(bytes, order.size, should_stop);
   if (bytes.size() == pixel_bytes(order.size)) return {};
   return invalid(fmt::format("it has {} bytes, not those of {} x {} pixels", bytes.size(),
                              order.size.width, order.size.height));
@@ -54,6 +56,7 @@ struct ViewServer::State {
   std::deque<PictureOrder> orders = {};           // whose pictures have not arrived
   std::deque<Result<std::string>> pictures = {};  // that have not been taken
 
+  std::atomic<bool> is_ending = false;
   HttpServer server;  // last, so that its thread ends before the members it uses
 
   State(std::string text, ViewGate rules, HttpServer http)
@@ -61,6 +64,9 @@ struct ViewServer::State {
         page(std::make_shared<const std::string>(std::move(text))),
         gate(std::move(rules)),
         server(std::move(http)) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() { is_ending = true; }
 
   void tell(std::string_view what, std::optional<std::string> told = {}) {
     {
@@ -108,6 +114,7 @@ struct ViewServer::State {
   HttpAnswer answer(const HttpHead& head, std::string body) {
     const auto judged = gate.judge(head);
     const auto route = std::get<ViewRoute>(judged);
+    if (route == ViewRoute::Picture) return take(std::move(body));
     const std::lock_guard lock(mutex);
     switch (route) {
       case ViewRoute::Page:
@@ -120,7 +127,7 @@ struct ViewServer::State {
       case ViewRoute::Job:
         return jobs();
       case ViewRoute::Picture:
-        return take(std::move(body));
+        break;
     }
     return {.status = 404};
   }
@@ -133,11 +140,17 @@ struct ViewServer::State {
             .body = std::make_shared<const std::string>(std::move(text) + "]")};
   }
 
-  // Requires: the mutex is held.
   HttpAnswer take(std::string body) {
-    if (orders.empty()) return {.status = 409};  // another client was faster
-    const auto checked = check_picture(body, orders.front());
-    orders.pop_front();
+    PictureOrder order;
+    {
+      const std::lock_guard lock(mutex);
+      if (orders.empty()) return {.status = 409};  // another client was faster
+      order = std::move(orders.front());
+      orders.pop_front();
+    }
+    // Without the lock, since a large picture takes its time.
+    const auto checked = check_picture(body, order, [this] { return is_ending.load(); });
+    const std::lock_guard lock(mutex);
     if (!checked) {
       pictures.emplace_back(fail(checked.error()));
       return {.status = 400};

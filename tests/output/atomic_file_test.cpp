@@ -180,6 +180,24 @@ TEST_CASE("what cannot be written is an error that names the file", "[output][at
   CHECK_THAT(AtomicFile::create(folder.path()).error().message, Contains("it is a folder"));
 }
 
+TEST_CASE("writing ends when asked, and the old file stays", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  const std::string name = folder.write("a.txt", "old").string();
+  const std::string bytes(20'000'000, 'x');
+  int asked = 0;
+  REQUIRE(write_file(name, bytes, [&] { return ++asked < 0; }));
+  CHECK(asked > 4);
+  REQUIRE(write_file(name, "old"));
+  for (int moment = 1; moment <= asked; ++moment) {
+    int left = moment;
+    const auto written = write_file(name, bytes, [&] { return --left <= 0; });
+    REQUIRE_FALSE(written);
+    CHECK(written.error().code == ErrorCode::Interrupted);
+    CHECK(left == 0);
+    CHECK(std::filesystem::file_size(name) == 3);
+  }
+}
+
 TEST_CASE("a full disk is an error and leaves nothing", "[output][atomic_file]") {
   // The limit on a file's size simulates a full disk.
   const ScratchFolder folder;

@@ -76,6 +76,28 @@ TEST_CASE("a picture of a canvas passes", "[viewer][png]") {
                   chunk("IDAT", all.substr(3)) + chunk("tEXt", "a") + end) == "");
 }
 
+TEST_CASE("the check of a picture ends when asked", "[viewer][png]") {
+  const PictureSize large = {1000, 1000};
+  std::string lines;
+  for (int row = 0; row < large.height; ++row) lines += '\0' + std::string(4000, '\7');
+  // Few bytes of many rows, and many bytes.
+  for (const std::string& packed_lines :
+       {packed(lines), packed(lines) + std::string(8'000'000, 'x')}) {
+    const std::string bytes = begin + chunk("IHDR", number(1000) + number(1000) + rgba) +
+                              chunk("IDAT", packed_lines) + end;
+    int asked = 0;
+    (void)check_png(bytes, large, [&] { return ++asked < 0; });
+    CHECK(asked > 10);
+    for (int moment = 1; moment <= asked; ++moment) {
+      int left = moment;
+      const auto checked = check_png(bytes, large, [&] { return --left <= 0; });
+      REQUIRE_FALSE(checked);
+      CHECK(checked.error().code == ErrorCode::Interrupted);
+      CHECK(left == 0);
+    }
+  }
+}
+
 TEST_CASE("a picture of more than one piece of memory passes, to its last filter",
           "[viewer][png]") {
   const PictureSize large = {500, 400};

@@ -117,10 +117,16 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& file, Flush f
   return AtomicFile(file, part, std::move(stream), flush, is_as_old);
 }
 
-Result<void> AtomicFile::write(std::string_view bytes) {
+Result<void> AtomicFile::write(std::string_view bytes, const StopRequest& should_stop) {
   PLIANT_EXPECTS(stream_);
-  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size()) {
-    return unwritable(errno);
+  constexpr std::size_t most = std::size_t{1} << 22U;  // between two asks
+  while (!bytes.empty()) {
+    if (is_stopped(should_stop)) return interrupted();
+    const std::string_view piece = bytes.substr(0, most);
+    if (std::fwrite(piece.data(), 1, piece.size(), stream_.get()) != piece.size()) {
+      return unwritable(errno);
+    }
+    bytes.remove_prefix(piece.size());
   }
   return {};
 }
@@ -231,10 +237,12 @@ tl::unexpected<Error> AtomicFile::unwritable(int error_number) const {
   return cannot_write(file_, error_number);
 }
 
-Result<void> write_file(const std::filesystem::path& file, std::string_view bytes) {
+Result<void> write_file(const std::filesystem::path& file, std::string_view bytes,
+                        const StopRequest& should_stop) {
   auto output = AtomicFile::create(file);
   if (!output) return fail(output.error());
-  if (auto written = output->write(bytes); !written) return written;
+  if (auto written = output->write(bytes, should_stop); !written) return written;
+  if (is_stopped(should_stop)) return interrupted();
   return output->commit();
 }
 

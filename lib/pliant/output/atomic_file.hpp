@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -33,8 +34,8 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
 
-  /// Appends. Errors: Unwritable, for example if the disk is full.
-  Result<void> write(std::string_view bytes);
+  /// Appends. Errors: Unwritable, for example if the disk is full; Interrupted.
+  Result<void> write(std::string_view bytes, const StopRequest& should_stop = {});
   Result<void> write(std::span<const double> numbers);  ///< little-endian
   Result<void> write(std::span<const float> numbers);   ///< little-endian
 
@@ -76,7 +77,8 @@ class AtomicFile {
 };
 
 /// Writes a whole file at once. Errors: those of `AtomicFile`.
-Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
+Result<void> write_file(const std::filesystem::path& file, std::string_view bytes,
+                        const StopRequest& should_stop = {});
 
 /// The same in place of a file that had `old_bytes` when it was read. Errors: those of
 /// `AtomicFile::commit_over`.
