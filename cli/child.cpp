@@ -131,7 +131,7 @@ bool read_some(PipeEnd& end, const std::function<void(std::string_view)>& take) 
 
 }  // namespace
 
-bool is_on_path(std::string_view name) {
+std::optional<std::string> program_on_path(std::string_view name) {
   const char* const path = std::getenv("PATH");
   std::string_view folders = path == nullptr ? "" : path;
   while (!folders.empty()) {
@@ -139,11 +139,11 @@ bool is_on_path(std::string_view name) {
     const auto file = std::filesystem::path(folders.substr(0, end)) / name;
     std::error_code ignored;
     if (access(file.c_str(), X_OK) == 0 && !std::filesystem::is_directory(file, ignored)) {
-      return true;
+      return std::filesystem::absolute(file, ignored).string();
     }
     folders.remove_prefix(std::min(end + 1, folders.size()));
   }
-  return false;
+  return {};
 }
 
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
@@ -162,6 +162,9 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
   connect(streams.errors, STDERR_FILENO, O_WRONLY);
   if (streams.lifeline >= 0)  // the last, since it may replace one that was connected
     posix_spawn_file_actions_adddup2(&files, streams.lifeline, ChildStreams::lifeline_end);
+  // It gets nothing else: the sockets of our server would be open as long as it.
+  const int others = streams.lifeline >= 0 ? ChildStreams::lifeline_end + 1 : STDERR_FILENO + 1;
+  posix_spawn_file_actions_addclosefrom_np(&files, others);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t signals;

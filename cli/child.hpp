@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,8 +14,9 @@
 
 namespace pliant::cli {
 
-/// Whether a program of that name is on the PATH.
-bool is_on_path(std::string_view program);
+/// The absolute path of a program on the PATH; null: there is none of that name.
+std::optional<std::string> program_on_path(std::string_view program);
+inline bool is_on_path(std::string_view program) { return program_on_path(program).has_value(); }
 
 /// The standard streams of a program that is started: open descriptors, or /dev/null.
 struct ChildStreams {

@@ -1,5 +1,6 @@
 #include "ffmpeg.hpp"
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -88,15 +89,16 @@ Result<void> Ffmpeg::finish() {
   }
 }
 
-// The first line of its log: later ones are consequences.
+// The first line of its log, or the beginning of it: later ones are consequences.
 tl::unexpected<Error> Ffmpeg::failure() const {
   std::ifstream file(log_);
-  std::string line;
-  std::getline(file, line);
   constexpr std::size_t longest = 300;
+  std::array<char, longest + 1> bytes = {};
+  file.getline(bytes.data(), bytes.size());
+  const std::string_view line = bytes.data();
   return fail(ErrorCode::Unwritable,
               fmt::format("ffmpeg could not write the movie: {}",
-                          line.empty() ? "it gave no reason" : printable(line.substr(0, longest))));
+                          line.empty() ? "it gave no reason" : printable(line)));
 }
 
 }  // namespace pliant::cli

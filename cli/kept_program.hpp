@@ -1,41 +1,23 @@
 #pragma once
 
+#include <csignal>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
-#include <sys/types.h>
-
 #include "child.hpp"
+#include "keeper.hpp"
 #include "pliant/core/result.hpp"
+#include "scratch_folder.hpp"
 
 namespace pliant::cli {
-
-/// A temporary folder, removed by the destructor.
-class ScratchFolder {
- public:
-  /// In the folder that TMPDIR names, or /tmp. Errors: Unwritable, naming it.
-  static Result<ScratchFolder> make();
-  ScratchFolder(ScratchFolder&& other) noexcept;
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  ~ScratchFolder();
-
-  const std::string& path() const { return path_; }  ///< absolute
-
- private:
-  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
-
-  std::string path_;
-};
 
 /// A program that ends with this object, and with the command however that ends, also by SIGKILL;
 /// so do all programs that it has started.
 ///
-/// Between the command and the program is a keeper: the command again, in a process of its own,
-/// which waits for the end of either. It kills what is left of the program, and removes the folder
-/// if the program did not end first.
+/// Between the command and the program is its keeper, which waits for the end of either, kills what
+/// is left of the program, and holds the folder meanwhile.
 class KeptProgram {
  public:
   /// Starts a program of the PATH, as `start_child` does. The folder is its working folder, and the
@@ -43,7 +25,7 @@ class KeptProgram {
   static Result<KeptProgram> start(std::vector<std::string> words, const ChildStreams& streams,
                                    const ScratchFolder& folder);
 
-  KeptProgram(KeptProgram&& other) noexcept;
+  KeptProgram(KeptProgram&&) = default;
   KeptProgram& operator=(KeptProgram&&) = delete;
   ~KeptProgram();
 
@@ -51,19 +33,14 @@ class KeptProgram {
   std::optional<int> code();
 
  private:
-  KeptProgram(pid_t keeper, int lifeline) : keeper_(keeper), lifeline_(lifeline) {}
+  explicit KeptProgram(Keeper keeper) : keeper_(std::move(keeper)) {}
+  void end_orphans();
 
-  pid_t keeper_;  // 0: it has ended
-  int lifeline_;  // a pipe; its closing tells the keeper that this object or the command ended
-  int code_ = -1;
+  Keeper keeper_;
 };
 
-/// The first argument with which the command starts itself as a keeper.
-inline constexpr std::string_view keeper_request = "__keep";
-
-/// A keeper: runs a program to its end. `words`: the folder, the program and its arguments, and a
-/// null. Requires: one thread; the descriptor of `ChildStreams::lifeline` is open. Returns the exit
-/// code.
-int run_keeper(std::span<char*> words);
+/// The keeper of a program: runs it to its end. `words`: those of the program, and a null; it has
+/// the signal mask. Returns the exit code.
+int keep_program(const std::string& folder, char** words, const sigset_t& signals);
 
 }  // namespace pliant::cli

@@ -14,7 +14,7 @@
 #include "format.hpp"
 #include "info.hpp"
 #include "interrupt.hpp"
-#include "kept_program.hpp"
+#include "keeper.hpp"
 #include "new.hpp"
 #include "replay.hpp"
 #include "report.hpp"

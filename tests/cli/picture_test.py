@@ -188,6 +188,17 @@ class Picture(Command):
         self.assertNotIn(results["token"], " ".join(results["arguments"]))
         self.assertEqual(results["way"][-3:], "700")
 
+    def test_a_program_gets_no_descriptors_but_its_streams(self):
+        _, results = self.draw("""
+def opened(process): return sorted(os.readlink(f"/proc/{process}/fd/{each}") for each in os.listdir(f"/proc/{process}/fd"))
+held = subprocess.run(["/bin/ls", "-l", "/proc/self/fd/"], close_fds=False, stdout=subprocess.PIPE, text=True).stdout
+results["own"], results["keeper"] = held, opened(os.getppid())
+note()
+post(png(64, 48))
+""")
+        self.assertNotIn("socket:", results["own"])
+        self.assertFalse([each for each in results["keeper"] if "socket:" in each], results["keeper"])
+
     def test_from_elsewhere_nothing_is_taken(self):
         work = """
 bad = png(64, 48, 1)
@@ -268,6 +279,21 @@ answer = send("", one + two)
         self.assertIn(zlib.compress((b"\0" + b"\x03" * 256) * 48, 1), self.read("out.png"))
 
     def test_the_folder_for_temporary_files_may_have_any_name(self):
+        os.mkdir(self.path("behind"))
+        os.symlink(self.path("behind"), self.path("link"))
+        for place in ("link", self.path("link"), "behind/", "./behind//", self.path("behind") + "/.", "link/../behind"):
+            with self.subTest(place):
+                self.draw("note()\npost(png(64, 48, 5))", TMPDIR=place)
+                self.assertEqual(os.listdir(self.path("behind")), [])
+                os.remove(self.path("out.png"))
+        deep = os.path.join(self.folder, *["x" * 200] * 4)
+        os.makedirs(deep)
+        self.draw("note()\npost(png(64, 48, 5))", TMPDIR=deep)
+        self.assertEqual(os.listdir(deep), [])
+        os.remove(self.path("out.png"))
+        self.draw("results['place'] = os.path.dirname(os.path.dirname(way)).decode()\nnote()\npost(png(64, 48, 5))", TMPDIR="")
+        self.assertEqual(json.loads(self.read("results.json"))["place"], "/tmp")
+        os.remove(self.path("out.png"))
         for name in (b"a b", b"a#b", b"a?b", b"a%41b", b"%", b"a%%d", b"a'\"\\b", b"\xff\xc3\xa9", b"a\nb", b"-a", b"a;b&c", b"x" * 240):
             for place in (os.path.join(os.fsencode(self.folder), name), name):  # absolute, and relative
                 with self.subTest(place):
@@ -355,6 +381,155 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
                     self.assertEqual([name for name in self.files() if name.startswith("out")], [])
                     for each in family:
                         os.remove(self.path(f"child-{each}"))
+
+    # Programs that write their numbers, and wait.
+    WAITS = "open(os.path.join(folder, f'child-{os.getpid()}'), 'w').close()\ntime.sleep(600)\n"
+
+    def start_both(self, *options, begins="", **more):
+        """A movie or picture whose programs do nothing, with its temporary files in `scratch`."""
+        self.program("chromium", BROWSER + begins + self.WAITS)
+        self.program("ffmpeg", BROWSER.partition("way =")[0] + "folder = os.path.dirname(os.path.abspath(__file__))\n" + begins + self.WAITS)
+        os.makedirs(self.path("scratch"), exist_ok=True)
+        return subprocess.Popen([PLIANT, *self.words(*options)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
+                                env=self.variables(TMPDIR=self.path("scratch")), **more)
+
+    def descendants(self, process):
+        found = [process]
+        for each in found:  # grows meanwhile
+            for task in os.listdir(f"/proc/{each}/task"):
+                with open(f"/proc/{each}/task/{task}/children", encoding="ascii") as file:
+                    found += map(int, file.read().split())
+        return found[1:]
+
+    def await_empty(self, folder):
+        deadline = time.monotonic() + 20
+        while os.listdir(folder) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertEqual(os.listdir(folder), [])
+
+    def test_at_whatever_moment_the_command_ends_nothing_is_left(self):
+        for options, numbers in ((("--movie", "out.mp4"), (signal.SIGKILL,)), (("--movie", "out.gif"), (signal.SIGINT,)),
+                                 (("--movie", "out.webm"), (signal.SIGTERM, signal.SIGINT)), ((), (signal.SIGKILL,)), ((), (signal.SIGINT, signal.SIGINT))):
+            for k in range(10):
+                with self.subTest(options, numbers=numbers, moment=k), self.start_both(*options) as process:
+                    time.sleep(0.02 * k)
+                    for number in numbers:
+                        process.send_signal(number)
+                    errors = process.communicate(timeout=60)[1]
+                    if numbers == (signal.SIGINT,) and errors:
+                        self.assertRegex(errors, r"\Apliant: error: interrupted[^\n]*\n\Z")
+                self.await_empty(self.path("scratch"))
+                self.await_end_of(self.family())
+                self.assertEqual([name for name in self.files() if name.startswith("out")], [])
+
+    def test_a_kill_of_its_group_or_of_all_its_keepers_ends_the_programs(self):
+        for kind in ("group", "keepers", "keepers by a request"):
+            with self.subTest(kind), self.start_both("--movie", "out.mp4", begins=self.FAMILY, start_new_session=True) as process:
+                family = self.await_family(process, 10)
+                keepers = [each for each in self.descendants(process.pid) if each not in family]
+                self.assertEqual(len(keepers), 4)
+                if kind == "group":
+                    os.killpg(process.pid, signal.SIGKILL)
+                for keeper in keepers if kind != "group" else []:
+                    os.kill(keeper, signal.SIGKILL if kind == "keepers" else signal.SIGTERM)
+                if kind == "keepers by a request":  # which they pass over
+                    process.send_signal(signal.SIGTERM)
+                process.communicate(timeout=60)
+                self.assertEqual(process.returncode, -signal.SIGKILL if kind == "group" else 1)
+                self.await_end_of([*family, *keepers])
+                self.await_empty(self.path("scratch"))
+                for each in family:
+                    os.remove(self.path(f"child-{each}"))
+
+    def test_what_is_left_when_all_are_killed_at_once_is_removed_by_the_next(self):
+        scratch = self.path("scratch")
+        with self.start_both("--movie", "out.mp4") as process:
+            family = self.await_family(process, 2)
+            for each in (process.pid, *self.descendants(process.pid)):
+                os.kill(each, signal.SIGSTOP)
+            for each in (process.pid, *self.descendants(process.pid)):
+                os.kill(each, signal.SIGKILL)
+            process.communicate(timeout=60)
+        self.await_end_of(family)
+        for each in family:
+            os.remove(self.path(f"child-{each}"))
+        left = os.listdir(scratch)
+        self.assertEqual(len(left), 2)
+        # What is not ours, or in use, stays.
+        others = ["pliant-view-photos", "pliant-view-abcdef", "other"]
+        for name in others:
+            os.mkdir(os.path.join(scratch, name))
+            open(os.path.join(scratch, name, "kept" if name == "other" else "mine"), "w", encoding="utf-8").close()
+        os.symlink(self.folder, os.path.join(scratch, "pliant-view-linked"))
+        with self.start_both("--movie", "out.mp4") as process:
+            self.await_family(process, 2)
+            used = set(os.listdir(scratch)) - {*left, *others, "pliant-view-linked"}
+            self.assertEqual(len(used), 2)
+            self.draw("note()\npost(png(64, 48, 5))", TMPDIR=scratch)
+            self.assertEqual(set(os.listdir(scratch)), {*used, *others, "pliant-view-linked"})
+            process.send_signal(signal.SIGKILL)
+            process.communicate(timeout=60)
+        deadline = time.monotonic() + 20
+        while set(os.listdir(scratch)) & used and time.monotonic() < deadline:
+            time.sleep(0.02)
+        self.assertEqual(set(os.listdir(scratch)), {*others, "pliant-view-linked"})
+        self.assertIn("scratch", self.files())
+
+    def test_a_kill_while_no_program_runs_leaves_nothing(self):
+        # ffmpeg has ended, and its movie, which has no end, is copied.
+        self.program("ffmpeg", """#!/usr/bin/python3
+import os, shutil, sys
+shutil.copyfileobj(sys.stdin.buffer, open(os.devnull, "wb"))
+open(sys.argv[-1], "w").truncate(20_000_000_000)
+open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "written"), "w").close()
+""")
+        self.program("chromium", BROWSER + "for _ in range(2): post(bytes(64 * 48 * 4))\ntime.sleep(600)\n")
+        for number in (signal.SIGKILL, signal.SIGINT):
+            os.mkdir(self.path("scratch"))
+            with subprocess.Popen([PLIANT, *self.words("--movie", "out.mp4", "--frames", "1:2")], cwd=self.folder, stderr=subprocess.DEVNULL,
+                                  env=self.variables(TMPDIR=self.path("scratch"))) as process:
+                deadline = time.monotonic() + 60
+                while "written" not in self.files() and time.monotonic() < deadline:
+                    time.sleep(0.01)
+                time.sleep(0.2)
+                process.send_signal(number)
+                process.wait(timeout=60)
+            self.await_empty(self.path("scratch"))
+            os.rmdir(self.path("scratch"))
+            os.remove(self.path("written"))
+            self.assertNotIn("out.mp4", self.files())
+
+    def test_a_program_with_a_strange_name_ends_too(self):
+        self.draw("""
+name = "libc.so.6"
+work = ("import ctypes, os, time\\nctypes.CDLL('libc.so.6').prctl(15, b') Z 1\\\\n) ', 0, 0, 0)\\n"
+        f"open(os.path.join({folder!r}, f'child-{{os.getpid()}}'), 'w').close()\\ntime.sleep(600)")
+subprocess.Popen([sys.executable, "-c", work])
+while not [each for each in os.listdir(folder) if each.startswith("child-")]: time.sleep(0.02)
+note()
+post(png(64, 48))
+""")
+        self.assertEqual(len(self.family()), 1)
+        self.await_end_of(self.family())
+
+    def test_programs_are_found_on_a_path_of_relative_folders(self):
+        self.program("chromium", BROWSER + "post(png(64, 48))\ntime.sleep(60)\n")
+        for folder in (".", "./.", "../" + os.path.basename(self.folder)):
+            with self.subTest(folder):
+                self.run_pliant(*self.words(), env={**os.environ, "PATH": folder})
+                os.remove(self.path("out.png"))
+
+    def test_what_the_programs_print_is_short_and_harmless(self):
+        noise = "\x1b]0;owned\x07\x1b[2J\0" + "x" * 5_000_000
+        self.program("ffmpeg", f"#!/usr/bin/python3\nimport sys\nsys.stdout.write({noise!r})\nsys.stderr.write({noise!r})\nsys.exit(1)\n")
+        shout = f"sys.stdout.write({noise!r})\nsys.stderr.write({noise!r})\n"
+        result, _ = self.draw(shout + "post(bytes(64 * 48 * 4))", "--movie", "out.mp4", code=1)
+        self.assertTrue(result.stderr.isprintable() or result.stderr.count("\n") == 1, result.stderr[:100])
+        self.assertNotIn("\x1b", result.stderr)
+        self.assertLess(len(result.stderr), 2000)
+        self.assertEqual(result.stdout, "")
+        result, _ = self.draw(shout + "post(png(64, 48))")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
 
     def test_what_a_browser_leaves_ends_with_the_command(self):
         self.draw(self.FAMILY + "while len([name for name in os.listdir(folder) if name.startswith('child-')]) < 5: time.sleep(0.02)\n"
