@@ -74,8 +74,15 @@ inline void check_error(const Error& error, std::size_t most = 1) {
   }
 }
 
-/// What a valid mesh becomes: a surface, a grid or an error, and a finer mesh of a cage.
+/// What a valid mesh becomes: triangles; a surface, a grid or an error; a finer mesh of a cage.
 inline void check_readings(const Mesh& mesh) {
+  const auto corners = mesh.corner_vertices.size();
+  const auto triangles = triangulate(mesh);
+  require(triangles.size() == corners - 2 * mesh.face_sizes.size());
+  for (const auto& triangle : triangles) {
+    for (const int corner : triangle)
+      require(corner >= 0 && static_cast<std::size_t>(corner) < corners);
+  }
   for (const Wrap wrap : {Wrap::None, Wrap::U, Wrap::UV}) {
     const auto grid = find_grid(mesh, wrap);
     if (!grid) {

@@ -4,15 +4,16 @@
 
 #include <Eigen/Geometry>
 
+#include "pliant/mesh/polygon_sweep.hpp"
+
 namespace pliant {
 namespace {
 
 using Vector2d = Eigen::Vector2d;
+using CornerTriples = std::vector<std::array<int, 3>>;
 
-// Twice the signed area of a triangle.
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
-}
+// The most corners of a face that is cut at its ears, which takes their third power.
+constexpr int most_for_ears = 32;
 
 // The corners of a face projected along its mean normal, counter-clockwise.
 std::vector<Vector2d> laid_flat(const Mesh& mesh, int first, int size) {
@@ -51,11 +52,22 @@ bool is_ear(const std::vector<Vector2d>& points, const std::vector<int>& left, s
   return true;
 }
 
-void cut(const Mesh& mesh, int first, int size, std::vector<std::array<int, 3>>& triangles) {
-  std::vector<int> left(static_cast<std::size_t>(size));
+CornerTriples fan(int size) {
+  CornerTriples triangles;
+  for (int k = 1; k + 1 < size; ++k) triangles.push_back({0, k, k + 1});
+  return triangles;
+}
+
+bool is_fan(const std::vector<Vector2d>& points) {
+  for (std::size_t k = 1; k + 1 < points.size(); ++k)
+    if (!(turn(points[0], points[k], points[k + 1]) > 0)) return false;
+  return true;
+}
+
+CornerTriples ears(const std::vector<Vector2d>& points) {
+  CornerTriples triangles;
+  std::vector<int> left(points.size());
   std::iota(left.begin(), left.end(), 0);
-  const std::vector<Vector2d> points =
-      size > 3 ? laid_flat(mesh, first, size) : std::vector<Vector2d>();
   while (left.size() > 3) {
     const std::size_t n = left.size();
     std::size_t tip = 1;
@@ -65,20 +77,30 @@ void cut(const Mesh& mesh, int first, int size, std::vector<std::array<int, 3>>&
       break;
     }
     const std::size_t before = (tip + n - 1) % n, after = (tip + 1) % n;
-    triangles.push_back({first + left[before], first + left[tip], first + left[after]});
+    triangles.push_back({left[before], left[tip], left[after]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(tip));
   }
-  triangles.push_back({first + left[0], first + left[1], first + left[2]});
+  triangles.push_back({left[0], left[1], left[2]});
+  return triangles;
+}
+
+CornerTriples triangles_of(const Mesh& mesh, int first, int size) {
+  if (size == 3) return fan(size);
+  const std::vector<Vector2d> points = laid_flat(mesh, first, size);
+  if (size <= most_for_ears) return ears(points);
+  if (is_fan(points)) return fan(size);
+  return swept_triangles(points).value_or(fan(size));
 }
 
 }  // namespace
 
-std::vector<std::array<int, 3>> triangulate(const Mesh& mesh) {
-  std::vector<std::array<int, 3>> triangles;
+CornerTriples triangulate(const Mesh& mesh) {
+  CornerTriples triangles;
   triangles.reserve(mesh.corner_vertices.size() - 2 * mesh.face_sizes.size());
   int first = 0;
   for (const int size : mesh.face_sizes) {
-    cut(mesh, first, size, triangles);
+    for (const auto& [a, b, c] : triangles_of(mesh, first, size))
+      triangles.push_back({first + a, first + b, first + c});
     first += size;
   }
   return triangles;
