@@ -46,7 +46,7 @@ class SurfaceMaker {
   SurfaceMaker(const Mesh& mesh, const MeshReading& reading) : mesh_(mesh), reading_(reading) {}
 
   Result<TriangleSurface> make() {
-    join_vertices();
+    if (auto joined = join_vertices(); !joined) return fail(joined.error());
     return make_of_nodes();
   }
 
@@ -74,7 +74,7 @@ class SurfaceMaker {
   }
 
   // Nodes in the order of their lowest vertices.
-  void join_vertices() {
+  Result<void> join_vertices() {
     surface_.vertex_nodes.assign(static_cast<std::size_t>(mesh_.vertex_count()), -1);
     std::vector<int>& nodes = surface_.vertex_nodes;
     for (const int vertex : mesh_.corner_vertices) nodes[vertex] = 0;
@@ -88,18 +88,20 @@ class SurfaceMaker {
     }
     const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
     const double distance = reading_.weld.value_or(one_node * extent.stableNorm());
-    const std::vector<int> firsts = welded(points, distance);
+    const auto firsts = welded(points, distance);
+    if (!firsts) return fail(firsts.error());
     int count = 0;
     for (std::size_t k = 0; k < used.size(); ++k) {
-      const auto first = static_cast<std::size_t>(firsts[k]);
+      const auto first = static_cast<std::size_t>((*firsts)[k]);
       nodes[used[k]] = first == k ? count++ : nodes[used[first]];
     }
     surface_.rest.resize(count, 3);
     count = 0;
     for (std::size_t k = 0; k < used.size(); ++k) {
-      if (firsts[k] == static_cast<int>(k))
+      if ((*firsts)[k] == static_cast<int>(k))
         surface_.rest.row(count++) = mesh_.positions.row(used[k]);
     }
+    return {};
   }
 
   // The faces that have three different corners or more, and none twice.
@@ -317,6 +319,7 @@ TriangleSurface posed(TriangleSurface surface, const Field& nodes) {
 
 std::vector<int> pieces_of(const TriangleSurface& surface) {
   std::vector<int> pieces(static_cast<std::size_t>(surface.node_count()), -1);
+  std::vector<bool> is_passed(static_cast<std::size_t>(surface.face_count()));
   std::vector<int> open;
   int count = 0;
   for (int first = 0; first < surface.node_count(); ++first) {
@@ -327,6 +330,8 @@ std::vector<int> pieces_of(const TriangleSurface& surface) {
       const int node = open.back();
       open.pop_back();
       for (const int face : surface.faces_of(node)) {
+        if (is_passed[face]) continue;
+        is_passed[face] = true;
         for (const int other : surface.nodes_of(face)) {
           if (pieces[other] >= 0) continue;
           pieces[other] = count;
