@@ -104,6 +104,22 @@ TEST_CASE("a glTF's buffers are read once, and cut to their size", "[mesh][gltf]
   CHECK_FALSE(buffers.bytes(2));  // truncated
 }
 
+TEST_CASE("a file that a glTF refers to by several names is read once", "[mesh][gltf]") {
+  gltf::Document document;
+  for (const char* uri : {"a.bin", "./a.bin", "b/../a.bin", "b.bin"})
+    document.buffers.push_back({.size = 2, .uri = uri});
+  std::string reads;
+  const ReadReference read = [&](const std::string& uri, std::size_t) -> Result<std::string> {
+    reads += uri + " ";
+    return "xyz";
+  };
+  gltf::Buffers buffers(document, {}, 100, read,
+                        [](const std::string& uri) { return uri.substr(uri.rfind('/') + 1); });
+  for (std::size_t k = 0; k < 4; ++k) CHECK(buffers.bytes(k).value() == "xy");
+  CHECK(reads == "a.bin b.bin ");
+  CHECK(buffers.size_so_far() == 106);
+}
+
 TEST_CASE("a glTF's accessor is the same numbers, however they lie", "[mesh][gltf]") {
   std::string bytes = "??";
   std::vector<double> expected;
@@ -155,13 +171,13 @@ TEST_CASE("a glTF's nodes come before their children, and place them", "[mesh][g
   document.roots = {1, 2};
   const std::vector<gltf::Object> objects = gltf::objects_of(document).value();
   std::string names;
-  for (const gltf::Object& object : objects) names += object.node_name;
+  for (const gltf::Object& object : objects) names += document.nodes[object.node].name;
   REQUIRE(names == "abcde");
   CHECK(objects[0].to_file == turn.matrix());
   CHECK(objects[1].to_file == turn.matrix() * move.matrix());
   CHECK(objects[2].to_file == turn.matrix() * move.matrix() * turn.matrix());
-  CHECK(gltf::choose(objects, "c").value().to_file == objects[2].to_file);
-  CHECK_FALSE(gltf::choose(objects, "f"));
+  CHECK(gltf::choose(document, objects, "c").value().to_file == objects[2].to_file);
+  CHECK_FALSE(gltf::choose(document, objects, "f"));
 
   document.nodes[4].children = {1};  // its own ancestor
   CHECK_FALSE(gltf::objects_of(document));
@@ -176,7 +192,9 @@ TEST_CASE("a glTF's mesh is where its object is", "[mesh][gltf]") {
   const ReadReference none;
   gltf::Buffers buffers(document, bytes, bytes.size(), none);
   gltf::AccessorReader reader(document, buffers);
-  gltf::Object object{"cloth", "weave", Eigen::Matrix4d::Identity(), 0, {0, 0}};
+  document.nodes = {{.name = "cloth"}};
+  document.meshes[0].primitives.push_back(document.meshes[0].primitives[0]);
+  gltf::Object object{.node = 0, .mesh = 0, .to_file = Eigen::Matrix4d::Identity()};
   object.to_file.topRightCorner<3, 1>() << 5, 6, 7;
   object.to_file(2, 0) = 2;
   const Mesh mesh = gltf::mesh_of(document, object, reader, 0).value();

@@ -34,7 +34,7 @@ TEST_CASE("normals of a smooth cube point to its corners", "[mesh][normals]") {
 
 TEST_CASE("normals of a flat cube are those of its faces", "[mesh][normals]") {
   Mesh mesh = cube();
-  mesh.corner_normals = shared_normals(mesh, {{}, {}, std::vector<int>(6, Shading::flat)});
+  mesh.corner_normals = shared_normals(mesh, {{}, {}, std::vector<int>(6, Shading::flat)}).value();
   CHECK(is_flat(mesh));
   REQUIRE(normal_count(mesh) == 6);
   const Field normals = unit_normals(mesh, mesh.positions);
@@ -74,12 +74,12 @@ TEST_CASE("equal normals at equal places are one, across a seam too", "[mesh][no
   mesh.corner_uvs.assign(8, -1);
   const std::array<double, 3> up = {0, 1, 0}, tilted = {-0.6, 0.8, 0}, between = {-0.3, 0.9, 0};
   Shading shading{{up, between, tilted}, {0, 0, 1, 1, 1, 1, 2, 2}, {}};
-  const std::vector<int> joined = shared_normals(mesh, shading);
+  const std::vector<int> joined = shared_normals(mesh, shading).value();
   CHECK(joined[2] == joined[5]);
   CHECK(joined[3] == joined[4]);
   CHECK(joined[2] != joined[3]);
   shading.corner_normals = {0, 0, 0, 0, 2, 2, 2, 2};
-  const std::vector<int> creased = shared_normals(mesh, shading);
+  const std::vector<int> creased = shared_normals(mesh, shading).value();
   CHECK(creased[2] != creased[5]);
   mesh.corner_normals = creased;
   CHECK(check_mesh(mesh));
@@ -87,10 +87,10 @@ TEST_CASE("equal normals at equal places are one, across a seam too", "[mesh][no
 
 TEST_CASE("what a file does not say is smooth", "[mesh][normals]") {
   const Mesh mesh = cube();
-  CHECK(shared_normals(mesh, {}).empty());
-  CHECK(shared_normals(mesh, {{}, {}, std::vector<int>(6, Shading::unsaid)}).empty());
-  CHECK(shared_normals(mesh, {{}, {}, std::vector<int>(6, 7)}).empty());
-  const std::vector<int> two_groups = shared_normals(mesh, {{}, {}, {1, 2, 1, 1, 1, 1}});
+  CHECK(shared_normals(mesh, {}).value().empty());
+  CHECK(shared_normals(mesh, {{}, {}, std::vector<int>(6, Shading::unsaid)}).value().empty());
+  CHECK(shared_normals(mesh, {{}, {}, std::vector<int>(6, 7)}).value().empty());
+  const std::vector<int> two_groups = shared_normals(mesh, {{}, {}, {1, 2, 1, 1, 1, 1}}).value();
   REQUIRE(two_groups.size() == 24);
   CHECK(two_groups[0] == two_groups[8]);   // both of group 1 at vertex 0
   CHECK(two_groups[4] != two_groups[11]);  // 2 and 1 at vertex 4

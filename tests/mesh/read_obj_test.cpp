@@ -357,3 +357,12 @@ TEST_CASE("vertices of an OBJ keep the numbers that the file gives them", "[mesh
   CHECK(second.number_of(0) == 5);
   CHECK(second.number_of(2) == 7);
 }
+
+TEST_CASE("a statement of an OBJ has a longest length", "[mesh][read_obj]") {
+  const std::string longest(std::size_t{16} << 20, ' ');
+  CHECK(obj_complaint(obj_quad + "f 1 2 3\n" + longest + "\n") == "none");
+  CHECK(obj_complaint(obj_quad + "f 1 2 3\n" + longest + " \nf 1") ==
+        "m.obj:10: error: the statement is longer than 16 MiB");
+  CHECK(obj_complaint(obj_quad + "f 1 2 \\\n" + longest + "\n") ==
+        "m.obj:9: error: the statement is longer than 16 MiB");
+}

@@ -15,7 +15,7 @@ inline Mesh dressed_sheet() {
   mesh.object = "Sheet";
   mesh.uvs.push_back({0.25, 0.75});
   mesh.corner_uvs[5] = static_cast<int>(mesh.uvs.size()) - 1;  // of a vertex shared by other faces
-  mesh.corner_normals = shared_normals(mesh, {{}, {}, {Shading::flat, 1, 1, 1, 1, 1}});
+  mesh.corner_normals = shared_normals(mesh, {{}, {}, {Shading::flat, 1, 1, 1, 1, 1}}).value();
   mesh.materials = {{"Skin red", "Steel"}, {0, 0, 1, 1, 0, -1}};
   mesh.groups = {{"left"}, {0, -1, -1, 0, 0, 0}};
   return mesh;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
-#include <unordered_set>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +29,11 @@ bool is_writable(std::string_view name) {
 
 }  // namespace
 
+Error in_file(Error error, const std::string& file) {
+  if (error.code != ErrorCode::Interrupted) error.file = file;
+  return error;
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::size_t size = std::min(text.size(), longest);
@@ -50,8 +55,9 @@ std::string listed_names(std::span<const std::string> names) {
   return list;
 }
 
-Result<std::size_t> choose_object(std::span<const std::string> names,
-                                  std::span<const std::string> meshes, const std::string& object) {
+Result<std::size_t> choose_object(std::span<const std::string_view> names,
+                                  std::span<const std::string_view> meshes,
+                                  const std::string& object) {
   if (names.empty()) return invalid("the file has no faces");
   const ObjectMatch match = find_objects(names, meshes, object);
   if (match.count == 1) return match.first;
@@ -60,7 +66,7 @@ Result<std::size_t> choose_object(std::span<const std::string> names,
                                match.count, in_quotes(object), in_quotes(object + "#1")));
   }
   std::vector<FileObject> objects;
-  for (const std::string& name : names) objects.push_back({.name = name});
+  for (const std::string_view name : names) objects.push_back({.name = std::string(name)});
   set_choices(meshes, objects);
   std::vector<std::string> choices;
   for (FileObject& each : objects) choices.push_back(std::move(each.choice));
@@ -72,11 +78,11 @@ Result<std::size_t> choose_object(std::span<const std::string> names,
           : fmt::format("the file has no object {}; it has: {}", in_quotes(object), list));
 }
 
-// O(n), where asking `find_objects` for each of a million objects would be O(n²).
-void set_choices(std::span<const std::string> meshes, std::vector<FileObject>& objects) {
-  std::unordered_map<std::string_view, std::size_t> counts, so_far;
+// O(n log n), where asking `find_objects` for each of a million objects would be O(n²).
+void set_choices(std::span<const std::string_view> meshes, std::vector<FileObject>& objects) {
+  std::map<std::string_view, std::size_t> counts, so_far;
   for (const FileObject& each : objects) ++counts[each.name];
-  const std::unordered_set<std::string_view> mesh_names(meshes.begin(), meshes.end());
+  const std::set<std::string_view> mesh_names(meshes.begin(), meshes.end());
   const auto is_free = [&](const std::string& text) {
     return !counts.contains(text) && !mesh_names.contains(text);
   };

@@ -15,6 +15,12 @@
 
 namespace pliant {
 
+/// The largest mesh file, or map of a material, that is read whole. [bytes]
+inline constexpr std::size_t largest_mesh_file = std::size_t{4} << 30;
+
+/// The error of reading a file, with its name; Interrupted has none.
+Error in_file(Error error, const std::string& file);
+
 /// Text from a file for a message: in quotes, and shortened.
 std::string in_quotes(std::string_view text);
 
@@ -24,11 +30,12 @@ std::string listed_names(std::span<const std::string> names);
 /// The index of the object that `object` chooses (`find_objects`); if it is empty, of the only one.
 /// `meshes` are the names of their meshes, if the format has them. Errors, listing the first ones:
 /// there are none; no such object, several of that name, or no name given and several objects.
-Result<std::size_t> choose_object(std::span<const std::string> names,
-                                  std::span<const std::string> meshes, const std::string& object);
+Result<std::size_t> choose_object(std::span<const std::string_view> names,
+                                  std::span<const std::string_view> meshes,
+                                  const std::string& object);
 
 /// Sets what chooses each of the objects of a file.
-void set_choices(std::span<const std::string> meshes, std::vector<FileObject>& objects);
+void set_choices(std::span<const std::string_view> meshes, std::vector<FileObject>& objects);
 
 /// Transforms an object to the space of its file. Its faces are turned round if that reflects them,
 /// so that they keep their outer sides. Errors: the transform is not affine.

@@ -53,7 +53,8 @@ Result<void> check_uri(const std::string& uri, std::string_view decoded) {
   }
   if (decoded.starts_with('/'))
     return refuse(uri, "which is an absolute path; a relative one is required");
-  if (decoded.find('\0') != std::string_view::npos)
+  constexpr std::size_t longest_path = 4096;  // of Linux; a longer one takes long to resolve
+  if (decoded.find('\0') != std::string_view::npos || uri.size() > longest_path)
     return refuse(uri, "which is not the name of a file");
   return {};
 }
@@ -89,13 +90,14 @@ Result<fs::path> find_reference(const std::string& uri, const fs::path& mesh_fil
 }
 
 Result<std::string> read_reference(const std::string& uri, const fs::path& mesh_file,
-                                   const fs::path& root, std::size_t max_bytes) {
+                                   const fs::path& root, std::size_t max_bytes,
+                                   const StopRequest& should_stop) {
   const auto found = resolve(uri, mesh_file, root);
   if (!found) return fail(found.error());
   const auto opened = OpenFile::open(found->file, found->root);
-  Result<std::string> bytes =
-      opened ? read_file(*opened, max_bytes) : Result<std::string>(fail(opened.error()));
-  if (bytes) return bytes;
+  Result<std::string> bytes = opened ? read_file(*opened, max_bytes, should_stop)
+                                     : Result<std::string>(fail(opened.error()));
+  if (bytes || bytes.error().code == ErrorCode::Interrupted) return bytes;
   return fail(ErrorCode::InvalidInput, fmt::format("the file refers to {}: {}",
                                                    found->real.string(), bytes.error().message));
 }

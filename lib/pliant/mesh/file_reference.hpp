@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -19,8 +20,9 @@ Result<std::filesystem::path> find_reference(const std::string& uri,
                                              const std::filesystem::path& root);
 
 /// The bytes of that file. Further errors, also InvalidInput: it cannot be read, is not a regular
-/// file, or has more than `max_bytes`.
+/// file, or has more than `max_bytes`; Interrupted.
 Result<std::string> read_reference(const std::string& uri, const std::filesystem::path& mesh_file,
-                                   const std::filesystem::path& root, std::size_t max_bytes);
+                                   const std::filesystem::path& root, std::size_t max_bytes,
+                                   const StopRequest& should_stop = {});
 
 }  // namespace pliant

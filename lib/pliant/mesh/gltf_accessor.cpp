@@ -14,6 +14,8 @@
 namespace pliant::gltf {
 namespace {
 
+constexpr std::size_t parts_of_element = 16;
+
 enum class Component : std::uint64_t {
   Int8 = 5120,
   UInt8 = 5121,
@@ -140,14 +142,16 @@ Result<std::vector<double>> AccessorReader::read(const Read& read) {
   const auto count = static_cast<std::size_t>(accessor.count);
   std::vector<double> numbers(count * read.width);
   const std::size_t size = size_of(accessor.component_type);
+  StopPoll poll(should_stop_);
   for (std::size_t k = 0; source && k < count; ++k) {
+    if (poll.after(parts_of_element)) return interrupted();
     const char* const element = source->bytes.data() + k * source->stride;
     for (std::size_t n = 0; n < read.width; ++n) {
       numbers[k * read.width + n] =
           number_at(element + n * size, accessor.component_type, accessor.is_normalized);
     }
   }
-  if (auto put = put_sparse(read, numbers); !put) return fail(put.error());
+  if (auto put = put_sparse(read, numbers, poll); !put) return fail(put.error());
   return numbers;
 }
 
@@ -183,7 +187,8 @@ Result<AccessorReader::Elements> AccessorReader::elements(const Read& read, std:
                   static_cast<std::size_t>(stride)};
 }
 
-Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& numbers) const {
+Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& numbers,
+                                        StopPoll& poll) const {
   const Accessor& accessor = read.accessor;
   if (!accessor.sparse) return {};
   const Sparse& sparse = *accessor.sparse;
@@ -205,6 +210,7 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
   if (!values) return fail(values.error());
   std::uint64_t least = 0;
   for (std::size_t k = 0; k < sparse.count; ++k) {
+    if (poll.after(parts_of_element)) return interrupted();
     const std::uint64_t index = bits_at(indices->bytes.data() + k * indices->stride, index_size);
     if (index < least || index >= accessor.count) {
       return read.broken(fmt::format(

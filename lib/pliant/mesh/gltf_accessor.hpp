@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/gltf_buffers.hpp"
 #include "pliant/mesh/gltf_document.hpp"
 
@@ -16,11 +18,11 @@ namespace pliant::gltf {
 inline constexpr std::size_t most_elements_beyond_bytes = 1'000'000;
 
 /// Reads accessors. All results come from the buffers: every offset, count, stride and index is
-/// checked against its buffer. Both constructor arguments must outlive the reader.
+/// checked against its buffer. `document` and `buffers` must outlive the reader.
 class AccessorReader {
  public:
-  AccessorReader(const Document& document, Buffers& buffers)
-      : document_(document), buffers_(buffers) {}
+  AccessorReader(const Document& document, Buffers& buffers, StopRequest should_stop = {})
+      : document_(document), buffers_(buffers), should_stop_(std::move(should_stop)) {}
 
   /// Vectors of a vertex attribute: VEC2 or VEC3 by `width`, `width` numbers per element. Floats
   /// keep their value; integers become numbers, or fractions of their largest value if normalized.
@@ -48,9 +50,10 @@ class AccessorReader {
   Result<std::vector<double>> read(const Read& read);
   Result<Elements> elements(const Read& read, std::size_t view, std::uint64_t offset,
                             std::uint64_t count, std::size_t element_size) const;
-  Result<void> put_sparse(const Read& read, std::vector<double>& numbers) const;
+  Result<void> put_sparse(const Read& read, std::vector<double>& numbers, StopPoll& poll) const;
   const Document& document_;
   Buffers& buffers_;
+  StopRequest should_stop_;
   std::uint64_t elements_read_ = 0;
 };
 

@@ -1,39 +1,52 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/gltf_document.hpp"
 #include "pliant/mesh/read_gltf.hpp"
 
 namespace pliant::gltf {
 
-/// The bytes of a document's buffers, each read on first use. `document`, `binary` and the captures
-/// of `read_file` must outlive it.
+/// What a URI names: the same text for all URIs of one file.
+using IdentifyReference = std::function<std::string(const std::string& uri)>;
+
+/// The bytes of a document's buffers, each file read on first use, and once. `document`, `binary`
+/// and the captures of `read_file` must outlive it.
 class Buffers {
  public:
+  /// `identify` empty: each URI is another file.
   Buffers(const Document& document, std::optional<std::string_view> binary, std::size_t file_size,
-          const ReadReference& read_file);
+          const ReadReference& read_file, IdentifyReference identify = {},
+          StopRequest should_stop = {});
 
   /// As many bytes as the document declares for the buffer. Errors: there are fewer; a URI that
-  /// cannot be read.
+  /// cannot be read; Interrupted.
   Result<std::string_view> bytes(std::size_t buffer);
 
   /// Bytes of the file and of all other files read so far.
   std::size_t size_so_far() const { return size_so_far_; }
 
  private:
-  Result<std::string> read(std::size_t buffer) const;
+  Result<std::string_view> read(std::size_t buffer);
 
   const Document& document_;
   std::optional<std::string_view> binary_;
   std::size_t size_so_far_;
   const ReadReference& read_file_;
-  std::vector<std::optional<std::string>> owned_;  // one per buffer
+  IdentifyReference identify_;
+  StopRequest should_stop_;
+  std::vector<std::optional<std::string_view>> read_;  // one per buffer
+  std::map<std::string, std::string> files_;           // their bytes
+  std::deque<std::string> data_;                       // of URIs that contain them
 };
 
 /// Whether a buffer's URI contains the bytes itself.

@@ -16,8 +16,9 @@ namespace {
 // Whether an extension affects looks, or other parts of a scene than its meshes: these are the same
 // without it. Not those that compress, replace or place them.
 bool concerns_looks(std::string_view extension) {
+  constexpr std::size_t longest = 100;  // of those that are told
   const std::size_t vendor = extension.find('_');
-  if (vendor == std::string_view::npos) return false;
+  if (vendor == std::string_view::npos || extension.size() > longest) return false;
   const std::string_view name = extension.substr(vendor + 1);
   for (const std::string_view kind :
        {"materials_", "material_", "texture_", "image_", "lights_", "light_", "xmp", "audio"}) {
@@ -39,32 +40,43 @@ bool is_read(std::string_view extension) { return extension == "KHR_mesh_quantiz
 
 class DocumentReader : private JsonReader {
  public:
-  explicit DocumentReader(Json& root) : JsonReader(root) {}
+  DocumentReader(Json& root, const StopRequest& should_stop)
+      : JsonReader(root), poll_(should_stop) {}
 
   Result<Document> read(Subject subject) {
     if (auto checked = check_asset(); !checked) return fail(checked.error());
     check_extensions();
     if (list_size("buffers") > most_buffers)
       refuse("buffers", fmt::format("has more than {} elements", most_buffers));
-    each(root_, "buffers", [&](Json& json) { document_.buffers.push_back(read_buffer(json)); });
-    each(root_, "bufferViews", [&](Json& json) { document_.views.push_back(read_view(json)); });
-    each(root_, "accessors",
-         [&](Json& json) { document_.accessors.push_back(read_accessor(json)); });
-    each(root_, "materials",
-         [&](Json& json) { document_.materials.push_back(text(json, "name").value_or("")); });
-    each(root_, "meshes", [&](Json& json) { document_.meshes.push_back(read_mesh(json)); });
-    each(root_, "nodes", [&](Json& json) { document_.nodes.push_back(read_node(json)); });
+    list("buffers", document_.buffers, [&](Json& json) { return read_buffer(json); });
+    list("bufferViews", document_.views, [&](Json& json) { return read_view(json); });
+    list("accessors", document_.accessors, [&](Json& json) { return read_accessor(json); });
+    list("materials", document_.materials,
+         [&](Json& json) { return text(json, "name").value_or(""); });
+    list("meshes", document_.meshes, [&](Json& json) { return read_mesh(json); });
+    list("nodes", document_.nodes, [&](Json& json) { return read_node(json); });
     if (subject == Subject::Meshes) {
       read_roots();
     } else {
-      each(root_, "animations",
-           [&](Json& json) { document_.animations.push_back(read_animation(json)); });
+      list("animations", document_.animations, [&](Json& json) { return read_animation(json); });
     }
+    if (poll_.after(0)) return interrupted();
     if (fault_) return invalid(*std::move(fault_));
     return std::move(document_);
   }
 
  private:
+  static constexpr std::size_t parts_of_element = 500;
+
+  // The objects in a list of the root.
+  template <class Item, class Read>
+  void list(const char* key, std::vector<Item>& items, const Read& read) {
+    each(root_, key, [&](Json& json) {
+      if (poll_.after(parts_of_element)) return refuse("", "is not read any more");
+      items.push_back(read(json));
+    });
+  }
+
   Result<void> check_asset() {
     Json* const asset = root_.is_object() ? member(root_, "asset") : nullptr;
     const Json* const version = asset && asset->is_object() ? member(*asset, "version") : nullptr;
@@ -102,6 +114,9 @@ class DocumentReader : private JsonReader {
   // The path of the current element if it has no name.
   std::string name_or_place(Json& json) {
     std::string name = text(json, "name").value_or("");
+    if (name.size() > longest_name)
+      refuse("name",
+             fmt::format("has {} bytes, but at most {} are read", name.size(), longest_name));
     return name.empty() ? place() : name;
   }
 
@@ -182,8 +197,10 @@ class DocumentReader : private JsonReader {
 
   MeshEntry read_mesh(Json& json) {
     MeshEntry mesh{name_or_place(json)};
-    each(json, "primitives",
-         [&](Json& primitive) { mesh.primitives.push_back(read_primitive(primitive)); });
+    each(json, "primitives", [&](Json& primitive) {
+      if (poll_.after(parts_of_element)) return refuse("", "is not read any more");
+      mesh.primitives.push_back(read_primitive(primitive));
+    });
     return mesh;
   }
 
@@ -220,6 +237,7 @@ class DocumentReader : private JsonReader {
     if (!list) return nodes;
     if (!list->is_array()) refuse(key, "is not a list");
     for (std::size_t k = 0; k < list->size() && !fault_; ++k) {
+      if (poll_.after()) refuse(key, "is not read any more");
       const auto number = to_whole((*list)[k]);
       if (!number) refuse(key, "has an element that is not a whole number of at least 0");
       if (number) nodes.push_back(checked_index(*number, key, "nodes").value_or(0));
@@ -329,15 +347,17 @@ class DocumentReader : private JsonReader {
     return channel;
   }
 
+  StopPoll poll_;
   Document document_;
 };
 
 }  // namespace
 
-Result<Document> read_document(std::string_view json, Subject subject) {
+Result<Document> read_document(std::string_view json, Subject subject,
+                               const StopRequest& should_stop) {
   auto root = parse_json(json, "glTF");
   if (!root) return fail(root.error());
-  return DocumentReader(*root).read(subject);
+  return DocumentReader(*root, should_stop).read(subject);
 }
 
 }  // namespace pliant::gltf

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/read_assimp.hpp"
 
 namespace pliant::gltf {
@@ -115,9 +116,14 @@ enum class Subject { Meshes, Animations };
 /// Limit of the number of files that a glTF refers to; json_reader.hpp has those of its JSON.
 inline constexpr std::size_t most_buffers = 1000;
 
+/// The longest name of a node, mesh or animation: many nodes may share that of a mesh. [bytes]
+inline constexpr std::size_t longest_name = 1024;
+
 /// Errors: invalid JSON, with the line, but without quoting the text, which may be of any file; not
 /// glTF 2; a required extension that is not supported, by name; a member of the wrong type or out
-/// of range, by its path. Without a scene its roots are all nodes that are no children.
-Result<Document> read_document(std::string_view json, Subject subject = Subject::Meshes);
+/// of range, by its path; Interrupted. Without a scene its roots are all nodes that are no
+/// children.
+Result<Document> read_document(std::string_view json, Subject subject = Subject::Meshes,
+                               const StopRequest& should_stop = {});
 
 }  // namespace pliant::gltf

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/mesh/face_names.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
 
@@ -54,23 +55,34 @@ struct Place {
 class Merger {
  public:
   Merger(const Document& document, const Object& object, AccessorReader& accessors, int uv_set,
-         std::span<const std::string> attributes)
-      : document_(document), object_(object), accessors_(accessors), uv_set_(uv_set) {
+         std::span<const std::string> attributes, const StopRequest& should_stop)
+      : document_(document),
+        object_(object),
+        accessors_(accessors),
+        uv_set_(uv_set),
+        should_stop_(should_stop),
+        poll_(should_stop),
+        material_numbers_(document.materials.size(), unknown) {
+    const std::vector<Primitive>& all = document.meshes[object.mesh].primitives;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (has_faces(document, all[k])) primitives_.push_back(k);
     for (const std::string& name : attributes) mesh_.attributes.push_back({name, {}});
   }
 
   Result<Mesh> merge() {
-    for (const std::size_t k : object_.primitives)
+    for (const std::size_t k : primitives_)
       if (auto checked = check_sets(primitive(k)); !checked) return fail(checked.error());
-    for (const std::size_t k : object_.primitives)
+    for (const std::size_t k : primitives_)
       if (auto added = add(k); !added) return fail(added.error());
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
-    if (mesh_.materials.names.empty()) mesh_.materials.of_faces.clear();
-    mesh_.object = object_.node_name;
+    mesh_.materials = part_of(materials_.names(), 0, mesh_.face_sizes.size());
+    mesh_.object = document_.nodes[object_.node].name;
     mesh_.left_out = left_out();
-    if (auto checked = check_mesh(mesh_); !checked) return fail(checked.error());
-    mesh_.corner_normals = shared_normals(mesh_, shading_);
+    if (auto checked = check_mesh(mesh_, should_stop_); !checked) return fail(checked.error());
+    auto shared = shared_normals(mesh_, shading_, should_stop_);
+    if (!shared) return fail(shared.error());
+    mesh_.corner_normals = *std::move(shared);
     return std::move(mesh_);
   }
 
@@ -79,10 +91,13 @@ class Merger {
     LeftOut left_out;
     const std::size_t count = document_.meshes[object_.mesh].primitives.size();
     left_out.add("primitive of points or lines", "primitives of points or lines",
-                 static_cast<std::int64_t>(count - object_.primitives.size()));
+                 static_cast<std::int64_t>(count - primitives_.size()));
     left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
                  drop_invalid_uvs(mesh_));
-    const std::string names = fmt::format("{}", fmt::join(document_.looks, ", "));
+    constexpr std::size_t most_told = 10;
+    const auto told = std::span(document_.looks).first(std::min(document_.looks.size(), most_told));
+    const std::string names = fmt::format("{}{}", fmt::join(told, ", "),
+                                          told.size() < document_.looks.size() ? ", …" : "");
     left_out.add("extension that concerns looks (" + names + ")",
                  "extensions that concern looks (" + names + ")",
                  static_cast<std::int64_t>(document_.looks.size()));
@@ -239,12 +254,14 @@ class Merger {
     if (mesh_.corner_vertices.size() + 3 * face_count > most)
       return invalid(fmt::format("the object's faces have more than {} corners", most));
     for_each_triangle(from.mode, list->size(), [&](std::size_t a, std::size_t b, std::size_t c) {
+      if (poll_.after(parts_of_face)) return;
       mesh_.face_sizes.push_back(3);
       for (const std::size_t corner : {a, b, c}) add_corner((*list)[corner], place);
     });
+    if (poll_.after(0)) return interrupted();
     shading_.smoothing.resize(shading_.smoothing.size() + face_count,
                               place.normal < 0 ? Shading::flat : Shading::unsaid);
-    add_material(from.material ? document_.materials[*from.material] : std::string(), face_count);
+    materials_.add_faces(material_of(from), face_count);
     return {};
   }
 
@@ -255,39 +272,43 @@ class Merger {
     shading_.corner_normals.push_back(place.normal < 0 ? -1 : place.normal + index);
   }
 
-  void add_material(const std::string& name, std::size_t face_count) {
-    FaceNames& materials = mesh_.materials;
-    int index = -1;
-    if (!name.empty()) {
-      const auto [known, is_new] =
-          materials_.try_emplace(name, static_cast<int>(materials.names.size()));
-      if (is_new) materials.names.push_back(name);
-      index = known->second;
-    }
-    materials.of_faces.resize(materials.of_faces.size() + face_count, index);
+  // Many primitives may have the same material, with a long name.
+  int material_of(const Primitive& from) {
+    if (!from.material) return -1;
+    int& number = material_numbers_[*from.material];
+    if (number == unknown) number = materials_.number_of(document_.materials[*from.material]);
+    return number;
   }
+
+  static constexpr int unknown = -2;
+  static constexpr std::size_t parts_of_face = 16;
 
   const Document& document_;
   const Object& object_;
   AccessorReader& accessors_;
   int uv_set_;
+  const StopRequest& should_stop_;
+  StopPoll poll_;
+  std::vector<std::size_t> primitives_;  // those with faces
   Mesh mesh_;
   std::vector<double> coordinates_;  // x y z of each vertex
   Shading shading_;
   using Index = std::optional<std::size_t>;
   std::map<std::tuple<std::size_t, Index, Index, std::vector<std::size_t>>, Place>
-      places_;                            // by accessors
-  std::map<std::string, int> materials_;  // by name
+      places_;  // by accessors
+  NamedFaces materials_;
+  std::vector<int> material_numbers_;  // of each of the file
 };
 
 }  // namespace
 
 Result<Mesh> mesh_of(const Document& document, const Object& object, AccessorReader& accessors,
-                     int uv_set, std::span<const std::string> attributes) {
-  auto mesh = Merger(document, object, accessors, uv_set, attributes).merge();
+                     int uv_set, std::span<const std::string> attributes,
+                     const StopRequest& should_stop) {
+  auto mesh = Merger(document, object, accessors, uv_set, attributes, should_stop).merge();
   if (!mesh) return mesh;
   if (auto applied = to_file_space(object.to_file, *mesh); !applied) return fail(applied.error());
-  if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
+  if (auto checked = check_mesh(*mesh, should_stop); !checked) return fail(checked.error());
   return mesh;
 }
 

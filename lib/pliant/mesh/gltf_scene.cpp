@@ -17,12 +17,23 @@ namespace {
 
 using Eigen::Matrix4d;
 
-std::vector<std::size_t> primitives_with_faces(const Document& document, const MeshEntry& mesh) {
-  std::vector<std::size_t> primitives;
-  for (std::size_t k = 0; k < mesh.primitives.size(); ++k)
-    if (has_faces(document, mesh.primitives[k])) primitives.push_back(k);
-  return primitives;
+bool has_faces(const Document& document, const MeshEntry& mesh) {
+  return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
+    return gltf::has_faces(document, primitive);
+  });
 }
+
+// A fact of each mesh of the file: many nodes may have the same one.
+template <class FactOf>
+auto of_meshes(const Document& document, const FactOf& fact_of) {
+  std::vector<decltype(fact_of(document.meshes[0]))> facts;
+  for (const MeshEntry& mesh : document.meshes) facts.push_back(fact_of(mesh));
+  return facts;
+}
+
+struct MeshSize {
+  std::uint64_t vertices = 0, faces = 0;
+};
 
 std::string title_of(const Document& document, std::size_t number) {
   const std::string place = fmt::format("nodes[{}]", number);
@@ -110,71 +121,84 @@ bool has_faces(const Document& document, const Primitive& primitive) {
   return document.accessors[primitive.indices.value_or(*primitive.positions)].count >= 3;
 }
 
-Result<std::vector<Object>> objects_of(const Document& document) {
+Result<std::vector<Object>> objects_of(const Document& document, const StopRequest& should_stop) {
   if (auto sound = check_tree(document); !sound) return fail(sound.error());
   struct Visit {
     std::size_t node;
     Matrix4d above;
   };
+  const std::vector<bool> are_objects =
+      of_meshes(document, [&](const MeshEntry& mesh) { return has_faces(document, mesh); });
   std::vector<Object> objects;
   std::vector<bool> is_seen(document.nodes.size());
   std::vector<Visit> visits;  // explicit stack: a file may be deeply nested
-  const std::vector<std::size_t> roots = roots_of(document);
-  for (std::size_t k = roots.size(); k-- > 0;) visits.push_back({roots[k], Matrix4d::Identity()});
+  StopPoll poll(should_stop);
+  constexpr std::size_t parts_of_visit = 100;
+  const auto visit = [&](std::span<const std::size_t> nodes,
+                         const Matrix4d& above) -> Result<void> {
+    for (std::size_t k = nodes.size(); k-- > 0;) {
+      if (poll.after(parts_of_visit)) return interrupted();
+      if (is_seen[nodes[k]]) {
+        return invalid(fmt::format("{} is in the tree of the scene twice: a node has one parent",
+                                   title_of(document, nodes[k])));
+      }
+      is_seen[nodes[k]] = true;
+      visits.push_back({nodes[k], above});
+    }
+    return {};
+  };
+  if (auto begun = visit(roots_of(document), Matrix4d::Identity()); !begun)
+    return fail(begun.error());
   while (!visits.empty()) {
     const auto [number, above] = visits.back();
     visits.pop_back();
-    if (is_seen[number]) {
-      return invalid(fmt::format("{} is in the tree of the scene twice: a node has one parent",
-                                 title_of(document, number)));
-    }
-    is_seen[number] = true;
     const Node& node = document.nodes[number];
     const Matrix4d to_file = above * node.to_parent;
-    if (node.mesh) {
-      const MeshEntry& mesh = document.meshes[*node.mesh];
-      if (auto primitives = primitives_with_faces(document, mesh); !primitives.empty())
-        objects.push_back({node.name, mesh.name, to_file, *node.mesh, std::move(primitives)});
-    }
-    for (std::size_t k = node.children.size(); k-- > 0;)
-      visits.push_back({node.children[k], to_file});
+    if (node.mesh && are_objects[*node.mesh]) objects.push_back({number, *node.mesh, to_file});
+    if (auto more = visit(node.children, to_file); !more) return fail(more.error());
   }
   return objects;
 }
 
 std::vector<FileObject> listed(const Document& document, std::span<const Object> objects) {
-  std::vector<FileObject> list;
-  std::vector<std::string> meshes;
-  for (const Object& object : objects) {
-    FileObject& each = list.emplace_back();
-    each.name = object.node_name;
-    meshes.push_back(object.mesh_name);
+  const std::vector<MeshSize> sizes = of_meshes(document, [&](const MeshEntry& mesh) {
+    MeshSize size;
     // As Merger reads them: primitives with the same accessors share their vertices.
     std::set<std::tuple<std::size_t, std::optional<std::size_t>, std::optional<std::size_t>>> read;
-    for (const std::size_t k : object.primitives) {
-      const Primitive& primitive = document.meshes[object.mesh].primitives[k];
+    for (const Primitive& primitive : mesh.primitives) {
+      if (!has_faces(document, primitive)) continue;
       const std::size_t positions = *primitive.positions;
       const std::uint64_t vertices = document.accessors[positions].count;
       const std::uint64_t corners =
           primitive.indices ? document.accessors[*primitive.indices].count : vertices;
-      each.faces += primitive.mode == triangles ? corners / 3 : corners - 2;
+      size.faces += primitive.mode == triangles ? corners / 3 : corners - 2;
       if (read.emplace(positions, primitive.normals, primitive.uvs[0]).second)
-        each.vertices += vertices;
+        size.vertices += vertices;
     }
+    return size;
+  });
+  std::vector<FileObject> list;
+  std::vector<std::string_view> meshes;
+  for (const Object& object : objects) {
+    const auto& [vertices, faces] = sizes[object.mesh];
+    list.push_back(
+        {.name = document.nodes[object.node].name, .vertices = vertices, .faces = faces});
+    meshes.push_back(document.meshes[object.mesh].name);
   }
   set_choices(meshes, list);
   return list;
 }
 
-Result<Object> choose(std::vector<Object> objects, const std::string& name) {
-  std::vector<std::string> nodes, meshes;
+Result<Object> choose(const Document& document, std::span<const Object> objects,
+                      const std::string& name) {
+  std::vector<std::string_view> nodes, meshes;
   for (const Object& each : objects) {
-    nodes.push_back(each.node_name);
-    meshes.push_back(each.mesh_name);
+    nodes.push_back(document.nodes[each.node].name);
+    meshes.push_back(document.meshes[each.mesh].name);
   }
   const auto chosen = choose_object(nodes, meshes, name);
   if (!chosen) return fail(chosen.error());
-  return std::move(objects[*chosen]);
+  return objects[*chosen];
 }
 
 }  // namespace pliant::gltf

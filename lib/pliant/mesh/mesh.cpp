@@ -10,12 +10,14 @@
 namespace pliant {
 namespace {
 
-Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* thing) {
+Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* thing,
+                         StopPoll& poll) {
   if (!names.of_faces.empty() && names.of_faces.size() != mesh.face_sizes.size()) {
     return invalid(fmt::format("the list of face {2}s has {0} entries, but the mesh has {1} faces",
                                names.of_faces.size(), mesh.face_sizes.size(), thing));
   }
   for (std::size_t face = 0; face < names.of_faces.size(); ++face) {
+    if (poll.after()) return interrupted();
     const int index = names.of_faces[face];
     if (index >= -1 && index < static_cast<std::int64_t>(names.names.size())) continue;
     return invalid(fmt::format("face {} refers to {} {}, but there are {}", face + mesh.first_index,
@@ -24,7 +26,7 @@ Result<void> check_names(const FaceNames& names, const Mesh& mesh, const char* t
   return {};
 }
 
-Result<void> check_normals(const Mesh& mesh) {
+Result<void> check_normals(const Mesh& mesh, StopPoll& poll) {
   if (mesh.corner_normals.empty()) return {};
   if (mesh.corner_normals.size() != mesh.corner_vertices.size()) {
     return invalid(fmt::format("the faces have {} corners, but there are {} corner normals",
@@ -32,6 +34,7 @@ Result<void> check_normals(const Mesh& mesh) {
   }
   std::vector<bool> is_used;
   for (std::size_t corner = 0; corner < mesh.corner_normals.size(); ++corner) {
+    if (poll.after()) return interrupted();
     const int normal = mesh.corner_normals[corner];
     if (normal < 0 || static_cast<std::size_t>(normal) >= mesh.corner_normals.size()) {
       return invalid(fmt::format("corner {} has the normal {}, but there are {} at most",
@@ -50,7 +53,7 @@ Result<void> check_normals(const Mesh& mesh) {
   return {};
 }
 
-Result<void> check_attributes(const Mesh& mesh) {
+Result<void> check_attributes(const Mesh& mesh, StopPoll& poll) {
   for (const VertexAttribute& attribute : mesh.attributes) {
     if (attribute.values.size() != static_cast<std::size_t>(mesh.vertex_count())) {
       return invalid(fmt::format("the attribute {} has {} values, but the mesh has {} vertices",
@@ -58,6 +61,7 @@ Result<void> check_attributes(const Mesh& mesh) {
                                  mesh.vertex_count()));
     }
     for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+      if (poll.after()) return interrupted();
       const double value = attribute.values[static_cast<std::size_t>(vertex)];
       if (!std::isfinite(value)) {
         return invalid(fmt::format("vertex {}: the attribute {} is {}, which is not finite",
@@ -92,7 +96,9 @@ void turn_faces(Mesh& mesh) {
   }
 }
 
-Result<void> check_mesh(const Mesh& mesh) {
+Result<void> check_mesh(const Mesh& mesh, const StopRequest& should_stop) {
+  constexpr std::size_t parts_of_row = 4;
+  StopPoll poll(should_stop);
   if (mesh.face_sizes.empty()) return invalid("the mesh has no faces");
   if (!mesh.file_vertices.empty() &&
       mesh.file_vertices.size() != static_cast<std::size_t>(mesh.vertex_count())) {
@@ -102,6 +108,7 @@ Result<void> check_mesh(const Mesh& mesh) {
   }
   std::int64_t corners = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
+    if (poll.after()) return interrupted();
     const int size = mesh.face_sizes[face];
     if (size < 3)
       return invalid(fmt::format("face {} has {} corners, but needs at least 3",
@@ -116,6 +123,7 @@ Result<void> check_mesh(const Mesh& mesh) {
                     corners, mesh.corner_vertices.size(), mesh.corner_uvs.size()));
   }
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
+    if (poll.after(parts_of_row)) return interrupted();
     const int vertex = mesh.corner_vertices[corner];
     const int uv = mesh.corner_uvs[corner];
     if (vertex < 0 || vertex >= mesh.vertex_count()) {
@@ -130,20 +138,22 @@ Result<void> check_mesh(const Mesh& mesh) {
     }
   }
   for (int vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
+    if (poll.after(parts_of_row)) return interrupted();
     if (!mesh.positions.row(vertex).allFinite()) {
       return invalid(
           fmt::format("vertex {} has a coordinate that is not finite", mesh.number_of(vertex)));
     }
   }
   for (std::size_t uv = 0; uv < mesh.uvs.size(); ++uv) {
+    if (poll.after(parts_of_row)) return interrupted();
     if (!std::isfinite(mesh.uvs[uv][0]) || !std::isfinite(mesh.uvs[uv][1])) {
       return invalid(fmt::format("uv {} is not finite", uv + mesh.first_index));
     }
   }
-  if (auto checked = check_normals(mesh); !checked) return checked;
-  if (auto checked = check_attributes(mesh); !checked) return checked;
-  if (auto checked = check_names(mesh.materials, mesh, "material"); !checked) return checked;
-  return check_names(mesh.groups, mesh, "group");
+  if (auto checked = check_normals(mesh, poll); !checked) return checked;
+  if (auto checked = check_attributes(mesh, poll); !checked) return checked;
+  if (auto checked = check_names(mesh.materials, mesh, "material", poll); !checked) return checked;
+  return check_names(mesh.groups, mesh, "group", poll);
 }
 
 }  // namespace pliant

@@ -7,6 +7,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -72,7 +73,7 @@ void turn_faces(Mesh& mesh);
 /// corner or vertex, counted from `first_index`: index arrays of different lengths, faces with
 /// fewer than three corners, indices out of range, coordinates or attributes that are not finite,
 /// no faces; numbers of normals with a gap; numbers or attributes of vertices for only a part of
-/// them.
-Result<void> check_mesh(const Mesh& mesh);
+/// them; Interrupted.
+Result<void> check_mesh(const Mesh& mesh, const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -21,7 +21,7 @@ struct FileObject {
   std::uint64_t faces = 0;     ///< likewise
 };
 
-/// The objects of a mesh file, in its order, at least one. FBX and Collada alone use `context`.
+/// The objects of a mesh file, in its order, at least one.
 /// Errors: InvalidInput for another ending, for a file that is not of its format, or one without
 /// faces; Unreadable; OutOfMemory; Interrupted.
 Result<std::vector<FileObject>> mesh_objects(const std::filesystem::path& file,

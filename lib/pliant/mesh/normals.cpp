@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <numeric>
-#include <unordered_map>
 
 #include <Eigen/Geometry>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/mesh/equal_numbers.hpp"
 
 namespace pliant {
 namespace {
@@ -31,44 +29,6 @@ Vector3d area_vector(const Mesh& mesh, const Field& positions, std::size_t first
 }
 
 using Row = std::array<double, 3>;
-
-// Numbers that are equal exactly for equal rows.
-std::vector<int> numbers_of_equal(const std::vector<Row>& rows) {
-  std::vector<int> order(rows.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto row = [&](int k) -> const Row& { return rows[static_cast<std::size_t>(k)]; };
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return row(a) < row(b); });
-  std::vector<int> numbers(rows.size());
-  int number = -1;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k == 0 || row(order[k]) != row(order[k - 1])) ++number;
-    numbers[static_cast<std::size_t>(order[k])] = number;
-  }
-  return numbers;
-}
-
-// Numbers keys in the order of their first use.
-class Numbering {
- public:
-  using Key = std::array<int, 3>;
-
-  int number_of(const Key& key) {
-    return numbers_.try_emplace(key, static_cast<int>(numbers_.size())).first->second;
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t hash = 0;
-      for (const int part : key) {
-        hash = (hash ^ static_cast<std::uint32_t>(part)) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-      }
-      return static_cast<std::size_t>(hash);
-    }
-  };
-  std::unordered_map<Key, int, Hash> numbers_;
-};
 
 }  // namespace
 
@@ -113,44 +73,51 @@ Field unit_normals(const Mesh& mesh, const Field& positions) {
   return sums;
 }
 
-std::vector<int> shared_normals(const Mesh& mesh, const Shading& shading) {
+Result<std::vector<int>> shared_normals(const Mesh& mesh, const Shading& shading,
+                                        const StopRequest& should_stop) {
   const bool has_normals = std::any_of(shading.corner_normals.begin(), shading.corner_normals.end(),
                                        [](int normal) { return normal >= 0; });
   const bool has_smoothing = std::any_of(shading.smoothing.begin(), shading.smoothing.end(),
                                          [](int group) { return group != Shading::unsaid; });
   if (!has_normals && !has_smoothing) return {};
+  StopPoll poll(should_stop);
   std::vector<int> places, directions;
   if (has_normals) {
     std::vector<Row> rows(static_cast<std::size_t>(mesh.vertex_count()));
     for (int k = 0; k < mesh.vertex_count(); ++k)
       rows[static_cast<std::size_t>(k)] = {mesh.positions(k, 0), mesh.positions(k, 1),
                                            mesh.positions(k, 2)};
-    places = numbers_of_equal(rows);
-    directions = numbers_of_equal(shading.normals);
+    places = numbers_of_equal(rows, poll);
+    directions = numbers_of_equal(shading.normals, poll);
   }
-  Numbering numbering;
-  std::vector<int> shared(mesh.corner_vertices.size());
-  bool is_by_vertex = !has_normals;
-  std::vector<int> of_vertex(static_cast<std::size_t>(mesh.vertex_count()), -1);
-  std::size_t corner = 0;
+  std::vector<std::array<int, 3>> keys;  // the last number distinguishes their kinds
+  keys.reserve(mesh.corner_vertices.size());
+  bool is_any_flat = false;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int smoothing = shading.smoothing.empty() ? Shading::unsaid : shading.smoothing[face];
-    for (int k = 0; k < mesh.face_sizes[face]; ++k, ++corner) {
-      const auto vertex = static_cast<std::size_t>(mesh.corner_vertices[corner]);
-      const int normal = has_normals ? shading.corner_normals[corner] : -1;
-      // The last number distinguishes the kinds of keys.
+    is_any_flat = is_any_flat || smoothing == Shading::flat;
+    for (int k = 0; k < mesh.face_sizes[face]; ++k) {
+      const int vertex = mesh.corner_vertices[keys.size()];
+      const int normal = has_normals ? shading.corner_normals[keys.size()] : -1;
       if (smoothing == Shading::flat) {
-        shared[corner] = numbering.number_of({static_cast<int>(face), 0, -2});
+        keys.push_back({static_cast<int>(face), 0, -2});
       } else if (normal >= 0) {
-        shared[corner] =
-            numbering.number_of({places[vertex], directions[static_cast<std::size_t>(normal)], -3});
+        keys.push_back({places[static_cast<std::size_t>(vertex)],
+                        directions[static_cast<std::size_t>(normal)], -3});
       } else {
-        shared[corner] = numbering.number_of({mesh.corner_vertices[corner], 0, smoothing});
+        keys.push_back({vertex, 0, smoothing});
       }
-      is_by_vertex = is_by_vertex && smoothing != Shading::flat &&
-                     (of_vertex[vertex] < 0 || of_vertex[vertex] == shared[corner]);
-      of_vertex[vertex] = shared[corner];
     }
+    if (poll.after(static_cast<std::size_t>(mesh.face_sizes[face]))) return interrupted();
+  }
+  std::vector<int> shared = numbers_of_equal(keys, poll);
+  if (poll.after(shared.size())) return interrupted();
+  bool is_by_vertex = !has_normals && !is_any_flat;
+  std::vector<int> of_vertex(static_cast<std::size_t>(mesh.vertex_count()), -1);
+  for (std::size_t corner = 0; is_by_vertex && corner < shared.size(); ++corner) {
+    int& known = of_vertex[static_cast<std::size_t>(mesh.corner_vertices[corner])];
+    is_by_vertex = known < 0 || known == shared[corner];
+    known = shared[corner];
   }
   if (is_by_vertex) return {};
   return shared;

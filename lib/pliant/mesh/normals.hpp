@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -39,7 +41,9 @@ struct Shading {
 /// with no other face. Without normals in the file, other corners share one if they belong to the
 /// same vertex and their faces have the same number in `smoothing`. With normals, they share one if
 /// normals and positions are equal, so that a surface which the file cuts along a seam stays smooth
-/// across it. Empty if an empty vector means the same and the file has no normals.
-std::vector<int> shared_normals(const Mesh& mesh, const Shading& shading);
+/// across it. Empty if an empty vector means the same and the file has no normals. Errors:
+/// Interrupted.
+Result<std::vector<int>> shared_normals(const Mesh& mesh, const Shading& shading,
+                                        const StopRequest& should_stop = {});
 
 }  // namespace pliant

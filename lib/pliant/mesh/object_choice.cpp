@@ -7,14 +7,14 @@
 namespace pliant {
 namespace {
 
-ObjectMatch named(std::span<const std::string> names, std::string_view name) {
+ObjectMatch named(std::span<const std::string_view> names, std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), name);
   return {static_cast<std::size_t>(std::count(found, names.end(), name)),
           static_cast<std::size_t>(found - names.begin())};
 }
 
 // The object of that name with that number among those of it, counted from 1.
-ObjectMatch numbered(std::span<const std::string> names, std::string_view name,
+ObjectMatch numbered(std::span<const std::string_view> names, std::string_view name,
                      std::size_t number) {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (names[k] == name && --number == 0) return {1, k};
@@ -31,8 +31,8 @@ std::size_t to_count(std::string_view digits) {
 
 }  // namespace
 
-ObjectMatch find_objects(std::span<const std::string> names, std::span<const std::string> meshes,
-                         std::string_view object) {
+ObjectMatch find_objects(std::span<const std::string_view> names,
+                         std::span<const std::string_view> meshes, std::string_view object) {
   if (object.empty()) return {names.size(), 0};
   for (const auto& each : {names, meshes})
     if (const ObjectMatch match = named(each, object); match.count > 0) return match;

@@ -17,7 +17,7 @@ struct ObjectMatch {
 /// those whose mesh has that name; else for `NAME#2` the second one of that name (or of that name
 /// of its mesh, if none has it), and for `#3` the third one of the file. `meshes` is empty for a
 /// format that does not name them. Internal to mesh; part of its program `mesh/reader` too.
-ObjectMatch find_objects(std::span<const std::string> names, std::span<const std::string> meshes,
-                         std::string_view object);
+ObjectMatch find_objects(std::span<const std::string_view> names,
+                         std::span<const std::string_view> meshes, std::string_view object);
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 #include <span>
 
 #include <fmt/format.h>
@@ -52,8 +53,14 @@ Result<Encoding> to_encoding(std::span<const std::string_view> words, int line) 
       line);
 }
 
+// The names of elements, and of the properties of the last one.
+struct KnownNames {
+  std::set<std::string_view> elements, properties;
+};
+
 // Adds the content of one header line.
-Result<void> read_header_line(std::span<const std::string_view> words, int line, Header& header) {
+Result<void> read_header_line(std::span<const std::string_view> words, int line, Header& header,
+                              KnownNames& known) {
   const std::string_view keyword = words[0];
   if (keyword == "comment" || keyword == "obj_info") return {};
   if (keyword == "format") {
@@ -69,10 +76,10 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
                                  in_quotes(words[2]), std::numeric_limits<int>::max()),
                      line);
     }
-    const auto has_name = [&](const Element& element) { return element.name == words[1]; };
-    if (std::any_of(header.elements.begin(), header.elements.end(), has_name))
+    if (!known.elements.insert(words[1]).second)
       return invalid(fmt::format("the element {} is given twice", in_quotes(words[1])), line);
     header.elements.push_back({std::string(words[1]), *count, {}});
+    known.properties.clear();
     return {};
   }
   if (keyword == "property" && !header.elements.empty()) {
@@ -82,11 +89,10 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
           "a property must have the form `property TYPE NAME` or `property list TYPE TYPE NAME`",
           line);
     }
-    Element& element = header.elements.back();
-    if (element.find({property->name}) >= 0)
+    if (!known.properties.insert(words.back()).second)
       return invalid(fmt::format("the property {} is given twice", in_quotes(property->name)),
                      line);
-    element.properties.push_back(*property);
+    header.elements.back().properties.push_back(*property);
     return {};
   }
   return invalid(
@@ -109,17 +115,28 @@ std::size_t size_of(NumberType type) {
   return sizes[static_cast<std::size_t>(type)];
 }
 
-Result<Header> read_header(std::string_view bytes) {
+Result<Header> read_header(std::string_view bytes, const StopRequest& should_stop) {
   Header header;
+  KnownNames known;
+  StopPoll poll(should_stop);
+  constexpr std::size_t most_words = 6;  // one more than a line of a header may have
+  constexpr std::size_t parts_of_line = 100;
   bool has_format = false;
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-    const auto words = words_of(bytes.substr(at, end - at), ascii_blanks);
+    std::string_view rest = bytes.substr(at, end - at);
     const int line = ++header.line_count;
+    if (poll.after(parts_of_line + rest.size())) return interrupted();
     at = std::min(end + 1, bytes.size());
     if (line == 1) {
-      if (words.size() != 1 || words[0] != "ply") break;
+      if (trim(rest, ascii_blanks) != "ply") break;
       continue;
+    }
+    std::vector<std::string_view> words;
+    for (auto word = next_word(rest, ascii_blanks); !word.empty() && words.size() < most_words;
+         word = next_word(rest, ascii_blanks)) {
+      words.push_back(word);
+      if (words[0] == "comment" || words[0] == "obj_info") break;
     }
     if (words.empty()) continue;
     if (words[0] == "end_header") {
@@ -128,7 +145,7 @@ Result<Header> read_header(std::string_view bytes) {
       return header;
     }
     has_format = has_format || words[0] == "format";
-    if (auto read = read_header_line(words, line, header); !read) return fail(read.error());
+    if (auto read = read_header_line(words, line, header, known); !read) return fail(read.error());
   }
   return invalid(header.line_count < 2 ? "the file is not PLY: its first line is not `ply`"
                                        : "the file is truncated: it ends within its header");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant::ply {
 
@@ -44,7 +45,7 @@ struct Header {
 std::size_t size_of(NumberType type);
 
 /// Reads the header at the beginning of a file. Errors: there is none, it does not end, or a line
-/// of it is not part of one.
-Result<Header> read_header(std::string_view bytes);
+/// of it is not part of one; Interrupted.
+Result<Header> read_header(std::string_view bytes, const StopRequest& should_stop = {});
 
 }  // namespace pliant::ply

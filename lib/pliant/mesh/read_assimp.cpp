@@ -21,14 +21,13 @@
 #include "pliant/core/open_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/boxed_reader.hpp"
+#include "pliant/mesh/face_names.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh_message.hpp"
 #include "pliant/mesh/normals.hpp"
 
 namespace pliant {
 namespace {
-
-constexpr std::size_t max_bytes = std::size_t{4} << 30;
 
 // Reduces a text with arbitrary content to one line: assimp quotes the file in some of its reasons.
 std::string in_one_line(std::string_view reason) {
@@ -56,7 +55,7 @@ std::string format_name(const std::string& ending) { return ending == ".fbx" ? "
 
 // The names of the objects, and those of their meshes.
 struct Names {
-  std::vector<std::string> objects, meshes;
+  std::vector<std::string_view> objects, meshes;
 
   explicit Names(const MeshMessage& message) {
     for (const ObjectEntry& each : message.objects) {
@@ -125,27 +124,18 @@ void append_shading(const MeshPart& part, std::span<const int> corner_vertices, 
   }
 }
 
-// Appends the material of one part's faces.
-void append_material(const std::string& name, std::size_t face_count, FaceNames& materials) {
-  int index = -1;
-  if (!name.empty()) {
-    const auto found = std::find(materials.names.begin(), materials.names.end(), name);
-    index = static_cast<int>(found - materials.names.begin());
-    if (found == materials.names.end()) materials.names.push_back(name);
-  }
-  materials.of_faces.resize(materials.of_faces.size() + face_count, index);
-}
-
-Result<Mesh> merged(const MeshMessage& message, int uv_set) {
+Result<Mesh> merged(const MeshMessage& message, int uv_set, const StopRequest& should_stop) {
   if (auto checked = check_sets(message, uv_set); !checked) return fail(checked.error());
   if (auto checked = check_size(message); !checked) return fail(checked.error());
   Mesh mesh;
   Shading shading;
+  NamedFaces materials;
   std::size_t numbers = 0;
   for (const MeshPart& part : message.parts) numbers += part.positions.size();
   mesh.positions.resize(static_cast<Eigen::Index>(numbers / 3), 3);
   Eigen::Index row = 0;
   for (const MeshPart& part : message.parts) {
+    if (is_stopped(should_stop)) return interrupted();
     const int first_uv = part.uvs.empty() ? -1 : static_cast<int>(mesh.uvs.size());
     const auto first_vertex = static_cast<int>(row);
     const std::size_t first_corner = mesh.corner_vertices.size();
@@ -153,13 +143,13 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set) {
       return fail(added.error());
     append_shading(part, std::span(mesh.corner_vertices).subspan(first_corner), first_vertex,
                    shading);
-    append_material(std::string(part.material), part.sizes.size(), mesh.materials);
+    materials.add_faces(materials.number_of(part.material), part.sizes.size());
     for (std::size_t k = 0; k + 3 <= part.positions.size(); k += 3, ++row)
       mesh.positions.row(row) << part.positions[k], part.positions[k + 1], part.positions[k + 2];
     for (std::size_t k = 0; k + 2 <= part.uvs.size(); k += 2)
       mesh.uvs.push_back({part.uvs[k], part.uvs[k + 1]});
   }
-  if (mesh.materials.names.empty()) mesh.materials.of_faces.clear();
+  mesh.materials = part_of(materials.names(), 0, mesh.face_sizes.size());
   const ObjectEntry& object = message.objects[*message.chosen];
   mesh.object = object.node.empty() ? object.mesh : object.node;
   LeftOut left_out;
@@ -167,8 +157,10 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set) {
   left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
                drop_invalid_uvs(mesh));
   mesh.left_out = left_out.text();
-  if (auto checked = check_mesh(mesh); !checked) return fail(checked.error());
-  mesh.corner_normals = shared_normals(mesh, shading);
+  if (auto checked = check_mesh(mesh, should_stop); !checked) return fail(checked.error());
+  auto shared = shared_normals(mesh, shading, should_stop);
+  if (!shared) return fail(shared.error());
+  mesh.corner_normals = *std::move(shared);
   return mesh;
 }
 
@@ -231,7 +223,7 @@ Result<MeshMessage> to_message(std::string_view answer, const std::string& forma
 }
 
 Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const std::string& object,
-                     int uv_set) {
+                     int uv_set, const StopRequest& should_stop) {
   const auto message = to_message(answer, format);
   if (!message) return fail(message.error());
   const Names names(*message);
@@ -239,10 +231,10 @@ Result<Mesh> to_mesh(std::string_view answer, const std::string& format, const s
   if (!chosen) return fail(chosen.error());
   if (message->chosen != *chosen)
     return fail(reader_failed(format, "produced a different object from the one requested"));
-  auto mesh = merged(*message, uv_set);
+  auto mesh = merged(*message, uv_set, should_stop);
   if (!mesh) return mesh;
   if (auto applied = to_file_space(message->to_file, *mesh); !applied) return fail(applied.error());
-  if (auto checked = check_mesh(*mesh); !checked) return fail(checked.error());
+  if (auto checked = check_mesh(*mesh, should_stop); !checked) return fail(checked.error());
   return mesh;
 }
 
@@ -253,7 +245,8 @@ Result<std::vector<FileObject>> to_objects(std::string_view answer, const std::s
   std::vector<FileObject> objects;
   for (std::size_t k = 0; k < names.objects.size(); ++k) {
     const ObjectEntry& entry = message->objects[k];
-    objects.push_back({.name = names.objects[k], .vertices = entry.vertices, .faces = entry.faces});
+    objects.push_back(
+        {.name = std::string(names.objects[k]), .vertices = entry.vertices, .faces = entry.faces});
   }
   if (objects.empty()) return invalid("the file has no faces");
   set_choices(names.meshes, objects);
@@ -264,9 +257,9 @@ Result<std::vector<FileObject>> to_objects(std::string_view answer, const std::s
 Result<std::string> answer_about(std::string_view program, const OpenFile& file,
                                  const std::string& object, int uv_set, const RunContext& context) {
   const auto file_bytes = static_cast<std::size_t>(file.size());
-  if (file_bytes > max_bytes) {
-    return fail(ErrorCode::Unreadable,
-                fmt::format("cannot read the file: it is larger than {} MiB", max_bytes >> 20));
+  if (file_bytes > largest_mesh_file) {
+    return fail(ErrorCode::Unreadable, fmt::format("cannot read the file: it is larger than {} MiB",
+                                                   largest_mesh_file >> 20));
   }
   const std::string ending = ending_of(file.name());
   const auto run = [&](const BoxLimits& box) {
@@ -277,7 +270,7 @@ Result<std::string> answer_about(std::string_view program, const OpenFile& file,
   BoxLimits other_box = box;
   other_box.freed = 0x5a;
   auto other_run = std::async(std::launch::async, [&] { return run(other_box); });
-  const auto end = run(box), other_end = other_run.get();
+  auto end = run(box), other_end = other_run.get();
   const std::string format = format_name(ending);
   for (const auto* each : {&end, &other_end}) {
     if (!*each) return fail(each->error());
@@ -286,7 +279,7 @@ Result<std::string> answer_about(std::string_view program, const OpenFile& file,
   }
   if (end->answer != other_end->answer)
     return fail(reader_failed(format, "produced two different meshes from this file"));
-  return end->answer;
+  return std::move(end->answer);
 }
 
 // What `read` makes of the answer, with the file in its error.
@@ -294,18 +287,15 @@ template <class Read>
 auto about_file(std::string_view program, const OpenFile& file, const std::string& object,
                 int uv_set, const RunContext& context, const Read& read)
     -> decltype(read(std::string(), std::string())) {
-  const auto in_file = [&](Error error) {
-    error.file = file.name();
-    return fail(std::move(error));
-  };
+  const std::string& name = file.name();
   try {
     const auto answer = answer_about(program, file, object, uv_set, context);
-    if (!answer) return in_file(answer.error());
-    auto made = read(*answer, format_name(ending_of(file.name())));
-    if (!made) return in_file(made.error());
+    if (!answer) return fail(in_file(answer.error(), name));
+    auto made = read(*answer, format_name(ending_of(name)));
+    if (!made) return fail(in_file(made.error(), name));
     return made;
   } catch (const std::bad_alloc&) {
-    return in_file({ErrorCode::OutOfMemory, "the mesh does not fit in memory"});
+    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
   }
 }
 
@@ -328,7 +318,7 @@ Result<Mesh> read_boxed(std::string_view program, const OpenFile& file, const st
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
   return about_file(program, file, object, uv_set, context,
                     [&](const std::string& answer, const std::string& format) {
-                      return to_mesh(answer, format, object, uv_set);
+                      return to_mesh(answer, format, object, uv_set, context.should_stop);
                     });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh.hpp"
 
@@ -53,26 +54,31 @@ using ReadReference =
 /// node that occurs twice in the scene; a reference that cannot be read; no faces; an object that
 /// does not exist, or no name given and several objects; a UV set or an attribute that the object
 /// lacks; a transform that is not affine; more elements than the bytes allow; those of
-/// `check_mesh`; OutOfMemory. Requires: 0 <= uv_set < max_uv_sets.
+/// `check_mesh`; OutOfMemory; Interrupted. Requires: 0 <= uv_set < max_uv_sets.
 Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
                         const ReadReference& read_reference = {}, const std::string& object = {},
-                        int uv_set = 0, std::span<const std::string> attributes = {});
+                        int uv_set = 0, std::span<const std::string> attributes = {},
+                        const StopRequest& should_stop = {});
 
 /// Reads a file. Files that it refers to must be in the folder `root` or below (`find_reference`);
 /// empty: in its own folder. Errors: as `parse_gltf`; Unreadable: the file cannot be read, or is
 /// larger than 4 GiB with all that it refers to.
 Result<Mesh> read_gltf(const std::filesystem::path& file, const std::string& object = {},
                        int uv_set = 0, const std::filesystem::path& root = {},
-                       std::span<const std::string> attributes = {});
+                       std::span<const std::string> attributes = {},
+                       const StopRequest& should_stop = {});
 Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_set,
-                       const std::filesystem::path& root, std::span<const std::string> attributes);
+                       const std::filesystem::path& root, std::span<const std::string> attributes,
+                       const StopRequest& should_stop = {});
 
 /// The objects of a file; their numbers are not read. Errors: as `read_gltf`.
-Result<std::vector<FileObject>> gltf_objects(const std::filesystem::path& file);
+Result<std::vector<FileObject>> gltf_objects(const std::filesystem::path& file,
+                                             const StopRequest& should_stop = {});
 
 /// The files with buffers of a glTF file, existing or not, each once; those that may not be read
-/// are omitted. Empty if the file is not glTF, or is larger than 4 GiB.
+/// are omitted. Empty if the file is not glTF, or if the work was stopped.
 std::vector<std::filesystem::path> gltf_references(const OpenFile& file,
-                                                   const std::filesystem::path& root);
+                                                   const std::filesystem::path& root,
+                                                   const StopRequest& should_stop = {});
 
 }  // namespace pliant

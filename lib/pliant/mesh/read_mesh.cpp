@@ -1,12 +1,15 @@
 #include "pliant/mesh/read_mesh.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
@@ -65,14 +68,15 @@ Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_s
                     ending, in_quotes(attributes.front())),
         name);
   }
+  const StopRequest& should_stop = context.should_stop;
   if (ending == ".obj" || ending == ".ply") {
-    const auto bytes = read_file(file);
+    const auto bytes = read_file(file, largest_mesh_file, should_stop);
     if (!bytes) return fail(bytes.error());
-    auto mesh = ending == ".obj" ? parse_obj(*bytes, name, object)
-                                 : parse_ply(*bytes, name, object, attributes);
+    auto mesh = ending == ".obj" ? parse_obj(*bytes, name, object, should_stop)
+                                 : parse_ply(*bytes, name, object, attributes, should_stop);
     return with_only_set(std::move(mesh), name, uv_set);
   }
-  if (is_gltf(ending)) return read_gltf(file, object, uv_set, root, attributes);
+  if (is_gltf(ending)) return read_gltf(file, object, uv_set, root, attributes, should_stop);
   return read_assimp(file, object, uv_set, context);
 }
 
@@ -80,14 +84,23 @@ Result<std::vector<FileObject>> mesh_objects(const std::filesystem::path& file,
                                              const RunContext& context) {
   if (auto known = check_mesh_ending(file); !known) return fail(known.error());
   const std::string ending = ending_of(file);
-  if (ending == ".obj") return obj_objects(file);
-  if (ending == ".ply") return ply_objects(file);
-  return is_gltf(ending) ? gltf_objects(file) : assimp_objects(file, context);
+  MemoryShare memory(context.memory);
+  if (ending != ".fbx" && ending != ".dae") {  // for which it is measured
+    std::error_code unknown;                   // if there is no file, reading it tells that
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    const std::size_t bytes = unknown ? 0 : bytes_to_read_byte * static_cast<std::size_t>(size);
+    if (!memory.try_resize(bytes))
+      return fail(ErrorCode::OutOfMemory, "the mesh " + memory.complaint(bytes), file.string());
+  }
+  if (ending == ".obj") return obj_objects(file, context.should_stop);
+  if (ending == ".ply") return ply_objects(file, context.should_stop);
+  return is_gltf(ending) ? gltf_objects(file, context.should_stop) : assimp_objects(file, context);
 }
 
 std::vector<std::filesystem::path> mesh_references(const OpenFile& file,
-                                                   const std::filesystem::path& root) {
-  return is_gltf(ending_of(file.name())) ? gltf_references(file, root)
+                                                   const std::filesystem::path& root,
+                                                   const StopRequest& should_stop) {
+  return is_gltf(ending_of(file.name())) ? gltf_references(file, root, should_stop)
                                          : std::vector<std::filesystem::path>();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -14,8 +15,13 @@ namespace pliant {
 
 class OpenFile;
 
+/// The memory that reading takes for a byte of a mesh file and of those that it refers to: the
+/// file, its mesh, and as much twice more while it is read. [bytes]
+inline constexpr std::size_t bytes_to_read_byte = 4;
+
 /// Reads one object of a mesh file with the reader for the file's ending, in any case: `read_obj`,
-/// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses `context`.
+/// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses the memory of
+/// `context`.
 /// `object` chooses the object if the file has several (`find_objects`); `uv_set`, counted from 0,
 /// is the set of (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root`
 /// or below; empty: in its own folder. `attributes` names numbers at the vertices that the mesh
@@ -30,8 +36,9 @@ Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_s
                        std::span<const std::string> attributes);
 
 /// The files that `read_mesh` may open besides this one, existing or not: buffers of a glTF. Empty
-/// for a file that cannot be read.
+/// for a file that cannot be read, or if the work was stopped.
 std::vector<std::filesystem::path> mesh_references(const OpenFile& file,
-                                                   const std::filesystem::path& root);
+                                                   const std::filesystem::path& root,
+                                                   const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -6,13 +6,13 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/mesh/face_names.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/normals.hpp"
 
@@ -39,46 +39,10 @@ struct Object {
   std::size_t first_face = 0;
 };
 
-// The name that `usemtl` or `g` gives to the faces that follow.
-class CurrentName {
- public:
-  void set(std::string_view name) {
-    current_ = -1;
-    if (name.empty()) return;
-    current_ =
-        indices_.try_emplace(std::string(name), static_cast<int>(indices_.size())).first->second;
-    if (static_cast<std::size_t>(current_) == names_.names.size()) names_.names.emplace_back(name);
-  }
-
-  void add_face() { names_.of_faces.push_back(current_); }
-
-  const FaceNames& names() const { return names_; }
-
- private:
-  FaceNames names_;
-  std::unordered_map<std::string, int> indices_;
-  int current_ = -1;
-};
-
-// The names of the faces first..last; unused names are omitted.
-FaceNames part_of(const FaceNames& all, std::size_t first, std::size_t last) {
-  FaceNames part;
-  std::vector<int> new_index(all.names.size(), -1);
-  for (std::size_t face = first; face < last; ++face) {
-    const int index = all.of_faces[face];
-    if (index >= 0 && new_index[static_cast<std::size_t>(index)] < 0) {
-      new_index[static_cast<std::size_t>(index)] = static_cast<int>(part.names.size());
-      part.names.push_back(all.names[static_cast<std::size_t>(index)]);
-    }
-    part.of_faces.push_back(index < 0 ? -1 : new_index[static_cast<std::size_t>(index)]);
-  }
-  if (part.names.empty()) part.of_faces.clear();
-  return part;
-}
-
 class ObjReader {
  public:
-  explicit ObjReader(const std::string& name) : name_(name) {}
+  ObjReader(const std::string& name, const StopRequest& should_stop)
+      : name_(name), should_stop_(should_stop), poll_(should_stop) {}
 
   void read(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte order mark
@@ -87,16 +51,19 @@ class ObjReader {
     int first_line = 1;
     while (!text.empty() && errors_.size() < max_errors && !is_refused_) {
       const std::size_t end = std::min(text.find('\n'), text.size());
+      if (poll_.after(parts_of_line + end)) return;
       std::string_view statement = trim(text.substr(0, end), ascii_blanks);
       text.remove_prefix(std::min(end + 1, text.size()));
       ++line;
       if (joined.empty()) first_line = line;
+      line_ = first_line;
+      if (joined.size() + end > longest_statement)
+        return refuse(fmt::format("the statement is longer than {} MiB", longest_statement >> 20));
       if (statement.ends_with('\\') && !text.empty()) {
         statement.remove_suffix(1);
         joined.append(statement).push_back(' ');
         continue;
       }
-      line_ = first_line;
       if (joined.empty()) {
         read_statement(statement);
       } else {
@@ -108,8 +75,7 @@ class ObjReader {
   }
 
   Result<std::vector<FileObject>> objects() {
-    check_faces();
-    if (!errors_.empty()) return failure();
+    if (auto checked = check_faces(); !checked) return fail(checked.error());
     const std::vector<Range> ranges = ranges_of_objects();
     std::vector<FileObject> objects;
     std::vector<std::size_t> last_user(coordinates_.size() / 3);  // an object, counted from 1
@@ -119,6 +85,7 @@ class ObjReader {
       object.name = range.name;
       object.faces = range.last - range.first;
       for (; face < range.last; ++face) {
+        if (poll_.after(static_cast<std::size_t>(mesh_.face_sizes[face]))) return interrupted();
         for (int k = 0; k < mesh_.face_sizes[face]; ++k) {
           std::size_t& user = last_user[mesh_.corner_vertices[corner++]];
           if (user != objects.size()) ++object.vertices;
@@ -132,8 +99,7 @@ class ObjReader {
   }
 
   Result<Mesh> finish(const std::string& object) {
-    check_faces();
-    if (!errors_.empty()) return failure();
+    if (auto checked = check_faces(); !checked) return fail(checked.error());
     left_out_.add("texture vertex (vt) that is no number",
                   "texture vertices (vt) that are no numbers", drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
@@ -143,6 +109,9 @@ class ObjReader {
   }
 
  private:
+  static constexpr std::size_t longest_statement = std::size_t{16} << 20;
+  static constexpr std::size_t parts_of_line = 64, parts_of_corner = 32;
+
   void read_statement(std::string_view statement) {
     const std::string_view keyword = next_word(statement, ascii_blanks);
     if (keyword.starts_with('#')) return;
@@ -163,15 +132,16 @@ class ObjReader {
     } else if (keyword == "l") {
       left_out_.add("line", "lines");
     } else if (keyword == "p") {
-      while (!next_word(statement, ascii_blanks).empty()) left_out_.add("point", "points");
+      while (!next_word(statement, ascii_blanks).empty() && !poll_.after(parts_of_corner))
+        left_out_.add("point", "points");
     } else if (keyword == "o") {
       objects_.push_back({std::string(trim(statement, ascii_blanks)), mesh_.face_sizes.size()});
     } else if (keyword == "vn") {
       shading_.normals.push_back(read_normal(statement));
     } else if (keyword == "usemtl") {
-      materials_.set(trim(statement, ascii_blanks));
+      material_ = materials_.number_of(trim(statement, ascii_blanks));
     } else if (keyword == "g") {
-      groups_.set(trim(statement, ascii_blanks));
+      group_ = groups_.number_of(trim(statement, ascii_blanks));
     } else if (keyword == "s") {
       const std::string_view word = next_word(statement, ascii_blanks);
       const auto group = word == "off" ? Shading::flat : to_integer(word).value_or(-1);
@@ -282,6 +252,7 @@ class ObjReader {
     const std::size_t first_corner = mesh_.corner_vertices.size();
     for (std::string_view word = next_word(words, ascii_blanks); !word.empty();
          word = next_word(words, ascii_blanks)) {
+      if (poll_.after(parts_of_corner)) return drop_corners(first_corner);
       const auto corner = parse_corner(word);
       if (!corner) {
         drop_corners(first_corner);
@@ -302,8 +273,8 @@ class ObjReader {
     mesh_.face_sizes.push_back(static_cast<int>(size));
     face_lines_.push_back(line_);
     shading_.smoothing.push_back(smoothing_);
-    materials_.add_face();
-    groups_.add_face();
+    materials_.add_faces(material_);
+    groups_.add_faces(group_);
   }
 
   void drop_corners(std::size_t first) {
@@ -328,10 +299,11 @@ class ObjReader {
 
   // Whether there are faces whose vertices exist. References to (u,v) and normals that do not exist
   // count as none.
-  void check_faces() {
+  Result<void> check_faces() {
     const std::size_t vertex_count = coordinates_.size() / 3;
     std::size_t corner = 0;
     for (std::size_t face = 0; face < face_lines_.size() && errors_.size() < max_errors; ++face) {
+      if (poll_.after(static_cast<std::size_t>(mesh_.face_sizes[face]))) break;
       const auto corners = std::span(mesh_.corner_vertices)
                                .subspan(corner, static_cast<std::size_t>(mesh_.face_sizes[face]));
       corner += corners.size();
@@ -344,12 +316,15 @@ class ObjReader {
     }
     drop_references(mesh_.corner_uvs, mesh_.uvs.size());
     drop_references(shading_.corner_normals, shading_.normals.size());
+    if (poll_.after(0)) return interrupted();
     if (errors_.empty() && mesh_.face_sizes.empty()) add_error(0, "the file has no faces (f)");
+    if (!errors_.empty()) return failure();
+    return {};
   }
 
   void drop_references(std::vector<int>& indices, std::size_t count) {
     for (int& index : indices) {
-      if (index == -1 || is_within(index, count)) continue;
+      if (poll_.after() || index == -1 || is_within(index, count)) continue;
       index = -1;
       leave_out_reference();
     }
@@ -380,7 +355,7 @@ class ObjReader {
 
   Result<Mesh> select(const std::string& object) {
     const std::vector<Range> ranges = ranges_of_objects();
-    std::vector<std::string> names;
+    std::vector<std::string_view> names;
     names.reserve(ranges.size());
     for (const Range& range : ranges) names.push_back(range.name);
     const auto chosen = choose_object(names, {}, object);
@@ -388,7 +363,9 @@ class ObjReader {
       add_error(0, chosen.error().message);
       return failure();
     }
-    mesh_.corner_normals = shared_normals(mesh_, shading_);
+    auto shared = shared_normals(mesh_, shading_, should_stop_);
+    if (!shared) return fail(shared.error());
+    mesh_.corner_normals = *std::move(shared);
     const Range& range = ranges[*chosen];
     Mesh mesh = ranges.size() == 1 ? std::move(mesh_) : part(range.first, range.last);
     mesh.object = range.name;
@@ -427,11 +404,12 @@ class ObjReader {
       result.corner_uvs.push_back(mesh_.corner_uvs[k]);
     }
     if (mesh_.corner_normals.empty()) return result;
-    std::unordered_map<int, int> new_normal;  // excludes those of other objects
+    std::vector<int> new_normal(mesh_.corner_normals.size(), -1);  // excludes other objects'
+    count = 0;
     for (std::size_t k = corner; k < end; ++k) {
-      const int next = static_cast<int>(new_normal.size());
-      result.corner_normals.push_back(
-          new_normal.try_emplace(mesh_.corner_normals[k], next).first->second);
+      int& normal = new_normal[static_cast<std::size_t>(mesh_.corner_normals[k])];
+      if (normal < 0) normal = count++;
+      result.corner_normals.push_back(normal);
     }
     return result;
   }
@@ -450,6 +428,8 @@ class ObjReader {
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
   std::string name_;
+  const StopRequest& should_stop_;
+  StopPoll poll_;
   int line_ = 0;
   bool is_obj_ = false;      // the first statement is one of the format
   bool is_refused_ = false;  // nothing more is read
@@ -459,30 +439,33 @@ class ObjReader {
   std::vector<Object> objects_;
   Shading shading_;
   int smoothing_ = Shading::unsaid;
-  CurrentName materials_;
-  CurrentName groups_;
+  NamedFaces materials_, groups_;
+  int material_ = -1, group_ = -1;  // of the faces that follow
   std::vector<Error> errors_;
   LeftOut left_out_;
 };
 
 }  // namespace
 
-Result<Mesh> parse_obj(std::string_view text, const std::string& name, const std::string& object) {
-  ObjReader reader(name);
+Result<Mesh> parse_obj(std::string_view text, const std::string& name, const std::string& object,
+                       const StopRequest& should_stop) {
+  ObjReader reader(name, should_stop);
   reader.read(text);
   return reader.finish(object);
 }
 
-Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object) {
-  const auto text = read_file(file);
+Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object,
+                      const StopRequest& should_stop) {
+  const auto text = read_file(file, largest_mesh_file, should_stop);
   if (!text) return fail(text.error());
-  return parse_obj(*text, file.string(), object);
+  return parse_obj(*text, file.string(), object, should_stop);
 }
 
-Result<std::vector<FileObject>> obj_objects(const std::filesystem::path& file) {
-  const auto text = read_file(file);
+Result<std::vector<FileObject>> obj_objects(const std::filesystem::path& file,
+                                            const StopRequest& should_stop) {
+  const auto text = read_file(file, largest_mesh_file, should_stop);
   if (!text) return fail(text.error());
-  ObjReader reader(file.string());
+  ObjReader reader(file.string(), should_stop);
   reader.read(*text);
   return reader.objects();
 }

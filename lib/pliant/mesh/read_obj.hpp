@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -35,15 +36,17 @@ struct FileObject;
 /// faces use, in the order of the file. Empty: the file's only object.
 ///
 /// Errors, each with its line, at most 20: a coordinate that is invalid or not finite; a corner
-/// that cannot be read; a vertex number out of range; no faces; those of `choose_object`.
-/// Unreadable: the file cannot be read.
-Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object = {});
+/// that cannot be read; a vertex number out of range; a statement of more than 16 MiB; no faces;
+/// those of `choose_object`. Unreadable: the file cannot be read. Interrupted.
+Result<Mesh> read_obj(const std::filesystem::path& file, const std::string& object = {},
+                      const StopRequest& should_stop = {});
 
 /// The same from text; `name` is the file's name in messages.
 Result<Mesh> parse_obj(std::string_view text, const std::string& name,
-                       const std::string& object = {});
+                       const std::string& object = {}, const StopRequest& should_stop = {});
 
 /// The objects of the file. Errors: as `read_obj`.
-Result<std::vector<FileObject>> obj_objects(const std::filesystem::path& file);
+Result<std::vector<FileObject>> obj_objects(const std::filesystem::path& file,
+                                            const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -29,10 +29,10 @@ using namespace ply;
 // The numbers of the elements, one after the other.
 class Numbers {
  public:
-  Numbers(std::string_view bytes, Encoding encoding, int line)
-      : bytes_(bytes), encoding_(encoding), line_(line) {}
+  Numbers(std::string_view bytes, Encoding encoding, int line, StopPoll& poll)
+      : bytes_(bytes), encoding_(encoding), line_(line), poll_(poll) {}
 
-  // nullopt: the file ends here, or there is no finite number.
+  // nullopt: the file ends here, or there is no finite number; or the work has to end.
   std::optional<double> next(NumberType type) {
     return encoding_ == Encoding::Ascii ? next_word() : next_bytes(type);
   }
@@ -48,17 +48,25 @@ class Numbers {
   bool has_run_out() const { return has_run_out_; }
 
   // 0 if only blanks are left.
-  std::size_t bytes_left() const { return trim(bytes_.substr(at_), ascii_blanks).size(); }
+  std::size_t bytes_left() {
+    std::size_t end = bytes_.size();
+    while (end > at_ && is_blank(end - 1) && !poll_.after()) --end;
+    while (at_ < end && is_blank(at_) && !poll_.after()) ++at_;
+    return end - at_;
+  }
 
   int line() const { return encoding_ == Encoding::Ascii ? line_ : 0; }
 
  private:
+  bool is_blank(std::size_t place) const {
+    return ascii_blanks.find(bytes_[place]) != std::string_view::npos;
+  }
+
   std::optional<double> next_word() {
-    while (at_ < bytes_.size() && ascii_blanks.find(bytes_[at_]) != std::string_view::npos)
-      line_ += bytes_[at_++] == '\n';
-    const std::size_t end = std::min(bytes_.find_first_of(ascii_blanks, at_), bytes_.size());
-    const std::string_view word = bytes_.substr(at_, end - at_);
-    at_ = end;
+    while (at_ < bytes_.size() && is_blank(at_) && !poll_.after()) line_ += bytes_[at_++] == '\n';
+    const std::size_t begin = at_;
+    while (at_ < bytes_.size() && !is_blank(at_) && !poll_.after()) ++at_;
+    const std::string_view word = bytes_.substr(begin, at_ - begin);
     has_run_out_ = word.empty();
     return to_number(word);
   }
@@ -97,16 +105,20 @@ class Numbers {
   std::string_view bytes_;
   Encoding encoding_;
   int line_;
+  StopPoll& poll_;
   std::size_t at_ = 0;
   bool has_run_out_ = false;
 };
 
 class PlyReader {
  public:
-  PlyReader(const Header& header, std::string_view body, std::span<const std::string> attributes)
+  PlyReader(const Header& header, std::string_view body, std::span<const std::string> attributes,
+            const StopRequest& should_stop)
       : header_(header),
         names_(attributes),
-        numbers_(body, header.encoding, header.line_count + 1) {}
+        should_stop_(should_stop),
+        poll_(should_stop),
+        numbers_(body, header.encoding, header.line_count + 1, poll_) {}
 
   Result<Mesh> read() {
     for (const Element& element : header_.elements) {
@@ -114,6 +126,7 @@ class PlyReader {
     }
     left_out_.add("byte after its last element", "bytes after its last element",
                   static_cast<std::int64_t>(numbers_.bytes_left()));
+    if (poll_.after(0)) return interrupted();
     if (!mesh_.corner_vertices.empty()) {
       if (auto checked = check_indices(); !checked) return fail(checked.error());
     }
@@ -124,14 +137,17 @@ class PlyReader {
                   drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
     if (!normals_.empty()) {
-      mesh_.corner_normals =
-          shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}});
+      auto shared =
+          shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}}, should_stop_);
+      if (!shared) return fail(shared.error());
+      mesh_.corner_normals = *std::move(shared);
     }
     return std::move(mesh_);
   }
 
  private:
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+  static constexpr std::size_t parts_of_number = 16;
 
   // One property: a number, or the numbers of its list; `not_a_number` for what is no finite
   // number.
@@ -195,11 +211,11 @@ class PlyReader {
   Result<void> find_attributes(const Element& vertex) {
     for (const std::string& name : names_) {
       const int place = vertex.find({name});
-      std::vector<std::string> numbers;
-      for (const Property& property : vertex.properties) {
-        if (!property.count_type) numbers.push_back(property.name);
-      }
       if (place < 0 || vertex.properties[static_cast<std::size_t>(place)].count_type) {
+        std::vector<std::string> numbers;
+        for (const Property& property : vertex.properties) {
+          if (!property.count_type) numbers.push_back(property.name);
+        }
         return invalid(fmt::format("the vertices have no number {}; they have {}", in_quotes(name),
                                    listed_names(numbers)));
       }
@@ -233,6 +249,7 @@ class PlyReader {
       values[k].clear();
       for (double n = 0; n < *count; ++n) {
         const auto number = numbers_.next(property.type);
+        if (poll_.after(parts_of_number)) return interrupted();
         const bool is_needed =
             std::find(needed_.begin(), needed_.end(), static_cast<int>(k)) != needed_.end();
         if (!number && (is_needed || numbers_.has_run_out())) return no_number(element, index, k);
@@ -243,7 +260,8 @@ class PlyReader {
   }
 
   tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
-                                  std::size_t property) const {
+                                  std::size_t property) {
+    if (poll_.after(0)) return interrupted();
     if (numbers_.has_run_out()) return ends_within(element, index);
     return invalid(fmt::format("{} {}: {} is not a finite number", in_quotes(element.name), index,
                                in_quotes(element.properties[property].name)),
@@ -305,6 +323,7 @@ class PlyReader {
   Result<void> add_corners(std::span<const double> corners, std::span<const double> uvs,
                            const char* element, std::int64_t index) {
     constexpr std::size_t most = std::numeric_limits<int>::max();
+    if (poll_.after(parts_of_number * corners.size())) return interrupted();
     if (corners.size() > most - mesh_.corner_vertices.size())
       return invalid(fmt::format("the faces have more than {} corners", most));
     mesh_.face_sizes.push_back(static_cast<int>(corners.size()));
@@ -331,6 +350,7 @@ class PlyReader {
     const auto first_pair = static_cast<int>(mesh_.uvs.size());
     std::size_t corner = 0;
     for (std::size_t face = 0; face < mesh_.face_sizes.size(); ++face) {
+      if (poll_.after(static_cast<std::size_t>(mesh_.face_sizes[face]))) return interrupted();
       for (int k = 0; k < mesh_.face_sizes[face]; ++k, ++corner) {
         const int vertex = mesh_.corner_vertices[corner];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
@@ -354,6 +374,8 @@ class PlyReader {
 
   const Header& header_;
   std::span<const std::string> names_;  // of attributes
+  const StopRequest& should_stop_;
+  StopPoll poll_;
   Numbers numbers_;
   Mesh mesh_;
   std::vector<double> coordinates_;                          // x y z of each vertex
@@ -370,12 +392,12 @@ class PlyReader {
 };
 
 Result<Mesh> parse(std::string_view bytes, const std::string& object,
-                   std::span<const std::string> attributes) {
-  const auto header = read_header(bytes);
+                   std::span<const std::string> attributes, const StopRequest& should_stop) {
+  const auto header = read_header(bytes, should_stop);
   if (!header) return fail(header.error());
-  auto mesh = PlyReader(*header, bytes.substr(header->size), attributes).read();
+  auto mesh = PlyReader(*header, bytes.substr(header->size), attributes, should_stop).read();
   if (!mesh) return mesh;
-  const std::vector<std::string> names = {""};
+  const std::array<std::string_view, 1> names = {""};
   if (const auto chosen = choose_object(names, {}, object); !chosen) return fail(chosen.error());
   return mesh;
 }
@@ -383,10 +405,10 @@ Result<Mesh> parse(std::string_view bytes, const std::string& object,
 }  // namespace
 
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const std::string& object,
-                       std::span<const std::string> attributes) {
+                       std::span<const std::string> attributes, const StopRequest& should_stop) {
   try {
-    auto mesh = parse(bytes, object, attributes);
-    if (!mesh) mesh.error().file = name;
+    auto mesh = parse(bytes, object, attributes, should_stop);
+    if (!mesh) return fail(in_file(mesh.error(), name));
     return mesh;
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
@@ -394,14 +416,15 @@ Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const st
 }
 
 Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object,
-                      std::span<const std::string> attributes) {
-  const auto bytes = read_file(file);
+                      std::span<const std::string> attributes, const StopRequest& should_stop) {
+  const auto bytes = read_file(file, largest_mesh_file, should_stop);
   if (!bytes) return fail(bytes.error());
-  return parse_ply(*bytes, file.string(), object, attributes);
+  return parse_ply(*bytes, file.string(), object, attributes, should_stop);
 }
 
-Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file) {
-  const auto mesh = read_ply(file);
+Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file,
+                                            const StopRequest& should_stop) {
+  const auto mesh = read_ply(file, {}, {}, should_stop);
   if (!mesh) return fail(mesh.error());
   std::vector<FileObject> objects(1);
   objects[0].vertices = static_cast<std::uint64_t>(mesh->vertex_count());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/file_object.hpp"
 #include "pliant/mesh/mesh.hpp"
 
@@ -37,16 +38,19 @@ namespace pliant {
 ///
 /// Errors, with the line if the file has lines: no header, or one that does not end; an element or
 /// number that is missing; a coordinate or attribute that is not finite; an attribute that is no
-/// property; an index out of range; no faces. Unreadable: the file cannot be read. OutOfMemory.
+/// property; an index out of range; no faces. Unreadable: the file cannot be read. OutOfMemory;
+/// Interrupted.
 Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object = {},
-                      std::span<const std::string> attributes = {});
+                      std::span<const std::string> attributes = {},
+                      const StopRequest& should_stop = {});
 
 /// The same from bytes; `name` is the file's name in messages.
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name,
-                       const std::string& object = {},
-                       std::span<const std::string> attributes = {});
+                       const std::string& object = {}, std::span<const std::string> attributes = {},
+                       const StopRequest& should_stop = {});
 
 /// The one object of the file. Errors: as `read_ply`.
-Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file);
+Result<std::vector<FileObject>> ply_objects(const std::filesystem::path& file,
+                                            const StopRequest& should_stop = {});
 
 }  // namespace pliant

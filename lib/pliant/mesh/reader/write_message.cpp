@@ -23,11 +23,12 @@ using Eigen::Matrix4d;
 
 // A node that has faces.
 struct Object {
-  std::string node_name;
-  std::string mesh_name;
+  std::string node_name = {};
+  std::string mesh_name = {};
   Matrix4d to_file;  // the product of the transforms down to the node
-  std::vector<const aiMesh*> meshes;
-  std::uint64_t small_faces = 0;  // of all meshes of the node: points and lines
+  std::vector<const aiMesh*> meshes = {};
+  std::uint64_t vertices = 0, faces = 0;  // of these
+  std::uint64_t small_faces = 0;          // of all meshes of the node: points and lines
 };
 
 // Buffers bytes and writes them to a descriptor.
@@ -95,32 +96,21 @@ Matrix4d to_matrix(const aiMatrix4x4& m) {
 
 bool is_face(const aiFace& face) { return face.mNumIndices >= 3; }  // no point or line
 
-bool has_faces(const aiMesh& mesh) {
-  return mesh.mVertices && mesh.mFaces &&
-         std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces, is_face);
-}
+// Counted once for each mesh of the file, as many nodes may have the same one.
+struct FaceCount {
+  std::uint64_t faces = 0, small_faces = 0;  // those with three corners or more, and the others
+};
 
-std::vector<const aiMesh*> meshes_with_faces(const aiScene& scene, const aiNode& node) {
-  std::vector<const aiMesh*> meshes;
-  for (unsigned k = 0; k < node.mNumMeshes; ++k) {
-    if (node.mMeshes[k] >= scene.mNumMeshes) continue;
-    const aiMesh* mesh = scene.mMeshes[node.mMeshes[k]];
-    if (mesh && has_faces(*mesh)) meshes.push_back(mesh);
-  }
-  return meshes;
-}
-
-std::uint64_t small_faces(const aiScene& scene, const aiNode& node) {
-  std::uint64_t count = 0;
-  for (unsigned k = 0; k < node.mNumMeshes; ++k) {
-    const aiMesh* const mesh =
-        node.mMeshes[k] < scene.mNumMeshes ? scene.mMeshes[node.mMeshes[k]] : nullptr;
+std::vector<FaceCount> count_faces(const aiScene& scene) {
+  std::vector<FaceCount> counts(scene.mNumMeshes);
+  for (unsigned k = 0; k < scene.mNumMeshes; ++k) {
+    const aiMesh* const mesh = scene.mMeshes[k];
     if (!mesh || !mesh->mFaces) continue;
-    count += static_cast<std::uint64_t>(
-        std::count_if(mesh->mFaces, mesh->mFaces + mesh->mNumFaces,
-                      [](const aiFace& face) { return !is_face(face); }));
+    const auto faces = std::count_if(mesh->mFaces, mesh->mFaces + mesh->mNumFaces, is_face);
+    counts[k].faces = mesh->mVertices ? static_cast<std::uint64_t>(faces) : 0;
+    counts[k].small_faces = mesh->mNumFaces - static_cast<std::uint64_t>(faces);
   }
-  return count;
+  return counts;
 }
 
 // Depth first, in the order of the file. Explicit stack: a file may be deeply nested.
@@ -129,16 +119,26 @@ std::vector<Object> objects_of(const aiScene& scene) {
     const aiNode* node;
     Matrix4d above;
   };
+  const std::vector<FaceCount> counts = count_faces(scene);
   std::vector<Object> objects;
   std::vector<Visit> visits = {{scene.mRootNode, Matrix4d::Identity()}};
   while (!visits.empty()) {
     const auto [node, above] = visits.back();
     visits.pop_back();
     const Matrix4d to_file = above * to_matrix(node->mTransformation);
-    if (auto meshes = meshes_with_faces(scene, *node); !meshes.empty()) {
-      std::string mesh_name = meshes.front()->mName.C_Str();
-      objects.push_back({node->mName.C_Str(), std::move(mesh_name), to_file, std::move(meshes),
-                         small_faces(scene, *node)});
+    Object object{.node_name = node->mName.C_Str(), .to_file = to_file};
+    for (unsigned k = 0; k < node->mNumMeshes; ++k) {
+      const unsigned number = node->mMeshes[k];
+      if (number >= scene.mNumMeshes) continue;
+      object.small_faces += counts[number].small_faces;
+      if (counts[number].faces == 0) continue;
+      object.meshes.push_back(scene.mMeshes[number]);
+      object.faces += counts[number].faces;
+      object.vertices += scene.mMeshes[number]->mNumVertices;
+    }
+    if (!object.meshes.empty()) {
+      object.mesh_name = object.meshes.front()->mName.C_Str();
+      objects.push_back(std::move(object));
     }
     for (unsigned k = node->mNumChildren; k-- > 0;) visits.push_back({node->mChildren[k], to_file});
   }
@@ -148,9 +148,9 @@ std::vector<Object> objects_of(const aiScene& scene) {
 // The only object that the text chooses; if there are none or several, the receiver of the names
 // reports it.
 std::optional<std::size_t> chosen(const std::vector<Object>& objects, const std::string& object) {
-  std::vector<std::string> nodes, meshes;
+  std::vector<std::string_view> nodes, meshes;
   for (const Object& each : objects) {
-    nodes.push_back(each.node_name.empty() ? each.mesh_name : each.node_name);
+    nodes.emplace_back(each.node_name.empty() ? each.mesh_name : each.node_name);
     meshes.push_back(each.mesh_name);
   }
   const ObjectMatch match = find_objects(nodes, meshes, object);
@@ -209,14 +209,8 @@ void write_scene(MessageWriter& writer, const aiScene& scene, const std::string&
   for (const Object& each : objects) {
     writer.text(each.node_name);
     writer.text(each.mesh_name);
-    std::uint64_t vertices = 0, faces = 0;
-    for (const aiMesh* mesh : each.meshes) {
-      vertices += mesh->mNumVertices;
-      faces += static_cast<std::uint64_t>(
-          std::count_if(mesh->mFaces, mesh->mFaces + mesh->mNumFaces, is_face));
-    }
-    writer.number(vertices);
-    writer.number(faces);
+    writer.number(each.vertices);
+    writer.number(each.faces);
     writer.number(each.small_faces);
   }
   const auto index = chosen(objects, object);
