@@ -15,6 +15,7 @@
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
+#include "support/stop_at_every_moment.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -143,24 +144,6 @@ TEST_CASE("reading the log ends when asked", "[sweep]") {
   const auto status = folder.status([] { return true; });
   REQUIRE_FALSE(status);
   CHECK(status.error().code == ErrorCode::Interrupted);
-}
-
-// Calls `work` with stop requests that are granted ever later, the last one never; each must end
-// it.
-template <class Work, class Look>
-void stop_at_every_moment(const Work& work, const Look& look, int least_asked) {
-  int asked = 0;
-  REQUIRE(work([&] { return ++asked < 0; }));
-  CHECK(asked >= least_asked);
-  const int all = asked;
-  for (int moment = 1; moment <= all; moment += 1 + all / (is_sanitized ? 3 : 23)) {
-    CAPTURE(moment, all);
-    asked = 0;
-    const auto ended = work([&] { return ++asked >= moment; });
-    REQUIRE_FALSE(ended);
-    CHECK(ended.error().code == ErrorCode::Interrupted);
-    look();
-  }
 }
 
 TEST_CASE("making a sweep, opening it and writing its table end when asked", "[sweep]") {

@@ -25,7 +25,8 @@ double number_in_npy(std::string_view bytes, const NpyHeader& header) {
 }  // namespace
 
 Result<std::vector<double>> parse_npy_grid(std::string_view bytes, const std::string& name,
-                                           int columns, int rows) {
+                                           int columns, int rows, const StopRequest& should_stop) {
+  constexpr std::size_t parts_of_number = 16;
   const auto refuse = [&](std::string message) {
     return fail(ErrorCode::InvalidInput, std::move(message), name);
   };
@@ -41,7 +42,9 @@ Result<std::vector<double>> parse_npy_grid(std::string_view bytes, const std::st
     return refuse(fmt::format("it is truncated: it promises {} numbers, but has {}", count,
                               numbers.size() / size));
   std::vector<double> values(count);
+  StopPoll poll(should_stop);
   for (std::size_t k = 0; k < count; ++k) {
+    if (poll.after(parts_of_number)) return interrupted();
     values[k] = number_in_npy(numbers.substr(k * size, size), *header);
     if (!std::isfinite(values[k]))
       return refuse(fmt::format("the number in row {}, column {} is {}, which is not finite",

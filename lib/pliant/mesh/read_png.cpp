@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include "pliant/mesh/file_object.hpp"
+
 namespace pliant {
 namespace {
 
@@ -71,12 +73,32 @@ Result<PngHead> read_head(std::string_view bytes) {
 struct PngSource {
   const char* next = nullptr;
   std::size_t left = 0;
+  StopPoll poll;
+  std::size_t surplus_left = std::size_t{1} << 16;  // of compressed bytes after the last row
+  bool has_all_rows = false;
   char complaint[120] = {};
 };
+
+// Ends libpng if the work has to end.
+void end_if_stopped(png_structp png, PngSource& source, std::size_t parts) {
+  constexpr std::size_t parts_of_call = 100;
+  if (source.poll.after(parts_of_call + parts)) png_error(png, "interrupted");
+}
+
+// libpng inflates what follows the last row too, a thousand bytes of each, only to drop it.
+void end_if_surplus(png_structp png, PngSource& source, std::size_t count) {
+  constexpr png_uint_32 idat = 0x49444154;
+  if (!source.has_all_rows || png_get_io_chunk_type(png) != idat) return;
+  if (count > source.surplus_left) png_error(png, "it has more data than its picture");
+  source.surplus_left -= count;
+}
 
 void read_from_source(png_structp png, png_bytep to, std::size_t count) {
   auto* const source = static_cast<PngSource*>(png_get_io_ptr(png));
   if (count > source->left) png_error(png, "the file is truncated");
+  constexpr std::size_t parts_of_byte = 64;  // of a compressed one
+  end_if_stopped(png, *source, parts_of_byte * count);
+  end_if_surplus(png, *source, count);
   std::memcpy(to, source->next, count);
   source->next += count;
   source->left -= count;
@@ -91,57 +113,62 @@ void read_from_source(png_structp png, png_bytep to, std::size_t count) {
 void ignore_warning(png_structp, png_const_charp) {}
 
 void read_rows(png_structp png, png_infop info, const PngHead& head, png_bytep row,
-               std::uint16_t* values) {
+               std::vector<std::uint16_t>& values) {
   png_set_user_limits(png, longest_picture_side, longest_picture_side);
   // Only what pixels need is read: no colour profiles, texts and the like.
   png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_read_info(png, info);
   const std::size_t step = static_cast<std::size_t>(head.channels * head.bits / 8);
   if (png_get_rowbytes(png, info) != head.row_bytes()) png_error(png, "its head is given twice");
+  auto* const source = static_cast<PngSource*>(png_get_io_ptr(png));
   for (int y = 0; y < head.height; ++y) {
     png_read_row(png, row, nullptr);
+    end_if_stopped(png, *source, 4 * head.row_bytes());
     for (int x = 0; x < head.width; ++x) {
       const png_byte* const pixel = row + static_cast<std::size_t>(x) * step;
-      *values++ = static_cast<std::uint16_t>(head.bits == 8 ? pixel[0] : pixel[0] << 8 | pixel[1]);
+      values.push_back(
+          static_cast<std::uint16_t>(head.bits == 8 ? pixel[0] : pixel[0] << 8 | pixel[1]));
     }
   }
+  source->has_all_rows = true;
   png_read_end(png, nullptr);
 }
 
 // Whether all rows were read. If libpng gives up, it jumps here from within `read_rows`, so nothing
 // there has a destructor.
 bool could_read_rows(png_structp png, png_infop info, const PngHead& head, png_bytep row,
-                     std::uint16_t* values) {
+                     std::vector<std::uint16_t>& values) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   read_rows(png, info, head, row, values);
   return true;
 }
 
-Result<Picture> decode(std::string_view bytes, const PngHead& head) {
-  Picture picture{.width = head.width,
-                  .height = head.height,
-                  .white = head.bits == 8 ? 255 : 65535,
-                  .values = std::vector<std::uint16_t>(head.value_count())};
+Result<Picture> decode(std::string_view bytes, const PngHead& head,
+                       const StopRequest& should_stop) {
+  Picture picture{
+      .width = head.width, .height = head.height, .white = head.bits == 8 ? 255 : 65535};
+  picture.values.reserve(head.value_count());  // used as rows come, whatever the head promises
   std::vector<png_byte> row(head.row_bytes());
-  PngSource source{bytes.data(), bytes.size()};
+  PngSource source{.next = bytes.data(), .left = bytes.size(), .poll = StopPoll(should_stop)};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, give_up, ignore_warning);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   bool is_read = false;
   if (info) {
     png_set_read_fn(png, &source, read_from_source);
-    is_read = could_read_rows(png, info, head, row.data(), picture.values.data());
+    is_read = could_read_rows(png, info, head, row.data(), picture.values);
   }
   png_destroy_read_struct(&png, &info, nullptr);
   if (is_read) return picture;
+  if (source.poll.after(0)) return interrupted();
   if (!source.complaint[0])
     return fail(ErrorCode::OutOfMemory, "the picture does not fit in memory");
   return invalid(printable(fmt::format("the PNG is broken: {}", source.complaint)));
 }
 
-Result<Picture> read_picture(std::string_view bytes) {
+Result<Picture> read_picture(std::string_view bytes, const StopRequest& should_stop) {
   const auto head = read_head(bytes);
   if (!head) return fail(head.error());
-  return decode(bytes, *head);
+  return decode(bytes, *head, should_stop);
 }
 
 }  // namespace
@@ -168,10 +195,11 @@ Result<std::size_t> bytes_of_png(std::string_view bytes) {
   return head->value_count() * sizeof(std::uint16_t);
 }
 
-Result<Picture> parse_png(std::string_view bytes, const std::string& name) {
+Result<Picture> parse_png(std::string_view bytes, const std::string& name,
+                          const StopRequest& should_stop) {
   try {
-    auto picture = read_picture(bytes);
-    if (!picture) picture.error().file = name;
+    auto picture = read_picture(bytes, should_stop);
+    if (!picture) return fail(in_file(picture.error(), name));
     return picture;
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::OutOfMemory, "the picture does not fit in memory", name);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -31,7 +32,8 @@ Result<std::size_t> bytes_of_png(std::string_view bytes);
 /// Reads a PNG of 8 or 16 bits a channel, not interlaced, grey or in colours, from its bytes; alpha
 /// is ignored. `name` is the file's name in messages. Memory is proportional to the file. Errors,
 /// naming the file: no such PNG; a palette; a side longer than `longest_picture_side`; broken or
-/// missing data; OutOfMemory.
-Result<Picture> parse_png(std::string_view bytes, const std::string& name);
+/// missing data; OutOfMemory; Interrupted.
+Result<Picture> parse_png(std::string_view bytes, const std::string& name,
+                          const StopRequest& should_stop = {});
 
 }  // namespace pliant

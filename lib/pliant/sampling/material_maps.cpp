@@ -21,12 +21,14 @@ namespace {
 
 using Pair = std::array<double, 2>;
 
+constexpr std::size_t largest_map_file = std::size_t{4} << 30;
+
 // Reads one map after the other.
 class MapReader {
  public:
   MapReader(const Surface& surface, const RestShape& shape, const SceneOrigin& origin,
-            const std::function<Result<void>(std::size_t)>& take)
-      : surface_(surface), shape_(shape), origin_(origin), take_(take) {}
+            const std::function<Result<void>(std::size_t)>& take, const StopRequest& should_stop)
+      : surface_(surface), shape_(shape), origin_(origin), take_(take), should_stop_(should_stop) {}
 
   // The factors of one map, by node.
   Result<std::vector<double>> read(const MaterialMap& map) {
@@ -48,7 +50,7 @@ class MapReader {
     if (!opened) return fail(opened.error());
     if (auto taken = take_(static_cast<std::size_t>(opened->size())); !taken)
       return fail(taken.error());
-    const auto bytes = read_file(*opened);
+    const auto bytes = read_file(*opened, largest_map_file, should_stop_);
     if (!bytes) return fail(bytes.error());
     if (ending_of(map.file) == ".npy") return of_npy(*bytes, map.file);
     return of_picture(*bytes, map.file);
@@ -59,14 +61,14 @@ class MapReader {
       return fail(ErrorCode::InvalidInput,
                   "a .npy has a number for each node of a grid, but the mesh is read as a surface",
                   file);
-    return parse_npy_grid(bytes, file, shape_.grid->columns, shape_.grid->rows);
+    return parse_npy_grid(bytes, file, shape_.grid->columns, shape_.grid->rows, should_stop_);
   }
 
   Result<std::vector<double>> of_picture(const std::string& bytes, const std::string& file) {
     const auto size = bytes_of_png(bytes);
     if (!size) return fail(ErrorCode::InvalidInput, size.error().message, file);
     if (auto taken = take_(*size); !taken) return fail(taken.error());
-    const auto picture = parse_png(bytes, file);
+    const auto picture = parse_png(bytes, file, should_stop_);
     if (!picture) return fail(picture.error());
     const auto uvs = uvs_of_nodes();
     if (!uvs) return fail(uvs.error());
@@ -163,6 +165,7 @@ class MapReader {
 
   // An error that names a file keeps it; the scene's place comes before.
   Error at_map(Error error, const MaterialMap& map) const {
+    if (error.code == ErrorCode::Interrupted) return error;
     const std::string file = error.file.empty() ? "" : error.file + ": ";
     error.message =
         fmt::format("{}.{}: {}{}", surface_.name, name_of(map.channel), file, error.message);
@@ -173,6 +176,7 @@ class MapReader {
   const RestShape& shape_;
   const SceneOrigin& origin_;
   const std::function<Result<void>(std::size_t)>& take_;
+  const StopRequest& should_stop_;
 };
 
 std::vector<double>& factors_of_channel(NodeFactors& factors, MapChannel channel) {
@@ -221,9 +225,10 @@ std::vector<std::string> attributes_of_maps(const Surface& surface) {
 
 Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,
                               const SceneOrigin& origin,
-                              const std::function<Result<void>(std::size_t)>& take) {
+                              const std::function<Result<void>(std::size_t)>& take,
+                              const StopRequest& should_stop) {
   NodeFactors factors;
-  MapReader reader(surface, shape, origin, take);
+  MapReader reader(surface, shape, origin, take, should_stop);
   for (const MaterialMap& map : surface.maps) {
     auto values = reader.read(map);
     if (!values) return fail(values.error());

@@ -21,10 +21,12 @@ std::vector<std::string> attributes_of_maps(const Surface& surface);
 /// one that the scene names, not refined. `take` reserves that many bytes more. Errors, with the
 /// map's line: a file that cannot be read; those of `parse_png` and `parse_npy_grid`; a .npy of a
 /// surface that is no grid; a vertex without (u,v) under a picture; vertices of one node with other
-/// values; values of a program that are not one for each vertex, or not finite; those of `take`.
+/// values; values of a program that are not one for each vertex, or not finite; those of `take`;
+/// Interrupted.
 Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,
                               const SceneOrigin& origin,
-                              const std::function<Result<void>(std::size_t)>& take);
+                              const std::function<Result<void>(std::size_t)>& take,
+                              const StopRequest& should_stop = {});
 
 /// Checks what maps make of the material, at every node, every triangle of a surface, and every
 /// frame of the scene: density, damping and hardening >= 0, b, d and yield > 0, c > -2 sqrt(b d),

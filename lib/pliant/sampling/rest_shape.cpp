@@ -45,23 +45,20 @@ struct BytesToMake {
   }
 
   static std::size_t of_file(const OpenFile& file) {
-    return bytes_per_byte * static_cast<std::size_t>(file.size());
+    return bytes_to_read_byte * static_cast<std::size_t>(file.size());
   }
 
   // The files that a mesh file refers to; known only after reading the file, which needs memory
   // itself.
-  static std::size_t of_references(const OpenFile& file, const std::string& root) {
+  static std::size_t of_references(const OpenFile& file, const std::string& root,
+                                   const StopRequest& should_stop) {
     std::size_t bytes = 0;
-    for (const auto& reference : mesh_references(file, root)) {
+    for (const auto& reference : mesh_references(file, root, should_stop)) {
       // If it cannot be opened, reading it reports that.
       if (const auto opened = OpenFile::open(reference, root)) bytes += of_file(*opened);
     }
     return bytes;
   }
-
- private:
-  // The file and its mesh; a reader may need the same amount twice more while reading.
-  static constexpr std::size_t bytes_per_byte = 4;
 };
 
 // Resizes a surface's share of the memory.
@@ -209,7 +206,8 @@ class ShapeMaker {
       return fail(taken.error());
     if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) return make_mesh(*sheet);
     const Mesh& own = std::get<Mesh>(surface_.shape);
-    if (auto checked = check_mesh(own); !checked) return fail(at_scene(checked.error()));
+    if (auto checked = check_mesh(own, context_.should_stop); !checked)
+      return fail(at_scene(checked.error()));
     return own;
   }
 
@@ -218,7 +216,7 @@ class ShapeMaker {
     if (!opened) return fail(at_scene(opened.error()));
     std::size_t ahead = BytesToMake::of_file(*opened);
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-    ahead += BytesToMake::of_references(*opened, file.root);
+    ahead += BytesToMake::of_references(*opened, file.root, context_.should_stop);
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
     auto mesh = read_mesh(*opened, file.object, file.uv_set, file.root, context_,
                           attributes_of_maps(surface_));
@@ -263,9 +261,10 @@ class ShapeMaker {
   // The memory of the files is kept: a map is small.
   Result<void> add_maps(RestShape& shape) {
     if (surface_.maps.empty() || surface_.is_driven()) return {};
-    auto factors = read_maps(surface_, shape, origin_, [&](std::size_t bytes) {
-      return take_bytes(memory_.bytes() + bytes);
-    });
+    auto factors = read_maps(
+        surface_, shape, origin_,
+        [&](std::size_t bytes) { return take_bytes(memory_.bytes() + bytes); },
+        context_.should_stop);
     if (!factors) return fail(factors.error());
     // By a ratio each node is damped by its own density.
     if (surface_.material.damping_ratio) factors->damping = factors->density;
@@ -304,10 +303,11 @@ class ShapeMaker {
   // names the file.
   Error at_scene(Error error, const std::string& attribute = "file") const {
     if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
-    if (!error.file.empty()) return error;
+    if (!error.file.empty() || error.code == ErrorCode::Interrupted) return error;
     return origin_.located(std::move(error), origin_.line_of(surface_.name, attribute));
   }
   Error about_mesh(Error error, const std::string& attribute = "file") const {
+    if (error.code == ErrorCode::Interrupted) return error;
     error.message = fmt::format("{}: {}", title_of(surface_), error.message);
     return at_scene(std::move(error), attribute);
   }
