@@ -72,6 +72,21 @@ TEST_CASE("a head that promises too much is refused before more of it is read", 
   CHECK(bytes.read_count() == 8);
 }
 
+TEST_CASE("a sparse file of too many samples is refused before they take memory", "[mesh][cache]") {
+  class SparseMdd final : public CacheBytes {
+   public:
+    std::uint64_t size() const override { return std::uint64_t{1} << 40; }
+    Result<void> read(std::uint64_t, void* to, std::size_t count) const override {
+      REQUIRE(count == 8);
+      std::memcpy(to, "\x7f\xff\xff\xff\x00\x00\x00\x01", count);
+      return {};
+    }
+  };
+  const auto refused = read_layout(SparseMdd(), "a.mdd");
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message, Contains("at most 10000000 are read"));
+}
+
 TEST_CASE("numbers are not read for a layout", "[mesh][cache]") {
   for (const char* name : {"a.pc2", "a.mdd"}) {
     const NotingBytes bytes(cache_bytes(name, 4, 1000));

@@ -142,3 +142,14 @@ TEST_CASE("a PNG that ends early or has a wrong bit is refused", "[mesh][maps]")
     }
   }
 }
+
+TEST_CASE("much data after a picture's last row is refused", "[mesh][read_png]") {
+  const auto cut_to_one_row = [](int rows) {
+    std::string bytes =
+        PngMaker{.width = 100, .height = rows, .values = std::vector<int>(100 * rows)}.bytes();
+    std::string head = PngMaker::big(100) + PngMaker::big(1) + '\x08' + std::string(4, '\0');
+    return bytes.replace(8, 25, PngMaker::chunk("IHDR", head));
+  };
+  CHECK(parse_png(cut_to_one_row(2), "a").value().values.size() == 100);
+  CHECK_THAT(problem_of(cut_to_one_row(200)), Contains("more data than its picture"));
+}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -74,8 +75,7 @@ struct PngSource {
   const char* next = nullptr;
   std::size_t left = 0;
   StopPoll poll;
-  std::size_t surplus_left = std::size_t{1} << 16;  // of compressed bytes after the last row
-  bool has_all_rows = false;
+  std::size_t idat_left = std::numeric_limits<std::size_t>::max();  // of compressed bytes
   char complaint[120] = {};
 };
 
@@ -88,9 +88,9 @@ void end_if_stopped(png_structp png, PngSource& source, std::size_t parts) {
 // libpng inflates what follows the last row too, a thousand bytes of each, only to drop it.
 void end_if_surplus(png_structp png, PngSource& source, std::size_t count) {
   constexpr png_uint_32 idat = 0x49444154;
-  if (!source.has_all_rows || png_get_io_chunk_type(png) != idat) return;
-  if (count > source.surplus_left) png_error(png, "it has more data than its picture");
-  source.surplus_left -= count;
+  if (png_get_io_chunk_type(png) != idat) return;
+  if (count > source.idat_left) png_error(png, "it has more data than its picture");
+  source.idat_left -= count;
 }
 
 void read_from_source(png_structp png, png_bytep to, std::size_t count) {
@@ -122,6 +122,8 @@ void read_rows(png_structp png, png_infop info, const PngHead& head, png_bytep r
   if (png_get_rowbytes(png, info) != head.row_bytes()) png_error(png, "its head is given twice");
   auto* const source = static_cast<PngSource*>(png_get_io_ptr(png));
   for (int y = 0; y < head.height; ++y) {
+    // More than a row that cannot be compressed, the end of the stream, and what lies between.
+    if (y + 1 == head.height) source->idat_left = head.row_bytes() + head.row_bytes() / 8 + 1024;
     png_read_row(png, row, nullptr);
     end_if_stopped(png, *source, 4 * head.row_bytes());
     for (int x = 0; x < head.width; ++x) {
@@ -130,7 +132,6 @@ void read_rows(png_structp png, png_infop info, const PngHead& head, png_bytep r
           static_cast<std::uint16_t>(head.bits == 8 ? pixel[0] : pixel[0] << 8 | pixel[1]));
     }
   }
-  source->has_all_rows = true;
   png_read_end(png, nullptr);
 }
 
