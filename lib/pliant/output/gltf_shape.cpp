@@ -1,8 +1,10 @@
 #include "pliant/output/gltf_shape.hpp"
 
-#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <numeric>
 
+#include "pliant/mesh/equal_numbers.hpp"
 #include "pliant/mesh/normals.hpp"
 #include "pliant/mesh/triangulate.hpp"
 
@@ -11,73 +13,53 @@ namespace {
 
 constexpr int none = -1;
 
-// Finds the vertex with the (u,v) and normal of a corner, or creates it.
-class Splitter {
- public:
-  Splitter(const Mesh& mesh, GltfShape& shape) : mesh_(mesh), shape_(shape) {
-    const auto count = static_cast<std::size_t>(mesh.vertex_count());
-    for (std::size_t k = 0; k < count; ++k) shape.source.push_back(static_cast<int>(k));
-    shape.uvs.assign(count, none);
-    shape.normals.assign(count, none);
-    next_.assign(count, none);
-    is_used_.assign(count, false);
+// Makes the vertices of a shape. Returns that of each corner of the mesh.
+std::vector<std::uint32_t> split_vertices(const Mesh& mesh, GltfShape& shape) {
+  const StopRequest never;
+  StopPoll poll(never);
+  const std::vector<int> uv_numbers = numbers_of_equal(mesh.uvs, poll);
+  std::vector<std::array<int, 3>> keys;  // corners with the same one share their vertex
+  keys.reserve(mesh.corner_vertices.size());
+  for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
+    const int uv = mesh.corner_uvs[corner];
+    keys.push_back({mesh.corner_vertices[corner], normal_of(mesh, corner),
+                    uv < 0 ? none : uv_numbers[static_cast<std::size_t>(uv)]});
   }
-
-  std::uint32_t vertex_of(std::size_t corner) {
-    const int uv = mesh_.corner_uvs[corner];
-    const int normal = normal_of(mesh_, corner);
-    int vertex = mesh_.corner_vertices[corner];
-    if (!is_used_[static_cast<std::size_t>(vertex)]) {
-      is_used_[static_cast<std::size_t>(vertex)] = true;
-      set(vertex, uv, normal);
-      return static_cast<std::uint32_t>(vertex);
+  shape.source.resize(static_cast<std::size_t>(mesh.vertex_count()));
+  std::iota(shape.source.begin(), shape.source.end(), 0);
+  shape.uvs.assign(shape.source.size(), none);
+  shape.normals.assign(shape.source.size(), none);
+  std::vector<bool> is_used(shape.source.size());
+  const std::vector<int> numbers = numbers_of_equal(keys, poll);
+  std::vector<int> vertices;  // of each number
+  std::vector<std::uint32_t> corners;
+  corners.reserve(keys.size());
+  for (std::size_t corner = 0; corner < keys.size(); ++corner) {
+    if (static_cast<std::size_t>(numbers[corner]) == vertices.size()) {
+      int vertex = mesh.corner_vertices[corner];
+      if (is_used[static_cast<std::size_t>(vertex)]) {
+        shape.source.push_back(vertex);
+        vertex = static_cast<int>(shape.source.size()) - 1;
+        shape.uvs.push_back(none);
+        shape.normals.push_back(none);
+      } else {
+        is_used[static_cast<std::size_t>(vertex)] = true;
+      }
+      shape.uvs[static_cast<std::size_t>(vertex)] = mesh.corner_uvs[corner];
+      shape.normals[static_cast<std::size_t>(vertex)] = keys[corner][1];
+      vertices.push_back(vertex);
     }
-    while (!has(vertex, uv, normal)) {
-      const int next = next_[static_cast<std::size_t>(vertex)];
-      if (next == none) return static_cast<std::uint32_t>(add_behind(vertex, uv, normal));
-      vertex = next;
-    }
-    return static_cast<std::uint32_t>(vertex);
+    corners.push_back(
+        static_cast<std::uint32_t>(vertices[static_cast<std::size_t>(numbers[corner])]));
   }
-
- private:
-  bool has(int vertex, int uv, int normal) const {
-    const int own = shape_.uvs[static_cast<std::size_t>(vertex)];
-    if (shape_.normals[static_cast<std::size_t>(vertex)] != normal) return false;
-    if (own == uv) return true;
-    return own >= 0 && uv >= 0 &&
-           mesh_.uvs[static_cast<std::size_t>(own)] == mesh_.uvs[static_cast<std::size_t>(uv)];
-  }
-
-  void set(int vertex, int uv, int normal) {
-    shape_.uvs[static_cast<std::size_t>(vertex)] = uv;
-    shape_.normals[static_cast<std::size_t>(vertex)] = normal;
-  }
-
-  int add_behind(int vertex, int uv, int normal) {
-    const auto added = static_cast<int>(shape_.source.size());
-    shape_.source.push_back(shape_.source[static_cast<std::size_t>(vertex)]);
-    shape_.uvs.push_back(uv);
-    shape_.normals.push_back(normal);
-    next_.push_back(none);
-    next_[static_cast<std::size_t>(vertex)] = added;
-    return added;
-  }
-
-  const Mesh& mesh_;
-  GltfShape& shape_;
-  std::vector<int> next_;  // the next vertex split off from the same one
-  std::vector<bool> is_used_;
-};
+  return corners;
+}
 
 }  // namespace
 
 GltfShape make_gltf_shape(const Mesh& mesh) {
   GltfShape shape;
-  Splitter splitter(mesh, shape);
-  std::vector<std::uint32_t> corners;
-  for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner)
-    corners.push_back(splitter.vertex_of(corner));
+  const std::vector<std::uint32_t> corners = split_vertices(mesh, shape);
 
   const std::vector<std::array<int, 3>> triangles = triangulate(mesh);
   std::vector<std::size_t> part_of(mesh.materials.names.size() + 1, 0);  // counted from 1
