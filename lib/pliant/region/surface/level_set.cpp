@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -230,16 +231,19 @@ bool reaches_face(const TriangleSurface& surface, int face, const Transform& tra
 bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
              const SampledForce& force, double radius, bool with_faces) {
   bool is_found = false;
-  // A distance changes by no more than the way to another position.
-  const auto radius_of_ball = [&](int node) {
-    double largest = 0;
-    for (const int face : surface.faces_of(node)) {
-      for (const int other : surface.nodes_of(face)) {
-        const Vector3d way = (surface.rest.row(other) - surface.rest.row(node)).transpose();
-        largest = std::max(largest, (transform.linear * way).norm());
-      }
+  // Of the faces met so far, no less than the way between two of their nodes; 0: looked at. Once
+  // for each, as those of many corners are met at every one of them.
+  std::map<int, double> widths;
+  const auto width_of = [&](int face) {
+    Vector3d centre = Vector3d::Zero();
+    for (const int node : surface.nodes_of(face)) centre += surface.rest.row(node).transpose();
+    centre /= surface.size_of(face);
+    double width = 0;
+    for (const int node : surface.nodes_of(face)) {
+      const Vector3d way = surface.rest.row(node).transpose() - centre;
+      width = std::max(width, 2 * (transform.linear * way).norm());
     }
-    return largest;
+    return width;
   };
   TriangleSearch search(force, radius);
   const double beyond = with_faces ? surface.widest_face * transform.linear.norm() : 0;
@@ -247,10 +251,14 @@ bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transf
              [&](std::span<const int> rows, const BatchNumbers& distance) {
                for (std::size_t n = 0; n < rows.size() && !is_found; ++n) {
                  is_found = distance.of[n] < radius;
-                 if (is_found || !with_faces || distance.of[n] >= radius + radius_of_ball(rows[n]))
-                   continue;
+                 if (is_found || !with_faces) continue;
                  const auto faces = surface.faces_of(rows[n]);
+                 // A distance changes by no more than the way to another position.
                  is_found = std::any_of(faces.begin(), faces.end(), [&](int face) {
+                   const auto [known, is_new] = widths.try_emplace(face, 0);
+                   if (is_new) known->second = width_of(face);
+                   if (distance.of[n] >= radius + known->second) return false;
+                   known->second = 0;
                    return reaches_face(surface, face, transform, search);
                  });
                }
