@@ -1,0 +1,41 @@
+#pragma once
+
+#include <set>
+
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
+#include "support/catch.hpp"
+
+namespace pliant::testing {
+
+/// How often work(should_stop) asks if it is never stopped; it must succeed.
+template <class Work>
+int asks_of(const Work& work) {
+  int asks = 0;
+  const auto done = work(StopRequest([&] {
+    ++asks;
+    return false;
+  }));
+  CAPTURE(done ? "" : done.error().message);
+  CHECK(done);
+  return asks;
+}
+
+/// Checks that the work asks at least so often, and that it is over soon after a stop at any of
+/// several moments, also if it is told only once.
+template <class Work>
+void check_stops(const Work& work, int least_asks) {
+  const int asks = asks_of(work);
+  CHECK(asks >= least_asks);
+  for (const int moment : std::set{1, 2, asks / 3, asks / 2, asks - 1, asks}) {
+    if (moment < 1) continue;
+    int asked = 0;
+    const auto done = work(StopRequest([&] { return ++asked == moment; }));
+    CAPTURE(asks, moment, asked);
+    REQUIRE_FALSE(done);
+    CHECK(done.error().code == ErrorCode::Interrupted);
+    CHECK(asked <= moment + 2);
+  }
+}
+
+}  // namespace pliant::testing
