@@ -36,7 +36,7 @@ struct CutRegion {
       const double farthest = surface.rest.row(node).cwiseAbs().maxCoeff();
       is_border.push_back(surface.rest.col(1).isZero() && farthest > half_side - 1e-9);
     }
-    pieces = cut_out(surface, level_set, is_border, kind);
+    pieces = cut_out(surface, level_set, is_border, kind).value();
   }
 
   std::vector<double> depths(const SampledForce& force) const {

@@ -36,7 +36,7 @@ TEST_CASE("points follow what is affine exactly", "[mesh][binding]") {
   for (const bool has_quads : {false, true}) {
     const TriangleSurface driver = make_surface(square(9, 2, 0.3, has_quads)).value();
     const Field points = scattered(300, 0, 4);
-    const Binding binding(driver, {}, points);
+    const Binding binding = Binding::make(driver, {}, points).value();
     const auto moved = [](const Vector3d& p) {
       return Vector3d(1 + p.x() - 2 * p.z(), 3 * p.x() + 0.5, p.z() - 7);
     };
@@ -51,7 +51,7 @@ TEST_CASE("points above the driver follow its plane, and keep their height", "[m
   const Field points = scattered(300, 1, 4);
   const auto moved = [](const Vector3d& p) { return Vector3d(p.z(), p.x() + 2 * p.z(), 1); };
   const Field displacements =
-      Binding(driver, {}, points).displacements(values_at(driver.rest, moved));
+      Binding::make(driver, {}, points).value().displacements(values_at(driver.rest, moved));
   CHECK(largest(displacements - values_at(points, moved)) < 1e-13);
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("on even triangles points follow bends of second degree", "[mesh][bind
   const TriangleSurface driver = even(12);
   const Field points = scattered(400, 0, 6);
   const auto error = [&](const TriangleSurface& of, const auto& moved) {
-    return largest(Binding(of, {}, points).displacements(values_at(of.rest, moved)) -
+    return largest(Binding::make(of, {}, points).value().displacements(values_at(of.rest, moved)) -
                    values_at(points, moved));
   };
   const auto bent = [](const Vector3d& p) {
@@ -93,7 +93,7 @@ TEST_CASE("a point on a node moves as the node, others by the formula", "[mesh][
   const Field w = values_at(driver.rest, [&](const Vector3d&) {
     return Vector3d(any(random), any(random), any(random));
   });
-  CHECK(largest(Binding(driver, {}, driver.rest).displacements(w) - w) < 1e-15);
+  CHECK(largest(Binding::make(driver, {}, driver.rest).value().displacements(w) - w) < 1e-15);
 
   // By the formula of SPEC 8, "Proxies", triangle by triangle.
   const int count = driver.node_count();
@@ -132,7 +132,7 @@ TEST_CASE("a point on a node moves as the node, others by the formula", "[mesh][
   const auto x = [&](int k) { return Vector3d(driver.rest.row(nodes[k]).transpose()); };
   const Vector3d normal = (x(1) - x(0)).cross(x(2) - x(0)).normalized();
   points.row(0) = (q + 0.01 * normal).transpose();
-  const Field displacement = Binding(driver, {}, points).displacements(w);
+  const Field displacement = Binding::make(driver, {}, points).value().displacements(w);
   CHECK(largest(displacement - expected.transpose()) < 1e-13);
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("nothing moves where the driver is still", "[mesh][binding]") {
   const TriangleSurface driver = make_surface(square(9, 2, 0.3)).value();
   const Field points = scattered(300, 1, 4);
   Field w = Field::Zero(driver.node_count(), 3);
-  const Binding binding(driver, {}, points);
+  const Binding binding = Binding::make(driver, {}, points).value();
   CHECK(binding.displacements(w) == Field::Zero(300, 3));
   w(50, 1) = 1;  // a node: only what is near follows
   const Field displacements = binding.displacements(w);
@@ -157,7 +157,8 @@ TEST_CASE("a binding is found where both meshes are placed", "[mesh][binding]") 
       make_transform({3, -2, 5}, {20, 60, -10}, {1.5, 0.5, -2}, RotateOrder::Xyz);
   const Field points = scattered(200, 0, 4);
   const auto moved = [](const Vector3d& p) { return Vector3d(p.x(), p.z(), p.x() - p.z()); };
-  const Field displacements = Binding(driver, placed, to_world(placed, points))
+  const Field displacements = Binding::make(driver, placed, to_world(placed, points))
+                                  .value()
                                   .displacements(values_at(driver.rest, moved));
   CHECK(largest(displacements - values_at(points, moved)) < 1e-12);
 }

@@ -146,3 +146,13 @@ TEST_CASE("a surface that is too large is refused before it takes memory", "[mes
   net.u.count = net.v.count = 10'001;
   CHECK(complaint(net) == "columns x rows is 100020001, but 100000000 is the most");
 }
+
+TEST_CASE("the splines of a net take no longer than its points allow", "[mesh][nurbs]") {
+  NurbsNet net{.u = {.count = 3001, .degree = 3000}, .v = {.count = 3, .degree = 1}};
+  net.points = Field::Zero(3 * 3001, 3);
+  CHECK(check_net(net));
+  net.u.samples = 300;
+  CHECK(complaint(net) ==
+        "degreeU is 3000, with 300 vertices along u: vertices x (degreeU + 1)^2 must be at most "
+        "2000000000; set samplesU or lower degreeU");
+}

@@ -429,3 +429,30 @@ TEST_CASE("a closed net is a torus of quads with a seam in its UVs", "[mesh][nur
   CHECK(longest < 2);
   CHECK(outward == 120);
 }
+
+TEST_CASE("a net of a high degree is the same surface with fewer weights", "[mesh][nurbs]") {
+  Chance chance(5);
+  for (const bool is_rational : {false, true}) {
+    for (const bool is_closed : {false, true}) {
+      NurbsNet net{.u = {.count = 14, .degree = 11, .is_closed = is_closed, .samples = 15},
+                   .v = {.count = 13, .degree = 9, .samples = 12}};
+      net.points = chance.field(14 * 13);
+      for (int k = 0; is_rational && k < 14 * 13; ++k) net.weights.push_back(chance.number(0.1, 3));
+      REQUIRE(is_summed_by_directions(net));
+      const NurbsSurface surface = make_nurbs(net);
+      double worst = 0;
+      for (int l = 0; l < 12; ++l) {
+        for (int k = 0; k < 15; ++k) {
+          const Eigen::RowVector3d difference =
+              surface.mesh.positions.row(l * 15 + k) - reference(net, k, l);
+          worst = std::max(worst, difference.cwiseAbs().maxCoeff());
+        }
+      }
+      CHECK(worst < 1e-12);
+      const std::size_t entries =
+          surface.weights.weights.size() + surface.weights.points->weights.size();
+      CHECK(static_cast<std::int64_t>(entries) <= check_net(net).value().weights);
+      CHECK(entries < 15 * 12 * 12 * 10 / 3);
+    }
+  }
+}

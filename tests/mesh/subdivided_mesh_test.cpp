@@ -13,6 +13,7 @@
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "support/sanitized.hpp"
+#include "support/stopping.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -413,4 +414,14 @@ TEST_CASE("a node has a most of faces", "[mesh][subdivision]") {
              contains_text("vertex 0 has 65536 faces or edges, but 65535 is the most"));
   CHECK_THAT(complaint_of_subdivide(fan(30000), {5}),
              contains_text("vertices of the cage would depend on too many of its nodes"));
+}
+
+TEST_CASE("a subdivision is stopped", "[mesh][stopping][subdivision]") {
+  const Mesh cage = make_mesh({.columns = 60, .rows = 60, .width = 1, .depth = 1});
+  const TriangleSurface surface = make_surface(cage).value();
+  check_stops(
+      [&](const StopRequest& should_stop) {
+        return subdivide(cage, surface, {.levels = 3}, should_stop);
+      },
+      60);
 }

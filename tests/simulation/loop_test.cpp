@@ -55,7 +55,7 @@ double gap_of(const Scene& s) {
   REQUIRE(simulation.report(first));
   const BodyState begin = simulation.state(0);
   const RestShape& shape = simulation.rest_shapes()[0];
-  const auto body = make_body(shape, body_settings(s.surfaces[0], shape.grid.has_value()));
+  const auto body = make_body(shape, body_settings(s.surfaces[0], shape.grid.has_value())).value();
   body->restore(begin);
   double peak = 0;
   for (int frame = first; frame < first + *s.surfaces[0].solver.loop; ++frame) {

@@ -106,13 +106,13 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   return std::make_shared<const CellFactors>(std::move(own));
 }
 
-SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface,
+SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
                          const BodySettings& settings, SolverChoice solver, RunContext context,
                          std::shared_ptr<const NodeFactors> factors)
     : Body(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
            std::move(factors)),
       surface_(std::move(surface)),
-      tree_(surface_->rest),
+      tree_(std::move(tree)),
       is_border_(border_nodes(*surface_)),
       settling_length_(1e-6 * length_of(surface_->rest.colwise().maxCoeff() -
                                         surface_->rest.colwise().minCoeff())),
@@ -137,7 +137,9 @@ Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
   PLIANT_EXPECTS(fits(inputs));
   if (!settings_.is_animated) return plan_on(*surface_, tree_, inputs, plan);
   const TriangleSurface moved = posed(*surface_, *inputs.shape);
-  return plan_on(moved, PointTree(moved.rest), inputs, plan);
+  const auto tree = PointTree::make(moved.rest, context_.should_stop);
+  if (!tree) return fail(tree.error());
+  return plan_on(moved, *tree, inputs, plan);
 }
 
 // `surface` and `tree` are those at the frame.
@@ -148,7 +150,9 @@ Result<void> SurfaceBody::plan_on(const TriangleSurface& surface, const PointTre
   plan.steps = steps_of(inputs, settings_, factors_.get());
   plan.is_whole = settings_.region == SolvedRegion::All;
   if (plan.is_whole) {
-    if (selection.pieces.empty()) select_all(selection);
+    if (selection.pieces.empty()) {
+      if (auto selected = select_all(selection); !selected) return selected;
+    }
     return weigh(surface, tree, inputs, selection);
   }
   LevelSet level_set =
@@ -169,18 +173,26 @@ Result<void> SurfaceBody::plan_on(const TriangleSurface& surface, const PointTre
   }
   if (selection.pieces.empty() || !(selection.level_set == level_set)) {
     selection.level_set = std::move(level_set);
-    selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
+    selection.pieces.clear();
+    auto pieces =
+        cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
+    if (!pieces) return fail(pieces.error());
+    selection.pieces = *std::move(pieces);
   }
   return weigh(surface, tree, inputs, selection);
 }
 
 // Pieces that nothing holds move too.
-void SurfaceBody::select_all(SurfaceSelection& selection) const {
+Result<void> SurfaceBody::select_all(SurfaceSelection& selection) const {
   std::vector<int> nodes(static_cast<std::size_t>(surface_->node_count()));
   std::iota(nodes.begin(), nodes.end(), 0);
   selection.level_set = with_inside(*surface_, {}, nodes);
-  selection.pieces = cut_out(*surface_, selection.level_set, is_border_, settings_.border);
+  auto pieces =
+      cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
+  if (!pieces) return fail(pieces.error());
+  selection.pieces = *std::move(pieces);
   for (SurfacePiece& piece : selection.pieces) piece.may_float = true;
+  return {};
 }
 
 // Computes the loads, and what each force does.
@@ -201,6 +213,7 @@ Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree&
   selection.forces.assign(inputs.forces.size(), {});
   SurfaceLoads loads(selection.level_set, selection.pieces, nodes);
   for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
+    if (context_.is_stopped()) return interrupted();
     const SampledForce& force = inputs.forces[k];
     SurfaceForceSelection& told = selection.forces[k];
     const auto reach = [&](double radius, bool with_faces) {

@@ -35,7 +35,14 @@ class SurfaceBody final : public Body {
   /// even.
   SurfaceBody(std::shared_ptr<const TriangleSurface> surface, const BodySettings& settings,
               SolverChoice solver = SolverChoice::Auto, RunContext context = {},
-              std::shared_ptr<const NodeFactors> factors = {});
+              std::shared_ptr<const NodeFactors> factors = {})
+      : SurfaceBody(surface, PointTree(surface->rest), settings, solver, std::move(context),
+                    std::move(factors)) {}
+
+  /// The same with the tree of the surface's nodes.
+  SurfaceBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
+              const BodySettings& settings, SolverChoice solver, RunContext context,
+              std::shared_ptr<const NodeFactors> factors);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
   Result<void> step(const BodyInputs& inputs) override;
@@ -58,7 +65,7 @@ class SurfaceBody final : public Body {
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
-  void select_all(SurfaceSelection& selection) const;
+  Result<void> select_all(SurfaceSelection& selection) const;
   Result<void> plan_on(const TriangleSurface& surface, const PointTree& tree,
                        const BodyInputs& inputs, StepPlan& plan) const;
   Result<void> weigh(const TriangleSurface& surface, const PointTree& tree,

@@ -58,7 +58,7 @@ PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double 
       context_(std::move(context)),
       share_(context_.memory) {}
 
-std::unique_ptr<Body> PreviewBody::make(Reference reference) const {
+Result<std::unique_ptr<Body>> PreviewBody::make(Reference reference) const {
   BodySettings settings = body_settings(surface_, shape_.grid.has_value());
   settings.reference = reference;
   return make_body(shape_, settings, SolverChoice::Auto, context_);
@@ -74,8 +74,14 @@ Result<void> PreviewBody::reserve() {
   if (!share_.try_resize(bytes)) {
     return fail(ErrorCode::OutOfMemory, "previewing its forces " + share_.complaint(bytes));
   }
-  real_ = make(surface_.solver.reference);
-  if (has_two) plain_ = make(Reference::Rest);
+  auto real = make(surface_.solver.reference);
+  if (!real) return fail(real.error());
+  if (has_two) {
+    auto plain = make(Reference::Rest);
+    if (!plain) return fail(plain.error());
+    plain_ = *std::move(plain);
+  }
+  real_ = *std::move(real);
   return {};
 }
 

@@ -110,7 +110,7 @@ class PreviewBody {
 
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
-  std::unique_ptr<Body> make(Reference reference) const;
+  Result<std::unique_ptr<Body>> make(Reference reference) const;
   Field displacements(const Box& box) const;
   Field displacements(std::span<const int> nodes) const;
   Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region,

@@ -96,16 +96,30 @@ std::vector<int> lowest_vertices(const RestShape& shape) {
 
 // At the vertex in which a node has its greatest share, the first of equals.
 Field places_on_mesh(const RestShape& shape) {
-  const VertexWeights& weights = *shape.weights;
-  Field places = shape.rest;
-  std::vector<double> greatest(static_cast<std::size_t>(places.rows()), 0);
-  for (int vertex = 0; vertex < weights.vertex_count(); ++vertex) {
-    for (std::size_t entry = weights.starts[vertex]; entry < weights.starts[vertex + 1]; ++entry) {
-      const int node = weights.nodes[entry];
-      if (weights.weights[entry] <= greatest[node]) continue;
-      greatest[node] = weights.weights[entry];
-      places.row(node) = shape.mesh.positions.row(vertex);
+  struct Greatest {
+    double share = 0;
+    int vertex = -1;
+  };
+  std::vector<Greatest> found(static_cast<std::size_t>(shape.mesh.vertex_count()));
+  for (std::size_t k = 0; k < found.size(); ++k) found[k] = {1, static_cast<int>(k)};
+  // From the vertices to the points that they are summed of, and to the nodes.
+  for (const VertexWeights* map = shape.weights.get(); map; map = map->points.get()) {
+    const Eigen::Index count = map->points ? map->points->vertex_count() : shape.rest.rows();
+    std::vector<Greatest> next(static_cast<std::size_t>(count));
+    for (int sum = 0; sum < map->vertex_count(); ++sum) {
+      const auto& [share, vertex] = found[sum];
+      for (std::size_t entry = map->starts[sum]; entry < map->starts[sum + 1]; ++entry) {
+        Greatest& known = next[map->nodes[entry]];
+        const double here = share * map->weights[entry];
+        if (here > known.share) known = {here, vertex};
+      }
     }
+    found = std::move(next);
+  }
+  Field places = shape.rest;
+  for (std::size_t node = 0; node < found.size(); ++node) {
+    if (found[node].vertex < 0) continue;
+    places.row(static_cast<Eigen::Index>(node)) = shape.mesh.positions.row(found[node].vertex);
   }
   return places;
 }

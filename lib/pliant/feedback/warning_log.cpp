@@ -1,6 +1,8 @@
 #include "pliant/feedback/warning_log.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 namespace pliant {
 
@@ -50,10 +52,9 @@ std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_comp
     return warning.kind == Warning::Kind::ForcesApart &&
            scene.origin.gives(warning.surface, "combine");
   });
-  for (Warning& warning : warnings) {
-    warning.is_group = std::any_of(scene.groups.begin(), scene.groups.end(),
-                                   [&](const Group& group) { return group.name == warning.force; });
-  }
+  std::set<std::string_view> groups;
+  for (const Group& group : scene.groups) groups.insert(group.name);
+  for (Warning& warning : warnings) warning.is_group = groups.contains(warning.force);
   return warnings;
 }
 

@@ -20,27 +20,37 @@ double scale_of(const Field& a, const Field& b) {
 
 }  // namespace
 
-Binding::Binding(const TriangleSurface& driver, const Transform& transform, const Field& points)
-    : node_count_(driver.node_count()) {
-  take_triangles(driver);
-  take_gradients();
-  Field placed = to_world(transform, rest_);
+Result<Binding> Binding::make(const TriangleSurface& driver, const Transform& transform,
+                              const Field& points, const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
+  Binding binding;
+  binding.node_count_ = driver.node_count();
+  binding.take_triangles(driver, poll);
+  if (!poll.after(0)) binding.take_gradients(poll);
+  if (poll.after(0)) return interrupted();
+  Field placed = to_world(transform, binding.rest_);
   const double scale = scale_of(placed, points);
   placed *= scale;
-  const TriangleTree tree(placed, triangles_);
-  triangles_of_points_.reserve(static_cast<std::size_t>(points.rows()));
-  weights_.reserve(static_cast<std::size_t>(points.rows()));
+  const auto tree = TriangleTree::make(placed, binding.triangles_, should_stop);
+  if (!tree) return fail(tree.error());
+  std::vector<int>& triangles = binding.triangles_of_points_;
+  triangles.reserve(static_cast<std::size_t>(points.rows()));
+  binding.weights_.reserve(static_cast<std::size_t>(points.rows()));
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    const int near = k > 0 ? triangles_of_points_.back() : 0;  // neighbours in a mesh are near
-    const ClosestPoint closest = tree.closest(scale * points.row(k).transpose(), near);
-    triangles_of_points_.push_back(closest.triangle);
-    weights_.push_back(closest.weights);
+    if (poll.after(2000)) return interrupted();
+    const int near = k > 0 ? triangles.back() : 0;  // neighbours in a mesh are near
+    const ClosestPoint closest = tree->closest(scale * points.row(k).transpose(), near);
+    triangles.push_back(closest.triangle);
+    binding.weights_.push_back(closest.weights);
   }
+  return binding;
 }
 
-void Binding::take_triangles(const TriangleSurface& driver) {
+// Unfinished if it is stopped.
+void Binding::take_triangles(const TriangleSurface& driver, StopPoll& poll) {
   for (int face = 0; face < driver.face_count(); ++face) {
     const auto nodes = driver.nodes_of(face);
+    if (poll.after(nodes.size())) return;
     if (!driver.has_centre(face)) {
       triangles_.push_back({nodes[0], nodes[1], nodes[2]});
       continue;
@@ -56,16 +66,18 @@ void Binding::take_triangles(const TriangleSurface& driver) {
   rest_.topRows(node_count_) = driver.rest;
   for (Eigen::Index centre = 0; centre < centre_count; ++centre) {
     const int begin = centre_starts_[centre], end = centre_starts_[centre + 1];
+    if (poll.after(4 * static_cast<std::size_t>(end - begin))) return;
     Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
     for (int k = begin; k < end; ++k) sum += driver.rest.row(centre_nodes_[k]);
     rest_.row(node_count_ + centre) = sum / (end - begin);
   }
 }
 
-void Binding::take_gradients() {
+void Binding::take_gradients(StopPoll& poll) {
   areas_.setZero(node_count_);
   gradients_.setZero(2 * static_cast<Eigen::Index>(triangles_.size()), 3);
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
+    if (poll.after(16)) return;
     const auto& [a, b, c] = triangles_[k];
     const Vector3d along_b = (rest_.row(b) - rest_.row(a)).transpose();
     const Vector3d along_c = (rest_.row(c) - rest_.row(a)).transpose();
@@ -80,13 +92,15 @@ void Binding::take_gradients() {
   }
 }
 
-Field Binding::displacements(const Field& nodes, Field reuse) const {
+Result<Field> Binding::displacements(const Field& nodes, Field reuse,
+                                     const StopRequest& should_stop) const {
+  StopPoll poll(should_stop);
   // Nine components of G, the derivatives of w by x, then by y, then by z, after the three of w.
   Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> values(rest_.rows(), 12);
   values.setZero();
   values.topLeftCorner(node_count_, 3) = nodes;
   const auto mean_of_corners = [&](int first, int count) {
-    for (std::size_t centre = 0; centre + 1 < centre_starts_.size(); ++centre) {
+    for (std::size_t centre = 0; centre + 1 < centre_starts_.size() && !poll.after(16); ++centre) {
       const int begin = centre_starts_[centre], end = centre_starts_[centre + 1];
       auto mean = values.row(node_count_ + static_cast<Eigen::Index>(centre)).segment(first, count);
       for (int k = begin; k < end; ++k) mean += values.row(centre_nodes_[k]).segment(first, count);
@@ -95,6 +109,7 @@ Field Binding::displacements(const Field& nodes, Field reuse) const {
   };
   mean_of_corners(0, 3);
   for (std::size_t k = 0; k < triangles_.size(); ++k) {
+    if (poll.after(16)) return interrupted();
     const auto& [a, b, c] = triangles_[k];
     const Eigen::RowVector3d to_b = values.row(b).head<3>() - values.row(a).head<3>();
     const Eigen::RowVector3d to_c = values.row(c).head<3>() - values.row(a).head<3>();
@@ -107,11 +122,13 @@ Field Binding::displacements(const Field& nodes, Field reuse) const {
       if (corner < node_count_) values.row(corner).tail<9>() += gradient;
   }
   for (int node = 0; node < node_count_; ++node) {
+    if (poll.after(4)) return interrupted();
     if (areas_[node] > 0) values.row(node).tail<9>() /= areas_[node];
   }
   mean_of_corners(3, 9);
   reuse.setZero(point_count(), 3);
   for (int point = 0; point < point_count(); ++point) {
+    if (poll.after(32)) return interrupted();
     const Corners& corners = triangles_[triangles_of_points_[point]];
     const std::array<double, 3>& weights = weights_[point];
     Eigen::RowVector3d q = Eigen::RowVector3d::Zero();

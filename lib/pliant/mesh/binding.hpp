@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
 
@@ -19,20 +21,26 @@ namespace pliant {
 class Binding {
  public:
   /// `transform` takes the driver's object space to the space of `points` (#points x 3). Cost:
-  /// O(#points log #triangles). Requires: all coordinates are finite.
-  Binding(const TriangleSurface& driver, const Transform& transform, const Field& points);
+  /// O(#points log #triangles). Requires: all coordinates are finite. Errors: Interrupted.
+  static Result<Binding> make(const TriangleSurface& driver, const Transform& transform,
+                              const Field& points, const StopRequest& should_stop = {});
 
   int point_count() const { return static_cast<int>(triangles_of_points_.size()); }
 
   /// D at the points for the displacement of the driver's nodes, both #rows x 3 in the driver's
-  /// object space [length], in the memory of `reuse`. Exactly 0 where the nodes around are still.
-  Field displacements(const Field& nodes, Field reuse = {}) const;
+  /// object space [length]. Exactly 0 where the nodes around are still.
+  Field displacements(const Field& nodes) const { return *displacements(nodes, {}, {}); }
+
+  /// The same in the memory of `reuse`. Errors: Interrupted.
+  Result<Field> displacements(const Field& nodes, Field reuse,
+                              const StopRequest& should_stop) const;
 
  private:
   using Corners = std::array<int, 3>;
 
-  void take_triangles(const TriangleSurface& driver);
-  void take_gradients();
+  Binding() = default;
+  void take_triangles(const TriangleSurface& driver, StopPoll& poll);
+  void take_gradients(StopPoll& poll);
 
   // Points of triangles are the driver's nodes, then the centres of its faces.
   int node_count_ = 0;

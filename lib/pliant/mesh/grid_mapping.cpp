@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/stoppable_sort.hpp"
+
 namespace pliant {
 namespace {
 
@@ -58,8 +60,8 @@ struct Axis {
 // In a uniform lattice, values of one line differ by at most 2 tolerances, and neighbouring lines
 // are at least 1 - 2 tolerances apart, so every gap wider than half the widest one is between two
 // lines. Values that form no lattice also give some axis; each value is then checked against it.
-Axis find_axis(std::vector<double> values, bool is_closed) {
-  std::sort(values.begin(), values.end());
+Axis find_axis(std::vector<double> values, bool is_closed, StopPoll& poll) {
+  if (!sort_unless_stopped(values, poll)) return {};
   double widest = 0;
   for (std::size_t k = 1; k < values.size(); ++k)
     widest = std::max(widest, values[k] - values[k - 1]);
@@ -79,15 +81,19 @@ using NodePair = std::array<int, 2>;
 // have equal keys. O(n log n): nodes with one key are compared with only as many others as can be
 // in one cell without such a pair among them.
 template <class Key, class IsOnePlace>
-std::optional<NodePair> find_pair(const std::vector<int>& nodes, Key key_of,
+std::optional<NodePair> find_pair(const std::vector<int>& nodes, StopPoll& poll, Key key_of,
                                   IsOnePlace is_one_place) {
   constexpr std::size_t most_apart = 64;  // more do not fit into a cell of two distances a side
   std::vector<std::pair<std::uint64_t, int>> keyed;
   keyed.reserve(nodes.size());
-  for (const int node : nodes) keyed.emplace_back(key_of(node), node);
-  std::sort(keyed.begin(), keyed.end());
+  for (const int node : nodes) {
+    if (poll.after(10)) return {};
+    keyed.emplace_back(key_of(node), node);
+  }
+  if (!sort_unless_stopped(keyed, poll)) return {};
   std::optional<NodePair> found;
   for (std::size_t k = 1; k < keyed.size(); ++k) {
+    if (poll.after(4)) return {};
     for (std::size_t back = 1; back <= std::min(k, most_apart); ++back) {
       const auto& [key, node] = keyed[k - back];
       if (key != keyed[k].first) break;
@@ -118,7 +124,7 @@ std::vector<int> border_nodes(const Grid& grid) {
 
 // Border nodes nearer than `distance`: such a pair is in one cell, two distances a side, of one of
 // eight lattices that are shifted by half a cell.
-std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
+std::optional<NodePair> near_pair(const GridMapping& mapping, double distance, StopPoll& poll) {
   const Field& rest = mapping.rest;
   const Eigen::RowVector3d least = rest.colwise().minCoeff();
   const std::vector<int> nodes = border_nodes(mapping.grid);
@@ -132,7 +138,7 @@ std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
       }
       return key;
     };
-    const auto pair = find_pair(nodes, key_of, [&](const NodePair& each) {
+    const auto pair = find_pair(nodes, poll, key_of, [&](const NodePair& each) {
       return (rest.row(each[0]) - rest.row(each[1])).norm() <= distance;
     });
     if (pair && (!found || *pair < *found)) found = pair;
@@ -142,7 +148,7 @@ std::optional<NodePair> near_pair(const GridMapping& mapping, double distance) {
 
 // Two nodes that are distinct only in formats that split vertices: bit-identical positions; on the
 // border, equal within rounding.
-std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
+std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping, StopPoll& poll) {
   const Field& rest = mapping.rest;
   std::vector<int> all(static_cast<std::size_t>(mapping.grid.node_count()));
   std::iota(all.begin(), all.end(), 0);
@@ -152,12 +158,13 @@ std::optional<NodePair> nodes_in_one_place(const GridMapping& mapping) {
       key = mixed(key, std::bit_cast<std::uint64_t>(rest(node, axis) + 0.0));  // -0 becomes 0
     return key;
   };
-  const auto same = find_pair(
-      all, key_of, [&](const NodePair& each) { return rest.row(each[0]) == rest.row(each[1]); });
+  const auto same = find_pair(all, poll, key_of, [&](const NodePair& each) {
+    return rest.row(each[0]) == rest.row(each[1]);
+  });
   if (same) return same;
   const double distance = one_place_distance(rest);
   if (!(distance > 0) || !std::isfinite(distance)) return {};
-  return near_pair(mapping, distance);
+  return near_pair(mapping, distance, poll);
 }
 
 // Whether `count` nodes from `first` on, `step` apart, are all in one place.
@@ -193,11 +200,14 @@ Result<void> check_poles(const Mesh& mesh, const GridMapping& mapping,
 
 }  // namespace
 
-Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
+Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams,
+                              const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
   // The first corner with a (u,v) gives the place of its vertex; the others must agree.
   const int vertex_count = mesh.vertex_count();
   std::vector<int> vertex_uvs(vertex_count, -1);
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
+    if (poll.after()) return interrupted();
     const int vertex = mesh.corner_vertices[corner];
     const int uv = mesh.corner_uvs[corner];
     if (uv < 0) {
@@ -209,6 +219,7 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
   us.reserve(vertex_count);
   vs.reserve(vertex_count);
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
+    if (poll.after()) return interrupted();
     if (vertex_uvs[vertex] < 0) {
       return invalid(
           fmt::format("vertex {} has no (u,v): no face uses it", mesh.number_of(vertex)));
@@ -222,13 +233,16 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
   std::vector<double> all_us = us, all_vs = vs;
   if (wrap != Wrap::None) {
     for (const int uv : mesh.corner_uvs) {
+      if (poll.after()) return interrupted();
       all_us.push_back(mesh.uvs[uv][0]);
       all_vs.push_back(mesh.uvs[uv][1]);
     }
   }
-  const Axis u_axis = find_axis(std::move(all_us), closes_u(wrap));
-  const Axis v_axis = find_axis(std::move(all_vs), closes_v(wrap));
+  const Axis u_axis = find_axis(std::move(all_us), closes_u(wrap), poll);
+  const Axis v_axis = find_axis(std::move(all_vs), closes_v(wrap), poll);
+  if (poll.after(0)) return interrupted();
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
+    if (poll.after(4)) return interrupted();
     for (const auto& [axis, value, name] :
          {std::tuple{&u_axis, us[vertex], 'u'}, std::tuple{&v_axis, vs[vertex], 'v'}}) {
       if (axis->count > 1 && !axis->is_even(value)) {
@@ -258,6 +272,7 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
                   v_axis.spacing, u_axis.is_closed, v_axis.is_closed};
   const Grid& grid = mapping.grid;
   for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner) {
+    if (poll.after(8)) return interrupted();
     const int vertex = mesh.corner_vertices[corner];
     const auto& [u, v] = mesh.uvs[mesh.corner_uvs[corner]];
     if (u_axis.node(u) != u_axis.node(us[vertex]) || v_axis.node(v) != v_axis.node(vs[vertex])) {
@@ -276,6 +291,7 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
   mapping.vertex_nodes.resize(vertex_count);
   mapping.rest.resize(grid.node_count(), 3);
   for (int vertex = 0; vertex < vertex_count; ++vertex) {
+    if (poll.after(8)) return interrupted();
     const int node = grid.node(u_axis.index(us[vertex]), v_axis.index(vs[vertex]));
     mapping.vertex_nodes[vertex] = node;
     const int first = node_vertices[node];
@@ -310,7 +326,9 @@ Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap, Seams seams) {
   }
   if (auto round = check_poles(mesh, mapping, node_vertices); !round) return fail(round.error());
   if (seams == Seams::Open) return mapping;
-  if (const auto pair = nodes_in_one_place(mapping)) {
+  const auto pair = nodes_in_one_place(mapping, poll);
+  if (poll.after(0)) return interrupted();
+  if (pair) {
     const int first = node_vertices[(*pair)[0]], second = node_vertices[(*pair)[1]];
     return invalid(fmt::format(
         "vertices {} and {} are at the same position, but have the (u,v) ({}, {}) and ({}, {}): a "

@@ -6,6 +6,7 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -39,8 +40,8 @@ enum class Seams {
 /// With `wrap` the first and last column (row) of the lattice are one, so that the grid has one
 /// less: (u,v) that differ by the whole range are one node. Errors also: their vertices are further
 /// apart than 1e-6 of the diagonal; a pole, which is a row (column) across the closed direction
-/// with all its nodes in one place.
+/// with all its nodes in one place; Interrupted.
 Result<GridMapping> find_grid(const Mesh& mesh, Wrap wrap = Wrap::None,
-                              Seams seams = Seams::Refused);
+                              Seams seams = Seams::Refused, const StopRequest& should_stop = {});
 
 }  // namespace pliant

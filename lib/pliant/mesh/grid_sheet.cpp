@@ -21,14 +21,18 @@ void add_face(Mesh& mesh, std::initializer_list<int> vertices) {
 
 }  // namespace
 
-Mesh make_mesh(const GridSheet& sheet) {
+Mesh make_mesh(const GridSheet& sheet) { return *make_mesh(sheet, {}); }
+
+Result<Mesh> make_mesh(const GridSheet& sheet, const StopRequest& should_stop) {
   PLIANT_EXPECTS(sheet.columns >= 3 && sheet.rows >= 3 && sheet.width > 0 && sheet.depth > 0);
   const int columns = sheet.columns;
+  StopPoll poll(should_stop);
   Mesh mesh;
   mesh.positions.resize(Eigen::Index{columns} * sheet.rows, 3);
   mesh.uvs.resize(static_cast<std::size_t>(columns) * sheet.rows);
   for (int j = 0; j < sheet.rows; ++j) {
     for (int i = 0; i < columns; ++i) {
+      if (poll.after(8)) return interrupted();
       const int vertex = j * columns + i;
       mesh.positions.row(vertex) << coordinate(sheet.width, i, columns), 0,
           coordinate(sheet.depth, j, sheet.rows);
@@ -38,6 +42,7 @@ Mesh make_mesh(const GridSheet& sheet) {
   }
   for (int j = 0; j + 1 < sheet.rows; ++j) {
     for (int i = 0; i + 1 < columns; ++i) {
+      if (poll.after(8)) return interrupted();
       const int first = j * columns + i;  // z x x = +y: first along v, then along u
       if (sheet.triangles) {
         add_face(mesh, {first, first + columns, first + columns + 1});

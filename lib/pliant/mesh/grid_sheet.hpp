@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -19,5 +20,8 @@ struct GridSheet {
 /// The sheet's mesh: vertex j*columns + i is node (i,j), faces are counter-clockwise seen from +y.
 /// Requires: columns, rows >= 3; width, depth > 0.
 Mesh make_mesh(const GridSheet& sheet);
+
+/// The same. Errors: Interrupted.
+Result<Mesh> make_mesh(const GridSheet& sheet, const StopRequest& should_stop);
 
 }  // namespace pliant

@@ -52,15 +52,23 @@ bool is_flat(const Mesh& mesh) {
 }
 
 Field unit_normals(const Mesh& mesh, const Field& positions) {
+  return *unit_normals(mesh, positions, {});
+}
+
+Result<Field> unit_normals(const Mesh& mesh, const Field& positions,
+                           const StopRequest& should_stop) {
   PLIANT_EXPECTS(positions.rows() == mesh.positions.rows());
+  StopPoll poll(should_stop);
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> sums;
   sums.setZero(normal_count(mesh), 3);
   std::size_t corner = 0;
   for (const int size : mesh.face_sizes) {
+    if (poll.after(8 * static_cast<std::size_t>(size))) return interrupted();
     const Vector3d area = area_vector(mesh, positions, corner, size);
     for (int k = 0; k < size; ++k, ++corner) sums.row(normal_of(mesh, corner)) += area;
   }
   for (Eigen::Index k = 0; k < sums.rows(); ++k) {
+    if (poll.after(16)) return interrupted();
     // Divided by its largest component first, so that the squares neither underflow nor overflow.
     const double largest = sums.row(k).cwiseAbs().maxCoeff();
     if (largest > 0 && std::isfinite(largest)) {
@@ -70,7 +78,7 @@ Field unit_normals(const Mesh& mesh, const Field& positions) {
       sums.row(k) << 0, 1, 0;
     }
   }
-  return sums;
+  return Field(sums);
 }
 
 Result<std::vector<int>> shared_normals(const Mesh& mesh, const Shading& shading,

@@ -26,6 +26,10 @@ bool is_flat(const Mesh& mesh);
 /// a vertex without a face or faces without area.
 Field unit_normals(const Mesh& mesh, const Field& positions);
 
+/// The same. Errors: Interrupted.
+Result<Field> unit_normals(const Mesh& mesh, const Field& positions,
+                           const StopRequest& should_stop);
+
 /// The shading given by a file.
 struct Shading {
   static constexpr int unsaid = -1;

@@ -95,11 +95,27 @@ NetCheck check_direction(const NurbsDirection& direction, const DirectionNames& 
   return check_knots(direction, names);
 }
 
+// Making the splines at a sample takes the square of their number.
+NetCheck check_splines(const NurbsDirection& direction, const DirectionNames& names) {
+  constexpr double most_steps = 2e9;
+  const double splines = direction.degree + 1.0;
+  if (samples_of(direction) * splines * splines <= most_steps) return {};
+  return wrong(fmt::format("degree{}", names.attribute),
+               fmt::format("degree{0} is {1}, with {2} vertices along {3}: vertices x (degree{0} + "
+                           "1)^2 must be at most {4:.0f}; set samples{0} or lower degree{0}",
+                           names.attribute, direction.degree, samples_of(direction), names.along,
+                           most_steps));
+}
+
+// Entries of the weights, in double precision, where no product overflows.
+double entry_count(const NurbsNet& net) {
+  const double u = samples_of(net.u), v = samples_of(net.v);
+  const double along_u = net.u.degree + 1.0, along_v = net.v.degree + 1.0;
+  if (!is_summed_by_directions(net)) return u * along_u * v * along_v;
+  return u * net.v.count * along_u + u * v * along_v;
+}
+
 tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
-  // Of one direction, in double precision, where no product overflows.
-  const auto entries = [](const NurbsDirection& direction) {
-    return double(samples_of(direction)) * (direction.degree + 1.0);
-  };
   const std::int64_t u = samples_of(net.u), v = samples_of(net.v);
   if (u * v > WrittenSize::most_vertices) {
     return wrong("samplesU",
@@ -107,7 +123,12 @@ tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
                              "samplesU and samplesV",
                              u, v, WrittenSize::most_vertices));
   }
-  if (entries(net.u) * entries(net.v) > double{WrittenSize::most_weights}) {
+  if (auto checked = check_splines(net.u, names_u); !checked)
+    return tl::unexpected(checked.error());
+  if (auto checked = check_splines(net.v, names_v); !checked)
+    return tl::unexpected(checked.error());
+  const double weights = entry_count(net);
+  if (weights > double{WrittenSize::most_weights}) {
     return wrong("samplesU",
                  fmt::format("{} x {} vertices of {} x {} control points each would be written, "
                              "but {} control points are the most; set samplesU and samplesV",
@@ -116,7 +137,7 @@ tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
   return WrittenSize{
       .vertices = u * v,
       .faces = (net.u.is_closed ? u : u - 1) * (net.v.is_closed ? v : v - 1),
-      .weights = u * v * (net.u.degree + 1) * (net.v.degree + 1),
+      .weights = static_cast<std::int64_t>(weights),
   };
 }
 
@@ -139,6 +160,11 @@ std::vector<double> knots_of(const NurbsDirection& direction) {
 int samples_of(const NurbsDirection& direction) {
   if (direction.samples) return *direction.samples;
   return direction.is_closed ? 8 * direction.count : 8 * (direction.count - direction.degree) + 1;
+}
+
+bool is_summed_by_directions(const NurbsNet& net) {
+  constexpr double most_points = 64;  // those of degree 7
+  return (net.u.degree + 1.0) * (net.v.degree + 1.0) > most_points;
 }
 
 tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net) {

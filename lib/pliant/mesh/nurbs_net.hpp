@@ -41,6 +41,10 @@ std::vector<double> knots_of(const NurbsDirection& direction);
 /// Requires: 1 <= degree < count <= 1e8.
 int samples_of(const NurbsDirection& direction);
 
+/// Whether the surface of a net is summed along u and then along v, not over all control points of
+/// a vertex at once: where these are many, that takes too much memory.
+bool is_summed_by_directions(const NurbsNet& net);
+
 /// What is wrong with a net.
 struct NetProblem {
   std::string part;  ///< as the scene format calls it: columns, degreeU, points, knotsV, ...
@@ -51,7 +55,7 @@ struct NetProblem {
 /// comment; knots that fall, that span nothing or that lie too far apart, or of which more than
 /// `degree` are equal, at the ends more than degree + 1; knots of a closed direction; fewer than 2
 /// samples, closed 3; numbers that are not finite; a surface that is larger than `WrittenSize`
-/// allows.
+/// allows, or has splines of a degree so high that they take too long.
 tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net);
 
 }  // namespace pliant

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "pliant/core/grid.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/nurbs_net.hpp"
 #include "pliant/mesh/vertex_weights.hpp"
@@ -25,6 +27,9 @@ struct NurbsSurface {
 /// degree to degree + count, with indices modulo count. Requires: `check_net` accepts the net.
 /// Source: Piegl & Tiller, The NURBS Book, eq. (2.5) and (4.11), algorithm A2.2.
 NurbsSurface make_nurbs(const NurbsNet& net);
+
+/// The same. Errors: Interrupted.
+Result<NurbsSurface> make_nurbs(const NurbsNet& net, const StopRequest& should_stop);
 
 /// The control points as vertices, with a quad between any four neighbours. Requires: `check_net`
 /// accepts the net.

@@ -46,20 +46,33 @@ struct UvValue {
   }
 };
 
+// Values that OpenSubdiv computes one after another, which asks meanwhile.
+struct AskedValues {
+  std::vector<UvValue>& values;
+  StopPoll& poll;
+
+  UvValue& operator[](int value) {
+    poll.after(16);
+    return values[value];
+  }
+};
+
 // The points of a level as weighted sums of nodes, which OpenSubdiv fills a row at a time and
-// refines like positions.
+// refines like positions. Once it is stopped, rows remain empty: OpenSubdiv cannot be ended.
 class WeightRows {
  public:
-  explicit WeightRows(const std::vector<int>& point_nodes)
-      : ends_(point_nodes.size()),
+  WeightRows(const std::vector<int>& point_nodes, StopPoll& poll)
+      : poll_(&poll),
+        ends_(point_nodes.size()),
         begins_(point_nodes.size()),
         nodes_(point_nodes),
         weights_(point_nodes.size(), 1) {
     std::iota(begins_.begin(), begins_.end(), 0);
     std::iota(ends_.begin(), ends_.end(), 1);
   }
-  WeightRows(int rows, int node_count)
-      : ends_(static_cast<std::size_t>(rows), 0),
+  WeightRows(int rows, int node_count, StopPoll& poll)
+      : poll_(&poll),
+        ends_(static_cast<std::size_t>(rows), 0),
         begins_(static_cast<std::size_t>(rows), 0),
         sums_(static_cast<std::size_t>(node_count), 0),
         is_in_sum_(static_cast<std::size_t>(node_count), false) {}
@@ -106,6 +119,7 @@ class WeightRows {
     ordered.nodes.reserve(nodes_.size());
     ordered.weights.reserve(nodes_.size());
     for (std::size_t row = 0; row < begins_.size(); ++row) {
+      if (poll_->after(ends_[row] - begins_[row])) break;
       for (std::size_t entry = begins_[row]; entry < ends_[row]; ++entry) {
         ordered.nodes.push_back(nodes_[entry]);
         ordered.weights.push_back(weights_[entry]);
@@ -119,9 +133,11 @@ class WeightRows {
   void begin(int row) {
     finish();
     row_ = row;
+    poll_->after(64);
   }
 
   void add(const WeightRows& from, int row, double weight) {
+    if (poll_->after(from.ends_[row] - from.begins_[row])) return;
     for (std::size_t entry = from.begins_[row]; entry < from.ends_[row]; ++entry) {
       const int node = from.nodes_[entry];
       if (!is_in_sum_[node]) in_sum_.push_back(node);
@@ -130,6 +146,7 @@ class WeightRows {
     }
   }
 
+  StopPoll* poll_;
   std::vector<std::size_t> ends_, begins_;  // #rows: the entries of each
   std::vector<int> nodes_;
   std::vector<double> weights_;
@@ -164,11 +181,13 @@ Cage cage_of(const Mesh& mesh, const TriangleSurface& surface) {
 }
 
 // Numbers the UVs of the cage's corners: one for each that a node has.
-std::vector<UvValue> take_uvs(const Mesh& mesh, const TriangleSurface& surface, Cage& cage) {
+std::vector<UvValue> take_uvs(const Mesh& mesh, const TriangleSurface& surface, Cage& cage,
+                              StopPoll& poll) {
   std::vector<UvValue> values;
   std::map<std::tuple<int, bool, double, double>, int> numbers;
   bool is_any = false;
   for (std::size_t corner = 0; corner < cage.corner_points.size(); ++corner) {
+    if (poll.after(100)) return {};
     const int uv = mesh.corner_uvs[surface.mesh_corners[corner]];
     UvValue value{.is_known = uv >= 0};
     if (uv >= 0) value = {mesh.uvs[uv][0], mesh.uvs[uv][1], true};
@@ -228,8 +247,9 @@ FaceNames names_of(const FaceNames& names, const std::vector<int>& mesh_faces) {
   return inherited;
 }
 
-// The faces of the last level, with the UVs that are known.
-Mesh faces_of(const Far::TopologyLevel& level, const std::vector<UvValue>& values, bool has_uvs) {
+// The faces of the last level, with the UVs that are known. Unfinished if it is stopped.
+Mesh faces_of(const Far::TopologyLevel& level, const std::vector<UvValue>& values, bool has_uvs,
+              StopPoll& poll) {
   Mesh mesh;
   std::vector<int> uv_numbers;
   if (has_uvs) {
@@ -241,7 +261,7 @@ Mesh faces_of(const Far::TopologyLevel& level, const std::vector<UvValue>& value
   mesh.face_sizes.reserve(static_cast<std::size_t>(level.GetNumFaces()));
   mesh.corner_vertices.reserve(static_cast<std::size_t>(level.GetNumFaceVertices()));
   mesh.corner_uvs.reserve(static_cast<std::size_t>(level.GetNumFaceVertices()));
-  for (int face = 0; face < level.GetNumFaces(); ++face) {
+  for (int face = 0; face < level.GetNumFaces() && !poll.after(16); ++face) {
     const Far::ConstIndexArray vertices = level.GetFaceVertices(face);
     mesh.face_sizes.push_back(vertices.size());
     mesh.corner_vertices.insert(mesh.corner_vertices.end(), vertices.begin(), vertices.end());
@@ -254,34 +274,43 @@ Mesh faces_of(const Far::TopologyLevel& level, const std::vector<UvValue>& value
 }  // namespace
 
 Result<SubdividedMesh> refined_by_opensubdiv(const Mesh& mesh, const TriangleSurface& surface,
-                                             const Subdivision& subdivision) {
+                                             const Subdivision& subdivision,
+                                             const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
   Cage cage = cage_of(mesh, surface);
-  std::vector<UvValue> uvs = take_uvs(mesh, surface, cage);
+  std::vector<UvValue> uvs = take_uvs(mesh, surface, cage, poll);
+  if (poll.after(0)) return interrupted();
   const bool has_uvs = !cage.corner_values.empty();
   auto made = refiner_of(cage, uvs.size(), subdivision);
   if (!made) return fail(made.error());
   const Far::TopologyRefiner& refiner = **made;
   const Far::PrimvarRefinerReal<double> refine(refiner);
-  WeightRows rows(cage.point_nodes);
+  WeightRows rows(cage.point_nodes, poll);
   std::vector<int> mesh_faces = std::move(cage.mesh_faces);
   for (int level = 1; level <= subdivision.levels; ++level) {
     const Far::TopologyLevel& topology = refiner.GetLevel(level);
-    WeightRows finer(topology.GetNumVertices(), surface.node_count());
+    WeightRows finer(topology.GetNumVertices(), surface.node_count(), poll);
     refine.Interpolate(level, std::as_const(rows), finer);
     finer.finish();
+    if (poll.after(0)) return interrupted();
     rows = std::move(finer);
     std::vector<int> finer_faces(static_cast<std::size_t>(topology.GetNumFaces()));
     refine.InterpolateFaceUniform(level, mesh_faces, finer_faces);
     mesh_faces = std::move(finer_faces);
     if (!has_uvs) continue;
     std::vector<UvValue> finer_uvs(static_cast<std::size_t>(topology.GetNumFVarValues()));
-    refine.InterpolateFaceVarying(level, uvs, finer_uvs);
+    AskedValues asked{finer_uvs, poll};
+    refine.InterpolateFaceVarying(level, uvs, asked);
+    if (poll.after(0)) return interrupted();
     uvs = std::move(finer_uvs);
   }
   SubdividedMesh result;
-  result.mesh = faces_of(refiner.GetLevel(subdivision.levels), uvs, has_uvs);
+  result.mesh = faces_of(refiner.GetLevel(subdivision.levels), uvs, has_uvs, poll);
   result.weights = rows.in_order();
-  result.mesh.positions = result.weights.apply(surface.rest);
+  if (poll.after(0)) return interrupted();
+  auto positions = result.weights.apply(surface.rest, {}, should_stop);
+  if (!positions) return fail(positions.error());
+  result.mesh.positions = *std::move(positions);
   result.mesh.materials = names_of(mesh.materials, mesh_faces);
   result.mesh.groups = names_of(mesh.groups, mesh_faces);
   result.mesh.object = mesh.object;

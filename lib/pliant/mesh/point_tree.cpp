@@ -4,17 +4,25 @@
 #include <numeric>
 #include <utility>
 
+#include "pliant/core/stoppable_sort.hpp"
+
 namespace pliant {
 
-PointTree::PointTree(const Field& points) : rows_(static_cast<std::size_t>(points.rows())) {
-  std::iota(rows_.begin(), rows_.end(), 0);
-  if (rows_.empty()) return;
-  parts_.push_back({.first = 0, .count = static_cast<int>(rows_.size())});
-  for (std::size_t k = 0; k < parts_.size(); ++k) {
-    Part part = parts_[k];
-    const auto begin = rows_.begin() + part.first, end = begin + part.count;
+Result<PointTree> PointTree::make(const Field& points, const StopRequest& should_stop) {
+  PointTree tree;
+  if (points.rows() == 0) return tree;
+  StopPoll poll(should_stop);
+  std::vector<int>& rows = tree.rows_;
+  std::vector<Part>& parts = tree.parts_;
+  rows.resize(static_cast<std::size_t>(points.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  parts.push_back({.first = 0, .count = static_cast<int>(rows.size())});
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    Part part = parts[k];
+    const auto begin = rows.begin() + part.first, end = begin + part.count;
     part.low = part.high = points.row(*begin).transpose();
     for (auto row = begin; row != end; ++row) {
+      if (poll.after(4)) return interrupted();
       for (int axis = 0; axis < 3; ++axis) {
         part.low[axis] = std::min(part.low[axis], points(*row, axis));
         part.high[axis] = std::max(part.high[axis], points(*row, axis));
@@ -26,17 +34,22 @@ PointTree::PointTree(const Field& points) : rows_(static_cast<std::size_t>(point
       for (int axis = 1; axis < 3; ++axis) widest = extent[axis] > extent[widest] ? axis : widest;
       const int half = part.count / 2;
       const auto place = [&](int row) { return std::pair(points(row, widest), row); };
-      std::nth_element(begin, begin + half, end, [&](int a, int b) { return place(a) < place(b); });
-      part.child = static_cast<int>(parts_.size());
-      parts_.push_back({.first = part.first, .count = half});
-      parts_.push_back({.first = part.first + half, .count = part.count - half});
+      if (!select_unless_stopped(begin, begin + half, end, poll,
+                                 [&](int a, int b) { return place(a) < place(b); })) {
+        return interrupted();
+      }
+      part.child = static_cast<int>(parts.size());
+      parts.push_back({.first = part.first, .count = half});
+      parts.push_back({.first = part.first + half, .count = part.count - half});
     }
-    parts_[k] = part;
+    parts[k] = part;
   }
-  points_.resize(points.rows(), 3);
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    points_.row(static_cast<Eigen::Index>(k)) = points.row(rows_[k]);
+  tree.points_.resize(points.rows(), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (poll.after(4)) return interrupted();
+    tree.points_.row(static_cast<Eigen::Index>(k)) = points.row(rows[k]);
   }
+  return tree;
 }
 
 }  // namespace pliant

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -26,8 +28,10 @@ class PointTree {
 
   PointTree() = default;
 
-  /// Requires: `points` is #points x 3, finite. Cost: O(#points log #points).
-  explicit PointTree(const Field& points);
+  /// Requires: `points` is #points x 3, finite. Errors: Interrupted. Cost: O(#points log #points).
+  static Result<PointTree> make(const Field& points, const StopRequest& should_stop);
+
+  explicit PointTree(const Field& points) : PointTree(*make(points, {})) {}
 
   /// The whole first; empty without points.
   const std::vector<Part>& parts() const { return parts_; }

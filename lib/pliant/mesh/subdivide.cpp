@@ -164,11 +164,12 @@ Result<WrittenSize> check_subdivision(const Mesh& mesh, const TriangleSurface& s
 }
 
 Result<SubdividedMesh> subdivide(const Mesh& mesh, const TriangleSurface& surface,
-                                 const Subdivision& subdivision) {
+                                 const Subdivision& subdivision,
+                                 [[maybe_unused]] const StopRequest& should_stop) {
   if (auto checked = check_subdivision(mesh, surface, subdivision); !checked)
     return fail(checked.error());
 #ifdef PLIANT_WITH_OPENSUBDIV
-  return refined_by_opensubdiv(mesh, surface, subdivision);
+  return refined_by_opensubdiv(mesh, surface, subdivision, should_stop);
 #else
   return {};
 #endif

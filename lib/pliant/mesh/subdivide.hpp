@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/subdivision.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
@@ -29,8 +30,10 @@ Result<WrittenSize> check_subdivision(const Mesh& mesh, const TriangleSurface& s
 
 /// Refines a cage uniformly, not pushed to the limit. Border edges and corners are interpolated,
 /// UVs by the rule "corners plus 1", where UVs that are equal at one node are one. Errors: those of
-/// `check_subdivision`; a cage that OpenSubdiv refuses.
+/// `check_subdivision`; a cage that OpenSubdiv refuses; Interrupted, but not while OpenSubdiv
+/// makes its topology.
 Result<SubdividedMesh> subdivide(const Mesh& mesh, const TriangleSurface& surface,
-                                 const Subdivision& subdivision);
+                                 const Subdivision& subdivision,
+                                 const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -28,14 +28,16 @@ struct Sorted {
   }
 };
 
+// Unfinished if it is stopped.
 template <class KeyOf>
-Sorted sorted_by(std::size_t item_count, int key_count, const KeyOf& key_of) {
+Sorted sorted_by(std::size_t item_count, int key_count, StopPoll& poll, const KeyOf& key_of) {
   Sorted sorted{std::vector<int>(static_cast<std::size_t>(key_count) + 1, 0),
                 std::vector<int>(item_count)};
-  for (std::size_t item = 0; item < item_count; ++item) ++sorted.starts[key_of(item) + 1];
+  for (std::size_t item = 0; item < item_count && !poll.after(); ++item)
+    ++sorted.starts[key_of(item) + 1];
   std::partial_sum(sorted.starts.begin(), sorted.starts.end(), sorted.starts.begin());
   std::vector<int> next(sorted.starts.begin(), sorted.starts.end() - 1);
-  for (std::size_t item = 0; item < item_count; ++item) {
+  for (std::size_t item = 0; item < item_count && !poll.after(); ++item) {
     sorted.items[next[key_of(item)]++] = static_cast<int>(item);
   }
   return sorted;
@@ -43,7 +45,8 @@ Sorted sorted_by(std::size_t item_count, int key_count, const KeyOf& key_of) {
 
 class SurfaceMaker {
  public:
-  SurfaceMaker(const Mesh& mesh, const MeshReading& reading) : mesh_(mesh), reading_(reading) {}
+  SurfaceMaker(const Mesh& mesh, const MeshReading& reading, const StopRequest& should_stop)
+      : mesh_(mesh), reading_(reading), should_stop_(should_stop), poll_(should_stop) {}
 
   Result<TriangleSurface> make() {
     if (auto joined = join_vertices(); !joined) return fail(joined.error());
@@ -57,9 +60,13 @@ class SurfaceMaker {
   }
 
  private:
+  bool is_stopped() { return poll_.after(0); }
+
+  // Each part of the work ends unfinished if it is stopped.
   Result<TriangleSurface> make_of_nodes() {
     take_faces();
-    leave_out_repeated();
+    if (!is_stopped()) leave_out_repeated();
+    if (is_stopped()) return interrupted();
     if (surface_.face_count() == 0) {
       return invalid(fmt::format(
           "none of the mesh's {} faces can be used: each has fewer than three different corners, "
@@ -67,8 +74,9 @@ class SurfaceMaker {
           mesh_.face_sizes.size()));
     }
     number_edges();
-    list_faces_of_nodes();
-    lay_flat();
+    if (!is_stopped()) list_faces_of_nodes();
+    if (!is_stopped()) lay_flat();
+    if (is_stopped()) return interrupted();
     if (auto found = find_unit(); !found) return fail(found.error());
     return std::move(surface_);
   }
@@ -77,27 +85,34 @@ class SurfaceMaker {
   Result<void> join_vertices() {
     surface_.vertex_nodes.assign(static_cast<std::size_t>(mesh_.vertex_count()), -1);
     std::vector<int>& nodes = surface_.vertex_nodes;
-    for (const int vertex : mesh_.corner_vertices) nodes[vertex] = 0;
+    for (const int vertex : mesh_.corner_vertices) {
+      if (poll_.after()) return interrupted();
+      nodes[vertex] = 0;
+    }
     std::vector<int> used;
     for (int vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
+      if (poll_.after()) return interrupted();
       if (nodes[vertex] == 0) used.push_back(vertex);
     }
     Field points(static_cast<Eigen::Index>(used.size()), 3);
     for (std::size_t k = 0; k < used.size(); ++k) {
+      if (poll_.after(4)) return interrupted();
       points.row(static_cast<Eigen::Index>(k)) = mesh_.positions.row(used[k]);
     }
     const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
     const double distance = reading_.weld.value_or(one_node * extent.stableNorm());
-    const auto firsts = welded(points, distance);
+    const auto firsts = welded(points, distance, should_stop_);
     if (!firsts) return fail(firsts.error());
     int count = 0;
     for (std::size_t k = 0; k < used.size(); ++k) {
+      if (poll_.after()) return interrupted();
       const auto first = static_cast<std::size_t>((*firsts)[k]);
       nodes[used[k]] = first == k ? count++ : nodes[used[first]];
     }
     surface_.rest.resize(count, 3);
     count = 0;
     for (std::size_t k = 0; k < used.size(); ++k) {
+      if (poll_.after(4)) return interrupted();
       if ((*firsts)[k] == static_cast<int>(k))
         surface_.rest.row(count++) = mesh_.positions.row(used[k]);
     }
@@ -111,6 +126,7 @@ class SurfaceMaker {
     std::size_t first = 0;
     for (std::size_t face = 0; face < mesh_.face_sizes.size(); ++face) {
       const auto size = static_cast<std::size_t>(mesh_.face_sizes[face]);
+      if (poll_.after(4 * size)) return;
       const auto node_at = [&](std::size_t k) {
         return surface_.vertex_nodes[mesh_.corner_vertices[first + k]];
       };
@@ -142,13 +158,18 @@ class SurfaceMaker {
     const auto nodes = [&](int face) {
       return std::span(ordered).subspan(surface_.face_starts[face], surface_.size_of(face));
     };
-    for (std::size_t face = 0; face < face_count; ++face) std::ranges::sort(nodes(int(face)));
-    Sorted faces = sorted_by(face_count, surface_.node_count(),
+    for (std::size_t face = 0; face < face_count; ++face) {
+      if (poll_.after(10 * nodes(int(face)).size())) return;
+      std::ranges::sort(nodes(int(face)));
+    }
+    Sorted faces = sorted_by(face_count, surface_.node_count(), poll_,
                              [&](std::size_t face) { return nodes(int(face))[0]; });
+    if (is_stopped()) return;
     std::vector<bool> is_repeated(face_count, false);
     bool is_any = false;
     for (int node = 0; node < surface_.node_count(); ++node) {
       const std::span<int> some = faces.of(node);
+      if (poll_.after(1 + 20 * some.size())) return;
       std::ranges::sort(some, [&](int a, int b) {
         const int order = compare(nodes(a), nodes(b));
         return order != 0 ? order < 0 : a < b;
@@ -172,6 +193,7 @@ class SurfaceMaker {
     int faces = 0, corners = 0;
     for (std::size_t face = 0; face < is_out.size(); ++face) {
       const int begin = starts[face], end = starts[face + 1];
+      if (poll_.after(static_cast<std::size_t>(end - begin))) return;
       if (is_out[face]) continue;
       for (int k = begin; k < end; ++k, ++corners) {
         surface_.corner_nodes[corners] = surface_.corner_nodes[k];
@@ -192,6 +214,7 @@ class SurfaceMaker {
     std::vector<int> highers(corner_count), lowers(corner_count);
     for (int face = 0; face < surface_.face_count(); ++face) {
       const std::span<const int> nodes = surface_.nodes_of(face);
+      if (poll_.after(nodes.size())) return;
       const auto start = static_cast<std::size_t>(surface_.face_starts[face]);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         const auto [low, high] = std::minmax(nodes[k], nodes[(k + 1) % nodes.size()]);
@@ -199,11 +222,13 @@ class SurfaceMaker {
         highers[start + k] = high;
       }
     }
-    Sorted sides = sorted_by(corner_count, surface_.node_count(),
+    Sorted sides = sorted_by(corner_count, surface_.node_count(), poll_,
                              [&](std::size_t corner) { return lowers[corner]; });
+    if (is_stopped()) return;
     surface_.corner_edges.resize(corner_count);
     for (int node = 0; node < surface_.node_count(); ++node) {
       const std::span<int> some = sides.of(node);
+      if (poll_.after(1 + 10 * some.size())) return;
       std::ranges::sort(some, {}, [&](int corner) { return std::pair(highers[corner], corner); });
       for (std::size_t k = 0; k < some.size(); ++k) {
         if (k == 0 || highers[some[k]] != highers[some[k - 1]]) surface_.edge_sides.push_back(0);
@@ -214,14 +239,19 @@ class SurfaceMaker {
   }
 
   void list_faces_of_nodes() {
-    Sorted corners = sorted_by(surface_.corner_nodes.size(), surface_.node_count(),
+    Sorted corners = sorted_by(surface_.corner_nodes.size(), surface_.node_count(), poll_,
                                [&](std::size_t corner) { return surface_.corner_nodes[corner]; });
+    if (is_stopped()) return;
     surface_.node_starts = std::move(corners.starts);
     std::vector<int> faces(surface_.corner_nodes.size());
     for (int face = 0; face < surface_.face_count(); ++face) {
+      if (poll_.after()) return;
       std::fill_n(faces.begin() + surface_.face_starts[face], surface_.size_of(face), face);
     }
-    for (int& corner : corners.items) corner = faces[corner];
+    for (int& corner : corners.items) {
+      if (poll_.after()) return;
+      corner = faces[corner];
+    }
     surface_.node_faces = std::move(corners.items);
   }
 
@@ -234,6 +264,7 @@ class SurfaceMaker {
     surface_.triangle_starts = {0};
     for (int face = 0; face < surface_.face_count(); ++face) {
       const int start = surface_.face_starts[face], size = surface_.size_of(face);
+      if (poll_.after(50 * static_cast<std::size_t>(size))) return;
       bool has_uvs = true;
       Vector3d centre = Vector3d::Zero();
       std::array<double, 2> centre_uv = {0, 0};
@@ -273,8 +304,10 @@ class SurfaceMaker {
 
   Result<void> find_unit() {
     double area = 0;
-    for (const FlatTriangle& triangle : surface_.triangles)
+    for (const FlatTriangle& triangle : surface_.triangles) {
+      if (poll_.after()) return interrupted();
       area += std::abs(triangle.signed_area());
+    }
     if (!std::isfinite(area) || !(area > 0)) {
       return invalid(
           fmt::format("the area of the mesh's triangles is {}",
@@ -287,18 +320,21 @@ class SurfaceMaker {
 
   const Mesh& mesh_;
   const MeshReading& reading_;
+  const StopRequest& should_stop_;
+  StopPoll poll_;
   TriangleSurface surface_;
 };
 
 }  // namespace
 
-Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading) {
-  return SurfaceMaker(mesh, reading).make();
+Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading,
+                                     const StopRequest& should_stop) {
+  return SurfaceMaker(mesh, reading, should_stop).make();
 }
 
 Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
-                                         Field rest) {
-  return SurfaceMaker(mesh, {}).make(std::move(vertex_nodes), std::move(rest));
+                                         Field rest, const StopRequest& should_stop) {
+  return SurfaceMaker(mesh, {}, should_stop).make(std::move(vertex_nodes), std::move(rest));
 }
 
 TriangleSurface posed(TriangleSurface surface, const Field& nodes) {

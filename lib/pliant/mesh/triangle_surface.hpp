@@ -7,6 +7,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/triangle_cells.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
@@ -60,13 +61,14 @@ struct TriangleSurface {
 /// Reads a mesh as a surface. A face takes no part if fewer than three of its corners are left once
 /// repeated ones are dropped, if it has a node twice, or the nodes of an earlier face. Requires:
 /// `check_mesh` accepts the mesh; `reading` has the ranges of its comments. Errors: no face takes
-/// part; the surface has no area, or lengths that are not finite.
-Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading = {});
+/// part; the surface has no area, or lengths that are not finite; Interrupted.
+Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading = {},
+                                     const StopRequest& should_stop = {});
 
 /// The same with nodes that are known, such as those of a grid: `rest` (#nodes x 3) and the node of
 /// each vertex in a face.
 Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
-                                         Field rest);
+                                         Field rest, const StopRequest& should_stop = {});
 
 /// #nodes: the piece of each, which are faces joined by shared corners, counted in the order of
 /// their first nodes; -1: no face of the node takes part.

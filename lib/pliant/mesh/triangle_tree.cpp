@@ -70,11 +70,21 @@ struct TriangleTree::Found {
   }
 };
 
-TriangleTree::TriangleTree(const Field& points, std::vector<std::array<int, 3>> triangles)
-    : points_(points), triangles_(std::move(triangles)), centres_(centres_of(points, triangles_)) {
-  const std::vector<PointTree::Part>& parts = centres_.parts();
-  boxes_.resize(parts.size());
+Result<TriangleTree> TriangleTree::make(const Field& points,
+                                        std::vector<std::array<int, 3>> triangles,
+                                        const StopRequest& should_stop) {
+  auto centres = PointTree::make(centres_of(points, triangles), should_stop);
+  if (!centres) return fail(centres.error());
+  StopPoll poll(should_stop);
+  TriangleTree tree;
+  tree.points_ = points;
+  tree.triangles_ = std::move(triangles);
+  tree.centres_ = *std::move(centres);
+  const std::vector<PointTree::Part>& parts = tree.centres_.parts();
+  std::vector<Box>& boxes = tree.boxes_;
+  boxes.resize(parts.size());
   for (std::size_t k = parts.size(); k-- > 0;) {  // children come after their parents
+    if (poll.after(100)) return interrupted();
     Box box{Vector3d::Constant(std::numeric_limits<double>::infinity()), {}};
     box.high = -box.low;
     const auto include = [&](const Vector3d& low, const Vector3d& high) {
@@ -83,17 +93,18 @@ TriangleTree::TriangleTree(const Field& points, std::vector<std::array<int, 3>> 
     };
     if (parts[k].is_leaf()) {
       for (int n = parts[k].first; n < parts[k].first + parts[k].count; ++n) {
-        for (const int corner : triangles_[centres_.rows()[n]]) {
-          const Vector3d point = points_.row(corner).transpose();
+        for (const int corner : tree.triangles_[tree.centres_.rows()[n]]) {
+          const Vector3d point = points.row(corner).transpose();
           include(point, point);
         }
       }
     } else {
       for (const int child : {parts[k].child, parts[k].child + 1})
-        include(boxes_[child].low, boxes_[child].high);
+        include(boxes[child].low, boxes[child].high);
     }
-    boxes_[k] = box;
+    boxes[k] = box;
   }
+  return tree;
 }
 
 // To a part's box; a little less, so that rounding never hides a triangle that is equally close.

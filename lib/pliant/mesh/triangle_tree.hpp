@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -19,13 +20,19 @@ struct ClosestPoint {
 class TriangleTree {
  public:
   /// Requires: at least one triangle; its corners are rows of `points` (#points x 3), finite.
-  TriangleTree(const Field& points, std::vector<std::array<int, 3>> triangles);
+  /// Errors: Interrupted.
+  static Result<TriangleTree> make(const Field& points, std::vector<std::array<int, 3>> triangles,
+                                   const StopRequest& should_stop);
+
+  TriangleTree(const Field& points, std::vector<std::array<int, 3>> triangles)
+      : TriangleTree(*make(points, std::move(triangles), {})) {}
 
   /// Of equally close triangles the first one. The search is faster if the triangle `near` is near.
   ClosestPoint closest(const Vector3d& p, int near = 0) const;
 
  private:
   struct Found;
+  TriangleTree() = default;
   struct Box {
     Vector3d low, high;
   };

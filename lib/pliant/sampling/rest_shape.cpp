@@ -11,7 +11,6 @@
 #include "pliant/body/driven_body.hpp"
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
-#include "pliant/core/expects.hpp"
 #include "pliant/core/open_file.hpp"
 #include "pliant/mesh/binding.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
@@ -95,8 +94,8 @@ GridMapping mapping_of(const GridSheet& sheet, const Mesh& mesh) {
   return mapping;
 }
 
-Result<RestShape> on_surface(const Surface& surface, Mesh mesh) {
-  auto triangles = make_surface(mesh, surface.reading);
+Result<RestShape> on_surface(const Surface& surface, Mesh mesh, const StopRequest& should_stop) {
+  auto triangles = make_surface(mesh, surface.reading, should_stop);
   if (!triangles) return fail(triangles.error());
   RestShape shape{.name = surface.name,
                   .mesh = std::move(mesh),
@@ -107,17 +106,18 @@ Result<RestShape> on_surface(const Surface& surface, Mesh mesh) {
 }
 
 // Reads the mesh in the way that the scene asks for, or that suits it. docs/meshes.md.
-Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
+Result<RestShape> read_nodes(const Surface& surface, Mesh mesh, const StopRequest& should_stop) {
   const MeshReading& reading = surface.reading;
-  if (reading.asks_for_surface()) return on_surface(surface, std::move(mesh));
+  if (reading.asks_for_surface()) return on_surface(surface, std::move(mesh), should_stop);
   if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
     GridMapping mapping = mapping_of(*sheet, mesh);
     return on_grid(surface, std::move(mesh), std::move(mapping));
   }
   const auto* const file = std::get_if<MeshFile>(&surface.shape);
-  auto grid =
-      find_grid(mesh, reading.wrap, reading.uv == UvReading::Grid ? Seams::Open : Seams::Refused);
+  auto grid = find_grid(mesh, reading.wrap,
+                        reading.uv == UvReading::Grid ? Seams::Open : Seams::Refused, should_stop);
   if (grid) return on_grid(surface, std::move(mesh), *std::move(grid));
+  if (grid.error().code == ErrorCode::Interrupted) return fail(grid.error());
   const std::string reason = grid.error().message;
   if (reading.uv == UvReading::Grid || reading.wrap != Wrap::None) {
     const std::string_view other =
@@ -127,7 +127,7 @@ Result<RestShape> read_nodes(const Surface& surface, Mesh mesh) {
                     "(docs/meshes.md)",
                     reason, other));
   }
-  auto shape = on_surface(surface, std::move(mesh));
+  auto shape = on_surface(surface, std::move(mesh), should_stop);
   if (!shape) return shape;
   shape->note = fmt::format(
       "{}: the mesh{} is read as a surface, as most models are: it bends on its own faces, "
@@ -167,15 +167,16 @@ class ShapeMaker {
  private:
   Result<RestShape> make_net(const NurbsNet& net) {
     if (auto taken = take_bytes(BytesToMake{}(net)); !taken) return fail(taken.error());
-    NurbsSurface made = make_nurbs(net);
-    if (surface_.is_driven()) return mesh_only(std::move(made.mesh));
-    std::vector<int> vertex_nodes = no_nodes(made.mesh);
+    auto made = make_nurbs(net, context_.should_stop);
+    if (!made) return fail(made.error());
+    if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
+    std::vector<int> vertex_nodes = no_nodes(made->mesh);
     RestShape shape{.name = surface_.name,
-                    .mesh = std::move(made.mesh),
+                    .mesh = std::move(made->mesh),
                     .vertex_nodes = std::move(vertex_nodes),
                     .rest = net.points,
-                    .grid = made.grid};
-    shape.weights = std::make_shared<const VertexWeights>(std::move(made.weights));
+                    .grid = made->grid};
+    shape.weights = std::make_shared<const VertexWeights>(std::move(made->weights));
     if (auto added = add_maps(shape); !added) return fail(added.error());
     return shape;
   }
@@ -189,7 +190,7 @@ class ShapeMaker {
                               (is_sheet ? 0 : bytes_as_surface(*mesh));
     if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
     if (surface_.is_driven() && !surface_.subdivision) return mesh_only(*std::move(mesh));
-    auto shape = read_nodes(surface_, *std::move(mesh));
+    auto shape = read_nodes(surface_, *std::move(mesh), context_.should_stop);
     if (!shape) {
       const bool is_closed = origin_.gives(surface_.name, "wrap");
       return fail(about_mesh(shape.error(), is_closed ? "wrap" : "file"));
@@ -204,7 +205,8 @@ class ShapeMaker {
     if (const auto* const file = std::get_if<MeshFile>(&surface_.shape)) return read(*file);
     if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
       return fail(taken.error());
-    if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) return make_mesh(*sheet);
+    if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape))
+      return make_mesh(*sheet, context_.should_stop);
     const Mesh& own = std::get<Mesh>(surface_.shape);
     if (auto checked = check_mesh(own, context_.should_stop); !checked)
       return fail(at_scene(checked.error()));
@@ -226,7 +228,8 @@ class ShapeMaker {
 
   Result<RestShape> subdivided(RestShape shape, std::size_t bytes) {
     if (shape.grid) {
-      auto triangles = surface_of_nodes(shape.mesh, shape.vertex_nodes, shape.rest);
+      auto triangles =
+          surface_of_nodes(shape.mesh, shape.vertex_nodes, shape.rest, context_.should_stop);
       if (!triangles) return fail(about_mesh(triangles.error()));
       shape.cage = std::make_shared<const TriangleSurface>(*std::move(triangles));
     }
@@ -235,7 +238,7 @@ class ShapeMaker {
     if (!size) return fail(about_mesh(size.error()));
     bytes += bytes_of(*size) + bytes_to_run(static_cast<std::size_t>(size->vertices));
     if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
-    auto made = subdivide(shape.mesh, cage, *surface_.subdivision);
+    auto made = subdivide(shape.mesh, cage, *surface_.subdivision, context_.should_stop);
     if (!made) return fail(about_mesh(made.error()));
     made->mesh.left_out = std::move(shape.mesh.left_out);
     if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
@@ -320,7 +323,8 @@ class ShapeMaker {
 
 // The triangles that a driven surface follows.
 Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surface,
-                                                            const RestShape& shape) {
+                                                            const RestShape& shape,
+                                                            const StopRequest& should_stop) {
   if (shape.surface) return shape.surface;
   if (shape.cage) return shape.cage;
   const auto* const net = std::get_if<NurbsNet>(&surface.shape);
@@ -329,23 +333,24 @@ Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surfa
     nodes.resize(static_cast<std::size_t>(shape.rest.rows()));
     std::iota(nodes.begin(), nodes.end(), 0);
   }
-  auto made = surface_of_nodes(net ? control_mesh(*net) : shape.mesh, std::move(nodes), shape.rest);
+  auto made = surface_of_nodes(net ? control_mesh(*net) : shape.mesh, std::move(nodes), shape.rest,
+                               should_stop);
   if (!made) return fail(made.error());
   return std::make_shared<const TriangleSurface>(*std::move(made));
-}
-
-const Surface& named(const Scene& scene, const std::string& name) {
-  const auto found = std::ranges::find(scene.surfaces, name, &Surface::name);
-  PLIANT_EXPECTS(found != scene.surfaces.end());
-  return *found;
 }
 
 }  // namespace
 
 Field RestShape::to_vertices(const Field& nodes, Field reuse) const {
-  if (weights) return weights->apply(nodes, std::move(reuse));
+  return *to_vertices(nodes, std::move(reuse), {});
+}
+
+Result<Field> RestShape::to_vertices(const Field& nodes, Field reuse,
+                                     const StopRequest& should_stop) const {
+  if (weights) return weights->apply(nodes, std::move(reuse), should_stop);
   reuse.resize(static_cast<Eigen::Index>(vertex_nodes.size()), 3);
   for (int component = 0; component < 3; ++component) {
+    if (is_stopped(should_stop)) return interrupted();
     const double* const from = nodes.col(component).data();
     double* const to = reuse.col(component).data();
     if (grid && grid->is_open()) {
@@ -385,12 +390,14 @@ const std::vector<int>& RestShape::cache_nodes() const {
   return cage ? cage->vertex_nodes : surface->vertex_nodes;
 }
 
-std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
-                                SolverChoice solver, RunContext context) {
+Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettings& settings,
+                                        SolverChoice solver, RunContext context) {
   if (shape.rest.rows() == 0) return std::make_unique<DrivenBody>(settings);
   if (shape.surface) {
-    return std::make_unique<SurfaceBody>(shape.surface, settings, solver, std::move(context),
-                                         shape.factors);
+    auto tree = PointTree::make(shape.surface->rest, context.should_stop);
+    if (!tree) return fail(tree.error());
+    return std::make_unique<SurfaceBody>(shape.surface, *std::move(tree), settings, solver,
+                                         std::move(context), shape.factors);
   }
   return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
                                     shape.factors);
@@ -406,30 +413,33 @@ Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin&
   return ShapeMaker(surface, origin, context).check();
 }
 
-Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, const Scene& scene) {
+Result<void> bind_to_driver(ReservedShape& driven, const Surface& own, const RestShape& driver,
+                            const Surface& driving, const Scene& scene,
+                            const StopRequest& should_stop) {
   RestShape& shape = driven.shape;
-  const Surface& own = named(scene, shape.name);
-  const Surface& driving = named(scene, driver.name);
   const auto vertex_count = static_cast<std::size_t>(shape.mesh.vertex_count());
   const std::size_t bytes =
       driven.memory.bytes() + bytes_to_bind(vertex_count, driver.surface.get(), driver.mesh);
   if (auto taken = take(bytes, own.name, scene.origin, driven.memory); !taken) return taken;
-  auto triangles = triangles_of(driving, driver);
+  auto triangles = triangles_of(driving, driver, should_stop);
   if (triangles && driver.animation) {
     const auto nodes = driver.animation->nodes_at(scene.start);
     if (!nodes) return fail(nodes.error());
     triangles = std::make_shared<const TriangleSurface>(posed(**triangles, **nodes));
   }
   if (!triangles) {
+    if (triangles.error().code == ErrorCode::Interrupted) return fail(triangles.error());
     return fail(
         scene.origin.located({.code = ErrorCode::InvalidInput,
                               .message = fmt::format("{} cannot drive {}: {}", title_of(driving),
                                                      own.name, triangles.error().message)},
                              scene.origin.line_of(own.name, "drivenBy")));
   }
-  shape.binding = std::make_shared<const Binding>(
-      **triangles, driving.transform.at(scene.start),
-      to_world(own.transform.at(scene.start), shape.mesh.positions));
+  auto binding =
+      Binding::make(**triangles, driving.transform.at(scene.start),
+                    to_world(own.transform.at(scene.start), shape.mesh.positions), should_stop);
+  if (!binding) return fail(binding.error());
+  shape.binding = std::make_shared<const Binding>(*std::move(binding));
   return {};
 }
 

@@ -56,6 +56,9 @@ struct RestShape {
   /// `reuse`. Vertices of one node keep their offsets from each other.
   Field to_vertices(const Field& nodes, Field reuse = {}) const;
 
+  /// The same. Errors: Interrupted.
+  Result<Field> to_vertices(const Field& nodes, Field reuse, const StopRequest& should_stop) const;
+
   /// The node of each vertex of the mesh that the scene names, of a subdivision that of its cage:
   /// the vertices of a cache. -1: it never moves by itself.
   const std::vector<int>& cache_nodes() const;
@@ -94,9 +97,10 @@ struct MapSummary {
 std::vector<MapSummary> map_summaries_of(const RestShape& shape);
 
 /// The body of a rest shape, at rest; that of a driven surface has no nodes. `solver` and `context`
-/// are those of its plates.
-std::unique_ptr<Body> make_body(const RestShape& shape, const BodySettings& settings,
-                                SolverChoice solver = SolverChoice::Auto, RunContext context = {});
+/// are those of its plates. Errors: Interrupted.
+Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettings& settings,
+                                        SolverChoice solver = SolverChoice::Auto,
+                                        RunContext context = {});
 
 /// A rest shape with the memory that it and its body need, reserved from the run's.
 struct ReservedShape {
@@ -109,13 +113,15 @@ struct ReservedShape {
 /// memory before a sheet or a net is made, after a file is read, and before a cage is refined.
 /// Errors: those of `read_mesh` and `check_mesh`; those of `find_grid`, `make_surface` and
 /// `subdivide`, with the surface's line in the scene; what a surface cannot do; OutOfMemory;
-/// Interrupted, while assimp reads.
+/// Interrupted.
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context = {});
 
 /// Binds a driven surface to its driver, as both are placed at the scene's start, and reserves the
-/// memory for it. Errors: the driver's triangles have no area; OutOfMemory.
-Result<void> bind_to_driver(ReservedShape& driven, const RestShape& driver, const Scene& scene);
+/// memory for it. Errors: the driver's triangles have no area; OutOfMemory; Interrupted.
+Result<void> bind_to_driver(ReservedShape& driven, const Surface& own, const RestShape& driver,
+                            const Surface& driving, const Scene& scene,
+                            const StopRequest& should_stop = {});
 
 /// What an author is told of a mesh with `Mesh::left_out`; empty: nothing.
 std::string left_out_text(const std::string& surface, const std::string& left_out);

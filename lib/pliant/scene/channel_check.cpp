@@ -46,7 +46,7 @@ class ChannelChecker {
   /// At one frame, or at all that are sampled.
   ChannelChecker(const Scene& scene, std::optional<int> frame, const ChannelFilter& is_checked,
                  const StopRequest& should_stop)
-      : scene_(scene), frame_(frame), is_checked_(is_checked), should_stop_(should_stop) {}
+      : scene_(scene), frame_(frame), is_checked_(is_checked), poll_(should_stop) {}
 
   void check_all() {
     for (const Surface& surface : scene_.surfaces) {
@@ -58,7 +58,10 @@ class ChannelChecker {
     for (const Group& group : scene_.groups) check_channels(group, group);
   }
 
-  std::vector<Error> take_errors() { return std::move(errors_); }
+  std::vector<Error> take_errors() {
+    if (poll_.after(0)) return {interrupted().value()};
+    return std::move(errors_);
+  }
 
  private:
   void set_frames(const FrameSpan& frames) {
@@ -140,7 +143,7 @@ class ChannelChecker {
              const Rule& rule) {
     if (!is_checked(name, attribute)) return false;
     const int last = channel.is_animated() ? last_ : first_;
-    for (int frame = first_; frame <= last; ++frame) {
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const Value<D> value = channel.at(frame);
       const Complaint complaint =
           is_finite<D>(value) ? rule(value)
@@ -159,7 +162,7 @@ class ChannelChecker {
     const Channel<1>& time_scale = surface.solver.time_scale;
     const bool is_animated = dt.is_animated() || time_scale.is_animated();
     const int last = is_animated ? last_ : first_;
-    for (int frame = first_; frame <= last; ++frame) {
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const double length = frame_length(scene_, surface, frame);
       if (length == 0) continue;
       const auto checked = check_time_step(length, dt.at(frame)[0]);
@@ -175,7 +178,7 @@ class ChannelChecker {
     const auto& [b, c, d] = std::tie(surface.material.b, surface.material.c, surface.material.d);
     const bool is_animated = b.is_animated() || c.is_animated() || d.is_animated();
     const int last = is_animated ? last_ : first_;
-    for (int frame = first_; frame <= last; ++frame) {
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
       if (!stiffness.is_elliptic() || !std::isfinite(stiffness.c)) {
         add_error(surface.name, "c", is_animated, frame,
@@ -202,7 +205,7 @@ class ChannelChecker {
     const bool is_animated =
         b.is_animated() || c.is_animated() || d.is_animated() || poisson.is_animated();
     const int last = is_animated ? last_ : first_;
-    for (int frame = first_; frame <= last; ++frame) {
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const double ratio = poisson.at(frame)[0];
       const Stiffness stiffness{b.at(frame)[0], c.at(frame)[0], d.at(frame)[0]};
       // -least_c() = 2 sqrt(b d).
@@ -226,7 +229,7 @@ class ChannelChecker {
     const bool is_animated =
         density.is_animated() || damping.is_animated() || hardening.is_animated();
     const int last = is_animated ? last_ : first_;
-    for (int frame = first_; frame <= last; ++frame) {
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const bool is_static = density.at(frame)[0] == 0 && damping.at(frame)[0] == 0;
       if (!is_static || hardening.at(frame)[0] > 0) continue;
       return add_error(
@@ -246,8 +249,8 @@ class ChannelChecker {
       errors_.push_back(not_held(scene_, surface, *found, {}));
   }
 
-  bool is_checked(const std::string& name, std::string_view attribute) const {
-    if (should_stop_ && should_stop_()) return false;
+  bool is_checked(const std::string& name, std::string_view attribute) {
+    if (poll_.after(StopPoll::parts_between)) return false;
     return !is_checked_ || is_checked_(name, attribute);
   }
 
@@ -260,11 +263,13 @@ class ChannelChecker {
         line));
   }
 
+  static constexpr std::size_t parts_of_frame = 500;
+
   const Scene& scene_;
   std::optional<int> frame_;  // null: all that are sampled
   int first_ = 0, last_ = 0;  // the present part's
   const ChannelFilter& is_checked_;
-  const StopRequest& should_stop_;
+  StopPoll poll_;
   std::set<std::string, std::less<>> kept_;  // channels of the present part that keep their rule
   std::vector<Error> errors_;
 };

@@ -19,8 +19,8 @@ using ChannelFilter = std::function<bool(const std::string& name, std::string_vi
 /// and 7: finite values; density, damping >= 0; b, d > 0; c > -2 sqrt(b d); dt > 0 and at most 10^5
 /// steps a frame; radii >= 0; progress within 0 to 1; a transform that can be inverted. At most one
 /// error per channel, at the first frame that breaks its rule, with channel, frame and value. c is
-/// checked only if b and d are checked and keep their rules. `should_stop` is called before each
-/// channel; once it returns true, no further channels are checked. Requires: fps > 0, start <= end.
+/// checked only if b and d are checked and keep their rules. Once `should_stop` returns true,
+/// nothing more is checked, and the only error is Interrupted. Requires: fps > 0, start <= end.
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked = {},
                                   const StopRequest& should_stop = {});
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -98,11 +100,13 @@ tl::unexpected<Error> interrupted_at_start() {
 Result<void> Bodies::make_all() {
   std::vector<Error> errors = check_channels(scene_, {}, context_.should_stop);
   const bool are_sound = errors.empty();
+  if (!are_sound && errors.front().code == ErrorCode::Interrupted) return interrupted_at_start();
   std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
     if (context_.is_stopped()) return interrupted_at_start();
     auto made = find_rest_shape(surface, scene_.origin, context_);
     if (!made) {
+      if (made.error().code == ErrorCode::Interrupted) return interrupted_at_start();
       errors.push_back(std::move(made.error()));
       continue;
     }
@@ -118,41 +122,54 @@ Result<void> Bodies::make_all() {
   }
   if (context_.is_stopped()) return interrupted_at_start();
   if (errors.empty()) {
-    for (const Surface& surface : scene_.surfaces) drivers_.push_back(index_of_driver(surface));
-    if (auto bound = bind_driven(shapes); !bound) errors.push_back(bound.error());
+    find_drivers();
+    if (auto bound = bind_driven(shapes); !bound) {
+      if (bound.error().code == ErrorCode::Interrupted) return interrupted_at_start();
+      errors.push_back(bound.error());
+    }
   }
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
-  for (std::size_t k = 0; k < shapes.size(); ++k) add(scene_.surfaces[k], std::move(shapes[k]));
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    if (!add(scene_.surfaces[k], std::move(shapes[k]))) return interrupted_at_start();
+  }
   steps_.resize(bodies_.size());
   cycles_.resize(bodies_.size());
   return {};
 }
 
-// The surface that drives a surface; its own index if none does.
-std::size_t Bodies::index_of_driver(const Surface& surface) const {
-  const std::string& name = surface.is_driven() ? surface.driven_by : surface.name;
-  return static_cast<std::size_t>(std::ranges::find(scene_.surfaces, name, &Surface::name) -
-                                  scene_.surfaces.begin());
+// The surface that drives each surface; its own index if none does.
+void Bodies::find_drivers() {
+  std::map<std::string_view, std::size_t> named;
+  for (std::size_t k = 0; k < scene_.surfaces.size(); ++k)
+    named.emplace(scene_.surfaces[k].name, k);
+  for (const Surface& surface : scene_.surfaces)
+    drivers_.push_back(named.at(surface.is_driven() ? surface.driven_by : surface.name));
 }
 
 Result<void> Bodies::bind_driven(std::span<ReservedShape> made) const {
   for (std::size_t k = 0; k < made.size(); ++k) {
     if (!scene_.surfaces[k].is_driven()) continue;
     if (context_.is_stopped()) return interrupted_at_start();
-    if (auto bound = bind_to_driver(made[k], made[drivers_[k]].shape, scene_); !bound) return bound;
+    auto bound = bind_to_driver(made[k], scene_.surfaces[k], made[drivers_[k]].shape,
+                                scene_.surfaces[drivers_[k]], scene_, context_.should_stop);
+    if (!bound) return bound;
   }
   return {};
 }
 
-void Bodies::add(const Surface& surface, ReservedShape made) {
+// Errors: Interrupted.
+Result<void> Bodies::add(const Surface& surface, ReservedShape made) {
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
   BodySettings settings = body_settings(surface, made.shape.grid.has_value());
   settings.exact_parts = exact_parts_;
   sampling_.animate(bodies_.size(), made.shape.animation);
-  bodies_.push_back(make_body(made.shape, settings, solver_, std::move(context)));
+  auto body = make_body(made.shape, settings, solver_, std::move(context));
+  if (!body) return fail(body.error());
+  bodies_.push_back(*std::move(body));
   rest_shapes_.push_back(std::move(made.shape));
   shares_.push_back(std::move(made.memory));
+  return {};
 }
 
 std::vector<Error> Bodies::check_maps(int frame) const {
@@ -252,6 +269,8 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
   reuse.surfaces_.resize(bodies_.size());
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const StageTimer timer(profile_of(k), Stage::Output);
+    if (context_.is_stopped())
+      return fail(located(Error{ErrorCode::Interrupted, {}}, scene_.surfaces[k], frame));
     if (auto done = show(k, frame, reuse.surfaces_[k]); !done) return fail(done.error());
   }
   return reuse;
@@ -270,7 +289,9 @@ Result<void> Bodies::show(std::size_t index, int frame, SurfaceFrame& shown) con
     if (!placed) return fail(located(placed.error(), surface, frame));
     positions = *std::move(placed);
   } else {
-    positions = shape.to_vertices(nodes, std::move(positions));
+    auto placed = shape.to_vertices(nodes, std::move(positions), context_.should_stop);
+    if (!placed) return fail(located(placed.error(), surface, frame));
+    positions = *std::move(placed);
   }
   if (shape.animation) {
     auto at_rest = place_vertices(index, frame, bodies_[index]->rest(), std::move(rest));
@@ -303,12 +324,14 @@ Result<Field> Bodies::place_vertices(std::size_t index, int frame, const Field& 
   if (shape.weights) {
     const auto nodes = shape.animation->nodes_at(frame);
     if (!nodes) return fail(nodes.error());
-    return shape.to_vertices(**nodes + displacement, std::move(reuse));
+    return shape.to_vertices(**nodes + displacement, std::move(reuse), context_.should_stop);
   }
   const auto vertices = shape.animation->vertices_at(frame);
   if (!vertices) return fail(vertices.error());
   reuse = **vertices;
+  StopPoll poll(context_.should_stop);
   for (std::size_t vertex = 0; vertex < shape.vertex_nodes.size(); ++vertex) {
+    if (poll.after(4)) return interrupted();
     const int node = shape.vertex_nodes[vertex];
     if (node >= 0) reuse.row(static_cast<Eigen::Index>(vertex)) += displacement.row(node);
   }
@@ -328,10 +351,15 @@ Result<Field> Bodies::driven_positions(std::size_t index, int frame, const Trans
     if (!now || !at_start) return fail(now ? at_start.error() : now.error());
     moved += **now - **at_start;
   }
-  Field positions = rest_shapes_[index].binding->displacements(moved, std::move(reuse));
+  auto displaced =
+      rest_shapes_[index].binding->displacements(moved, std::move(reuse), context_.should_stop);
+  if (!displaced) return displaced;
+  Field positions = *std::move(displaced);
   const Transform from = scene_.surfaces[driver].transform.at(frame);
   const Matrix3d linear = inverse_linear(transform) * from.linear;
+  StopPoll poll(context_.should_stop);
   for (Eigen::Index k = 0; k < positions.rows(); ++k) {
+    if (poll.after(8)) return interrupted();
     const Vector3d displacement = linear * positions.row(k).transpose();
     positions.row(k) = rest_shapes_[index].mesh.positions.row(k) + displacement.transpose();
   }

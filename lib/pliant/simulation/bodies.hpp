@@ -84,9 +84,9 @@ class Bodies {
   Profile* profile_of(std::size_t surface);  ///< null: no profiling
 
  private:
-  void add(const Surface& surface, ReservedShape made);
+  Result<void> add(const Surface& surface, ReservedShape made);
   void for_each_body(const std::function<void(std::size_t)>& visit);
-  std::size_t index_of_driver(const Surface& surface) const;
+  void find_drivers();
   Result<void> bind_driven(std::span<ReservedShape> made) const;
   Result<void> show(std::size_t index, int frame, SurfaceFrame& shown) const;
   Result<Field> driven_positions(std::size_t index, int frame, const Transform& transform,

@@ -68,6 +68,7 @@ Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
 
   errors = check_channels(scene, {}, options.should_stop);
   const bool are_sound = errors.empty();
+  if (!are_sound && errors.front().code == ErrorCode::Interrupted) return interrupted_at_start();
   MemoryBudget memory(options.max_memory);
   const RunContext context{.memory = &memory, .should_stop = options.should_stop};
   std::vector<CheckedShape> shapes;  // of all surfaces together
@@ -76,6 +77,7 @@ Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
     if (context.is_stopped()) return interrupted_at_start();
     auto checked = check_shape(surface, scene, are_sound, context);
     if (!checked) {
+      if (checked.error().code == ErrorCode::Interrupted) return interrupted_at_start();
       errors.push_back(std::move(checked.error()));
       continue;
     }

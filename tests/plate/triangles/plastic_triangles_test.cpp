@@ -43,7 +43,7 @@ SurfacePiece piece_of(const Mesh& mesh, double radius, Border border) {
                            Falloff::Constant};
   LevelSet level_set = find_level_set(surface, PointTree(surface.rest), {}, std::array{force}, {});
   snap(level_set);
-  return cut_out(surface, level_set, at_border(surface), border).at(0);
+  return cut_out(surface, level_set, at_border(surface), border)->at(0);
 }
 
 struct Case {

@@ -32,7 +32,7 @@ struct Cut {
       const auto p = surface.rest.row(node).cwiseAbs();
       is_border[node] = p.maxCoeff() >= 0.5 - 1e-9;  // of a square of side 1
     }
-    pieces = cut_out(surface, level_set, is_border, border);
+    pieces = cut_out(surface, level_set, is_border, border).value();
   }
 
   double area() const {

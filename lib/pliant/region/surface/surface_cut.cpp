@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/stoppable_sort.hpp"
 
 namespace pliant {
 namespace {
@@ -68,8 +69,10 @@ class Cutting {
     inner_lines_ = static_cast<int>(rim_points_.size());
   }
 
-  void run() {
+  // Unfinished if it is stopped.
+  void run(StopPoll& poll) {
     for (std::size_t k = 0; k < level_set_.faces.size(); ++k) {
+      if (poll.after(1000)) return;
       centre_point_ = -1;
       const int face = level_set_.faces[k];
       const int first = surface_.triangle_starts[face];
@@ -288,10 +291,13 @@ class Separating {
     pieces.resize(count);
   }
 
-  void run() {
-    number_points();
+  // Unfinished if it is stopped.
+  void run(StopPoll& poll) {
+    number_points(poll);
+    if (poll.after(0)) return;
     cell_places_.reserve(cutting_.cells.size());
     for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
+      if (poll.after(32)) return;
       TriangleCells& cells = pieces[cell_pieces_[k]].cells;
       const bool goes_on = k > 0 && cutting_.blocks[k] == cutting_.blocks[k - 1];
       if (!goes_on) cells.block_starts.push_back(0);
@@ -302,6 +308,7 @@ class Separating {
     }
     const std::vector<Joint>& joints = cutting_.joints;
     for (std::size_t k = 0, end = 0; k < joints.size(); k = end) {
+      if (poll.after(16)) return;
       while (end < joints.size() && joints[end].line == joints[k].line) ++end;
       join(std::span(joints).subspan(k, end - k));
     }
@@ -310,17 +317,18 @@ class Separating {
   std::vector<SurfacePiece> pieces;
 
  private:
-  void number_points() {
+  void number_points(StopPoll& poll) {
     std::vector<int> point_pieces(cutting_.points.size(), -1);
     for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
       for (const int point : cutting_.cells[k].points) point_pieces[point] = cell_pieces_[k];
     }
     std::vector<int> order(cutting_.points.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const bool is_sorted = sort_unless_stopped(order, poll, [&](int a, int b) {
       const Point &p = cutting_.points[a], &q = cutting_.points[b];
       return std::tuple(rank_of(p), p.node, a) < std::tuple(rank_of(q), q.node, b);
     });
+    if (!is_sorted) return;
     places_.resize(cutting_.points.size());
     for (const int k : order) {
       const Point& point = cutting_.points[k];
@@ -396,13 +404,17 @@ CutCounts SurfacePiece::counts_of(const std::vector<bool>& within) const {
   return counts;
 }
 
-std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
-                                  const std::vector<bool>& is_border, Border border) {
+Result<std::vector<SurfacePiece>> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
+                                          const std::vector<bool>& is_border, Border border,
+                                          const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
   Cutting cutting(surface, level_set, is_border, border);
-  cutting.run();
+  cutting.run(poll);
+  if (poll.after(0)) return interrupted();
   Separating separating(cutting, border);
-  separating.run();
+  separating.run(poll);
   for (SurfacePiece& piece : separating.pieces) {
+    if (poll.after(100 * piece.cells.cells.size())) return interrupted();
     std::vector<double> areas(static_cast<std::size_t>(piece.cells.point_count), 0);
     for (const TriangleCell& cell : piece.cells.cells) {
       const double third = std::abs(cell.shape.signed_area()) / 3;
@@ -410,6 +422,7 @@ std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet
     }
     piece.masses = shared_out(piece, level_set, std::move(areas));
   }
+  if (poll.after(0)) return interrupted();
   return std::move(separating.pieces);
 }
 

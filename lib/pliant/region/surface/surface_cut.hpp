@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/triangle_cells.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/mesh/triangle_surface.hpp"
@@ -68,8 +70,9 @@ std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const 
 
 /// Cuts the region phi >= 0 out of the triangles. `is_border` (#nodes of the surface) marks the
 /// nodes of edges with one face. The pieces are in the order of their first cells. Requires:
-/// `level_set` is snapped. Cost: proportional to the region.
-std::vector<SurfacePiece> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
-                                  const std::vector<bool>& is_border, Border border);
+/// `level_set` is snapped. Errors: Interrupted. Cost: proportional to the region.
+Result<std::vector<SurfacePiece>> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
+                                          const std::vector<bool>& is_border, Border border,
+                                          const StopRequest& should_stop = {});
 
 }  // namespace pliant
