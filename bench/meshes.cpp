@@ -65,7 +65,7 @@ Bound bound_of(const SurfaceBody& body, const BodyInputs& in, int repetitions) {
   const TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
   const double dt = in.frame_length / steps;
   const Bending bending = bending_of(in, body.surface().unit, body.settings().border);
-  const SparseMatrix matrix = plate.matrix(bending, in.dynamics.shift(dt));
+  const SparseMatrix matrix = plate.matrix(bending, in.dynamics.shift(dt)).value();
   std::unique_ptr<SparseFactor> factor;
   Bound bound;
   bound.factor = median_ms(repetitions, [&] {

@@ -293,7 +293,9 @@ class SlowestVibration {
 Result<double> smallest_eigenvalue(const VibratingPlate& plate) {
   Shelf* const shelf = plate.matrix ? plate.context.shelf : nullptr;
   if (!shelf) return SlowestVibration(plate).find();
-  auto known = std::make_shared<KnownVibration>(plate.matrix(), plate.masses);
+  const auto matrix = plate.matrix();
+  if (!matrix) return fail(matrix.error());
+  auto known = std::make_shared<KnownVibration>(*matrix, plate.masses);
   const Hash key = known->key(plate.solver);
   const auto is_same = [&](const KnownVibration& one) { return one.is_same_as(*known); };
   if (const auto found = shelf->find<KnownVibration>(key, is_same)) return found->lambda;

@@ -22,7 +22,7 @@ struct VibratingPlate {
   Eigen::MatrixXd rigid = {};
   /// Makes the upper triangle of K, and `solver` is by whose factor it is solved: a plate of equal
   /// ones has the same slowest vibration to the bit. Empty: it is not known.
-  std::function<SparseMatrix()> matrix = {};
+  std::function<Result<SparseMatrix>()> matrix = {};
   SolverChoice solver = SolverChoice::Auto;
   /// Makes a solve for another shift, perhaps in place of `solve`: for a shift < 0 too, if K +
   /// shift M is positive definite. Errors: SolverFailed if it is not. Empty: none is made.

@@ -151,7 +151,9 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
       inertia[unknown] = problem.dynamics.density * masses_[unknown];
       drag[unknown] = problem.dynamics.damping * energy.share(i, j) * factor;
     });
-    auto ready = motion_.prepare({upper(), std::move(inertia), std::move(drag)});
+    auto stiffness = upper();
+    if (!stiffness) return fail(stiffness.error());
+    auto ready = motion_.prepare({*std::move(stiffness), std::move(inertia), std::move(drag)});
     if (!ready) return fail(ready.error());
     set_up.stop();
     const StageTimer solving(context().profile, Stage::Solve);
@@ -219,7 +221,7 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
     return loads;
   }
 
-  SparseMatrix upper() const override {
+  Result<SparseMatrix> upper() const override {
     const StencilTable<double> table = hessian<double>();
     const int size = static_cast<int>(shifts_.size());
     std::vector<UpperColumn> columns(static_cast<std::size_t>(size));

@@ -160,6 +160,7 @@ class SettlingSteps final : public PlasticSteps {
       double part = -start / (dot(way, product) - places_->look_along(way));
       Numbers left;
       for (int tries = 1;; ++tries) {
+        if (context_.is_stopped()) return interrupted();
         places_->flow_after(part, flowed_);
         left = product;
         combine(1, forces_, part, left);

@@ -46,7 +46,7 @@ Result<void> FactoredMatrix::take_factor(long size, std::size_t entries) {
 }
 
 Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
-                                    const std::function<SparseMatrix()>& assemble) try {
+                                    const std::function<Result<SparseMatrix>()>& assemble) try {
   if (!has_same_pattern || !factor_ || !is_analyzed_) {
     // Frees the old factor first, to make room for the new one.
     factor_.reset();
@@ -54,7 +54,9 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
     is_analyzed_ = false;
     if (auto taken = take(size, bytes_to_analyze * size); !taken) return taken;
   }
-  const SparseMatrix matrix = assemble();
+  const Result<SparseMatrix> assembled = assemble();
+  if (!assembled) return fail(assembled.error());
+  const SparseMatrix& matrix = *assembled;
   const Hash key = shelf_ ? key_of(matrix) : Hash();
   if (shelf_) {
     const auto kept = shelf_->find<Kept>(
@@ -62,6 +64,7 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
     if (kept) return use(size, *kept);
   }
   if (!is_analyzed_) {
+    if (is_stopped(should_stop_)) return interrupted();
     ++counts_.analyses;
     if (auto analyzed = factor_->analyze(matrix); !analyzed) return analyzed;
     is_analyzed_ = true;

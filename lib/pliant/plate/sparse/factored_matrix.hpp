@@ -30,9 +30,10 @@ class FactoredMatrix {
 
   /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
   /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
-  /// OutOfMemory; SolverFailed if it is not positive definite; Interrupted.
+  /// OutOfMemory; SolverFailed if it is not positive definite; Interrupted, but not while the
+  /// library orders the unknowns; those of `assemble`.
   Result<void> factor(long size, bool has_same_pattern,
-                      const std::function<SparseMatrix()>& assemble);
+                      const std::function<Result<SparseMatrix>()>& assemble);
 
   /// Solves for three right-hand sides (#rows x 3). Requires: `factor` succeeded last.
   Result<Field> solve(const Field& right_hand_sides);

@@ -12,14 +12,18 @@ constexpr double largest_error = 1e-10;
 }  // namespace
 
 RefinedFactor::RefinedFactor(PreciseMatrix& matrix, SolverChoice choice, const RunContext& context)
-    : matrix_(matrix), factor_(choice, context) {
+    : matrix_(matrix), should_stop_(context.should_stop), factor_(choice, context) {
   factor_.use_supernodes(kernels_of_width(context.most_lanes));
 }
 
 Result<void> RefinedFactor::factor(long size, bool has_same_pattern,
                                    const Eigen::VectorXd& pressure) {
   SparseMatrix upper;
-  auto factored = factor_.factor(size, has_same_pattern, [&] { return upper = matrix_.upper(); });
+  auto factored = factor_.factor(size, has_same_pattern, [&] {
+    auto made = matrix_.upper();
+    if (made) upper = *made;
+    return made;
+  });
   if (!factored) return factored;
   return measure(upper, pressure);
 }
@@ -31,8 +35,10 @@ Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::Vect
   rows_ = pressure.size();
   Field forces = Field::Zero(upper.rows(), 3);
   forces.col(0).head(rows_) = pressure;
+  if (is_stopped(should_stop_)) return interrupted();
   auto solution = factor_.solve(forces);
   if (!solution) return fail(solution.error());
+  if (is_stopped(should_stop_)) return interrupted();
   // The residual in plain double has an error of the size of the residual itself: it is a quick
   // measure for the error, right to a small factor.
   Field rough = Field::Zero(upper.rows(), 3);
@@ -42,7 +48,9 @@ Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::Vect
   if (peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
   if (auto opened = matrix_.open(static_cast<std::size_t>(upper.nonZeros())); !opened)
     return opened;
-  const auto correction = factor_.solve(matrix_.residual(*solution, forces));
+  const Field left = matrix_.residual(*solution, forces);
+  if (is_stopped(should_stop_)) return interrupted();
+  const auto correction = factor_.solve(left);
   if (!correction) return fail(correction.error());
   error_ = peak(*correction) / peak(*solution);
   if (error_ > largest_error) return {};
@@ -60,6 +68,7 @@ Result<Field> RefinedFactor::solve(const Field& right_hand_sides, std::optional<
       guess ? Result<Field>(*std::move(guess)) : factor_.solve(right_hand_sides);
   double before = std::numeric_limits<double>::infinity();
   for (int pass = 0; solution && pass < most_passes; ++pass) {
+    if (is_stopped(should_stop_)) return interrupted();
     auto correction = factor_.solve(matrix_.residual(*solution, right_hand_sides));
     if (!correction) return correction;
     *solution += *correction;

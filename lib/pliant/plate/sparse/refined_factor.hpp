@@ -17,11 +17,11 @@ class PreciseMatrix {
   PreciseMatrix& operator=(const PreciseMatrix&) = delete;
   virtual ~PreciseMatrix() = default;
 
-  /// The upper triangle, by columns, rows ascending.
-  virtual SparseMatrix upper() const = 0;
+  /// The upper triangle, by columns, rows ascending. Errors: Interrupted.
+  virtual Result<SparseMatrix> upper() const = 0;
 
   /// Makes what `residual` needs, for a matrix with so many entries in `upper`. Errors:
-  /// OutOfMemory.
+  /// OutOfMemory; Interrupted.
   virtual Result<void> open(std::size_t entries) = 0;
 
   /// f - A x (#rows x 3). Requires: `open` succeeded.
@@ -62,6 +62,7 @@ class RefinedFactor {
   Result<void> measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure);
 
   PreciseMatrix& matrix_;
+  StopRequest should_stop_;
   FactoredMatrix factor_;
   Eigen::Index rows_ = 0;               // of which a solution's peak is taken
   double error_ = 0;                    // of a solution, as a part of its peak; 0: small enough

@@ -308,7 +308,9 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     plate_.to_sines(view(velocity), &SpectralPlate::Parity::pending);
     carve(numbers_.begin());  // w[0] and v[0] are those of the plate again
   };
+  if (context_.is_stopped()) return interrupted();
   take_state();
+  if (context_.is_stopped()) return interrupted();
   const bool grows = take_loads(first_load, last_load);
   parts_ = plate_.moving_parts();
   if (parts_.count == 0) return {};
@@ -340,11 +342,15 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     const SubStep length{choice.length()};
     const auto tables = tables_for(length.length);
     if (!tables) return fail(tables.error());
+    std::atomic<bool> is_stopped = false;
     plate_.for_each(parts_.count, [&](std::size_t part) {
+      if (!is_stopped && context_.is_stopped()) is_stopped = true;
+      if (is_stopped) return;
       step(part, 0, length, **tables, true);
       measure(part, 0);
       measure(part, 1);
     });
+    if (is_stopped) return interrupted();
     counts_.solves += 2 * pole_count;
     double squared_doubt = 0;
     for (std::size_t part = 0; part < parts_.count; ++part) {

@@ -3,11 +3,12 @@
 namespace pliant {
 
 InnerUnknowns::InnerUnknowns(const TriangleCells& cells, const ReducedUnknowns& reduced,
-                             const Bending& bending, const CellFactors* factors)
+                             const Bending& bending, const CellFactors* factors, StopPoll& poll)
     : places_(reduced.places), left_(reduced.count) {
   CellBlock<double> block;
   for (const int number : reduced.blocks) {
     block.compute(cells, number, reduced, bending, factors);
+    if (poll.after(32 * static_cast<std::size_t>(block.size() * block.size()))) return;
     blocks_.push_back({unknowns_.size(), factors_.size(), block.inner_count(), block.size()});
     for (int k = 0; k < block.size(); ++k) unknowns_.push_back(block.unknown(k));
     for (int p = 0; p < block.inner_count(); ++p) {

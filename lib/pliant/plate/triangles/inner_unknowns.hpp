@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/plate/triangles/cell_block.hpp"
 
 namespace pliant {
@@ -13,8 +14,9 @@ namespace pliant {
 /// to plate.
 class InnerUnknowns {
  public:
+  /// Unfinished if it is stopped.
   InnerUnknowns(const TriangleCells& cells, const ReducedUnknowns& reduced, const Bending& bending,
-                const CellFactors* factors);
+                const CellFactors* factors, StopPoll& poll);
 
   /// Eliminates the inner unknowns from forces on all unknowns; theirs become what `recovered`
   /// needs. The forces on those that are left.

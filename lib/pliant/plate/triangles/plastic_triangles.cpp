@@ -35,11 +35,13 @@ PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& 
 }
 
 PlasticTriangles::PlasticTriangles(const TriangleCells& cells, const std::vector<int>& triangles,
-                                   const Bending& bending, const CellFactors* factors)
+                                   const Bending& bending, const CellFactors* factors,
+                                   StopPoll& poll)
     : areas_(triangles.size(), 0.0), cell_starts_(triangles.size() + 1, 0) {
   std::vector<int> place_of_cell;
   place_of_cell.reserve(cells.cells.size());
   for (const TriangleCell& cell : cells.cells) {
+    if (poll.after(32)) return;
     const auto at = std::lower_bound(triangles.begin(), triangles.end(), cell.triangle);
     const int place = static_cast<int>(at - triangles.begin());
     place_of_cell.push_back(place);
@@ -52,6 +54,7 @@ PlasticTriangles::PlasticTriangles(const TriangleCells& cells, const std::vector
   for (int cell = 0; cell < static_cast<int>(cells_.size()); ++cell)
     cells_[next[place_of_cell[cell]]++] = cell;
   for (int triangle = 0; triangle < count(); ++triangle) {
+    if (poll.after(500)) return;
     for (int k = cell_starts_[triangle]; k < cell_starts_[triangle + 1]; ++k) {
       const TriangleCell& cell = cells.cells[cells_[k]];
       const MorleyCell shape(cell.shape);

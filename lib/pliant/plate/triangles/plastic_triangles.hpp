@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/plate/energy/plastic_steps.hpp"
 #include "pliant/plate/triangles/cell_factors.hpp"
 
@@ -28,9 +29,9 @@ PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& 
 /// plate.
 class PlasticTriangles {
  public:
-  /// `factors` null: the material is even.
+  /// `factors` null: the material is even. Unfinished if it is stopped.
   PlasticTriangles(const TriangleCells& cells, const std::vector<int>& triangles,
-                   const Bending& bending, const CellFactors* factors);
+                   const Bending& bending, const CellFactors* factors, StopPoll& poll);
 
   void set_law(const PlasticLaw& law, const CellFactors* factors);
 

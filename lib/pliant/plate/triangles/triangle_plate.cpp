@@ -56,8 +56,10 @@ Real TrianglePlate::shift_at(int point, double shift, double drag) const {
 // Contributions are gathered by rows, in the order of the blocks, and those of one entry are added
 // in that order.
 template <class Real>
-TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shift, double drag,
-                                              Half half) const {
+Result<TrianglePlate::Rows<Real>> TrianglePlate::rows(const Bending& bending, double shift,
+                                                      double drag, Half half) const {
+  constexpr std::size_t parts_of_entry = 32;
+  StopPoll poll(context_.should_stop);
   struct Entry {
     int row, column;
     Real value;
@@ -66,6 +68,8 @@ TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shi
   CellBlock<Real> block;
   for (int k = 0; k < cells_.block_count(); ++k) {
     block.compute(cells_, k, reduced_, bending, factors_.get());
+    if (poll.after(parts_of_entry * static_cast<std::size_t>(block.size() * block.size())))
+      return interrupted();
     for (int a = block.inner_count(); a < block.size(); ++a) {
       for (int b = a; b < block.size(); ++b) {
         const auto [low, high] =
@@ -89,6 +93,7 @@ TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shi
   rows.values.reserve(entries.size() / 2);
   for (int row = 0; row < size; ++row) {
     const auto begin = order.begin() + starts[row], end = order.begin() + starts[row + 1];
+    if (poll.after(parts_of_entry * static_cast<std::size_t>(end - begin))) return interrupted();
     std::sort(begin, end, [&](int a, int b) {
       return std::pair(entries[a].column, a) < std::pair(entries[b].column, b);
     });
@@ -106,9 +111,12 @@ TrianglePlate::Rows<Real> TrianglePlate::rows(const Bending& bending, double shi
   return rows;
 }
 
-SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift, double drag) const {
+Result<SparseMatrix> TrianglePlate::matrix(const Bending& bending, double shift,
+                                           double drag) const {
   // The rows of the lower half are the columns of the upper one.
-  const Rows<double> columns = rows<double>(bending, shift, drag, Half::Lower);
+  const auto made = rows<double>(bending, shift, drag, Half::Lower);
+  if (!made) return fail(made.error());
+  const Rows<double>& columns = *made;
   SparseMatrix matrix(reduced_.count, reduced_.count);
   matrix.reserve(static_cast<Eigen::Index>(columns.values.size()));
   for (int column = 0; column < reduced_.count; ++column) {
@@ -120,8 +128,8 @@ SparseMatrix TrianglePlate::matrix(const Bending& bending, double shift, double 
   return matrix;
 }
 
-// Eliminates the inner unknowns from forces on all unknowns.
-Field TrianglePlate::reduced(const Field& forces) const {
+// Eliminates the inner unknowns from forces on all unknowns. Errors: Interrupted.
+Result<Field> TrianglePlate::reduced(const Field& forces) const {
   Field result(reduced_.count, 3);
   for (Eigen::Index unknown = 0; unknown < forces.rows(); ++unknown) {
     const int place = reduced_.places[unknown];
@@ -139,7 +147,9 @@ Field TrianglePlate::reduced(const Field& forces) const {
   };
   CellBlock<double> block;
   std::vector<double> own;
+  StopPoll poll(context_.should_stop);
   for (const int k : reduced_.blocks) {
+    if (poll.after(200)) return interrupted();
     if (!presses_on_inner(k)) continue;
     block.compute(cells_, k, reduced_, bending_, factors_.get());
     for (int component = 0; component < 3; ++component) {
@@ -226,7 +236,9 @@ Result<void> TrianglePlate::open(std::size_t entries) {
   const std::size_t bytes = entries * 6 * (sizeof(Extended) + 2 * sizeof(int));
   if (!precise_share_.try_resize(bytes))
     return fail(factor_too_large(reduced_.count, precise_share_.complaint(bytes)));
-  precise_ = rows<Extended>(bending_, shift_, drag_, Half::Both);
+  auto made = rows<Extended>(bending_, shift_, drag_, Half::Both);
+  if (!made) return fail(made.error());
+  precise_ = *std::move(made);
   return {};
 }
 
@@ -312,7 +324,9 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   const StageTimer solving(context_.profile, Stage::Solve);
   if (problem.law) return advance_plastic(problem, steps, std::move(state));
 
-  Field known = reduced(held_forces(problem.bending, problem.slopes, state.displacement));
+  auto eliminated = reduced(held_forces(problem.bending, problem.slopes, state.displacement));
+  if (!eliminated) return fail(eliminated.error());
+  Field known = *std::move(eliminated);
   known.topRows(points) += problem.load;
   Motion motion{state.displacement.topRows(points), std::move(state.velocity)};
   ElasticSteps elastic(*this, problem.dynamics, dt, std::move(known));
@@ -326,9 +340,14 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
 Result<void> TrianglePlate::prepare_plasticity() {
   if (plasticity_ && plasticity_->bending == bending_) return {};
   plasticity_.reset();
+  StopPoll poll(context_.should_stop);
   plasticity_.emplace(Plasticity{bending_,
-                                 {cells_, reduced_, bending_, factors_.get()},
-                                 {cells_, triangles_, bending_, factors_.get()}});
+                                 {cells_, reduced_, bending_, factors_.get(), poll},
+                                 {cells_, triangles_, bending_, factors_.get(), poll}});
+  if (poll.after(0)) {
+    plasticity_.reset();
+    return interrupted();
+  }
   const std::size_t bytes = plasticity_->inner.memory() + plasticity_->triangles.memory();
   if (plastic_share_.try_resize(bytes)) return {};
   plasticity_.reset();
@@ -381,7 +400,9 @@ Result<TriangleState> TrianglePlate::advance_plastic(const TriangleProblem& prob
   Field known = held_forces(problem.bending, problem.slopes, state.displacement);
   Field forces = known;
   if (!state.plastic.isZero(0)) triangles.add_forces(state.plastic, forces);
-  Field of_matrix = reduced(forces);
+  auto eliminated = reduced(forces);
+  if (!eliminated) return fail(eliminated.error());
+  Field of_matrix = *std::move(eliminated);
   of_matrix.topRows(points) += problem.load;
   known.topRows(points) += problem.load;
   inner.eliminate(forces);
@@ -427,19 +448,23 @@ Result<TriangleState> TrianglePlate::advance_exactly(const TriangleProblem& prob
     inertia[k] *= problem.dynamics.density * (factors_ ? factor_at(factors_->density, k) : 1);
     drag[k] *= problem.dynamics.damping * (factors_ ? factor_at(factors_->damping, k) : 1);
   }
-  auto ready = motion_.prepare({matrix(bending_, 0), std::move(inertia), std::move(drag)});
+  auto stiffness = matrix(bending_, 0);
+  if (!stiffness) return fail(stiffness.error());
+  auto ready = motion_.prepare({*std::move(stiffness), std::move(inertia), std::move(drag)});
   if (!ready) return fail(ready.error());
   set_up.stop();
   const StageTimer solving(context_.profile, Stage::Solve);
   const auto force = [&](const GivenSlopes& slopes, const Field& load) {
-    Field sum = reduced(held_forces(bending_, slopes, state.displacement));
-    sum.topRows(points) += load;
+    auto sum = reduced(held_forces(bending_, slopes, state.displacement));
+    if (sum) sum->topRows(points) += load;
     return sum;
   };
+  auto first = force(problem.first_slopes, problem.first_load);
+  if (!first) return fail(first.error());
+  auto last = force(problem.slopes, problem.load);
+  if (!last) return fail(last.error());
   Field w = state.displacement.topRows(points);
-  auto moved = motion_.advance(
-      steps, {force(problem.first_slopes, problem.first_load), force(problem.slopes, problem.load)},
-      w, state.velocity);
+  auto moved = motion_.advance(steps, {*std::move(first), *std::move(last)}, w, state.velocity);
   if (!moved) return fail(moved.error());
   state.displacement.topRows(points) = w;
   return state;

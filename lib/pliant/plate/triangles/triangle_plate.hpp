@@ -71,8 +71,8 @@ class TrianglePlate : private PreciseMatrix {
                                 TriangleState state);
 
   /// The upper triangle of K + shift M that is factored: without unknowns that belong to one block
-  /// of cells.
-  SparseMatrix matrix(const Bending& bending, double shift, double drag = 0) const;
+  /// of cells. Errors: Interrupted.
+  Result<SparseMatrix> matrix(const Bending& bending, double shift, double drag = 0) const;
 
   const TriangleCells& cells() const { return cells_; }
 
@@ -105,7 +105,7 @@ class TrianglePlate : private PreciseMatrix {
 
   class ElasticSteps;
 
-  Field reduced(const Field& forces) const;
+  Result<Field> reduced(const Field& forces) const;
   Field held_forces(const Bending& bending, const GivenSlopes& slopes,
                     const Field& displacement) const;
   Result<void> prepare_plasticity();
@@ -125,13 +125,13 @@ class TrianglePlate : private PreciseMatrix {
   };
 
   template <class Real>
-  Rows<Real> rows(const Bending& bending, double shift, double drag, Half half) const;
+  Result<Rows<Real>> rows(const Bending& bending, double shift, double drag, Half half) const;
 
   // What the shift adds to the matrix at a point with a mass.
   template <class Real>
   Real shift_at(int point, double shift, double drag) const;
 
-  SparseMatrix upper() const override { return matrix(bending_, shift_, drag_); }
+  Result<SparseMatrix> upper() const override { return matrix(bending_, shift_, drag_); }
   Result<void> open(std::size_t entries) override;
   Field residual(const Field& x, const Field& f) const override;
   void close() override;
