@@ -1,9 +1,11 @@
 #include "pliant/region/combine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <set>
 
+#include "pliant/region/closed_boxes.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;
@@ -162,4 +164,47 @@ TEST_CASE("thin boxes have cells but no interior, lines have neither", "[region]
   CHECK(wider[0].box == Box{0, 5, 0, 4});
   REQUIRE(wider[0].patches.size() == 1);
   CHECK(wider[0].patches[0].interior_count() == 10);
+}
+
+namespace {
+
+// One pair after another, as long as two boxes meet.
+std::vector<Box> slowly_merged(std::vector<Box> boxes, const Grid& grid) {
+  std::vector<Box> islands;
+  for (Box box : boxes) {
+    if (box.is_empty()) continue;
+    for (auto met = islands.begin(); met != islands.end();) {
+      if (!meet(grid, *met, box)) {
+        ++met;
+        continue;
+      }
+      box = box_around(grid, std::array{box, *met});
+      islands.erase(met);
+      met = islands.begin();
+    }
+    islands.push_back(box);
+  }
+  std::ranges::sort(islands, {}, [](const Box& box) { return std::pair(box.j0, box.i0); });
+  return islands;
+}
+
+}  // namespace
+
+TEST_CASE("many boxes are merged as a few are", "[region][combine]") {
+  std::mt19937 random(3);
+  const auto chance = [&](int count) {
+    return static_cast<int>(random() % static_cast<unsigned>(count));
+  };
+  for (int round = 0; round < 200; ++round) {
+    const Grid grid{40, 30, 1, 1, round % 3 == 1, round % 5 == 1};
+    std::vector<Box> boxes;
+    for (int k = chance(60); k >= 0; --k) {
+      const int i = chance(40), j = chance(30), columns = chance(6), rows = chance(6);
+      const int last_u = grid.is_closed_u ? i + columns : std::min(i + columns, 39);
+      const int last_v = grid.is_closed_v ? j + rows : std::min(j + rows, 29);
+      boxes.push_back({i, last_u, j, last_v});
+    }
+    CAPTURE(round);
+    CHECK(merged(boxes, grid) == slowly_merged(boxes, grid));
+  }
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pliant/region/closed_boxes.hpp"
+#include "pliant/region/combine.hpp"
 #include "pliant/region/region.hpp"
 
 namespace pliant {
@@ -21,20 +22,6 @@ bool moves_any(const Grid& grid, std::span<const Patch> patches, const Box& box)
       }
     });
     if (moves) return true;
-  }
-  return false;
-}
-
-// Whether any two of the boxes meet; if so, merges them.
-bool merge_two(const Grid& grid, std::vector<Box>& boxes) {
-  for (std::size_t a = 0; a < boxes.size(); ++a) {
-    for (std::size_t b = a + 1; b < boxes.size(); ++b) {
-      if (!meet(grid, boxes[a], boxes[b])) continue;
-      boxes[a] = box_around(grid, std::array{boxes[a], boxes[b]});
-      boxes[b] = boxes.back();
-      boxes.pop_back();
-      return true;
-    }
   }
   return false;
 }
@@ -134,9 +121,7 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
     const Box& box = force.deformation;
     if (!box.is_empty() && !meet(grid, met, box)) room.push_back(box);
   }
-  while (merge_two(grid, room)) {
-  }
-  return room.size() > 1;
+  return merged(room, grid).size() > 1;
 }
 
 StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combine,

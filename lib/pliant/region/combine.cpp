@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/region/box_places.hpp"
 #include "pliant/region/closed_boxes.hpp"
 
 namespace pliant {
@@ -185,21 +188,32 @@ Region region_of(const Grid& grid, std::vector<Box> parts) {
 }  // namespace
 
 std::vector<Box> merged(std::span<const Box> boxes, const Grid& grid) {
-  std::vector<Box> islands;
+  std::map<int, Box> found;  // by number: the islands so far, in the order in which they were made
+  BoxPlaces places(grid);
+  int number = 0;
   for (Box box : boxes) {
     if (box.is_empty()) continue;
     // Merges each island that the box meets; the larger box may meet others.
-    for (auto met = islands.begin(); met != islands.end();) {
-      if (!meet(grid, *met, box)) {
-        ++met;
-        continue;
+    std::set<int> met;
+    const auto find_met = [&] {
+      for (const int island : places.meeting(box)) {
+        places.remove(found[island], island);
+        met.insert(island);
       }
-      box = box_around(grid, std::array{box, *met});
-      islands.erase(met);
-      met = islands.begin();
+    };
+    find_met();
+    while (!met.empty()) {
+      const int island = *met.begin();
+      box = box_around(grid, std::array{box, found[island]});
+      found.erase(island);
+      met.erase(island);
+      find_met();
     }
-    islands.push_back(box);
+    places.insert(box, number);
+    found.emplace(number++, box);
   }
+  std::vector<Box> islands;
+  for (const auto& [of, box] : found) islands.push_back(box);
   std::sort(islands.begin(), islands.end(), [](const Box& a, const Box& b) {
     return std::tuple(a.j0, a.i0) < std::tuple(b.j0, b.i0);
   });

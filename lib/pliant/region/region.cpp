@@ -1,26 +1,53 @@
 #include "pliant/region/region.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/region/box_places.hpp"
 #include "pliant/region/closed_boxes.hpp"
 
 namespace pliant {
 namespace {
 
-// The region that force k acts in; -1: none.
-int region_of_force(const Selection& selection, std::size_t k, Combine how) {
-  if (selection.regions.empty()) return -1;
-  if (how != Combine::Islands) return 0;
-  const auto selector = static_cast<std::size_t>(selection.forces[k].selector);
-  const Box& own = selection.forces[selector].deformation;
-  if (own.is_empty()) return -1;
-  const auto found =
-      std::find_if(selection.regions.begin(), selection.regions.end(),
-                   [&](const Region& region) { return holds(selection.grid, region.box, own); });
-  PLIANT_EXPECTS(found != selection.regions.end());
-  return static_cast<int>(found - selection.regions.begin());
+// The region that each force acts in; -1: none.
+void find_regions_of_forces(Selection& selection, Combine how) {
+  const bool is_one = how != Combine::Islands;
+  for (ForceSelection& force : selection.forces)
+    force.region = is_one && !selection.regions.empty() ? 0 : -1;
+  if (is_one) return;
+  BoxPlaces places(selection.grid);
+  for (std::size_t k = 0; k < selection.regions.size(); ++k)
+    places.insert(selection.regions[k].box, static_cast<int>(k));
+  for (ForceSelection& force : selection.forces) {
+    const auto selector = static_cast<std::size_t>(force.selector);
+    const Box& own = selection.forces[selector].deformation;
+    if (own.is_empty()) continue;
+    const std::vector<int> met = places.meeting(own);
+    const auto found = std::ranges::find_if(met, [&](int region) {
+      return holds(selection.grid, selection.regions[static_cast<std::size_t>(region)].box, own);
+    });
+    PLIANT_EXPECTS(found != met.end());
+    force.region = *found;
+  }
+}
+
+// Lists the forces of each region.
+void list_forces(Selection& selection) {
+  std::vector<int>& starts = selection.member_starts;
+  starts.assign(selection.regions.size() + 1, 0);
+  for (const ForceSelection& force : selection.forces) {
+    if (force.region >= 0) ++starts[static_cast<std::size_t>(force.region) + 1];
+  }
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<int> next(starts.begin(), starts.end() - 1);
+  selection.members.resize(static_cast<std::size_t>(starts.back()));
+  for (std::size_t k = 0; k < selection.forces.size(); ++k) {
+    const int region = selection.forces[k].region;
+    if (region < 0) continue;
+    selection.members[next[static_cast<std::size_t>(region)]++] = static_cast<int>(k);
+  }
 }
 
 // Calls f(load) with this force's load on each interior node in its box, until f returns false.
@@ -150,9 +177,8 @@ Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const Sampl
   Batch load;
   load.count = count;
   for (double* component : {load.x, load.y, load.z}) std::fill_n(component, count, 0.0);
-  for (std::size_t k = 0; k < forces.size(); ++k) {
+  for (const int k : selection.forces_of(region)) {
     const ForceSelection& selected = selection.forces[k];
-    if (selected.region != static_cast<int>(region)) continue;
     for_each_shared(grid, {i, i + count - 1, j, j}, selected.force, [&](const Box& pushed) {
       nodes.add_loads(grid.node_round(pushed.i0, j), pushed.columns(), forces[k], pushed.i0 - i,
                       load);
@@ -204,9 +230,8 @@ Selection recombined(Selection selection, Combine how, std::vector<Box> others) 
   for (const ForceSelection& force : selection.forces) boxes.push_back(force.deformation);
   selection.others = std::move(others);
   selection.regions = combine(boxes, how, selection.grid);
-  for (std::size_t k = 0; k < selection.forces.size(); ++k) {
-    selection.forces[k].region = region_of_force(selection, k, how);
-  }
+  find_regions_of_forces(selection, how);
+  list_forces(selection);
   return selection;
 }
 

@@ -44,7 +44,17 @@ struct Selection {
   std::vector<Region> regions;         ///< in the order of `combine`, also those too small to solve
   Grid grid = {};                      ///< of the nodes; matters only if it is closed
 
+  /// The forces that act in each region, ascending: members[member_starts[k]] to the start of the
+  /// next.
+  std::vector<int> members = {};
+  std::vector<int> member_starts = {};  ///< #regions + 1
+
   Box box() const;  ///< smallest box around all regions; empty: there are none
+
+  std::span<const int> forces_of(std::size_t region) const {
+    const int begin = member_starts[region], end = member_starts[region + 1];
+    return {members.data() + begin, static_cast<std::size_t>(end - begin)};
+  }
 
   /// The patches that force k acts in.
   std::span<const Patch> patches_of_force(std::size_t k) const;
