@@ -60,16 +60,18 @@ Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
                           *options.surface, fmt::join(names, ", ")));
 }
 
-AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options,
-                        const FrameRange& frames, const std::vector<std::size_t>& chosen) {
+Result<AnimationPlan> make_plan(const Simulation& simulation, const BakeOptions& options,
+                                const FrameRange& frames, const std::vector<std::size_t>& chosen) {
   const Scene& scene = simulation.scene();
   AnimationPlan plan{.file = options.out,
                      .first_frame = frames.first,
                      .last_frame = frames.last,
                      .fps = scene.fps,
                      .is_placed = !is_world(options),
-                     .resume = options.resume};
+                     .resume = options.resume,
+                     .should_stop = &was_interrupted};
   for (const std::size_t k : chosen) {
+    if (was_interrupted()) return interrupted();
     const RestShape& shape = simulation.rest_shapes()[k];
     const Placement first = placement_at(scene.surfaces[k].transform, frames.first);
     const Transform transform = is_world(options) ? make_transform(first) : Transform();
@@ -83,11 +85,12 @@ AnimationPlan make_plan(const Simulation& simulation, const BakeOptions& options
 }
 
 // Warns of surfaces so far from the origin that the format tears them.
-void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan) {
+void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan,
+                       const std::vector<std::size_t>& chosen) {
   const Scene& scene = simulation.scene();
   for (const PrecisionLoss& loss : precision_losses(plan)) {
     const std::string& name = plan.surfaces[loss.surface].name;
-    const auto& surface = *std::ranges::find(scene.surfaces, name, &Surface::name);
+    const Surface& surface = scene.surfaces[chosen[loss.surface]];
     const Vector3d there = plan.is_placed
                                ? Vector3d(0, 0, 0)
                                : placement_at(surface.transform, plan.first_frame).translate;
@@ -148,14 +151,15 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
                            const FrameRange& frames) {
   const auto chosen = chosen_surfaces(simulation, options);
   if (!chosen) return fail(chosen.error());
-  const AnimationPlan plan = make_plan(simulation, options, frames, *chosen);
-  if (auto checked = check_overwrites(plan, simulation.scene()); !checked)
+  const auto plan = make_plan(simulation, options, frames, *chosen);
+  if (!plan) return fail(plan.error());
+  if (auto checked = check_overwrites(*plan, simulation.scene()); !checked)
     return fail(checked.error());
-  if (auto free = check_regions_file(options, simulation.scene(), plan); !free)
+  if (auto free = check_regions_file(options, simulation.scene(), *plan); !free)
     return fail(free.error());
-  auto writer = make_writer(plan);
+  auto writer = make_writer(*plan);
   if (!writer) return fail(writer.error());
-  warn_of_precision(simulation, plan);
+  warn_of_precision(simulation, *plan, *chosen);
   return Output{*chosen, *std::move(writer)};
 }
 
@@ -361,7 +365,7 @@ int run_bake(const BakeOptions& options, const BakeSource& source) {
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
   auto output = open_output(*simulation, options, *frames);
-  if (!output) return report(output.error());
+  if (!output) return report(with_kept(output.error(), "no file was written"));
 
   std::optional<DtCheck> check;
   if (options.checks_dt) {

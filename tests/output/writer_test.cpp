@@ -1,6 +1,8 @@
 #include "pliant/output/writer.hpp"
 
 #include <cctype>
+#include <numeric>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -8,6 +10,7 @@
 #include "pliant/mesh/grid_sheet.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
+#include "support/stopping.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -111,4 +114,27 @@ TEST_CASE("what is in the way of any file is told ahead", "[output][writer]") {
   refused(two, "the folder allows 255");
   two.surfaces.pop_back();
   CHECK(write_all(two, {bump(mesh.positions, 4, 2)}));
+}
+
+TEST_CASE("a writer of any format is stopped while it makes its files", "[output][stopping]") {
+  const ScratchFolder folder;
+  Mesh mesh = make_mesh({.columns = 300, .rows = 200});
+  if (GENERATE(false, true)) {  // a normal and a (u,v) of its own for each corner
+    mesh.corner_normals.resize(mesh.corner_vertices.size());
+    std::iota(mesh.corner_normals.begin(), mesh.corner_normals.end(), 0);
+  }
+  for (const std::string& ending : known_endings()) {
+    CAPTURE(ending);
+    const auto work = [&](const StopRequest& should_stop) -> Result<void> {
+      AnimationPlan own = plan(folder.file("a" + ending), mesh);
+      own.should_stop = should_stop;
+      auto writer = make_writer(own);
+      if (!writer) return fail(writer.error());
+      SurfacePose pose;
+      pose.positions = 2 * mesh.positions;
+      if (auto written = (*writer)->write(1, std::span(&pose, 1)); !written) return written;
+      return (*writer)->finish();
+    };
+    check_stops(work, 3);
+  }
 }

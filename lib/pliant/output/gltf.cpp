@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/byte_sink.hpp"
 #include "pliant/output/formats.hpp"
 #include "pliant/output/gltf_buffer.hpp"
 #include "pliant/output/gltf_numbers.hpp"
@@ -48,10 +50,9 @@ void append_number(std::string& bytes, std::uint32_t number) {
 class Materials {
  public:
   std::size_t index_of(const std::string& name) {
-    for (std::size_t k = 0; k < names_.size(); ++k)
-      if (names_[k] == name) return k;
-    names_.push_back(name);
-    return names_.size() - 1;
+    const auto [place, is_new] = numbers_.try_emplace(name, names_.size());
+    if (is_new) names_.push_back(name);
+    return place->second;
   }
 
   Json json() const {
@@ -68,6 +69,7 @@ class Materials {
 
  private:
   std::vector<std::string> names_;
+  std::map<std::string, std::size_t> numbers_;  // of the names
 };
 
 class GltfWriter final : public AnimationWriter {
@@ -78,13 +80,21 @@ class GltfWriter final : public AnimationWriter {
         is_placed_(plan.is_placed),
         separate_(std::move(separate)),
         spool_(std::move(spool)),
-        buffer_([this](std::string_view bytes) { return take(bytes); }) {
+        should_stop_(plan.should_stop),
+        buffer_(
+            [this](std::string_view bytes) {
+              return write_in_pieces(bytes, should_stop_,
+                                     [this](std::string_view piece) { return take(piece); });
+            },
+            should_stop_) {
     for (int k = 0; k < plan.frame_count(); ++k) times_.push_back(static_cast<float>(k / plan.fps));
   }
 
   Result<void> begin(const AnimationPlan& plan) {
     for (const AnimatedSurface& surface : plan.surfaces) {
-      surfaces_.emplace_back(surface, is_placed_);
+      auto made = GltfSurface::make(surface, is_placed_, should_stop_);
+      if (!made) return fail(made.error());
+      surfaces_.push_back(*std::move(made));
       if (auto begun = surfaces_.back().begin(surface.rest, plan.first_frame, buffer_); !begun)
         return begun;
     }
@@ -206,7 +216,7 @@ class GltfWriter final : public AnimationWriter {
     auto file = AtomicFile::create(file_);
     if (!file) return fail(file.error());
     if (auto written = file->write(head); !written) return written;
-    if (auto copied = spool_->copy_to(*file); !copied) return copied;
+    if (auto copied = spool_->copy_to(*file, should_stop_); !copied) return copied;
     return file->commit();
   }
 
@@ -215,6 +225,7 @@ class GltfWriter final : public AnimationWriter {
   std::optional<AtomicFile> separate_;  // the numbers of a .gltf
   HashStream separate_hash_;            // of the bytes in `separate_`
   std::optional<SpoolFile> spool_;      // the numbers of a .glb until they can be written
+  StopRequest should_stop_;
   GltfBuffer buffer_;
   std::vector<GltfSurface> surfaces_;
   std::vector<float> times_;

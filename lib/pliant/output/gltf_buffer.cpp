@@ -29,9 +29,10 @@ const char* type_of(int width) {
 }
 
 // The minimum and maximum of each component, as the format requires: of the numbers as written.
-void set_bounds(Json& accessor, std::span<const float> numbers, int width) {
+// Wrong if it is stopped.
+void set_bounds(Json& accessor, std::span<const float> numbers, int width, StopPoll& poll) {
   std::vector<float> least(numbers.begin(), numbers.begin() + width), largest = least;
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
+  for (std::size_t k = 0; k < numbers.size() && !poll.after(4); ++k) {
     const std::size_t component = k % static_cast<std::size_t>(width);
     least[component] = std::min(least[component], numbers[k]);
     largest[component] = std::max(largest[component], numbers[k]);
@@ -91,7 +92,9 @@ Result<std::size_t> GltfBuffer::add_rows(std::span<const float> numbers, int wid
                    {"componentType", floating},
                    {"count", numbers.size() / static_cast<std::size_t>(width)},
                    {"type", type_of(width)}};
-  if (bounds == Bounds::Written) set_bounds(accessor, numbers, width);
+  StopPoll poll(should_stop_);
+  if (bounds == Bounds::Written) set_bounds(accessor, numbers, width, poll);
+  if (poll.after(0)) return interrupted();
   return add_accessor(std::move(accessor));
 }
 
@@ -103,8 +106,10 @@ Result<std::size_t> GltfBuffer::add_vertices(std::span<const float> numbers, int
 Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Bounds bounds) {
   std::vector<std::uint32_t> rows;  // rows that are not 0
   std::vector<float> values;
+  StopPoll poll(should_stop_);
   const auto count = static_cast<std::uint32_t>(numbers.size() / 3);
   for (std::uint32_t row = 0; row < count; ++row) {
+    if (poll.after(4)) return interrupted();
     const auto offset = numbers.subspan(std::size_t{3} * row, 3);
     if (offset[0] == 0 && offset[1] == 0 && offset[2] == 0) continue;
     rows.push_back(row);
@@ -115,7 +120,8 @@ Result<std::size_t> GltfBuffer::add_offsets(std::span<const float> numbers, Boun
     return add_vertices(numbers, 3, bounds);
 
   Json accessor = {{"componentType", floating}, {"count", count}, {"type", "VEC3"}};
-  if (bounds == Bounds::Written) set_bounds(accessor, numbers, 3);
+  if (bounds == Bounds::Written) set_bounds(accessor, numbers, 3, poll);
+  if (poll.after(0)) return interrupted();
   if (!rows.empty()) {
     const auto index_view = add_view(indices.bytes, no_target);
     if (!index_view) return fail(index_view.error());

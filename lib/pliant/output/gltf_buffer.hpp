@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -22,9 +23,10 @@ class GltfBuffer {
 
   enum class Bounds { None, Written };
 
-  explicit GltfBuffer(Sink sink) : sink_(std::move(sink)) {}
+  explicit GltfBuffer(Sink sink, StopRequest should_stop = {})
+      : sink_(std::move(sink)), should_stop_(std::move(should_stop)) {}
 
-  // Each function adds an accessor and returns its index. Errors: those of the sink.
+  // Each function adds an accessor and returns its index. Errors: those of the sink; Interrupted.
 
   /// Rows of `width` floats for each vertex; with the least and the largest of each component.
   Result<std::size_t> add_vertices(std::span<const float> numbers, int width, Bounds bounds);
@@ -56,6 +58,7 @@ class GltfBuffer {
                                int target);
 
   Sink sink_;
+  StopRequest should_stop_;
   std::uint64_t size_ = 0;
   Json views_ = Json::array();
   Json accessors_ = Json::array();

@@ -13,10 +13,9 @@ namespace {
 
 constexpr int none = -1;
 
-// Makes the vertices of a shape. Returns that of each corner of the mesh.
-std::vector<std::uint32_t> split_vertices(const Mesh& mesh, GltfShape& shape) {
-  const StopRequest never;
-  StopPoll poll(never);
+// Makes the vertices of a shape. Returns that of each corner of the mesh; unfinished if it is
+// stopped.
+std::vector<std::uint32_t> split_vertices(const Mesh& mesh, GltfShape& shape, StopPoll& poll) {
   const std::vector<int> uv_numbers = numbers_of_equal(mesh.uvs, poll);
   std::vector<std::array<int, 3>> keys;  // corners with the same one share their vertex
   keys.reserve(mesh.corner_vertices.size());
@@ -33,8 +32,10 @@ std::vector<std::uint32_t> split_vertices(const Mesh& mesh, GltfShape& shape) {
   const std::vector<int> numbers = numbers_of_equal(keys, poll);
   std::vector<int> vertices;  // of each number
   std::vector<std::uint32_t> corners;
+  if (poll.after(0)) return corners;
   corners.reserve(keys.size());
   for (std::size_t corner = 0; corner < keys.size(); ++corner) {
+    if (poll.after(16)) return corners;
     if (static_cast<std::size_t>(numbers[corner]) == vertices.size()) {
       int vertex = mesh.corner_vertices[corner];
       if (is_used[static_cast<std::size_t>(vertex)]) {
@@ -57,9 +58,11 @@ std::vector<std::uint32_t> split_vertices(const Mesh& mesh, GltfShape& shape) {
 
 }  // namespace
 
-GltfShape make_gltf_shape(const Mesh& mesh) {
+Result<GltfShape> make_gltf_shape(const Mesh& mesh, const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
   GltfShape shape;
-  const std::vector<std::uint32_t> corners = split_vertices(mesh, shape);
+  const std::vector<std::uint32_t> corners = split_vertices(mesh, shape, poll);
+  if (poll.after(0)) return interrupted();
 
   const std::vector<std::array<int, 3>> triangles = triangulate(mesh);
   std::vector<std::size_t> part_of(mesh.materials.names.size() + 1, 0);  // counted from 1
@@ -71,6 +74,7 @@ GltfShape make_gltf_shape(const Mesh& mesh) {
       shape.parts.push_back({material, {}});
       part = shape.parts.size();
     }
+    if (poll.after(4 * static_cast<std::size_t>(mesh.face_sizes[face]))) return interrupted();
     for (int k = 0; k < mesh.face_sizes[face] - 2; ++k, ++triangle) {
       for (const int corner : triangles[triangle])
         shape.parts[part - 1].corners.push_back(corners[static_cast<std::size_t>(corner)]);

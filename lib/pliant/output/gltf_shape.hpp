@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -24,6 +26,7 @@ struct GltfShape {
   std::vector<Part> parts;   ///< in the order of the materials' first use by a face
 };
 
-GltfShape make_gltf_shape(const Mesh& mesh);
+/// Errors: Interrupted. Cost: that of `triangulate`, and n log n in the corners.
+Result<GltfShape> make_gltf_shape(const Mesh& mesh, const StopRequest& should_stop = {});
 
 }  // namespace pliant

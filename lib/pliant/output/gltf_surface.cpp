@@ -85,13 +85,22 @@ bool GltfKeys::is_moving() const {
   return false;
 }
 
-GltfSurface::GltfSurface(const AnimatedSurface& surface, bool is_placed)
+GltfSurface::GltfSurface(const AnimatedSurface& surface, bool is_placed, StopRequest should_stop)
     : name_(surface.name),
       written_(*surface.mesh),
       mesh_(written_.in_space(surface.is_mirrored)),
       is_placed_(is_placed),
-      shape_(make_gltf_shape(mesh_)),
+      should_stop_(std::move(should_stop)),
       keys_{{"translation", 3}, {"rotation", 4}, {"scale", 3}} {}
+
+Result<GltfSurface> GltfSurface::make(const AnimatedSurface& surface, bool is_placed,
+                                      const StopRequest& should_stop) {
+  GltfSurface made(surface, is_placed, should_stop);
+  auto shape = make_gltf_shape(made.mesh_, should_stop);
+  if (!shape) return fail(shape.error());
+  made.shape_ = *std::move(shape);
+  return made;
+}
 
 Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer) {
   const auto rows = to_single(rest, frame, mesh_.first_index);
@@ -101,7 +110,9 @@ Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer
     const auto row = rows->begin() + std::ptrdiff_t{3} * vertex;
     base_.insert(base_.end(), row, row + 3);
   }
-  base_normals_ = normals_at(rest);
+  auto own_normals = normals_at(rest);
+  if (!own_normals) return fail(own_normals.error());
+  base_normals_ = *std::move(own_normals);
 
   const auto positions = buffer.add_vertices(base_, 3, Bounds::Written);
   if (!positions) return fail(positions.error());
@@ -122,12 +133,16 @@ Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer
   return {};
 }
 
-std::vector<float> GltfSurface::normals_at(const Field& positions) const {
-  const Field normals = unit_normals(mesh_, positions);
+Result<std::vector<float>> GltfSurface::normals_at(const Field& positions) const {
+  const auto normals = unit_normals(mesh_, positions, should_stop_);
+  if (!normals) return fail(normals.error());
+  StopPoll poll(should_stop_);
   std::vector<float> numbers;
   numbers.reserve(3 * shape_.normals.size());
-  for (const int normal : shape_.normals)
-    append(normal < 0 ? Vector3d(0, 1, 0) : Vector3d(normals.row(normal)), numbers);
+  for (const int normal : shape_.normals) {
+    if (poll.after(8)) return interrupted();
+    append(normal < 0 ? Vector3d(0, 1, 0) : Vector3d(normals->row(normal)), numbers);
+  }
   return numbers;
 }
 
@@ -143,7 +158,9 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
   // accurate as an offset in single precision allows. It is 0 if the position rounds to the base;
   // otherwise the rounding error of the base would be an offset of every vertex that does not move.
   Field offsets(static_cast<Eigen::Index>(shape_.source.size()), 3);
+  StopPoll poll(should_stop_);
   for (Eigen::Index row = 0; row < offsets.rows(); ++row) {
+    if (poll.after(8)) return interrupted();
     for (int k = 0; k < 3; ++k) {
       const double position = pose.positions(shape_.source[static_cast<std::size_t>(row)], k);
       const float base = base_[static_cast<std::size_t>(3 * row + k)];
@@ -156,8 +173,11 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
     const auto held = to_single(pose.positions, frame, mesh_.first_index);
     return fail(held ? rounded.error() : held.error());
   }
-  std::vector<float> normals = normals_at(pose.positions);
+  auto own_normals = normals_at(pose.positions);
+  if (!own_normals) return fail(own_normals.error());
+  std::vector<float>& normals = *own_normals;
   for (std::size_t k = 0; k < normals.size(); ++k) normals[k] -= base_normals_[k];
+  if (is_stopped(should_stop_)) return interrupted();
 
   if (std::ranges::all_of(*rounded, [](float number) { return number == 0; })) {
     target_of_frame_.push_back(-1);  // at rest

@@ -26,7 +26,9 @@ class GltfSurface {
  public:
   using Json = GltfBuffer::Json;
 
-  GltfSurface(const AnimatedSurface& surface, bool is_placed);
+  /// Errors: Interrupted.
+  static Result<GltfSurface> make(const AnimatedSurface& surface, bool is_placed,
+                                  const StopRequest& should_stop);
 
   /// Writes the static parts. Errors: those of the buffer; NotFinite.
   Result<void> begin(const Field& rest, int frame, GltfBuffer& buffer);
@@ -52,12 +54,14 @@ class GltfSurface {
     std::size_t positions, normals;  // accessors
   };
 
-  std::vector<float> normals_at(const Field& positions) const;
+  GltfSurface(const AnimatedSurface& surface, bool is_placed, StopRequest should_stop);
+  Result<std::vector<float>> normals_at(const Field& positions) const;
 
   std::string name_;
   WrittenMesh written_;
   const Mesh& mesh_;
   bool is_placed_;
+  StopRequest should_stop_;
   GltfShape shape_;
   Json attributes_;
   std::vector<std::size_t> indices_;        // accessors of the shape's parts

@@ -29,12 +29,14 @@ std::string npy_header(int frames, int vertices) {
 
 class NpyWriter final : public SurfaceWriter {
  public:
-  explicit NpyWriter(AtomicFile file) : file_(std::move(file)) {}
+  NpyWriter(AtomicFile file, StopRequest should_stop)
+      : file_(std::move(file)), should_stop_(std::move(should_stop)) {}
 
   Result<void> write(int, const SurfacePose& pose) override {
     const Field& positions = pose.positions;
     numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
-    return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) {
+    return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) -> Result<void> {
+      if (is_stopped(should_stop_)) return interrupted();
       const std::span<double> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
       to_row_order(positions, first, numbers);
       return file_.write(std::span<const double>(numbers));
@@ -45,6 +47,7 @@ class NpyWriter final : public SurfaceWriter {
 
  private:
   AtomicFile file_;
+  StopRequest should_stop_;
   std::vector<double> numbers_;  // some rows, in the file's order
 };
 
@@ -55,7 +58,7 @@ Result<std::unique_ptr<SurfaceWriter>> make_npy_writer(const SurfacePlan& plan) 
   if (!file) return fail(file.error());
   const std::string header = npy_header(plan.frame_count(), plan.mesh->vertex_count());
   if (auto written = file->write(header); !written) return fail(written.error());
-  return std::make_unique<NpyWriter>(*std::move(file));
+  return std::make_unique<NpyWriter>(*std::move(file), plan.should_stop);
 }
 
 }  // namespace pliant

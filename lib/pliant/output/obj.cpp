@@ -1,5 +1,6 @@
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "pliant/output/formats.hpp"
 #include "pliant/output/obj_text.hpp"
@@ -16,8 +17,12 @@ class ObjWriter final : public SequenceWriter {
  private:
   Result<void> write_frame(const SurfacePose& pose, const ByteSink& sink) override {
     std::optional<ObjText>& text = texts_[pose.is_mirrored ? 1 : 0];
-    if (!text) text.emplace(mesh_.in_space(pose.is_mirrored));
-    return text->write(pose.positions, sink);
+    if (!text) {
+      auto made = ObjText::make(mesh_.in_space(pose.is_mirrored), should_stop());
+      if (!made) return fail(made.error());
+      text.emplace(*std::move(made));
+    }
+    return text->write(pose.positions, sink, should_stop());
   }
 
   WrittenMesh mesh_;

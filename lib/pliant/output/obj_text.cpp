@@ -41,8 +41,8 @@ class NameStatement {
   int current_ = -1;
 };
 
-// For each face, whether it shares no normal with another.
-std::vector<bool> flat_faces(const Mesh& mesh) {
+// For each face, whether it shares no normal with another. Unfinished if it is stopped.
+std::vector<bool> flat_faces(const Mesh& mesh, StopPoll& poll) {
   std::vector<bool> is_flat(mesh.face_sizes.size(), !mesh.corner_normals.empty());
   if (mesh.corner_normals.empty()) return is_flat;
   constexpr int none = -1, several = -2;
@@ -50,6 +50,7 @@ std::vector<bool> flat_faces(const Mesh& mesh) {
   for (const bool is_second_pass : {false, true}) {
     std::size_t corner = 0;
     for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
+      if (poll.after(4)) return is_flat;
       for (int k = 0; k < mesh.face_sizes[face]; ++k, ++corner) {
         int& known = face_of[static_cast<std::size_t>(mesh.corner_normals[corner])];
         if (is_second_pass) {
@@ -66,19 +67,28 @@ std::vector<bool> flat_faces(const Mesh& mesh) {
 
 }  // namespace
 
-ObjText::ObjText(const Mesh& mesh) : mesh_(mesh) {
-  if (!mesh.object.empty()) head_ = "o " + in_line(mesh.object) + '\n';
-  auto out = std::back_inserter(topology_);
-  for (const auto& [u, v] : mesh.uvs) fmt::format_to(out, "vt {} {}\n", u, v);
+Result<ObjText> ObjText::make(const Mesh& mesh, const StopRequest& should_stop) {
+  constexpr std::size_t parts_of_number = 64;
+  StopPoll poll(should_stop);
+  ObjText made(mesh);
+  if (!mesh.object.empty()) made.head_ = "o " + in_line(mesh.object) + '\n';
+  std::string& topology = made.topology_;
+  auto out = std::back_inserter(topology);
+  for (const auto& [u, v] : mesh.uvs) {
+    if (poll.after(2 * parts_of_number)) return interrupted();
+    fmt::format_to(out, "vt {} {}\n", u, v);
+  }
   NameStatement group("g", mesh.groups, ""), material("usemtl", mesh.materials, "");
-  const std::vector<bool> is_flat = flat_faces(mesh);
+  const std::vector<bool> is_flat = flat_faces(mesh, poll);
   std::size_t corner = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
-    group.append(face, topology_);
-    material.append(face, topology_);
+    if (poll.after(parts_of_number * static_cast<std::size_t>(mesh.face_sizes[face])))
+      return interrupted();
+    group.append(face, topology);
+    material.append(face, topology);
     if (face == 0 || is_flat[face] != is_flat[face - 1])
-      topology_ += is_flat[face] ? "s off\n" : "s 1\n";
-    topology_ += 'f';
+      topology += is_flat[face] ? "s off\n" : "s 1\n";
+    topology += 'f';
     for (int k = 0; k < mesh.face_sizes[face]; ++k, ++corner) {
       fmt::format_to(out, " {}", mesh.corner_vertices[corner] + 1);
       const int uv = mesh.corner_uvs[corner] + 1;
@@ -86,30 +96,35 @@ ObjText::ObjText(const Mesh& mesh) : mesh_(mesh) {
       if (uv > 0) {
         fmt::format_to(out, "/{}", uv);
       } else if (has_normal) {
-        topology_ += '/';
+        topology += '/';
       }
       if (has_normal) fmt::format_to(out, "/{}", mesh.corner_normals[corner] + 1);
     }
-    topology_ += '\n';
+    topology += '\n';
   }
+  return made;
 }
 
-Result<void> ObjText::write(const Field& positions, const ByteSink& sink) {
-  if (auto written = sink(head_); !written) return written;
-  vertices_.clear();
-  auto out = std::back_inserter(vertices_);
-  for (Eigen::Index row = 0; row < positions.rows(); ++row)
-    fmt::format_to(out, "v {} {} {}\n", positions(row, 0), positions(row, 1), positions(row, 2));
-  if (auto written = sink(vertices_); !written) return written;
-  if (!mesh_.corner_normals.empty()) {
-    vertices_.clear();
-    const Eigen::Matrix<float, Eigen::Dynamic, 3> normals =
-        unit_normals(mesh_, positions).cast<float>();
-    for (Eigen::Index row = 0; row < normals.rows(); ++row)
-      fmt::format_to(out, "vn {} {} {}\n", normals(row, 0), normals(row, 1), normals(row, 2));
-    if (auto written = sink(vertices_); !written) return written;
+Result<void> ObjText::write(const Field& positions, const ByteSink& sink,
+                            const StopRequest& should_stop) const {
+  TextPieces out(sink, should_stop);
+  out.text = head_;
+  auto end = std::back_inserter(out.text);
+  for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+    fmt::format_to(end, "v {} {} {}\n", positions(row, 0), positions(row, 1), positions(row, 2));
+    if (auto passed = out.pass_on(); !passed) return passed;
   }
-  return sink(topology_);
+  if (!mesh_.corner_normals.empty()) {
+    const auto normals = unit_normals(mesh_, positions, should_stop);
+    if (!normals) return fail(normals.error());
+    for (Eigen::Index row = 0; row < normals->rows(); ++row) {
+      const Eigen::RowVector3f normal = normals->row(row).cast<float>();
+      fmt::format_to(end, "vn {} {} {}\n", normal[0], normal[1], normal[2]);
+      if (auto passed = out.pass_on(); !passed) return passed;
+    }
+  }
+  if (auto passed = out.finish(); !passed) return passed;
+  return write_in_pieces(topology_, should_stop, sink);
 }
 
 }  // namespace pliant

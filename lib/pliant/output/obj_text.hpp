@@ -1,34 +1,34 @@
 #pragma once
 
-#include <functional>
 #include <string>
-#include <string_view>
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/output/byte_sink.hpp"
 
 namespace pliant {
-
-/// Receives the bytes of a file, piece by piece.
-using ByteSink = std::function<Result<void>(std::string_view)>;
 
 /// A mesh as Wavefront OBJ: positions as the shortest text that parses to the same double, texture
 /// coordinates and faces as in the source, names of object, groups and materials. Smooth surfaces
 /// have `s 1`; others have `vn` too, and `s off` for flat faces.
 class ObjText {
  public:
-  explicit ObjText(const Mesh& mesh);  ///< must outlive it
+  /// Of a mesh, which must outlive it. Errors: Interrupted.
+  static Result<ObjText> make(const Mesh& mesh, const StopRequest& should_stop = {});
 
-  /// The mesh with its vertices at `positions`. Errors: those of the sink.
-  Result<void> write(const Field& positions, const ByteSink& sink);
+  /// The mesh with its vertices at `positions`. Errors: those of the sink; Interrupted.
+  Result<void> write(const Field& positions, const ByteSink& sink,
+                     const StopRequest& should_stop = {}) const;
 
  private:
+  explicit ObjText(const Mesh& mesh) : mesh_(mesh) {}
+
   const Mesh& mesh_;
   // Everything but positions and normals is the same in every frame.
   std::string head_;
   std::string topology_;
-  std::string vertices_;
 };
 
 }  // namespace pliant

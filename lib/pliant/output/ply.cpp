@@ -92,21 +92,29 @@ class PlyWriter final : public SequenceWriter {
     const Field& positions = pose.positions;
     const Mesh& mesh = written_.in_space(pose.is_mirrored);
     std::string& faces = faces_[pose.is_mirrored ? 1 : 0];
-    if (faces.empty()) faces = faces_of(mesh);
-    const Field normals = normals_.empty() ? Field() : unit_normals(mesh, positions);
+    StopPoll poll(should_stop());
+    if (faces.empty()) faces = faces_of(mesh, poll);
+    Result<Field> normals;
+    if (!normals_.empty()) normals = unit_normals(mesh, positions, should_stop());
+    if (!normals) return fail(normals.error());
     char* vertex = vertices_.data();
     for (Eigen::Index row = 0; row < positions.rows(); ++row, vertex += vertex_size()) {
+      if (poll.after(4)) break;
       const double position[] = {positions(row, 0), positions(row, 1), positions(row, 2)};
       std::memcpy(vertex, position, sizeof(position));
       if (normals_.empty()) continue;
       const int of_vertex = normals_[static_cast<std::size_t>(row)];
       float normal[3];
-      for (int k = 0; k < 3; ++k) normal[k] = static_cast<float>(normals(of_vertex, k));
+      for (int k = 0; k < 3; ++k) normal[k] = static_cast<float>((*normals)(of_vertex, k));
       std::memcpy(vertex + sizeof(position), normal, sizeof(normal));
     }
+    if (poll.after(0)) {
+      faces.clear();
+      return interrupted();
+    }
     if (auto written = sink(header_); !written) return written;
-    if (auto written = sink(vertices_); !written) return written;
-    return sink(faces);
+    if (auto written = write_in_pieces(vertices_, should_stop(), sink); !written) return written;
+    return write_in_pieces(faces, should_stop(), sink);
   }
 
   std::size_t vertex_size() const {
@@ -124,7 +132,8 @@ class PlyWriter final : public SequenceWriter {
     }
   }
 
-  std::string faces_of(const Mesh& mesh) const {
+  // Unfinished if it is stopped.
+  std::string faces_of(const Mesh& mesh, StopPoll& poll) const {
     std::string faces;
     const auto append_count = [&](int count) {
       if (has_long_counts_) {
@@ -136,6 +145,7 @@ class PlyWriter final : public SequenceWriter {
     std::size_t first = 0;
     for (const int size : mesh.face_sizes) {
       const std::size_t end = first + static_cast<std::size_t>(size);
+      if (poll.after(16 * static_cast<std::size_t>(size))) break;
       append_count(size);
       for (std::size_t k = first; k < end; ++k)
         append(faces, static_cast<std::int32_t>(mesh.corner_vertices[k]));

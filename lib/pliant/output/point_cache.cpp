@@ -39,13 +39,17 @@ void swap_bytes(std::span<float> numbers) {
 template <std::endian order>
 class PointCacheWriter final : public SurfaceWriter {
  public:
-  PointCacheWriter(AtomicFile cache, AtomicFile mesh, int first_index)
-      : cache_(std::move(cache)), mesh_(std::move(mesh)), first_index_(first_index) {}
+  PointCacheWriter(AtomicFile cache, AtomicFile mesh, const SurfacePlan& plan)
+      : cache_(std::move(cache)),
+        mesh_(std::move(mesh)),
+        first_index_(plan.mesh->first_index),
+        should_stop_(plan.should_stop) {}
 
   Result<void> write(int frame, const SurfacePose& pose) override {
     const Field& positions = pose.positions;
     numbers_.resize(3 * static_cast<std::size_t>(std::min(rows_at_a_time, positions.rows())));
     return for_row_blocks(positions, [&](Eigen::Index first, Eigen::Index count) -> Result<void> {
+      if (is_stopped(should_stop_)) return interrupted();
       const std::span<float> numbers(numbers_.data(), 3 * static_cast<std::size_t>(count));
       if (auto rounded = to_single(positions, frame, first, numbers, first_index_); !rounded)
         return rounded;
@@ -62,7 +66,8 @@ class PointCacheWriter final : public SurfaceWriter {
  private:
   AtomicFile cache_;
   AtomicFile mesh_;
-  int first_index_;             // first vertex number in messages
+  int first_index_;  // first vertex number in messages
+  StopRequest should_stop_;
   std::vector<float> numbers_;  // some rows
 };
 
@@ -70,9 +75,11 @@ Result<AtomicFile> write_mesh(const SurfacePlan& plan) {
   auto file = AtomicFile::create(std::filesystem::path(plan.file).replace_extension(".obj"));
   if (!file) return file;
   WrittenMesh mesh(*plan.mesh);
-  auto written = ObjText(mesh.in_space(plan.is_mirrored))
-                     .write(plan.rest ? *plan.rest : plan.mesh->positions,
-                            [&](std::string_view bytes) { return file->write(bytes); });
+  const auto text = ObjText::make(mesh.in_space(plan.is_mirrored), plan.should_stop);
+  if (!text) return fail(text.error());
+  const auto written = text->write(
+      plan.rest ? *plan.rest : plan.mesh->positions,
+      [&](std::string_view bytes) { return file->write(bytes); }, plan.should_stop);
   if (!written) return fail(written.error());
   return file;
 }
@@ -85,8 +92,7 @@ Result<std::unique_ptr<SurfaceWriter>> make_writer(const SurfacePlan& plan,
   if (auto written = cache->write(header); !written) return fail(written.error());
   auto mesh = write_mesh(plan);
   if (!mesh) return fail(mesh.error());
-  return std::make_unique<PointCacheWriter<order>>(*std::move(cache), *std::move(mesh),
-                                                   plan.mesh->first_index);
+  return std::make_unique<PointCacheWriter<order>>(*std::move(cache), *std::move(mesh), plan);
 }
 
 }  // namespace

@@ -133,13 +133,17 @@ Result<void> check_sequence(const SurfacePlan& plan) {
 }
 
 SequenceWriter::SequenceWriter(const SurfacePlan& plan)
-    : pattern_(plan.file), resumes_(plan.resume) {}
+    : pattern_(plan.file), resumes_(plan.resume), should_stop_(plan.should_stop) {}
 
 Result<void> SequenceWriter::write(int frame, const SurfacePose& pose) {
   const std::filesystem::path name = sequence_file(pattern_, frame);
-  if (resumes_ && is_there(name, pose)) {
-    ++counts_.kept;
-    return {};
+  if (resumes_) {
+    const auto is_kept = is_there(name, pose);
+    if (!is_kept) return fail(is_kept.error());
+    if (*is_kept) {
+      ++counts_.kept;
+      return {};
+    }
   }
   // The names are flushed at the end: losing one loses that frame, just as if the power had failed
   // a moment earlier.
@@ -153,15 +157,18 @@ Result<void> SequenceWriter::write(int frame, const SurfacePose& pose) {
 
 Result<void> SequenceWriter::finish() { return flush_folder(pattern_); }
 
-// Whether the file has the content to be written; if so, flushes it to the disk.
-bool SequenceWriter::is_there(const std::filesystem::path& file, const SurfacePose& pose) {
+// Whether the file has the content to be written; if so, flushes it to the disk. Errors:
+// Interrupted.
+Result<bool> SequenceWriter::is_there(const std::filesystem::path& file, const SurfacePose& pose) {
   FileBytes bytes(file);
   if (!bytes.is_open()) return false;
   const auto is_next = [&](std::string_view part) -> Result<void> {
     if (bytes.next_are(part)) return {};
     return fail(ErrorCode::Unreadable, "differs");
   };
-  return write_frame(pose, is_next) && bytes.are_all_read() && bytes.flush();
+  const auto compared = write_frame(pose, is_next);
+  if (!compared && compared.error().code == ErrorCode::Interrupted) return fail(compared.error());
+  return compared && bytes.are_all_read() && bytes.flush();
 }
 
 }  // namespace pliant

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
-#include "pliant/output/obj_text.hpp"
+#include "pliant/output/byte_sink.hpp"
 #include "pliant/output/surface_writer.hpp"
 
 namespace pliant {
@@ -34,14 +34,17 @@ class SequenceWriter : public SurfaceWriter {
  protected:
   explicit SequenceWriter(const SurfacePlan& plan);
 
+  const StopRequest& should_stop() const { return should_stop_; }
+
  private:
   /// The content of the file of one frame.
   virtual Result<void> write_frame(const SurfacePose& pose, const ByteSink& sink) = 0;
 
-  bool is_there(const std::filesystem::path& file, const SurfacePose& pose);
+  Result<bool> is_there(const std::filesystem::path& file, const SurfacePose& pose);
 
   std::filesystem::path pattern_;
   bool resumes_;
+  StopRequest should_stop_;
   FileCounts counts_;
 };
 

@@ -63,11 +63,12 @@ Result<void> SpoolFile::write(std::string_view bytes) {
   return {};
 }
 
-Result<void> SpoolFile::copy_to(AtomicFile& file) {
+Result<void> SpoolFile::copy_to(AtomicFile& file, const StopRequest& should_stop) {
   if (std::fflush(stream_.get()) != 0) return unwritable(errno);
   if (fseeko(stream_.get(), 0, SEEK_SET) != 0) return unwritable(errno);
   std::vector<char> block(std::size_t{1} << 20);
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), stream_.get())) {
+    if (is_stopped(should_stop)) return interrupted();
     if (auto written = file.write({block.data(), count}); !written) return written;
   }
   if (std::ferror(stream_.get())) return unwritable(errno);

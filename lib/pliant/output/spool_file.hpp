@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/output/atomic_file.hpp"
 
 namespace pliant {
@@ -24,8 +25,9 @@ class SpoolFile {
 
   std::uint64_t size() const { return size_; }  ///< [bytes]
 
-  /// Appends everything written so far to another file. Errors: Unwritable, for either file.
-  Result<void> copy_to(AtomicFile& file);
+  /// Appends everything written so far to another file. Errors: Unwritable, for either file;
+  /// Interrupted.
+  Result<void> copy_to(AtomicFile& file, const StopRequest& should_stop = {});
 
  private:
   struct Close {

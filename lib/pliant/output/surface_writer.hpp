@@ -4,6 +4,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/mesh/mesh.hpp"
 
@@ -35,7 +36,7 @@ class SurfaceWriter {
   virtual ~SurfaceWriter() = default;
 
   /// The surface at the next frame; not its placement. Errors: Unwritable; NotFinite if the format
-  /// has only single precision and a coordinate is out of range.
+  /// has only single precision and a coordinate is out of range; Interrupted.
   virtual Result<void> write(int frame, const SurfacePose& pose) = 0;
 
   /// Gives the result its name. Errors: Unwritable. Requires: every frame has been written.
@@ -55,6 +56,7 @@ struct SurfacePlan {
   const Field* rest = nullptr;  ///< positions at rest in the frames' space; null: those of the mesh
   bool is_mirrored = false;     ///< as of a pose, of the rest positions
   bool resume = false;          ///< keeps files of a sequence that already have the right content
+  StopRequest should_stop = {};
 
   int frame_count() const { return last_frame - first_frame + 1; }
 };

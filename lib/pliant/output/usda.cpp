@@ -1,3 +1,5 @@
+#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,10 +30,9 @@ class MaterialScope {
   explicit MaterialScope(std::string scope) : scope_(std::move(scope)) {}
 
   std::string path_of(const std::string& name) {
-    for (const auto& [known, prim] : prims_)
-      if (known == name) return path(prim);
-    prims_.emplace_back(name, names_.take(name));
-    return path(prims_.back().second);
+    const auto [place, is_new] = numbers_.try_emplace(name, prims_.size());
+    if (is_new) prims_.emplace_back(name, names_.take(name));
+    return path(prims_[place->second].second);
   }
 
   std::string text() const {
@@ -57,7 +58,8 @@ class MaterialScope {
 
   std::string scope_;
   UsdaNames names_;
-  std::vector<std::pair<std::string, std::string>> prims_;  // name, prim
+  std::vector<std::pair<std::string, std::string>> prims_;   // name, prim
+  std::map<std::string, std::size_t, std::less<>> numbers_;  // of the prims by their names
 };
 
 class UsdaWriter final : public AnimationWriter {

@@ -20,21 +20,26 @@ void append_vector(float x, float y, float z, std::string& text) {
 }
 
 // Writes rows of three as [(x, y, z), …].
-void append_vectors(std::span<const float> numbers, std::string& text) {
-  text += '[';
+Result<void> add_vectors(std::span<const float> numbers, TextPieces& out) {
+  out.text += '[';
   for (std::size_t k = 0; k < numbers.size(); k += 3) {
-    if (k > 0) text += ", ";
-    append_vector(numbers[k], numbers[k + 1], numbers[k + 2], text);
+    if (k > 0) out.text += ", ";
+    append_vector(numbers[k], numbers[k + 1], numbers[k + 2], out.text);
+    if (auto passed = out.pass_on(); !passed) return passed;
   }
-  text += ']';
+  out.text += ']';
+  return {};
 }
 
-void append_integers(std::span<const int> numbers, std::string& text) {
-  auto out = std::back_inserter(text);
-  text += '[';
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    fmt::format_to(out, "{}{}", k > 0 ? ", " : "", numbers[k]);
-  text += ']';
+Result<void> add_integers(std::span<const int> numbers, TextPieces& out) {
+  auto end = std::back_inserter(out.text);
+  out.text += '[';
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    fmt::format_to(end, "{}{}", k > 0 ? ", " : "", numbers[k]);
+    if (auto passed = out.pass_on(); !passed) return passed;
+  }
+  out.text += ']';
+  return {};
 }
 
 // The corners of the bounding box of the points.
@@ -63,10 +68,11 @@ std::vector<std::vector<int>> faces_of_names(const FaceNames& faces) {
 
 std::string sample_head(int frame) { return fmt::format("{}    {}: ", indent, frame); }
 
-Result<void> append_samples(std::string_view attribute, SpoolFile& samples, AtomicFile& file) {
+Result<void> append_samples(std::string_view attribute, SpoolFile& samples, AtomicFile& file,
+                            const StopRequest& should_stop) {
   const std::string head = fmt::format("{}{}.timeSamples = {{\n", indent, attribute);
   if (auto written = file.write(head); !written) return written;
-  if (auto copied = samples.copy_to(file); !copied) return copied;
+  if (auto copied = samples.copy_to(file, should_stop); !copied) return copied;
   return file.write(fmt::format("{}}}\n", indent));
 }
 
@@ -88,6 +94,7 @@ UsdaSurface::UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surfa
       last_frame_(plan.last_frame),
       fps_(plan.fps),
       is_placed_(plan.is_placed),
+      should_stop_(plan.should_stop),
       points_(std::move(points)),
       normals_(std::move(normals)),
       velocities_(std::move(velocities)) {}
@@ -102,8 +109,25 @@ Result<UsdaSurface> UsdaSurface::make(const AnimationPlan& plan, const AnimatedS
   UsdaSurface made(plan, surface, *std::move(points), *std::move(normals), *std::move(velocities));
   const auto rest = to_single(surface.rest, plan.first_frame, surface.mesh->first_index);
   if (!rest) return fail(rest.error());
-  append_vectors(*rest, made.rest_);
+  const ByteSink keep = [&](std::string_view bytes) -> Result<void> {
+    made.rest_ += bytes;
+    return {};
+  };
+  TextPieces out(keep, plan.should_stop);
+  auto added = add_vectors(*rest, out);
+  if (added) added = out.finish();
+  if (!added) return fail(added.error());
   return made;
+}
+
+Result<void> UsdaSurface::add_sample(SpoolFile& samples, int frame,
+                                     std::span<const float> numbers) {
+  const ByteSink write = [&](std::string_view bytes) { return samples.write(bytes); };
+  TextPieces out(write, should_stop_);
+  out.text = sample_head(frame);
+  if (auto added = add_vectors(numbers, out); !added) return added;
+  out.text += ",\n";
+  return out.finish();
 }
 
 Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
@@ -113,28 +137,26 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
   }
   const auto numbers = to_single(pose.positions, frame, mesh_->first_index);
   if (!numbers) return fail(numbers.error());
-  std::string text = sample_head(frame);
-  append_vectors(*numbers, text);
-  text += ",\n";
-  if (auto written = points_.write(text); !written) return written;
+  if (auto added = add_sample(points_, frame, *numbers); !added) return added;
 
   extents_ += sample_head(frame);
   append_extent(*numbers, extents_);
   extents_ += ",\n";
 
-  text = sample_head(frame);
-  const Field normals = unit_normals(*mesh_, pose.positions);
+  auto normals = unit_normals(*mesh_, pose.positions, should_stop_);
+  if (!normals) return fail(normals.error());
+  StopPoll poll(should_stop_);
   Field rows;  // one per corner if not one per vertex
   if (!mesh_->corner_normals.empty()) {
     rows.resize(static_cast<Eigen::Index>(mesh_->corner_normals.size()), 3);
-    for (Eigen::Index k = 0; k < rows.rows(); ++k)
-      rows.row(k) = normals.row(mesh_->corner_normals[static_cast<std::size_t>(k)]);
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+      if (poll.after(4)) return interrupted();
+      rows.row(k) = normals->row(mesh_->corner_normals[static_cast<std::size_t>(k)]);
+    }
   }
-  const auto directions = to_single(mesh_->corner_normals.empty() ? normals : rows, frame);
+  const auto directions = to_single(mesh_->corner_normals.empty() ? *normals : rows, frame);
   if (!directions) return fail(directions.error());
-  append_vectors(*directions, text);
-  text += ",\n";
-  if (auto written = normals_.write(text); !written) return written;
+  if (auto added = add_sample(normals_, frame, *directions); !added) return added;
 
   if (last_) {
     const Field way = pose.positions - *last_;
@@ -151,10 +173,7 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
 Result<void> UsdaSurface::add_velocities(int frame, const Field& way) {
   const auto numbers = to_single(way * fps_, frame);
   if (!numbers) return fail(numbers.error());
-  std::string text = sample_head(frame);
-  append_vectors(*numbers, text);
-  text += ",\n";
-  return velocities_.write(text);
+  return add_sample(velocities_, frame, *numbers);
 }
 
 void UsdaSurface::add_placement(const Placement& placement) {
@@ -182,19 +201,19 @@ std::string UsdaSurface::head(const std::string& name) const {
          extents_ + indent + "}\n";
 }
 
-std::string UsdaSurface::topology() const {
-  std::string text = fmt::format("{}int[] faceVertexCounts = ", indent);
-  append_integers(mesh_->face_sizes, text);
-  text += fmt::format("\n{}int[] faceVertexIndices = ", indent);
-  append_integers(mesh_->corner_vertices, text);
-  text += fmt::format(
+Result<void> UsdaSurface::add_topology(TextPieces& out) const {
+  out.text += fmt::format("{}int[] faceVertexCounts = ", indent);
+  if (auto added = add_integers(mesh_->face_sizes, out); !added) return added;
+  out.text += fmt::format("\n{}int[] faceVertexIndices = ", indent);
+  if (auto added = add_integers(mesh_->corner_vertices, out); !added) return added;
+  out.text += fmt::format(
       "\n{0}uniform token orientation = \"rightHanded\"\n"
       "{0}uniform token subdivisionScheme = \"none\"\n",
       indent);
-  return text;
+  return {};
 }
 
-std::string UsdaSurface::uvs() const {
+Result<void> UsdaSurface::add_uvs(TextPieces& out) const {
   if (std::all_of(mesh_->corner_uvs.begin(), mesh_->corner_uvs.end(),
                   [](int uv) { return uv < 0; })) {
     return {};
@@ -204,17 +223,18 @@ std::string UsdaSurface::uvs() const {
   const auto origin = static_cast<int>(mesh_->uvs.size());
   const bool has_gaps = std::find(indices.begin(), indices.end(), -1) != indices.end();
   std::replace(indices.begin(), indices.end(), -1, origin);
-  std::string text = fmt::format("{}texCoord2f[] primvars:st = [", indent);
-  auto out = std::back_inserter(text);
+  out.text += fmt::format("{}texCoord2f[] primvars:st = [", indent);
   for (std::size_t k = 0; k < mesh_->uvs.size(); ++k) {
-    fmt::format_to(out, "{}({}, {})", k > 0 ? ", " : "", static_cast<float>(mesh_->uvs[k][0]),
-                   static_cast<float>(mesh_->uvs[k][1]));
+    if (auto passed = out.pass_on(); !passed) return passed;
+    fmt::format_to(std::back_inserter(out.text), "{}({}, {})", k > 0 ? ", " : "",
+                   static_cast<float>(mesh_->uvs[k][0]), static_cast<float>(mesh_->uvs[k][1]));
   }
-  if (has_gaps) text += ", (0, 0)";
-  text += fmt::format("] (\n{0}    interpolation = \"faceVarying\"\n{0})\n", indent);
-  text += fmt::format("{}int[] primvars:st:indices = ", indent);
-  append_integers(indices, text);
-  return text + '\n';
+  if (has_gaps) out.text += ", (0, 0)";
+  out.text += fmt::format("] (\n{0}    interpolation = \"faceVarying\"\n{0})\n", indent);
+  out.text += fmt::format("{}int[] primvars:st:indices = ", indent);
+  if (auto added = add_integers(indices, out); !added) return added;
+  out.text += '\n';
+  return {};
 }
 
 std::string UsdaSurface::placement() const {
@@ -238,17 +258,18 @@ std::string UsdaSurface::placement() const {
   return text + fmt::format("{}uniform token[] xformOpOrder = [{}]\n", indent, order);
 }
 
-std::string UsdaSurface::subsets(
-    const std::function<std::string(const std::string&)>& material_path) const {
+Result<void> UsdaSurface::add_subsets(
+    const std::function<std::string(const std::string&)>& material_path, TextPieces& out) const {
   UsdaNames names;
-  std::string text;
+  std::string& text = out.text;
   for (const auto& [faces, family] :
        {std::pair(&mesh_->materials, "materialBind"), std::pair(&mesh_->groups, "groups")}) {
     if (faces->names.empty()) continue;
     text += fmt::format("{}uniform token subsetFamily:{}:familyType = \"nonOverlapping\"\n", indent,
                         family);
   }
-  const auto add = [&](const FaceNames& faces, const char* family, bool is_material) {
+  const auto add = [&](const FaceNames& faces, const char* family,
+                       bool is_material) -> Result<void> {
     const std::vector<std::vector<int>> members = faces_of_names(faces);
     for (std::size_t k = 0; k < faces.names.size(); ++k) {
       const std::string name = names.take(faces.names[k]);
@@ -261,37 +282,48 @@ std::string UsdaSurface::subsets(
           "{0})\n{0}{{\n{0}    uniform token elementType = \"face\"\n"
           "{0}    uniform token familyName = \"{1}\"\n{0}    int[] indices = ",
           indent, family);
-      append_integers(members[k], text);
+      if (auto added = add_integers(members[k], out); !added) return added;
       text += '\n';
       if (is_material) {
         text += fmt::format("{}    rel material:binding = <{}>\n", indent,
                             material_path(faces.names[k]));
       }
       text += fmt::format("{}}}\n", indent);
+      if (auto passed = out.pass_on(); !passed) return passed;
     }
+    return {};
   };
-  add(mesh_->materials, "materialBind", true);
-  add(mesh_->groups, "groups", false);
-  return text;
+  if (auto added = add(mesh_->materials, "materialBind", true); !added) return added;
+  return add(mesh_->groups, "groups", false);
 }
 
 Result<void> UsdaSurface::write(const std::string& name,
                                 const std::function<std::string(const std::string&)>& material_path,
                                 AtomicFile& file) {
-  if (auto written = file.write(head(name) + topology()); !written) return written;
-  const std::string rest = fmt::format("{}point3f[] points = {}\n", indent, rest_);
-  if (auto written = file.write(rest); !written) return written;
-  if (auto written = append_samples("point3f[] points", points_, file); !written) return written;
+  const ByteSink write = [&](std::string_view bytes) { return file.write(bytes); };
+  TextPieces out(write, should_stop_);
+  out.text = head(name);
+  if (auto added = add_topology(out); !added) return added;
+  out.text += fmt::format("{}point3f[] points = ", indent);
+  if (auto written = out.finish(); !written) return written;
+  if (auto written = write_in_pieces(rest_ + '\n', should_stop_, write); !written) return written;
+  const auto add_samples = [&](std::string_view attribute, SpoolFile& samples) {
+    return append_samples(attribute, samples, file, should_stop_);
+  };
+  if (auto written = add_samples("point3f[] points", points_); !written) return written;
   const std::string normals =
       fmt::format("{0}normal3f[] normals (\n{0}    interpolation = \"{1}\"\n{0})\n", indent,
                   mesh_->corner_normals.empty() ? "vertex" : "faceVarying");
   if (auto written = file.write(normals); !written) return written;
-  if (auto written = append_samples("normal3f[] normals", normals_, file); !written) return written;
+  if (auto written = add_samples("normal3f[] normals", normals_); !written) return written;
   if (velocities_.size() > 0) {
-    if (auto written = append_samples("vector3f[] velocities", velocities_, file); !written)
-      return written;
+    if (auto written = add_samples("vector3f[] velocities", velocities_); !written) return written;
   }
-  return file.write(uvs() + placement() + subsets(material_path) + "    }\n");
+  if (auto added = add_uvs(out); !added) return added;
+  out.text += placement();
+  if (auto added = add_subsets(material_path, out); !added) return added;
+  out.text += "    }\n";
+  return out.finish();
 }
 
 }  // namespace pliant

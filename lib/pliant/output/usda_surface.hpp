@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pliant/output/atomic_file.hpp"
+#include "pliant/output/byte_sink.hpp"
 #include "pliant/output/spool_file.hpp"
 #include "pliant/output/writer.hpp"
 #include "pliant/output/written_mesh.hpp"
@@ -15,14 +17,14 @@ namespace pliant {
 // Internal to output.
 class UsdaSurface {
  public:
-  /// Errors: Unwritable.
+  /// Errors: Unwritable; Interrupted.
   static Result<UsdaSurface> make(const AnimationPlan& plan, const AnimatedSurface& surface);
 
-  /// Errors: Unwritable; NotFinite.
+  /// Errors: Unwritable; NotFinite; Interrupted.
   Result<void> add(const SurfacePose& pose, int frame);
 
   /// Writes the prim with the given name. `material_path` returns the path of a material's prim by
-  /// its name. Errors: Unwritable.
+  /// its name. Errors: Unwritable; Interrupted.
   Result<void> write(const std::string& name,
                      const std::function<std::string(const std::string&)>& material_path,
                      AtomicFile& file);
@@ -40,13 +42,15 @@ class UsdaSurface {
   UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface, SpoolFile points,
               SpoolFile normals, SpoolFile velocities);
 
+  Result<void> add_sample(SpoolFile& samples, int frame, std::span<const float> numbers);
   Result<void> add_velocities(int frame, const Field& way);
   void add_placement(const Placement& placement);
   std::string head(const std::string& name) const;
-  std::string topology() const;
-  std::string uvs() const;
+  Result<void> add_topology(TextPieces& out) const;
+  Result<void> add_uvs(TextPieces& out) const;
   std::string placement() const;
-  std::string subsets(const std::function<std::string(const std::string&)>& material_path) const;
+  Result<void> add_subsets(const std::function<std::string(const std::string&)>& material_path,
+                           TextPieces& out) const;
 
   std::string name_;
   WrittenMesh written_;
@@ -55,6 +59,7 @@ class UsdaSurface {
   int last_frame_;
   double fps_;
   bool is_placed_;
+  StopRequest should_stop_;
   std::string rest_;     // points at rest
   std::string extents_;  // samples
   SpoolFile points_, normals_, velocities_;

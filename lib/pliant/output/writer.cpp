@@ -109,7 +109,8 @@ Result<std::unique_ptr<AnimationWriter>> make_surface_by_surface(const Animation
                                               .fps = plan.fps,
                                               .rest = &surface.rest,
                                               .is_mirrored = surface.is_mirrored,
-                                              .resume = plan.resume});
+                                              .resume = plan.resume,
+                                              .should_stop = plan.should_stop});
     if (!writer) return fail(writer.error());
     writers.push_back(*std::move(writer));
   }

@@ -24,10 +24,11 @@ class AnimationWriter {
   virtual ~AnimationWriter() = default;
 
   /// The surfaces at the next frame, in the order of the plan. Errors: Unwritable; NotFinite if the
-  /// format has only single precision and a coordinate is out of range.
+  /// format has only single precision and a coordinate is out of range; Interrupted.
   virtual Result<void> write(int frame, std::span<const SurfacePose> surfaces) = 0;
 
-  /// Gives the result its name. Errors: Unwritable. Requires: every frame has been written.
+  /// Gives the result its name. Errors: Unwritable; Interrupted. Requires: every frame has been
+  /// written.
   virtual Result<void> finish() = 0;
 
   /// Of a sequence, until now.
@@ -51,9 +52,10 @@ struct AnimationPlan {
   std::vector<AnimatedSurface> surfaces = {};
   int first_frame = 0;
   int last_frame = 0;
-  double fps = 24;         ///< [1/s]
-  bool is_placed = false;  ///< poses are in object space, with placements
-  bool resume = false;     ///< keeps files of a sequence that already have the right content
+  double fps = 24;               ///< [1/s]
+  bool is_placed = false;        ///< poses are in object space, with placements
+  bool resume = false;           ///< keeps files of a sequence that already have the right content
+  StopRequest should_stop = {};  ///< called while files are made
 
   int frame_count() const { return last_frame - first_frame + 1; }
 };
@@ -90,7 +92,8 @@ bool is_named_at_the_end(const AnimationPlan& plan, std::string_view name);
 /// A writer for the format of the file's ending. `.glb`, `.gltf` and `.usda` contain all surfaces;
 /// in other formats each surface has its own file, OUT-NAME.ext if there are several. Errors:
 /// InvalidInput for an unknown ending, for more frames than a format can store, for resuming a
-/// format of one file, and as `check_output_place` for each of its files; Unwritable. Requires: at
+/// format of one file, and as `check_output_place` for each of its files; Unwritable; Interrupted.
+/// Requires: at
 /// least one surface; any format accepts poses in object space, but only `.glb`, `.gltf` and
 /// `.usda` accept placements.
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan);
