@@ -1,11 +1,12 @@
 #include "regions_file.hpp"
 
-#include <algorithm>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "interrupt.hpp"
 #include "json.hpp"
 #include "pliant/forces/force.hpp"
 #include "viewer/force_values.hpp"
@@ -41,7 +42,8 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
   return json;
 }
 
-Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& report) {
+Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& report,
+                  const std::map<std::string_view, const Force*>& named) {
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     const Region& region = report.regions[k];
@@ -51,15 +53,13 @@ Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& 
     regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
   }
   Json forces = Json::array();
-  auto next = scene.forces.begin();  // reports are in the order of the scene
   for (const ForceReport& force : report.forces) {
     if (force.kind == "group") {
       forces.push_back(force_json(force, report.is_surface, nullptr, report.frame));
       continue;
     }
-    next = std::find_if(next, scene.forces.end(),
-                        [&](const Force& each) { return each.name == force.name; });
-    forces.push_back(force_json(force, report.is_surface, &*next, report.frame));
+    forces.push_back(
+        force_json(force, report.is_surface, named.find(force.name)->second, report.frame));
   }
   Json json = {{"name", scene.surfaces[surface].name},
                {"solved", report.is_solved},
@@ -93,9 +93,12 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
 }
 
 Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
+  std::map<std::string_view, const Force*> named;
+  for (const Force& force : scene.forces) named.emplace(force.name, &force);
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
-    surfaces.push_back(surface_json(scene, k, report.surfaces[k]));
+    if (was_interrupted()) return interrupted();
+    surfaces.push_back(surface_json(scene, k, report.surfaces[k], named));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/stoppable_sort.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/bytes.hpp"
 #include "viewer/channels.hpp"
@@ -20,11 +21,12 @@
 namespace pliant::viewer {
 namespace {
 
-// Both ends of each edge of the faces, each edge once.
-std::vector<std::uint32_t> edge_vertices(const Mesh& mesh) {
+// Both ends of each edge of the faces, each edge once. Unfinished if it is stopped.
+std::vector<std::uint32_t> edge_vertices(const Mesh& mesh, StopPoll& poll) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   std::size_t first = 0;
   for (const int size : mesh.face_sizes) {
+    if (poll.after(4 * static_cast<std::size_t>(size))) return {};
     for (int k = 0; k < size; ++k) {
       const auto [low, high] = std::minmax(mesh.corner_vertices[first + k],
                                            mesh.corner_vertices[first + (k + 1) % size]);
@@ -32,7 +34,7 @@ std::vector<std::uint32_t> edge_vertices(const Mesh& mesh) {
     }
     first += size;
   }
-  std::sort(edges.begin(), edges.end());
+  if (!sort_unless_stopped(edges, poll)) return {};
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<std::uint32_t> vertices;
   for (const auto& [low, high] : edges) vertices.insert(vertices.end(), {low, high});
@@ -95,14 +97,19 @@ class SurfaceView {
   SurfaceMarks& marks() { return marks_; }
   double peak_displacement() const { return peak_displacement_; }
 
-  Json finish(Arrays& arrays) const {
+  /// Errors: Interrupted.
+  Result<Json> finish(Arrays& arrays, const StopRequest& should_stop) const {
     const Mesh& mesh = shape_.mesh;
     const Vector3d low = mesh.positions.colwise().minCoeff();
     const Vector3d high = mesh.positions.colwise().maxCoeff();
     const Vector3d origin = 0.5 * low + 0.5 * high;
-    const PackedMotion motion = motion_.pack();
+    const auto motion = motion_.pack(should_stop);
+    if (!motion) return fail(motion.error());
+    StopPoll poll(should_stop);
+    const std::vector<std::uint32_t> edges = edge_vertices(mesh, poll);
+    if (poll.after(0)) return interrupted();
     // Half a step, plus the rounding of the rest position to float.
-    const double error = 0.5 * motion.step + (high - low).maxCoeff() * 0x1p-25;
+    const double error = 0.5 * motion->step + (high - low).maxCoeff() * 0x1p-25;
     Json json = {
         {"name", shape_.name},
         {"enabled", surface_.enabled},
@@ -114,25 +121,26 @@ class SurfaceView {
         {"high", to_json(high_)},
         {"peakDisplacement", peak_displacement_},
         {"peakSpeed", peak_speed_},
-        {"step", motion.step},
+        {"step", motion->step},
         {"error", error},
         {"transforms", same_or_all()},
         {"rest", arrays.add(relative_rest(origin))},
         {"uvs", arrays.add(vertex_uvs(mesh))},
         {"nodes", arrays.add(shape_.vertex_nodes)},
         {"triangles", arrays.add(triangle_vertices(mesh))},
-        {"edges", arrays.add(edge_vertices(mesh))},
-        {"predictors", arrays.add(motion.predictors)},
-        {"lowBytes", arrays.add(motion.low)},
-        {"highBytes", arrays.add(motion.high)},
+        {"edges", arrays.add(edges)},
+        {"predictors", arrays.add(motion->predictors)},
+        {"lowBytes", arrays.add(motion->low)},
+        {"highBytes", arrays.add(motion->high)},
         {"marks", marks_.changes()}};
     if (shape_.grid && !shape_.grid->is_open()) json["wrap"] = wrap_word(*shape_.grid);
     if (rest_motion_) {
-      const PackedMotion rest = rest_motion_->pack();
-      json["restMotion"] = {{"step", rest.step},
-                            {"predictors", arrays.add(rest.predictors)},
-                            {"lowBytes", arrays.add(rest.low)},
-                            {"highBytes", arrays.add(rest.high)}};
+      const auto rest = rest_motion_->pack(should_stop);
+      if (!rest) return fail(rest.error());
+      json["restMotion"] = {{"step", rest->step},
+                            {"predictors", arrays.add(rest->predictors)},
+                            {"lowBytes", arrays.add(rest->low)},
+                            {"highBytes", arrays.add(rest->high)}};
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     return json;
@@ -247,9 +255,10 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
     return fail(fits.error());
   }
   const Scene& scene = simulation.scene();
-  Json forces = view_forces(scene, frames);
+  const auto forces = view_forces(scene, frames, limits.should_stop);
+  if (!forces) return fail(forces.error());
   ForceNumbers force_numbers;
-  for (std::size_t k = 0; k < forces.size(); ++k) force_numbers[forces[k]["name"]] = k;
+  for (std::size_t k = 0; k < forces->size(); ++k) force_numbers[(*forces)[k]["name"]] = k;
   std::vector<SurfaceView> surfaces;
   for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
     surfaces.emplace_back(simulation.rest_shapes()[k], scene.surfaces[k], scene.fps);
@@ -265,12 +274,16 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
   Arrays arrays;
   Json shown = Json::array();
   for (std::size_t k = 0; k < surfaces.size(); ++k) {
-    shown.push_back(surfaces[k].finish(arrays));
+    auto finished = surfaces[k].finish(arrays, limits.should_stop);
+    if (!finished) return fail(finished.error());
+    shown.push_back(*std::move(finished));
     bake.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
     bake.peak_displacement = std::max(bake.peak_displacement, surfaces[k].peak_displacement());
   }
   bake.position_bytes = std::size_t{6} * static_cast<std::size_t>(bake.vertex_count) *
                         static_cast<std::size_t>(frames.count());
+  const auto channels = view_channels(scene, frames, limits.should_stop);
+  if (!channels) return fail(channels.error());
   const Json head = {{"version", 1},
                      {"scene", scene.origin.file},
                      {"fps", scene.fps},
@@ -279,8 +292,8 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
                      {"sceneFrames", {scene.start, scene.end}},
                      {"displaced", bake.course.displaced},
                      {"surfaces", shown},
-                     {"forces", forces},
-                     {"channels", view_channels(scene, frames)},
+                     {"forces", *forces},
+                     {"channels", *channels},
                      {"messages", messages_of(simulation)}};
   auto packed = deflated(joined(head, arrays.take()), limits.should_stop);
   if (!packed) return fail(packed.error());

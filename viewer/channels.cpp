@@ -87,10 +87,12 @@ Json channel_json(const std::string& path, const Curve<D>& curve, const FrameRan
 
 }  // namespace
 
-Json view_channels(const Scene& scene, const FrameRange& frames) {
+Result<Json> view_channels(const Scene& scene, const FrameRange& frames,
+                           const StopRequest& should_stop) {
   Json channels = Json::array();
   for (const NamedChannel& named : channels_of(scene)) {
     if (!named.is_animated()) continue;
+    if (is_stopped(should_stop)) return interrupted();
     std::visit(
         [&](const auto* held) {
           if constexpr (std::is_same_v<decltype(held), const Switch*>) {

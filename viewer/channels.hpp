@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 #include "viewer/frame_range.hpp"
 #include "viewer/json.hpp"
@@ -7,7 +8,8 @@
 namespace pliant::viewer {
 
 /// The animated channels of a scene for the page's curve panel: keys, handles, and the curve as
-/// points, over `frames`.
-Json view_channels(const Scene& scene, const FrameRange& frames);
+/// points, over `frames`. Errors: Interrupted.
+Result<Json> view_channels(const Scene& scene, const FrameRange& frames,
+                           const StopRequest& should_stop = {});
 
 }  // namespace pliant::viewer

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,31 +28,45 @@ Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
 Json track(const Channel<1>& channel, const FrameRange& frames) {
   return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
 }
-const Group* group_of(const Scene& scene, const Force& force) {
-  for (const Group& group : scene.groups) {
-    if (group.name == force.group) return &group;
+// Parts of a scene by their names.
+class Named {
+ public:
+  explicit Named(const Scene& scene) {
+    for (const Group& group : scene.groups) groups_.emplace(group.name, &group);
+    for (const Surface& surface : scene.surfaces) {
+      // One with region="all" is solved whole.
+      if (!surface.is_driven() && surface.solver.region == SolvedRegion::Forces)
+        selected_.insert(surface.name);
+    }
   }
-  return nullptr;
-}
 
-// Whether it selects a region of some surface: one with region="all" is solved whole.
-bool selects(const Scene& scene, const std::vector<std::string>& targets) {
-  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& surface) {
-    const bool is_target =
-        targets.empty() || std::find(targets.begin(), targets.end(), surface.name) != targets.end();
-    return is_target && !surface.is_driven() && surface.solver.region == SolvedRegion::Forces;
-  });
-}
+  // Null: it has none.
+  const Group* group_of(const Force& force) const {
+    const auto found = groups_.find(force.group);
+    return found == groups_.end() ? nullptr : found->second;
+  }
 
-Json force_json(const Scene& scene, const Force& force, const FrameRange& frames) {
-  const Group* const group = group_of(scene, force);
+  // Whether what has these targets selects a region of some surface.
+  bool selects(const std::vector<std::string>& targets) const {
+    if (targets.empty()) return !selected_.empty();
+    return std::any_of(targets.begin(), targets.end(),
+                       [&](const std::string& target) { return selected_.contains(target); });
+  }
+
+ private:
+  std::map<std::string_view, const Group*> groups_;
+  std::set<std::string_view> selected_;
+};
+
+Json force_json(const Named& named, const Force& force, const FrameRange& frames) {
+  const Group* const group = named.group_of(force);
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
   if (group != nullptr) json["group"] = group->name;
   json["enabled"] = track(frames, [&](int frame) {
     return Json(force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame)));
   });
   json["magnitude"] = track(force.magnitude, frames);
-  if (group == nullptr && selects(scene, force.targets))
+  if (group == nullptr && named.selects(force.targets))
     json["deformationRadius"] = track(force.deformation_radius, frames);
   json["forceRadius"] = track(force.force_radius, frames);
   for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
@@ -59,13 +75,13 @@ Json force_json(const Scene& scene, const Force& force, const FrameRange& frames
   return json;
 }
 
-Json group_json(const Scene& scene, const Group& group, const FrameRange& frames) {
+Json group_json(const Named& named, const Group& group, const FrameRange& frames) {
   Json json = {{"name", group.name},
                {"kind", "group"},
                {"targets", group.targets},
                {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
                {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
-  if (selects(scene, group.targets))
+  if (named.selects(group.targets))
     json["deformationRadius"] = track(group.deformation_radius, frames);
   return json;
 }
@@ -74,12 +90,18 @@ Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 
 }  // namespace
 
-Json view_forces(const Scene& scene, const FrameRange& frames) {
+Result<Json> view_forces(const Scene& scene, const FrameRange& frames,
+                         const StopRequest& should_stop) {
+  const Named named(scene);
   Json forces = Json::array();
   for (const Force& force : scene.forces) {
-    forces.push_back(force_json(scene, force, frames));
+    if (is_stopped(should_stop)) return interrupted();
+    forces.push_back(force_json(named, force, frames));
   }
-  for (const Group& group : scene.groups) forces.push_back(group_json(scene, group, frames));
+  for (const Group& group : scene.groups) {
+    if (is_stopped(should_stop)) return interrupted();
+    forces.push_back(group_json(named, group, frames));
+  }
   return forces;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/feedback/frame_report.hpp"
 #include "pliant/feedback/surface_lines.hpp"
 #include "pliant/sampling/rest_shape.hpp"
@@ -19,8 +21,9 @@ namespace pliant::viewer {
 /// from their channels. Thesis 5.2.2.
 ///
 /// An array with one object for each, forces first. A parameter is an array with a value for each
-/// frame, or with a single value if it is constant.
-Json view_forces(const Scene& scene, const FrameRange& frames);
+/// frame, or with a single value if it is constant. Errors: Interrupted.
+Result<Json> view_forces(const Scene& scene, const FrameRange& frames,
+                         const StopRequest& should_stop = {});
 
 /// The regions and the boxes of forces that a page draws on one surface, stored only at frames
 /// where they change. Of a grid whose nodes are vertices they are boxes, otherwise lines.

@@ -92,7 +92,7 @@ MotionPacker::Numbers MotionPacker::quantised(std::size_t frame, double step) co
   return numbers;
 }
 
-PackedMotion MotionPacker::pack() const {
+Result<PackedMotion> MotionPacker::pack(const StopRequest& should_stop) const {
   PackedMotion packed;
   packed.peak = peak_;
   packed.step = peak_ / greatest;
@@ -103,6 +103,7 @@ PackedMotion MotionPacker::pack() const {
     std::vector<std::uint16_t> least = misses(best, now, before, earlier, vertex_count());
     std::size_t least_weight = weight(least);
     for (const int predicted : predictions) {
+      if (is_stopped(should_stop)) return interrupted();
       std::vector<std::uint16_t> missed = misses(predicted, now, before, earlier, vertex_count());
       const std::size_t missed_weight = weight(missed);
       if (missed_weight >= least_weight) continue;

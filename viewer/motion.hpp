@@ -6,6 +6,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant::viewer {
 
@@ -41,7 +42,8 @@ class MotionPacker {
   /// of float.
   Result<void> add(const Field& positions, int frame);
 
-  PackedMotion pack() const;
+  /// Errors: Interrupted.
+  Result<PackedMotion> pack(const StopRequest& should_stop = {}) const;
 
   /// Memory per vertex and frame, including packing. [bytes]
   static constexpr std::size_t bytes_a_vertex = 3 * (sizeof(float) + 2);

@@ -116,7 +116,7 @@ Result<void> TakeShapes::add(std::size_t take, const Simulation& simulation, con
   }
   MotionPacker packer(std::move(origins), std::move(order));
   if (auto added = packer.add(positions, frame.number()); !added) return added;
-  shape.motion = packer.pack();
+  shape.motion = *packer.pack();
 
   const std::vector<std::uint32_t> stored = differences(coarse->triangles);
   std::string bytes(bytes_of(stored));

@@ -82,7 +82,7 @@ PackedMotion pack(const Motion& motion) {
   MotionPacker packer(motion.rest, motion.order);
   int frame = 1;
   for (const Field& positions : motion.frames) REQUIRE(packer.add(positions, frame++));
-  return packer.pack();
+  return packer.pack().value();
 }
 
 double largest_error(const Motion& motion, const PackedMotion& packed) {
