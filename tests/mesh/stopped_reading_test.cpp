@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "mesh/gltf_files.hpp"
-#include "pliant/core/stop_sort.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/normals.hpp"
 #include "pliant/mesh/npy_grid.hpp"
@@ -144,22 +143,4 @@ TEST_CASE("checking, shading and welding a mesh end when asked", "[mesh][stop]")
   stop_at_every_moment(
       [&](const StopRequest& should_stop) { return welded(sheet.positions, 0.01, should_stop); },
       [] {}, 10);
-}
-
-TEST_CASE("a sort that can be stopped is a stable sort", "[core][stop]") {
-  const StopRequest never;
-  for (const int count : {0, 1, 2, 4095, 4096, 4097, 12'289, 50'000}) {
-    std::vector<int> keys(static_cast<std::size_t>(count));
-    for (int k = 0; k < count; ++k) keys[static_cast<std::size_t>(k)] = k * 7919 % 1000;
-    std::vector<int> sorted(keys.size());
-    std::iota(sorted.begin(), sorted.end(), 0);
-    std::vector<int> expected = sorted;
-    const auto less = [&](int a, int b) {
-      return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
-    };
-    StopPoll poll(never);
-    sort_until_stopped(sorted, less, poll);
-    std::stable_sort(expected.begin(), expected.end(), less);
-    CHECK(sorted == expected);
-  }
 }

@@ -45,12 +45,14 @@ bool sort_unless_stopped(std::vector<Item>& items, StopPoll& poll, const Less& i
 }
 
 /// Puts the item of rank `nth` in its place, smaller ones before it and larger ones behind it, and
-/// asks meanwhile. False: it was stopped. Requires: random access; no two items are equal.
+/// asks meanwhile; if the items are chosen to make that slow, the last part is done at once. False:
+/// it was stopped. Requires: random access; no two items are equal.
 template <class Iterator, class Less>
 bool select_unless_stopped(Iterator begin, Iterator nth, Iterator end, StopPoll& poll,
                            const Less& is_less) {
   constexpr std::ptrdiff_t block = std::ptrdiff_t{1} << 13;
-  while (end - begin > block) {
+  constexpr int most_rounds = 64;  // each halves what is left, nearly
+  for (int round = 0; end - begin > block && round < most_rounds; ++round) {
     // The middle of five, evenly spaced.
     const std::ptrdiff_t step = (end - begin) / 5;
     typename std::iterator_traits<Iterator>::value_type sample[5];

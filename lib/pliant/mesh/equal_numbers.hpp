@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "pliant/core/stop_sort.hpp"
+#include "pliant/core/stoppable_sort.hpp"
 
 namespace pliant {
 
@@ -17,10 +17,10 @@ std::vector<int> numbers_of_equal(const std::vector<Key>& keys, StopPoll& poll) 
   const auto key = [&](int k) -> const Key& { return keys[static_cast<std::size_t>(k)]; };
   std::vector<int> order(keys.size());
   std::iota(order.begin(), order.end(), 0);
-  sort_until_stopped(
-      order, [&](int a, int b) { return key(a) < key(b); }, poll);
   std::vector<int> numbers(keys.size());
-  if (poll.after(keys.size())) return numbers;
+  if (!sort_unless_stopped(order, poll, [&](int a, int b) { return key(a) < key(b); }) ||
+      poll.after(keys.size()))
+    return numbers;
   // First the first index with each key, then its number: it comes before the others.
   for (std::size_t k = 0, first = 0; k < order.size(); ++k) {
     if (key(order[first]) < key(order[k])) first = k;
