@@ -213,6 +213,8 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
   const bool is_listing = options.out.empty();
   const bool is_printing = options.out == "-";
   std::optional<Scene> scene;
+  std::string text;  // of the scene
+  const std::string folder = std::filesystem::path(options.out).parent_path().string();
   if (!is_listing && !is_printing) {
     if (auto place = check_output_file("-o", options.out); !place) return place;
     std::error_code ignored;
@@ -221,9 +223,12 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
           fmt::format("-o {}: the scene does not exist; -o - prints the elements for a new one",
                       printable(options.out)));
     }
-    auto loaded = load_scene(options.out, *root);
-    if (!loaded) return fail(loaded.error());
-    scene = *std::move(loaded);
+    auto read = read_file(options.out, largest_scene_file);
+    if (!read) return fail(read.error());
+    text = *std::move(read);
+    auto parsed = parse_scene(text, options.out, folder, root->string());
+    if (!parsed) return fail(parsed.error());
+    scene = *std::move(parsed);
   }
   auto imported = read_import(options, scene ? &*scene : nullptr, *root);
   if (!imported) return fail(imported.error());
@@ -269,13 +274,9 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
     print(stdout, animate_elements(*placed));
     return {};
   }
-  const auto text = read_file(options.out);
-  if (!text) return fail(text.error());
-  const auto changed =
-      with_curves(*text, options.out, std::filesystem::path(options.out).parent_path().string(),
-                  root->string(), *placed);
+  const auto changed = with_curves(text, options.out, folder, root->string(), *placed);
   if (!changed) return fail(changed.error());
-  if (auto written = rewrite_file(options.out, *text, *changed); !written) return written;
+  if (auto written = rewrite_file(options.out, text, *changed); !written) return written;
   if (!options.is_quiet) {
     std::vector<std::string> names;
     for (const PlacedCurve& curve : placed->curves) names.push_back(curve.channel);

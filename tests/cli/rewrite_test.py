@@ -69,6 +69,18 @@ class Rewrites(Command):
                 self.assertIn("scene.xml: error: cannot write the file: it has changed since it was read", result.stderr)
                 self.assertEqual((self.read("scene.xml"), self.files()), (b"saved", before), (moment, command))
 
+    def test_the_scene_is_the_one_that_was_read_ahead_of_the_curves(self):
+        os.mkfifo(self.path("pipe.json"))
+        with subprocess.Popen([PLIANT, "import", "curves", "pipe.json", "-o", "scene.xml"], cwd=self.folder, text=True,
+                              stderr=subprocess.PIPE) as process:
+            with open(self.path("pipe.json"), "wb") as pipe:  # opens when the scene is read
+                self.write("scene.xml", KEYED)
+                pipe.write(self.read("keys.json"))
+            _, errors = process.communicate()
+        self.assertEqual(process.returncode, 1, errors)
+        self.assertIn("scene.xml: error: cannot write the file: it has changed since it was read", errors)
+        self.assertEqual(self.read("scene.xml").decode(), KEYED)
+
     def test_a_file_system_that_exchanges_no_names(self):
         if SANITIZED or not SHIM:
             self.skipTest("the shim does not go with a sanitizer")
