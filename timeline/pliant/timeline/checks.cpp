@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "pliant/timeline/easing.hpp"
 #include "pliant/timeline/number_text.hpp"
@@ -16,22 +17,24 @@ class Checker {
  public:
   void at_key(std::size_t key) { key_ = key; }
 
-  void number(const std::string& name, double number) {
+  void number(std::string_view name, double number) {
     if (!std::isfinite(number)) {
-      fail(name + " is " + number_text(number) + "; it must be a finite number");
+      fail(std::string(name) + " is " + number_text(number) + "; it must be a finite number");
     } else if (std::fabs(number) > largest_number) {
-      fail(name + " is " + number_text(number) + "; its size must not exceed " +
+      fail(std::string(name) + " is " + number_text(number) + "; its size must not exceed " +
            number_text(largest_number));
     }
   }
 
   template <std::size_t N>
-  void numbers(const std::string& name, const std::array<double, N>& numbers) {
+  void numbers(std::string_view name, const std::array<double, N>& numbers) {
     for (const double each : numbers) number(name, each);
   }
 
-  void rule(bool holds, const std::string& message) {
-    if (!holds) fail(message);
+  /// `message()`: why it does not hold; asked only then, since there are many keys.
+  template <class Message>
+  void rule(bool holds, const Message& message) {
+    if (!holds) fail(message());
   }
 
   std::optional<CurveError> error() const { return error_; }
@@ -62,8 +65,10 @@ void check_interpolation(const Interpolation& next, Checker& check) {
   if (next.kind == Interpolation::Kind::CubicBezier) {
     check.numbers("control of cubicBezier", next.control);
     for (const double x : {next.control[0], next.control[2]}) {
-      check.rule(x >= 0 && x <= 1, "control of cubicBezier has x = " + number_text(x) +
-                                       "; x1 and x2 must be from 0 to 1");
+      check.rule(x >= 0 && x <= 1, [&] {
+        return "control of cubicBezier has x = " + number_text(x) +
+               "; x1 and x2 must be from 0 to 1";
+      });
     }
   }
   if (next.kind != Interpolation::Kind::Easing) return;
@@ -83,9 +88,10 @@ void check_extrapolation(const std::string& side, const Extrapolation<D>& outsid
   if (!is_loop || !outside.count) return;
   const double count = *outside.count;
   check.number("count of copies " + side + " the keys", count);
-  check.rule(count >= 1 && count == std::floor(count),
-             "count of copies " + side + " the keys is " + number_text(count) +
-                 "; it must be a whole number of at least 1");
+  check.rule(count >= 1 && count == std::floor(count), [&] {
+    return "count of copies " + side + " the keys is " + number_text(count) +
+           "; it must be a whole number of at least 1";
+  });
 }
 
 template <int D>
@@ -94,16 +100,20 @@ void check_loop(const CurveKeys<D>& keys, Checker& check) {
   check.number("from of the loop", loop.from);
   check.number("to of the loop", loop.to);
   check.numbers("offset of the loop", loop.offset);
-  check.rule(
-      std::any_of(keys.keys.begin(), keys.keys.end(),
-                  [&](const Key<D>& key) { return key.frame == loop.from; }),
-      "loop starts from frame " + number_text(loop.from) + "; it must be the frame of a key");
-  check.rule(loop.to > loop.from, "loop ends at frame " + number_text(loop.to) +
-                                      "; it must end after frame " + number_text(loop.from) +
-                                      ", where it starts");
-  check.rule(loop.before >= 0 && loop.after >= 0,
-             "loop has " + std::to_string(std::min(loop.before, loop.after)) +
-                 " copies on one side; the number must not be negative");
+  check.rule(std::any_of(keys.keys.begin(), keys.keys.end(),
+                         [&](const Key<D>& key) { return key.frame == loop.from; }),
+             [&] {
+               return "loop starts from frame " + number_text(loop.from) +
+                      "; it must be the frame of a key";
+             });
+  check.rule(loop.to > loop.from, [&] {
+    return "loop ends at frame " + number_text(loop.to) + "; it must end after frame " +
+           number_text(loop.from) + ", where it starts";
+  });
+  check.rule(loop.before >= 0 && loop.after >= 0, [&] {
+    return "loop has " + std::to_string(std::min(loop.before, loop.after)) +
+           " copies on one side; the number must not be negative";
+  });
 }
 
 }  // namespace
@@ -111,16 +121,17 @@ void check_loop(const CurveKeys<D>& keys, Checker& check) {
 template <int D>
 std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
   Checker check;
-  check.rule(!keys.keys.empty(), "the curve has no keys; it must have at least one");
+  check.rule(!keys.keys.empty(), [] { return "the curve has no keys; it must have at least one"; });
   for (std::size_t k = 0; k < keys.keys.size() && !check.error(); ++k) {
     const Key<D>& key = keys.keys[k];
     check.at_key(k);
     check.number("frame", key.frame);
     if (k > 0) {
       const double before = keys.keys[k - 1].frame;
-      check.rule(key.frame > before, "frame " + number_text(key.frame) + " is not after frame " +
-                                         number_text(before) +
-                                         " of the previous key; frames must strictly increase");
+      check.rule(key.frame > before, [&] {
+        return "frame " + number_text(key.frame) + " is not after frame " + number_text(before) +
+               " of the previous key; frames must strictly increase";
+      });
     }
     check.numbers("value", key.value);
     if (key.left) check.numbers("left value", *key.left);
@@ -128,9 +139,10 @@ std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
     check_tangent("out", key.out, check);
     check_interpolation(key.next, check);
     if (k + 1 < keys.keys.size()) {
-      check.rule(Easing::is_sound(key.next, keys.keys[k + 1].frame - key.frame),
-                 "period is " + number_text(key.next.period.value_or(0)) +
-                     "; the segment must not have more than 1e15 periods");
+      check.rule(Easing::is_sound(key.next, keys.keys[k + 1].frame - key.frame), [&] {
+        return "period is " + number_text(key.next.period.value_or(0)) +
+               "; the segment must not have more than 1e15 periods";
+      });
     }
   }
   if (check.error()) return check.error();
