@@ -1,6 +1,8 @@
 #include "info.hpp"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -63,8 +65,23 @@ std::vector<SceneNote> notes_on_shapes(const Simulation& simulation) {
   return notes;
 }
 
+// Why a force has no preview. `group`: the one that it is in, or null.
+std::string idle_reason(const Force& force, const Group* group, const Scene& scene) {
+  const bool is_animated =
+      force.enabled.is_animated() || (group != nullptr && group->enabled.is_animated());
+  const int last = is_animated ? scene.end : scene.start;
+  for (int frame = scene.start; frame <= last && !was_interrupted(); ++frame) {
+    if (force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame))) {
+      return "no surface is solved while it is enabled";
+    }
+  }
+  return "never enabled";
+}
+
 int tell(const SceneFacts& facts, const InfoOptions& options) {
-  print(stdout, options.is_json ? info_json(facts) : info_text(facts));
+  const std::string text = options.is_json ? info_json(facts) : info_text(facts);
+  if (was_interrupted()) return report(interrupted().value());
+  print(stdout, text);
   return exit_done;
 }
 
@@ -86,15 +103,40 @@ int run_mesh_info(const InfoOptions& options) {
 
 }  // namespace
 
-std::string idle_reason(const Force& force, const Scene& scene) {
-  const auto group = std::find_if(scene.groups.begin(), scene.groups.end(),
-                                  [&](const Group& one) { return one.name == force.group; });
-  for (int frame = scene.start; frame <= scene.end; ++frame) {
-    if (force.enabled.at(frame) && (group == scene.groups.end() || group->enabled.at(frame))) {
-      return "no surface is solved while it is enabled";
-    }
+PreviewLists previews_of(const SceneFacts& facts, Preview::Of of) {
+  PreviewLists lists(of == Preview::Of::Force   ? facts.scene.forces.size()
+                     : of == Preview::Of::Group ? facts.scene.groups.size()
+                                                : 1);
+  for (const Preview& preview : facts.previews) {
+    if (preview.of == of) lists[preview.index].push_back(&preview);
   }
-  return "never enabled";
+  return lists;
+}
+
+std::vector<std::vector<std::size_t>> members_of_groups(const Scene& scene) {
+  std::map<std::string_view, std::size_t> named;
+  for (std::size_t k = 0; k < scene.groups.size(); ++k) named.emplace(scene.groups[k].name, k);
+  std::vector<std::vector<std::size_t>> members(scene.groups.size());
+  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
+    const auto group = named.find(scene.forces[k].group);
+    if (group != named.end()) members[group->second].push_back(k);
+  }
+  return members;
+}
+
+std::vector<std::string> idle_reasons(const SceneFacts& facts) {
+  const Scene& scene = facts.scene;
+  const auto members = members_of_groups(scene);
+  std::vector<const Group*> group_of(scene.forces.size());
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    for (const std::size_t force : members[k]) group_of[force] = &scene.groups[k];
+  }
+  const PreviewLists previews = previews_of(facts, Preview::Of::Force);
+  std::vector<std::string> reasons(scene.forces.size());
+  for (std::size_t k = 0; k < reasons.size() && !was_interrupted(); ++k) {
+    if (previews[k].empty()) reasons[k] = idle_reason(scene.forces[k], group_of[k], scene);
+  }
+  return reasons;
 }
 
 void add_info(CLI::App& app, InfoOptions& options) {

@@ -85,12 +85,9 @@ Json region_json(const RegionPreview& region) {
   return json;
 }
 
-Json previews_json(const SceneFacts& facts, Preview::Of of, std::size_t index) {
+Json previews_json(const std::vector<const Preview*>& previews, const Scene& scene) {
   Json json = Json::array();
-  for (const Preview& preview : facts.previews) {
-    if (preview.of != of || preview.index != index) continue;
-    json.push_back(preview_json(preview, facts.scene));
-  }
+  for (const Preview* const preview : previews) json.push_back(preview_json(*preview, scene));
   return json;
 }
 
@@ -175,28 +172,28 @@ std::string info_json(const SceneFacts& facts) {
   for (std::size_t k = 0; k < facts.surfaces.size(); ++k) {
     json["surfaces"].push_back(surface_json(scene.surfaces[k], facts.surfaces[k]));
   }
+  const auto members = members_of_groups(scene);
+  const std::vector<std::string> idle = idle_reasons(facts);
   json["forces"] = Json::array();
+  const PreviewLists of_forces = previews_of(facts, Preview::Of::Force);
   for (std::size_t k = 0; k < scene.forces.size(); ++k) {
     const Force& force = scene.forces[k];
-    Json previews = previews_json(facts, Preview::Of::Force, k);
-    const Json idle = previews.empty() ? Json(idle_reason(force, scene)) : Json(nullptr);
     json["forces"].push_back({{"name", force.name},
                               {"kind", kind_of(force)},
                               {"group", force.group.empty() ? Json(nullptr) : Json(force.group)},
-                              {"idle", idle},
-                              {"previews", std::move(previews)}});
+                              {"idle", idle[k].empty() ? Json(nullptr) : Json(idle[k])},
+                              {"previews", previews_json(of_forces[k], scene)}});
   }
   json["groups"] = Json::array();
+  const PreviewLists of_groups = previews_of(facts, Preview::Of::Group);
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {
-    Json members = Json::array();
-    for (const Force& force : scene.forces) {
-      if (force.group == scene.groups[k].name) members.push_back(force.name);
-    }
+    Json names = Json::array();
+    for (const std::size_t force : members[k]) names.push_back(scene.forces[force].name);
     json["groups"].push_back({{"name", scene.groups[k].name},
-                              {"forces", std::move(members)},
-                              {"previews", previews_json(facts, Preview::Of::Group, k)}});
+                              {"forces", std::move(names)},
+                              {"previews", previews_json(of_groups[k], scene)}});
   }
-  json["together"] = previews_json(facts, Preview::Of::All, 0);
+  json["together"] = previews_json(previews_of(facts, Preview::Of::All).front(), scene);
   json["channels"] = Json::array();
   for (const NamedChannel& channel : channels_of(scene)) {
     if (!channel.is_animated()) continue;

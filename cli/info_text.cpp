@@ -241,55 +241,46 @@ std::string preview_text(const Preview& preview, const std::string& who, const S
 }
 
 // Whether the preview of all forces of a surface equals that of its only force.
-bool is_told_already(const Preview& all, const std::vector<Preview>& previews) {
-  const Preview* only = nullptr;
-  for (const Preview& preview : previews) {
-    if (preview.surface != all.surface || preview.of != Preview::Of::Force) continue;
-    if (only) return false;
-    only = &preview;
-  }
-  if (!only || only->frame != all.frame || only->static_peak != all.static_peak) return false;
-  return only->played.has_value() == all.played.has_value() &&
-         (!only->played || only->played->peak == all.played->peak);
+bool is_told_already(const Preview& all, const std::vector<const Preview*>& of_forces) {
+  if (of_forces.size() != 1) return false;
+  const Preview& only = *of_forces.front();
+  if (only.frame != all.frame || only.static_peak != all.static_peak) return false;
+  return only.played.has_value() == all.played.has_value() &&
+         (!only.played || only.played->peak == all.played->peak);
 }
 
 std::string forces_text(const SceneFacts& facts) {
   const Scene& scene = facts.scene;
   std::string text =
       "forces, each alone, at the frame of greatest effect, on the surface at rest\n";
+  std::vector<std::vector<const Preview*>> on_surfaces(scene.surfaces.size());
   for (const Preview& preview : facts.previews) {
     if (preview.of != Preview::Of::Force) continue;
     text += preview_text(preview, title(scene.forces[preview.index]), facts);
+    on_surfaces[preview.surface].push_back(&preview);
   }
+  const std::vector<std::string> idle = idle_reasons(facts);
   for (std::size_t k = 0; k < scene.forces.size(); ++k) {
-    const bool is_previewed =
-        std::any_of(facts.previews.begin(), facts.previews.end(), [&](const Preview& preview) {
-          return preview.of == Preview::Of::Force && preview.index == k;
-        });
-    if (is_previewed) continue;
-    text += fmt::format("  {}: {}\n", title(scene.forces[k]), idle_reason(scene.forces[k], scene));
+    if (idle[k].empty()) continue;
+    text += fmt::format("  {}: {}\n", title(scene.forces[k]), idle[k]);
   }
   if (scene.forces.empty()) text += "  none\n";
   if (!scene.groups.empty()) text += "groups, each with all its forces\n";
+  const auto members = members_of_groups(scene);
+  const PreviewLists of_groups = previews_of(facts, Preview::Of::Group);
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {
-    const Group& group = scene.groups[k];
-    bool is_told = false;
-    for (const Preview& preview : facts.previews) {
-      if (preview.of != Preview::Of::Group || preview.index != k) continue;
-      text += preview_text(preview, group.name, facts);
-      is_told = true;
-    }
-    const bool is_empty =
-        std::none_of(scene.forces.begin(), scene.forces.end(),
-                     [&](const Force& force) { return force.group == group.name; });
-    if (is_empty) text += fmt::format("  {} (group): it has no forces\n", group.name);
-    if (!is_told && !is_empty) {
-      text += fmt::format("  {} (group): none of its forces acts\n", group.name);
+    const std::string& name = scene.groups[k].name;
+    for (const Preview* const preview : of_groups[k]) text += preview_text(*preview, name, facts);
+    if (members[k].empty()) {
+      text += fmt::format("  {} (group): it has no forces\n", name);
+    } else if (of_groups[k].empty()) {
+      text += fmt::format("  {} (group): none of its forces acts\n", name);
     }
   }
   std::string together;
   for (const Preview& preview : facts.previews) {
-    if (preview.of != Preview::Of::All || is_told_already(preview, facts.previews)) continue;
+    if (preview.of != Preview::Of::All) continue;
+    if (is_told_already(preview, on_surfaces[preview.surface])) continue;
     together += preview_text(preview, "together", facts);
   }
   if (!together.empty()) text += "all forces of a surface, together\n" + together;

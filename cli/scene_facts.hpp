@@ -36,7 +36,15 @@ struct SceneFacts {
   std::size_t solver_memory = 0;             ///< of the largest region previewed [bytes]
 };
 
-/// Why a force has no preview: "never enabled", or that no surface is solved while it is enabled.
-std::string idle_reason(const Force& force, const Scene& scene);
+/// The previews of a kind: a list for each force, for each group, or one of all together.
+using PreviewLists = std::vector<std::vector<const Preview*>>;
+PreviewLists previews_of(const SceneFacts& facts, Preview::Of of);
+
+/// The forces of each group, by their index in the scene.
+std::vector<std::vector<std::size_t>> members_of_groups(const Scene& scene);
+
+/// Why each force has no preview: "never enabled", or that no surface is solved while it is
+/// enabled. Empty: it has one.
+std::vector<std::string> idle_reasons(const SceneFacts& facts);
 
 }  // namespace pliant::cli

@@ -54,7 +54,8 @@ ActingForces::ActingForces(const Scene& scene, const Surface& surface,
       forces_(std::move(forces)),
       animation_(std::move(animation)) {
   std::map<std::string_view, const Group*> named;
-  for (const Group& group : scene.groups) named.emplace(group.name, &group);
+  for (const std::size_t group : groups)
+    named.emplace(scene.groups[group].name, &scene.groups[group]);
   for (const std::size_t force : forces_) {
     const auto found = named.find(scene.forces[force].group);
     group_of_.push_back(found != named.end() ? found->second : nullptr);
@@ -76,14 +77,17 @@ BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& fault
     selecting.push_back(group_of_[k]);
   }
   if (surface_.solver.region == SolvedRegion::All) return inputs;
+  std::map<const Group*, int> selectors;
   for (const Group* const group : groups_) {
     if (!group->enabled.at(frame)) continue;
     const auto selector = static_cast<int>(inputs.forces.size());
-    for (std::size_t k = 0; k < selecting.size(); ++k) {
-      if (selecting[k] == group) inputs.selectors[k] = selector;
-    }
+    selectors.emplace(group, selector);
     inputs.forces.push_back(sample_group(*group, frame));
     inputs.selectors.push_back(selector);
+  }
+  for (std::size_t k = 0; k < selecting.size(); ++k) {
+    const auto selector = selectors.find(selecting[k]);
+    if (selector != selectors.end()) inputs.selectors[k] = selector->second;
   }
   return inputs;
 }
@@ -108,7 +112,7 @@ std::vector<std::size_t> ActingForces::groups_at(int frame) const {
 }
 
 bool ActingForces::is_enabled(std::size_t force, int frame) const {
-  const auto place = std::find(forces_.begin(), forces_.end(), force) - forces_.begin();
+  const auto place = std::lower_bound(forces_.begin(), forces_.end(), force) - forces_.begin();
   return pliant::is_enabled(scene_.forces[force], group_of_[static_cast<std::size_t>(place)],
                             frame);
 }
