@@ -107,7 +107,7 @@ Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
                 fmt::format("-o {}: would overwrite {}, an input of the scene; choose another name",
                             printable(plan.file), printable(input.string())));
   };
-  for (const SceneInput& input : inputs_of(scene)) {
+  for (const SceneInput& input : inputs_of(scene, &was_interrupted)) {
     if (is_named_at_the_end(plan, input.file.filename().string())) return refuse(input.file);
   }
   const InputFinder inputs(scene);

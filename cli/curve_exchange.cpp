@@ -223,10 +223,10 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
           fmt::format("-o {}: the scene does not exist; -o - prints the elements for a new one",
                       printable(options.out)));
     }
-    auto read = read_file(options.out, largest_scene_file);
+    auto read = read_file(options.out, largest_scene_file, &was_interrupted);
     if (!read) return fail(read.error());
     text = *std::move(read);
-    auto parsed = parse_scene(text, options.out, folder, root->string());
+    auto parsed = parse_scene(text, options.out, folder, root->string(), &was_interrupted);
     if (!parsed) return fail(parsed.error());
     scene = *std::move(parsed);
   }
@@ -274,7 +274,8 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
     print(stdout, animate_elements(*placed));
     return {};
   }
-  const auto changed = with_curves(text, options.out, folder, root->string(), *placed);
+  const auto changed =
+      with_curves(text, options.out, folder, root->string(), *placed, &was_interrupted);
   if (!changed) return fail(changed.error());
   if (auto written = rewrite_file(options.out, text, *changed); !written) return written;
   if (!options.is_quiet) {

@@ -57,11 +57,17 @@ int run_format(const FormatOptions& options) {
   if (!scene) return report(scene.error());
   if (!options.is_in_place && !target.empty()) {
     if (auto free = check_out(options, *scene); !free) return report(free.error());
-    auto place = check_scene_place(source->text, source->name, source->folder, target);
+    auto place =
+        check_scene_place(source->text, source->name, source->folder, target, &was_interrupted);
     if (!place) return report(place.error());
   }
-  const auto text = format_scene(source->text, source->name);
+  const auto text = format_scene(source->text, source->name, &was_interrupted);
   if (!text) return report(text.error());
+  if (text->size() > source->text.size()) {
+    // A longer text may be too large once it is expanded.
+    const auto again = parse_source({*text, source->name, source->folder}, options.root);
+    if (!again) return report(again.error());
+  }
   if (target.empty()) {
     print_bytes(stdout, *text);
     return exit_done;

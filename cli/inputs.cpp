@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include "interrupt.hpp"
 #include "pliant/scene/inputs.hpp"
 
 namespace pliant::cli {
@@ -19,13 +20,13 @@ bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& 
 }
 
 std::string input_named(const std::filesystem::path& file, const Scene& scene) {
-  for (const SceneInput& input : inputs_of(scene))
+  for (const SceneInput& input : inputs_of(scene, &was_interrupted))
     if (name_one_file(file, input.file)) return fmt::format("it is {}", input.role);
   return {};
 }
 
 InputFinder::InputFinder(const Scene& scene) {
-  for (const SceneInput& input : inputs_of(scene)) {
+  for (const SceneInput& input : inputs_of(scene, &was_interrupted)) {
     struct stat status = {};
     if (stat(input.file.c_str(), &status) == 0) {
       there_.try_emplace({status.st_dev, status.st_ino}, input.file);

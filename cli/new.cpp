@@ -134,7 +134,8 @@ Result<std::string> scene_text(const NewOptions& options, const Starter& starter
                                const fs::path& out) {
   const std::string root = options.root.value_or("");
   auto document = SceneDocument::from_text(std::string(starter.scene), std::string(starter.name),
-                                           out.parent_path().string(), {.root = root});
+                                           out.parent_path().string(),
+                                           {.root = root, .should_stop = &was_interrupted});
   if (!document) return fail(document.error());
   StarterSource source{.name = std::string(starter.name),
                        .folder = out.parent_path().string(),

@@ -34,11 +34,11 @@ Result<std::string> read_standard_input() {
   while (text.size() < most_bytes) {
     const ssize_t count = read(STDIN_FILENO, chunk.data(), chunk.size());
     if (count == 0) return text;
+    if (was_interrupted()) return interruption();
     if (count > 0) {
       text.append(chunk, 0, static_cast<std::size_t>(count));
       continue;
     }
-    if (was_interrupted()) return interruption();
     if (errno != EINTR) {
       return fail(ErrorCode::Unreadable, std::string("cannot read it: ") + std::strerror(errno),
                   name);
@@ -95,7 +95,7 @@ Result<SceneSource> read_scene_text(const std::string& scene) {
                 scene);
   }
   if (!is_standard_input(scene)) {
-    auto text = read_file(scene, largest_scene_file);
+    auto text = read_file(scene, largest_scene_file, &was_interrupted);
     if (!text && was_interrupted()) return interruption();  // while waiting for a pipe
     if (!text) return fail(text.error());
     return SceneSource{*std::move(text), scene,
@@ -114,7 +114,7 @@ Result<SceneSource> read_scene_text(const std::string& scene) {
 Result<Scene> parse_source(const SceneSource& source, const Root& root) {
   const auto folder = folder_of(root);
   if (!folder) return fail(folder.error());
-  return parse_scene(source.text, source.name, source.folder, *folder);
+  return parse_scene(source.text, source.name, source.folder, *folder, &was_interrupted);
 }
 
 Result<Scene> read_scene(const std::string& scene, const Root& root, const Changes& changes) {

@@ -29,7 +29,8 @@ double reach_of(const Scene& scene, const RestShape& shape, const Preview& previ
 }
 
 Result<Simulation> simulation_of(const std::string& text, const StarterSource& source) {
-  Result<Scene> scene = parse_scene(text, source.name, source.folder, source.root);
+  Result<Scene> scene =
+      parse_scene(text, source.name, source.folder, source.root, source.options.should_stop);
   if (!scene) return fail(scene.error());
   if (!source.obj.empty()) {
     Result<Mesh> mesh = parse_obj(source.obj, source.name);

@@ -49,7 +49,8 @@ Result<SceneDocument> open_document(const SuggestOptions& options) {
   const auto folder = folder_of(options.root);
   if (!folder) return fail(folder.error());
   if (auto place = check_output_place(options.scene); !place) return fail(place.error());
-  return SceneDocument::open(options.scene, {.root = folder->string()});
+  return SceneDocument::open(options.scene,
+                             {.root = folder->string(), .should_stop = &was_interrupted});
 }
 
 // A number of a scene; null: it has no such channel.

@@ -75,7 +75,8 @@ class Watch {
 
 std::vector<std::filesystem::path> files_to_watch(const Scene& scene) {
   std::vector<std::filesystem::path> files;
-  for (SceneInput& input : inputs_of(scene)) files.push_back(std::move(input.file));
+  for (SceneInput& input : inputs_of(scene, &was_interrupted))
+    files.push_back(std::move(input.file));
   return files;
 }
 
@@ -109,7 +110,8 @@ std::size_t store_bytes(const ResourceOptions& resources) {
 std::unique_ptr<Watch> bake_once(const ViewOptions& options, viewer::ViewServer& server,
                                  MemoryStateStore& store) {
   // Watch the files before reading them, so that no save is missed.
-  auto watch = std::make_unique<Watch>(text_files_of(options.scene, options.root.value_or("")));
+  auto watch = std::make_unique<Watch>(
+      text_files_of(options.scene, options.root.value_or(""), &was_interrupted));
   server.tell_working();
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) {

@@ -70,7 +70,7 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 # For pictures and movies of `pliant view` and completion in Bash; then the build dependencies of
 # programs that link the library. Suggested only, because the command needs none of them.
 set(suggested chromium ffmpeg bash-completion
-    cmake g++ libeigen3-dev libexpected-dev libfmt-dev libpng-dev libsleef-dev libtinyxml2-dev
+    cmake g++ libeigen3-dev libexpected-dev libfmt-dev libpng-dev libsleef-dev
     libxxhash-dev)
 if(PLIANT_WITH_CHOLMOD)
   list(APPEND suggested libsuitesparse-dev)

@@ -79,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const auto markup = scan_markup(text, findings);
   if (!markup) return fails(), 0;
   const SourceText scene{text, *markup, "a.xml", ""};
-  const bool is_needed = needs_expansion(scene);
+  const bool is_needed = needs_expansion(scene, findings);
   const auto expansion = expand(scene, in_memory(files), findings);
   if (!expansion) return fails(), 0;
   require((findings.problem_count() == 0) == expansion->is_sound);

@@ -32,6 +32,18 @@ class Format(Command):
         self.assertEqual(self.read("a.xml"), FORMATTED.encode())
         self.assertEqual(self.files(), ["a.xml", "b.xml"])
 
+    def test_a_layout_that_could_not_be_read_again_is_not_written(self):
+        lines = "\n " * (25 << 20)  # each gets the indentation of the deepest level
+        scene = self.write("a.xml", TEXT.replace("</scene>", f"""<group name="g"><point name="f"><path attribute="center">
+ <waypoint at="0 0 0"/><waypoint at="1 0 0"/><waypoint at="2 1 0"/><animate attribute="progress"><key frame="1" value="0"/>
+ <!--{lines} --></animate></path></point></group></scene>"""))
+        before = self.read("a.xml")
+        for options in (["--in-place"], ["-o", "b.xml"]):
+            result = self.run_pliant("format", scene, *options, code=2)
+            self.assertIn("the scene would be larger than 256 MiB", result.stderr)
+        self.assertEqual(self.read("a.xml"), before)
+        self.assertEqual(self.files(), ["a.xml"])
+
     def test_a_replaced_file_keeps_its_permissions(self):
         scene = self.write("a.xml", TEXT)
         os.chmod(scene, 0o600)

@@ -142,5 +142,21 @@ TEST_CASE("the examples are laid out so that they stay the same", "[document][fo
   }
 }
 
+TEST_CASE("a layout that could not be read again is refused", "[document][format]") {
+  // Each line of the comment gets the indentation of its element, on the deepest level.
+  std::string text = "<scene>\n";
+  for (int depth = 0; depth < 45; ++depth) text += "<a>";
+  text += "\n <!--";
+  while (text.size() < std::size_t{10} << 20U) text += "\n -";
+  text += " -->";
+  for (int depth = 0; depth < 45; ++depth) text += "</a>";
+  text += "</scene>";
+  const auto formatted = format_scene(text, "a.xml");
+  REQUIRE_FALSE(formatted);
+  CHECK(formatted.error().code == ErrorCode::InvalidInput);
+  CHECK(formatted.error().message == "the scene would be larger than 256 MiB");
+  CHECK(formatted.error().file == "a.xml");
+}
+
 }  // namespace
 }  // namespace pliant::testing

@@ -265,8 +265,7 @@ class Contents(unittest.TestCase):
 class Control(unittest.TestCase):
     def test_depends_on_the_libraries_of_the_command_and_of_its_mesh_reader(self):
         depends = " ".join(packages_of("Depends"))
-        expected = ["libc6", "libstdc", "libfmt", "libsleef", "libtinyxml2", "libxxhash", "zlib1g",
-                    "libassimp"]
+        expected = ["libc6", "libstdc", "libfmt", "libsleef", "libxxhash", "zlib1g", "libassimp"]
         if cached("PLIANT_WITH_CHOLMOD") == "ON":
             expected.append("libcholmod")
         if cached("PLIANT_WITH_OPENSUBDIV") == "ON":
@@ -282,7 +281,7 @@ class Control(unittest.TestCase):
     def test_suggests_the_build_dependencies_of_programs(self):
         suggests = packages_of("Suggests")
         for package in ("cmake", "g++", "libeigen3-dev", "libexpected-dev", "libfmt-dev",
-                        "libsleef-dev", "libtinyxml2-dev", "libxxhash-dev"):
+                        "libsleef-dev", "libxxhash-dev"):
             with self.subTest(package):
                 self.assertIn(package, suggests)
         self.assertEqual("libsuitesparse-dev" in suggests, cached("PLIANT_WITH_CHOLMOD") == "ON")

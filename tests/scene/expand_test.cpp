@@ -727,7 +727,7 @@ TEST_CASE("a text without includes and definitions is left as it is", "[scene][e
     xml::Findings findings("a.xml");
     const auto markup = xml::scan_markup(text, findings);
     REQUIRE(markup);
-    return xml::needs_expansion({text, *markup, "a.xml", ""});
+    return xml::needs_expansion({text, *markup, "a.xml", ""}, findings);
   };
   CHECK_FALSE(needs(rich_scene));
   CHECK_FALSE(

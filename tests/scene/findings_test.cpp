@@ -25,7 +25,7 @@ TEST_CASE("problems come in the order of lines, each once", "[scene][findings]")
 
 TEST_CASE("a flood of problems is cut off with a word about it", "[scene][findings]") {
   Findings findings("plate.xml");
-  for (int line = 1; !findings.is_full(); ++line) findings.add_problem(line, "bad");
+  for (int line = 1; !findings.is_over(); ++line) findings.add_problem(line, "bad");
   const std::size_t listed = findings.problem_count();
   findings.add_problem(1, "one more");
   const Error error = findings.to_error();

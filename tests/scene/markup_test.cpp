@@ -14,6 +14,7 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/text.hpp"
+#include "pliant/scene/tree.hpp"
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
 #include "support/catch.hpp"
@@ -295,6 +296,8 @@ class PlaceCheck {
     visit(*document.RootElement(), xml::ElementPlace::no_parent);
     expect(element_ == places_->elements.size() && attribute_ == places_->attributes.size(),
            "there are more places than tinyxml2 has elements and attributes");
+    xml::Tree tree(text_, *places_);
+    compare(*document.RootElement(), tree.root());
     return complaint_;
   }
 
@@ -328,6 +331,43 @@ class PlaceCheck {
       expect(inner.begin >= free && inner.end < place.end, "the place of a child");
       free = inner.end;
     }
+  }
+
+  /// Holds what readers see against tinyxml2.
+  void compare(const tinyxml2::XMLElement& element, const xml::Element& own) {
+    expect(own.name() == element.Name() && own.line() == element.GetLineNum(), "its tree");
+    std::vector<xml::GivenAttribute> attributes = own.attributes();
+    auto attribute = attributes.begin();
+    for (const auto* given = element.FirstAttribute(); given; given = given->Next(), ++attribute) {
+      if (attribute == attributes.end())
+        return expect(false, "an attribute is missing in its tree");
+      expect(attribute->name == given->Name() && attribute->value == given->Value() &&
+                 attribute->line == given->GetLineNum(),
+             "an attribute in its tree");
+    }
+    expect(attribute == attributes.end(), "an attribute too many in its tree");
+    xml::Findings findings("");
+    xml::ContentReader content(own, findings);
+    auto child = own.first_child();
+    for (const auto* node = element.FirstChild(); node; node = node->NextSibling()) {
+      if (node->ToComment()) continue;
+      const auto part = content.next();
+      if (!part) return expect(false, "a part of its content is missing");
+      expect(part->element.has_value() == (node->ToElement() != nullptr), "the kind of a part");
+      if (!complaint_.empty()) return;
+      if (!part->element) {
+        expect(xml::trimmed(part->value()) == xml::trimmed(node->Value()), "a text in it");
+        expect(content.line_of(part->text) == node->GetLineNum(), "the line of a text in it");
+        continue;
+      }
+      expect(
+          child && child->line() == part->element->line() && child->parent().line() == own.line(),
+          "the children in its tree");
+      compare(*node->ToElement(), *part->element);
+      if (!complaint_.empty()) return;
+      child = child->next();
+    }
+    expect(!content.next() && !child, "a part too many");
   }
 
   void visit_attributes(const tinyxml2::XMLElement& element, std::size_t index) {

@@ -141,5 +141,15 @@ TEST_CASE("a new scene in code is written with what differs from the defaults", 
         "</scene>\n");
 }
 
+TEST_CASE("a scene whose text could not be read again is not written", "[scene][write]") {
+  Scene s = scene({sheet("s")}, {});
+  for (const char* path : {"a\x01.obj", "a\xFF.obj"}) {
+    s.surfaces[0].shape = MeshFile{.path = path};
+    const auto text = to_xml(s);
+    REQUIRE_FALSE(text);
+    CHECK(text.error().code == ErrorCode::InvalidInput);
+  }
+}
+
 }  // namespace
 }  // namespace pliant::testing

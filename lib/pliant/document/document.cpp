@@ -33,7 +33,7 @@ const std::string no_name;
 }  // namespace
 
 Result<SceneDocument> SceneDocument::open(const std::string& file, DocumentOptions options) {
-  auto text = read_file(file, largest_scene_file);
+  auto text = read_file(file, largest_scene_file, options.should_stop);
   if (!text) return fail(text.error());
   return from_text(*std::move(text), file, folder_of_file(file), std::move(options));
 }
@@ -53,15 +53,19 @@ Result<SceneDocument> SceneDocument::from_text(std::string text, const std::stri
 }
 
 Result<Scene> SceneDocument::parse(const std::string& text) const {
-  return parse_scene(text, file_, folder_, options_.root);
+  return parse_scene(text, file_, folder_, options_.root, options_.should_stop);
 }
 
 /// The scene of a text that satisfies all that `validate` asks.
 Result<Scene> SceneDocument::checked(const std::string& text) const {
   auto scene = parse(text);
   if (!scene) return scene;
-  if (std::vector<Error> errors = check_channels(*scene); !errors.empty())
+  StopPoll poll(options_.should_stop);
+  constexpr std::size_t parts_of_channel = 256;
+  const auto is_over = [&] { return poll.after(parts_of_channel); };
+  if (std::vector<Error> errors = check_channels(*scene, {}, is_over); !errors.empty())
     return fail(as_one(std::move(errors), file_));
+  if (is_stopped(options_.should_stop)) return interrupted();
   if (options_.check)
     if (auto satisfied = options_.check(*scene); !satisfied) return fail(satisfied.error());
   return scene;
@@ -69,7 +73,7 @@ Result<Scene> SceneDocument::checked(const std::string& text) const {
 
 Result<Change> SceneDocument::apply(const std::vector<Operation>& operations,
                                     const std::string& name) {
-  auto draft = edit::Draft::make(text_, file_);
+  auto draft = edit::Draft::make(text_, file_, options_.should_stop);
   if (!draft) return fail(draft.error());
   edit::Editor editor(*draft, scene_, [this](const std::string& text) { return parse(text); });
   for (const Operation& operation : operations)
@@ -153,19 +157,20 @@ Result<void> SceneDocument::save_as(const std::string& file) {
 }
 
 Result<bool> SceneDocument::has_file_changed() const {
-  const auto bytes = read_file(file_, largest_scene_file);
+  const auto bytes = read_file(file_, largest_scene_file, options_.should_stop);
   if (!bytes) return fail(bytes.error());
   return *bytes != saved_;
 }
 
 Result<void> check_scene_place(const std::string& text, const std::string& name,
-                               const std::string& folder, const std::string& file) {
+                               const std::string& folder, const std::string& file,
+                               const StopRequest& should_stop) {
   namespace fs = std::filesystem;
   const auto or_here = [](const std::string& name) { return fs::path(name.empty() ? "." : name); };
   std::error_code unknown;
   if (fs::equivalent(or_here(folder_of_file(file)), or_here(folder), unknown) && !unknown)
     return {};
-  const auto draft = edit::Draft::make(text, name);
+  const auto draft = edit::Draft::make(text, name, should_stop);
   if (!draft) return fail(draft.error());
   const bool names_files =
       draft->any_attribute([](std::string_view attribute, const std::string& value) {
@@ -178,8 +183,9 @@ Result<void> check_scene_place(const std::string& text, const std::string& name,
               file);
 }
 
-Result<void> save_scene(const Scene& scene, const std::string& file) {
-  const auto text = to_xml(scene, folder_of_file(file));
+Result<void> save_scene(const Scene& scene, const std::string& file,
+                        const StopRequest& should_stop) {
+  const auto text = to_xml(scene, folder_of_file(file), should_stop);
   if (!text) return fail(text.error());
   return write_file(file, *text);
 }

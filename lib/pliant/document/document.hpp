@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/document/operation.hpp"
 #include "pliant/document/text_edit.hpp"
 #include "pliant/scene/scene.hpp"
@@ -17,6 +18,8 @@ struct DocumentOptions {
   std::string root = {};
   /// What else a scene must satisfy, such as `Simulation::check`; empty: nothing.
   std::function<Result<void>(const Scene& scene)> check = {};
+  /// Asked by all that reads or changes the document, which is then Interrupted.
+  StopRequest should_stop = {};
 };
 
 /// What a step changed.
@@ -94,12 +97,14 @@ class SceneDocument {
 
 /// Whether the text of a scene, whose files are relative to `folder`, means the same as the text of
 /// `file`. `name`: its own file in messages. Errors: InvalidInput for another folder, if it names
-/// files by relative paths; those of `scan_markup`.
+/// files by relative paths; those of `markup_of`.
 Result<void> check_scene_place(const std::string& text, const std::string& name,
-                               const std::string& folder, const std::string& file);
+                               const std::string& folder, const std::string& file,
+                               const StopRequest& should_stop = {});
 
 /// Writes a scene made in code to a file, which appears whole or not at all; files that it names
 /// are written relative to the file's folder. Errors: those of `to_xml`; Unwritable.
-Result<void> save_scene(const Scene& scene, const std::string& file);
+Result<void> save_scene(const Scene& scene, const std::string& file,
+                        const StopRequest& should_stop = {});
 
 }  // namespace pliant

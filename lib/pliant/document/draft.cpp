@@ -6,9 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/expects.hpp"
-#include "pliant/scene/findings.hpp"
-#include "pliant/scene/read.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::edit {
@@ -44,18 +41,17 @@ std::string last_line_of(std::string_view text) {
 
 }  // namespace
 
-Result<Draft> Draft::make(std::string text, const std::string& name) {
-  Draft draft(name);
-  PLIANT_EXPECTS(text.size() <= largest_scene_file);
+Result<Draft> Draft::make(std::string text, const std::string& name,
+                          const StopRequest& should_stop) {
+  Draft draft(name, should_stop);
   draft.text_ = std::move(text);
   if (auto scanned = draft.scan(); !scanned) return fail(scanned.error());
   return draft;
 }
 
 Result<void> Draft::scan() {
-  xml::Findings findings(file_);
-  auto markup = xml::scan_markup(text_, findings);
-  if (!markup) return fail(findings.to_error());
+  auto markup = xml::markup_of(text_, file_, should_stop_);
+  if (!markup) return fail(markup.error());
   markup_ = *std::move(markup);
   return {};
 }
@@ -66,11 +62,9 @@ int Draft::line_of(Element element) const {
 
 std::vector<Element> Draft::children(Element element) const {
   std::vector<Element> found;
-  for (Element child = element + 1; child < markup_.elements.size(); ++child) {
-    const ElementPlace& at = place(child);
-    if (at.name.begin >= place(element).end) break;
-    if (at.parent == element) found.push_back(child);
-  }
+  const std::size_t end = markup_.after(element);
+  for (std::size_t child = element + std::size_t{1}; child < end; child = markup_.after(child))
+    found.push_back(static_cast<Element>(child));
   return found;
 }
 
@@ -337,10 +331,7 @@ Result<void> Draft::commit() {
     if (a.at != b.at) return a.at < b.at;
     return a.removed.empty() && !b.removed.empty();
   });
-  std::string text = made(text_, noted_);
-  if (text.size() > largest_scene_file)
-    return refuse(fmt::format("the scene would be larger than {} MiB", largest_scene_file >> 20U));
-  text_ = std::move(text);
+  text_ = made(text_, noted_);
   batches_.push_back(std::exchange(noted_, {}));
   return scan();
 }

@@ -5,12 +5,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/document/text_edit.hpp"
 #include "pliant/scene/element_text.hpp"
 #include "pliant/scene/markup.hpp"
+#include "pliant/scene/tree.hpp"
 
 namespace pliant::edit {
 
@@ -21,12 +23,16 @@ using Element = std::uint32_t;
 /// text, and made all at once by `commit`, after which elements have other indices.
 class Draft {
  public:
-  /// Errors: those of `scan_markup`. `name`: the file in messages.
-  static Result<Draft> make(std::string text, const std::string& name);
+  /// Errors: those of `markup_of`. `name`: the file in messages.
+  static Result<Draft> make(std::string text, const std::string& name,
+                            const StopRequest& should_stop = {});
 
   const std::string& text() const { return text_; }
   const std::string& file() const { return file_; }
+  const StopRequest& should_stop() const { return should_stop_; }
   int line_of(Element element) const;
+  /// The elements of the present text, as readers take them. The draft must outlive it, unchanged.
+  xml::Tree tree() const { return {text_, markup_}; }
 
   // The elements of the present text.
 
@@ -107,7 +113,7 @@ class Draft {
   /// The end of a place, and of the comments that follow it on its line.
   std::uint32_t end_with_comments(std::uint32_t end) const;
 
-  /// Makes the noted changes. Errors: those of `scan_markup`.
+  /// Makes the noted changes. Errors: those of `markup_of`.
   Result<void> commit();
 
   /// Keeps the lines: elements are inserted without line ends, and line ends of what is removed
@@ -123,12 +129,14 @@ class Draft {
   }
 
  private:
-  explicit Draft(std::string file) : file_(std::move(file)) {}
+  Draft(std::string file, const StopRequest& should_stop)
+      : file_(std::move(file)), should_stop_(should_stop) {}
   Result<void> scan();
   std::uint32_t blanks_begin(std::uint32_t at) const;
   std::string blanks_before(Element element) const;
 
   std::string file_;
+  StopRequest should_stop_;
   std::string text_;
   xml::Markup markup_;
   EditBatch noted_;

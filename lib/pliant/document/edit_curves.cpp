@@ -147,10 +147,11 @@ Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
     if (auto done = draft_.commit(); !done) return done;
     return set_curve(*this->spot(spot.path), keys);
   }
-  return insert_animate(spot, xml::curve_element(spot.attribute(), keys,
-                                                 D == 3       ? ValueKind::Vector
-                                                 : is_boolean ? ValueKind::Boolean
-                                                              : ValueKind::Number));
+  const ValueKind kind = D == 3       ? ValueKind::Vector
+                         : is_boolean ? ValueKind::Boolean
+                                      : ValueKind::Number;
+  return insert_animate(spot,
+                        xml::curve_element(spot.attribute(), keys, kind, draft_.should_stop()));
 }
 
 Result<void> Editor::operator()(const SetCurve& set) {

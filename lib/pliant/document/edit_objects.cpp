@@ -94,7 +94,7 @@ Result<void> Editor::operator()(const Duplicate& duplication) {
   if (!found) return fail(found.error());
   const Element original = *found;
   if (original == Draft::root) return draft_.refuse("the scene cannot be duplicated");
-  auto copy = Draft::make(std::string(draft_.whole(original)), draft_.file());
+  auto copy = Draft::make(std::string(draft_.whole(original)), draft_.file(), draft_.should_stop());
   if (!copy) return fail(copy.error());
   copy->set(Draft::root, "name", duplication.name);
   parts_.insert(duplication.name);

@@ -21,6 +21,11 @@ bool has_components(const AttributeFormat& format) {
   return format.type == "vector" || format.type == "number or vector";
 }
 
+const std::vector<ElementFormat>& all_formats() {
+  static const std::vector<ElementFormat> formats = scene_format();
+  return formats;
+}
+
 std::string hint_of(std::string_view word, const std::vector<std::string>& known) {
   const std::vector<std::string_view> words(known.begin(), known.end());
   return xml::hint(word, words);
@@ -29,7 +34,7 @@ std::string hint_of(std::string_view word, const std::vector<std::string>& known
 }  // namespace
 
 Editor::Editor(Draft& draft, const Scene& scene, ParseScene parse)
-    : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(scene_format()) {}
+    : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(all_formats()) {}
 
 Result<void> Editor::apply(const Operation& operation) {
   if (auto done = std::visit([&](const auto& one) { return (*this)(one); }, operation); !done)

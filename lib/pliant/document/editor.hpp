@@ -146,7 +146,7 @@ class Editor {
   Draft& draft_;
   const Scene& scene_;
   ParseScene parse_;
-  std::vector<ElementFormat> formats_;
+  const std::vector<ElementFormat>& formats_;
   std::set<std::string> parts_;
   bool replaces_computed_ = false;  // whether numbers may take the place of values with `$`
   std::string computed_;            // an attribute with `$` that had to be rewritten; empty: none

@@ -9,6 +9,7 @@
 
 #include "pliant/document/draft.hpp"
 #include "pliant/scene/markup.hpp"
+#include "pliant/scene/read.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant {
@@ -21,7 +22,8 @@ namespace {
 /// Lays out a text from its begin to its end.
 class Formatter {
  public:
-  explicit Formatter(const Draft& draft) : draft_(draft), text_(draft.text()) {
+  explicit Formatter(const Draft& draft)
+      : draft_(draft), text_(draft.text()), poll_(draft.should_stop()) {
     const std::size_t feed = text_.find('\n');
     if (feed != std::string_view::npos && feed > 0 && text_[feed - 1] == '\r')
       layout_.line_end = "\r\n";
@@ -36,13 +38,19 @@ class Formatter {
   }
 
  private:
+  /// Whether to end: the caller wants it, or the text is too large to be read.
+  bool is_over() {
+    constexpr std::size_t parts_of_element = 512;  // of work, see StopPoll
+    return poll_.after(parts_of_element) || result_.size() > largest_scene_file;
+  }
+
   /// Writes what stands from `begin` to `end`: some elements, and between them blanks, comments,
   /// declarations and a doctype.
   void write_content(std::size_t begin, std::size_t end, const std::vector<Element>& elements,
                      const std::string& margin) {
     auto element = elements.begin();
     bool is_first = true;
-    for (std::size_t at = begin; at < end;) {
+    for (std::size_t at = begin; at < end && !is_over();) {
       const std::size_t next = std::min(text_.find_first_not_of(xml::blanks, at), end);
       const std::string_view blanks = text_.substr(at, next - at);
       if (next == end) return;
@@ -151,7 +159,7 @@ class Formatter {
 
   /// Writes a text whose first line began behind `from` with the others moved to `to`.
   void write_lines(std::string_view text, std::string_view from, std::string_view to) {
-    for (bool is_first = true;; is_first = false) {
+    for (bool is_first = true; !is_over(); is_first = false) {
       if (!is_first) {
         result_ += layout_.line_end;
         if (text.starts_with(from) && !from.empty()) {
@@ -174,15 +182,21 @@ class Formatter {
   std::string_view text_;
   xml::Layout layout_;
   std::string result_;
+  StopPoll poll_;
   bool is_empty_ = true;  // nothing but a byte order mark is written
 };
 
 }  // namespace
 
-Result<std::string> format_scene(const std::string& text, const std::string& name) {
-  const auto draft = Draft::make(text, name);
+Result<std::string> format_scene(const std::string& text, const std::string& name,
+                                 const StopRequest& should_stop) {
+  const auto draft = Draft::make(text, name, should_stop);
   if (!draft) return fail(draft.error());
-  return Formatter(*draft).format();
+  std::string formatted = Formatter(*draft).format();
+  if (is_stopped(should_stop)) return interrupted();
+  if (const auto markup = xml::markup_of(formatted, name, should_stop); !markup)
+    return fail(markup.error());
+  return formatted;
 }
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -11,7 +12,8 @@ namespace pliant {
 /// between elements; the line ends of the first line. Attributes keep their order and values their
 /// characters. Comments stay, those behind something on its line there. The scene is the same to
 /// the bit, and a text that was laid out stays as it is. `name`: the file in messages. Errors:
-/// those of `scan_markup`; the caller has read the scene.
-Result<std::string> format_scene(const std::string& text, const std::string& name);
+/// those of `markup_of`, also for the layout; the caller has read the scene.
+Result<std::string> format_scene(const std::string& text, const std::string& name,
+                                 const StopRequest& should_stop = {});
 
 }  // namespace pliant

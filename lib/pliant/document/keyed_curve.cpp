@@ -4,25 +4,25 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/element.hpp"
 #include "pliant/scene/findings.hpp"
 #include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/text.hpp"
+#include "pliant/scene/tree.hpp"
 
 namespace pliant::edit {
 namespace {
 
 /// The curve of a channel with the defaults of its <animate>, which `element` is.
 template <int D>
-AnyCurve keyed(const Draft& draft, const tinyxml2::XMLElement& element, KeyedCurve<D> result) {
+AnyCurve keyed(const Draft& draft, const xml::Element& element, KeyedCurve<D> result) {
   result.elements = draft.children(result.animate, "key");
   if (result.kind == xml::ValueKind::Boolean)
     result.defaults.interpolation.kind = Interpolation::Kind::Step;
   xml::Table table = xml::table_of(result.defaults, result.axis, result.kind);
-  xml::Findings findings(draft.file());
+  xml::Findings findings(draft.file(), draft.should_stop());
   xml::read_attributes(element, table, findings);
   return result;
 }
@@ -30,21 +30,12 @@ AnyCurve keyed(const Draft& draft, const tinyxml2::XMLElement& element, KeyedCur
 template <int D>
 Result<AnyCurve> read_curve_of(const Draft& draft, Element animate, xml::ValueKind kind,
                                const std::string& channel) {
-  tinyxml2::XMLDocument document;
-  const std::string_view text = draft.whole(animate);
-  const int first_line = draft.line_of(animate);
-  xml::Findings findings(draft.file());
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    return draft.refuse(fmt::format("{}: {}", channel, document.ErrorName()));
-  const tinyxml2::XMLElement& element = *document.RootElement();
+  xml::Tree tree = draft.tree();
+  const xml::Element element(tree, animate);
+  xml::Findings findings(draft.file(), draft.should_stop());
   const auto axis = draft.name(animate) == "falloff" ? xml::KeyAxis::Falloff : xml::KeyAxis::Frame;
   auto curve = xml::read_curve<D>(element, axis, kind, channel, findings);
-  if (!curve) {
-    Error error = findings.to_error();
-    error.line += first_line - 1;
-    for (Error& other : error.others) other.line += first_line - 1;
-    return fail(std::move(error));
-  }
+  if (!curve) return fail(findings.to_error());
   return keyed<D>(draft, element,
                   {.channel = channel,
                    .animate = animate,
@@ -68,10 +59,7 @@ bool is_computed(const Draft& draft, Element element) {
 /// The curve of a channel that has keys with `$`.
 Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
                                      const std::string& channel, const ParseScene& parse) {
-  tinyxml2::XMLDocument document;
-  const std::string_view text = draft.whole(animate);
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    return draft.refuse(fmt::format("{}: {}", channel, document.ErrorName()));
+  xml::Tree tree = draft.tree();
   const auto scene = parse(draft.text());
   if (!scene) return fail(scene.error());
   const std::vector<NamedChannel> channels = channels_of(*scene);
@@ -82,7 +70,7 @@ Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
                     "a number first",
                     channel, draft.name(animate)));
   const auto with = [&]<int D>(xml::ValueKind kind, const Curve<D>& curve) {
-    return keyed<D>(draft, *document.RootElement(),
+    return keyed<D>(draft, xml::Element(tree, animate),
                     {.channel = channel,
                      .animate = animate,
                      .elements = {},

@@ -184,8 +184,10 @@ void Editor::write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<
 template <int D>
 Result<void> Editor::write_keys(const KeyedCurve<D>& curve,
                                 const std::vector<KeyEntry<D>>& wanted) {
-  for (const KeyEntry<D>& entry : wanted)
-    if (entry.origin) write_key(curve, *entry.origin, entry);
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    if (is_stopped(draft_.should_stop(), k)) return interrupted();
+    if (wanted[k].origin) write_key(curve, *wanted[k].origin, wanted[k]);
+  }
   // After changes of attributes, elements have the same numbers.
   if (auto done = commit_rewritten(curve.channel); !done) return done;
 
@@ -198,6 +200,7 @@ Result<void> Editor::write_keys(const KeyedCurve<D>& curve,
   std::vector<std::string> inserted;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
     const auto& [key, origin] = wanted[k];
+    if (is_stopped(draft_.should_stop(), k)) return interrupted();
     if (stays[k]) {
       draft_.insert(std::exchange(inserted, {}), place);
       place.after = curve.elements[*origin];

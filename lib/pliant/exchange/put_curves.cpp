@@ -25,14 +25,16 @@ xml::ElementText element_of(const PlacedCurve& curve, const std::string& attribu
 
 Result<std::string> with_curves(std::string_view text, const std::string& name,
                                 const std::string& folder, const std::string& root,
-                                const PlacedCurves& curves) {
-  auto document = SceneDocument::from_text(std::string(text), name, folder, {.root = root});
+                                const PlacedCurves& curves, const StopRequest& should_stop) {
+  auto document = SceneDocument::from_text(std::string(text), name, folder,
+                                           {.root = root, .should_stop = should_stop});
   if (!document) return fail(document.error());
   std::vector<Operation> operations;
   for (const PlacedCurve& curve : curves.curves)
     operations.emplace_back(edit::SetCurve{curve.channel, curve.keys});
   if (auto changed = document->apply(operations, "import curves"); !changed) {
     Error error = changed.error();
+    if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     error.message = "the scene cannot have the curves: " + error.message;
     error.line = 0;  // of a text that nobody sees
     return fail(std::move(error));

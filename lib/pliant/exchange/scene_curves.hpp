@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/exchange/curve_file.hpp"
 #include "pliant/scene/scene.hpp"
 
@@ -64,10 +65,10 @@ Result<PlacedCurves> place_curves(const CurveFile& file, const std::vector<Curve
 
 /// The text of a scene file with these curves in place of what its channels have: nothing else
 /// changes. `name`: of the file, in messages. Errors: as `parse_scene`, of the text before or
-/// after; a channel whose element is not in the text, or that follows a path.
+/// after; a channel whose element is not in the text, or that follows a path; Interrupted.
 Result<std::string> with_curves(std::string_view text, const std::string& name,
                                 const std::string& folder, const std::string& root,
-                                const PlacedCurves& curves);
+                                const PlacedCurves& curves, const StopRequest& should_stop = {});
 
 /// The curves as <animate> elements, those of each thing after a comment with its name.
 std::string animate_elements(const PlacedCurves& curves);

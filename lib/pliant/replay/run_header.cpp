@@ -47,8 +47,9 @@ bool is_one_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-Result<Scene> scene_of(const WrittenScene& written) {
-  auto scene = parse_scene(written.text, written.file.string(), written.folder, written.root);
+Result<Scene> scene_of(const WrittenScene& written, const StopRequest& should_stop = {}) {
+  auto scene =
+      parse_scene(written.text, written.file.string(), written.folder, written.root, should_stop);
   if (!scene || written.changes.empty()) return scene;
   if (auto changed = change_scene(*scene, written.changes, written.root.string()); !changed)
     return fail(changed.error());
@@ -116,7 +117,7 @@ void complete(ReplayHeader& header, const Simulation& simulation, std::optional<
 }
 
 Result<Simulation> simulation_of(const WrittenScene& written, const SimulationOptions& options) {
-  auto scene = scene_of(written);
+  auto scene = scene_of(written, options.should_stop);
   if (!scene) return fail(scene.error());
   return Simulation::make(*std::move(scene), options);
 }

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/scene/expand.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::xml {
@@ -48,9 +50,14 @@ std::pair<char, std::size_t> sign_at(std::string_view text) {
 
 using Tokens = std::vector<Token>;
 
-/// The tokens of a value; null: it is not arithmetic. Fault: a number that no double can hold.
+constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+
+/// The tokens of a value; null: it is not arithmetic, or has more than `most` numbers for certain.
+/// Fault: a number that no double can hold.
 class Tokenizer {
  public:
+  explicit Tokenizer(std::size_t most) : most_(most) {}
+
   std::optional<tl::expected<Tokens, ArithmeticFault>> read(std::span<const ValuePart> parts) {
     for (const ValuePart& part : parts) {
       const bool is_known = part.is_definition ? add_definition(part) : add_written(part.text);
@@ -65,9 +72,11 @@ class Tokenizer {
   bool add(Token token) {
     token.has_blank_before = std::exchange(has_blank_, false);
     const bool begins_operand = token.kind == Token::operand || token.kind == '(';
-    if (begins_operand && !token.has_blank_before && !tokens_.empty() &&
-        is_operand_end(tokens_.back()))
-      return false;
+    if (begins_operand && !tokens_.empty() && is_operand_end(tokens_.back())) {
+      if (!token.has_blank_before) return false;
+      if (open_ == 0 && ++count_ > most_) return false;
+    }
+    open_ += token.kind == '(' ? 1 : token.kind == ')' ? -1 : 0;
     tokens_.push_back(std::move(token));
     return true;
   }
@@ -111,6 +120,9 @@ class Tokenizer {
     return true;
   }
 
+  std::size_t most_;
+  std::size_t count_ = 1;  // of numbers that nothing joins
+  int open_ = 0;           // parentheses
   Tokens tokens_;
   std::optional<ArithmeticFault> fault_;
   bool has_blank_ = false;
@@ -268,8 +280,8 @@ std::string digits_of(std::span<const double> numbers) {
 
 using Components = tl::expected<std::vector<Component>, ArithmeticFault>;
 
-std::optional<Components> components_of(std::span<const ValuePart> parts) {
-  auto tokens = Tokenizer().read(parts);
+std::optional<Components> components_of(std::span<const ValuePart> parts, std::size_t most = any) {
+  auto tokens = Tokenizer(most).read(parts);
   if (!tokens || (tokens->has_value() && (*tokens)->empty())) return std::nullopt;
   if (!tokens->has_value()) return tl::unexpected(std::move(tokens->error()));
   return Evaluator(**tokens).components();
@@ -284,14 +296,15 @@ bool are_plain_numbers(std::string_view text) {
   });
 }
 
-std::optional<Numbers> numbers_of(std::string_view text) {
+std::optional<Numbers> numbers_of(std::string_view text, std::size_t most) {
   const ValuePart part{.text = text};
-  const std::optional<Components> components = components_of({&part, 1});
+  const std::optional<Components> components = components_of({&part, 1}, most);
   if (!components) return std::nullopt;
   if (!components->has_value()) return tl::unexpected(components->error());
   std::vector<double> numbers;
   for (const Component& component : **components)
     numbers.insert(numbers.end(), component.numbers.begin(), component.numbers.end());
+  if (numbers.size() > most) return std::nullopt;
   return numbers;
 }
 
@@ -303,6 +316,7 @@ std::optional<tl::expected<std::string, ArithmeticFault>> compute(
   if (!components->has_value()) return tl::unexpected(components->error());
   std::string text;
   for (const Component& component : **components) {
+    if (text.size() > longest_value) break;  // longer than it may be
     const std::string_view gap = text.empty() ? "" : " ";
     text += gap;
     text +=

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,8 +36,9 @@ struct ValuePart {
 bool are_plain_numbers(std::string_view text);
 
 /// The numbers of a text without definitions: one or more, separated by blanks, each of them
-/// arithmetic. Null: it is something else.
-std::optional<Numbers> numbers_of(std::string_view text);
+/// arithmetic. Null: it is something else, or has more than `most` numbers.
+std::optional<Numbers> numbers_of(std::string_view text,
+                                  std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// The text of a value that is arithmetic: its numbers, separated by blanks. Null: it is not, since
 /// a definition stands for no numbers, or since there are other characters than those of

@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
 
-/// Whether a name matches [A-Za-z_][A-Za-z0-9_-]*.
+/// The most characters of a name: messages and paths of channels repeat it.
+inline constexpr std::size_t longest_object_name = 1000;
+
+/// Whether a name matches [A-Za-z_][A-Za-z0-9_-]* and is no longer than that.
 bool is_name(std::string_view text);
 
 /// Checks the rules for a scene as a whole: every number that is no channel is within its range
@@ -17,8 +22,8 @@ bool is_name(std::string_view text);
 /// over surfaces, forces and groups; targets and groups exist; a custom force has a function; a
 /// sheet has at most `max_sheet_vertices` vertices. The reader has done so for a scene from a file.
 /// `Simulation::make` checks the channels over the frames. Returns all problems, in the order of
-/// their lines if known.
-std::vector<Error> check_scene(const Scene& scene);
+/// their lines if known; fewer if the caller wants it to stop.
+std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop = {});
 
 /// The error (Unreadable) of a reader of meshes or caches as a problem of the scene: it names the
 /// surface, and the line of the attribute by which the scene names the file.

@@ -104,7 +104,8 @@ ElementText loop_element(const Loop<D>& loop, ValueKind kind) {
 }
 
 template <int D>
-ElementText curve_element(std::string_view attribute, const CurveKeys<D>& keys, ValueKind kind) {
+ElementText curve_element(std::string_view attribute, const CurveKeys<D>& keys, ValueKind kind,
+                          const StopRequest& should_stop) {
   const KeyAxis axis = attribute.empty() ? KeyAxis::Falloff : KeyAxis::Frame;
   AnimateText<D> text{.before = keys.before, .after = keys.after, .overshoot = keys.overshoot};
   AnimateText<D> standard;
@@ -113,8 +114,10 @@ ElementText curve_element(std::string_view attribute, const CurveKeys<D>& keys, 
   add_attributes(element, table_of(text, axis, kind), table_of(standard, axis, kind));
   // A boolean channel's keys step unless they say otherwise.
   if (kind == ValueKind::Boolean) standard.interpolation.kind = Interpolation::Kind::Step;
-  for (const Key<D>& key : keys.keys)
+  for (const Key<D>& key : keys.keys) {
+    if (is_stopped(should_stop, element.children.size())) break;
     element.children.push_back(key_element(key, standard, axis, kind));
+  }
   if (keys.loop) element.children.push_back(loop_element(*keys.loop, kind));
   return element;
 }
@@ -127,7 +130,9 @@ template ElementText key_element(const Key<1>&, const AnimateText<1>&, KeyAxis, 
 template ElementText key_element(const Key<3>&, const AnimateText<3>&, KeyAxis, ValueKind);
 template ElementText loop_element(const Loop<1>&, ValueKind);
 template ElementText loop_element(const Loop<3>&, ValueKind);
-template ElementText curve_element(std::string_view, const CurveKeys<1>&, ValueKind);
-template ElementText curve_element(std::string_view, const CurveKeys<3>&, ValueKind);
+template ElementText curve_element(std::string_view, const CurveKeys<1>&, ValueKind,
+                                   const StopRequest&);
+template ElementText curve_element(std::string_view, const CurveKeys<3>&, ValueKind,
+                                   const StopRequest&);
 
 }  // namespace pliant::xml

@@ -37,8 +37,10 @@ ElementText key_element(const Key<D>& key, const AnimateText<D>& defaults, KeyAx
 template <int D>
 ElementText loop_element(const Loop<D>& loop, ValueKind kind);
 
-/// An <animate> of the attribute, or if that is empty a <falloff>.
+/// An <animate> of the attribute, or if that is empty a <falloff>. Not all keys if the caller wants
+/// it to stop.
 template <int D>
-ElementText curve_element(std::string_view attribute, const CurveKeys<D>& keys, ValueKind kind);
+ElementText curve_element(std::string_view attribute, const CurveKeys<D>& keys, ValueKind kind,
+                          const StopRequest& should_stop = {});
 
 }  // namespace pliant::xml

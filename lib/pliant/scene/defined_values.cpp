@@ -39,7 +39,8 @@ std::uint32_t DefinedValues::add_definition(std::string name, int text, int line
 void DefinedValues::add(int line, std::string_view attribute, std::string_view value,
                         std::vector<std::uint32_t> definitions) {
   if (values_.size() >= most_kept) return;
-  values_.push_back({line, std::string(attribute), std::string(value), std::move(definitions)});
+  values_.push_back({line, std::string(attribute),
+                     fmt::format("{}={}", attribute, in_quotes(value)), std::move(definitions)});
 }
 
 std::string DefinedValues::sources(int line, std::string_view message, const LineMap& files) const {
@@ -48,8 +49,7 @@ std::string DefinedValues::sources(int line, std::string_view message, const Lin
   for (auto value = std::ranges::lower_bound(values_, line, {}, &Value::line);
        value != values_.end() && value->line == line && meant.size() < most_told; ++value) {
     if (++compared > most_compared) break;
-    const std::string quoted = fmt::format("{}={}", value->attribute, in_quotes(value->value));
-    if (message.find(quoted) == std::string_view::npos &&
+    if (message.find(value->quoted) == std::string_view::npos &&
         !names_attribute(message, value->attribute))
       continue;
     meant.insert(meant.end(), value->definitions.begin(), value->definitions.end());

@@ -41,7 +41,8 @@ class DefinedValues {
   };
   struct Value {
     int line = 0;
-    std::string attribute, value;
+    std::string attribute;
+    std::string quoted;  ///< `attribute="value"`, as messages have it
     std::vector<std::uint32_t> definitions;
   };
 

@@ -40,8 +40,9 @@ std::string hint_of_undefined(std::string_view name, const Scope& scope) {
   constexpr std::size_t most_compared = 1000;
   std::vector<std::string_view> names;
   const auto add = [&](const Definitions& definitions) {
-    for (const auto& [known, definition] : definitions)
-      if (names.size() < most_compared) names.push_back(known);
+    for (auto one = definitions.begin(); one != definitions.end() && names.size() < most_compared;
+         ++one)
+      names.push_back(one->first);
   };
   for (const Scope* one = &scope; one; one = one->outer) {
     add(one->own);
@@ -55,7 +56,8 @@ std::string hint_of_undefined(std::string_view name, const Scope& scope) {
 /// Splits a value into what is written and what is defined.
 class ValueReader {
  public:
-  ValueReader(std::string_view value, const Scope& scope) : rest_(value), scope_(scope) {}
+  ValueReader(std::string_view value, const Scope& scope, bool may_hint)
+      : rest_(value), scope_(scope), may_hint_(may_hint) {}
 
   /// The parts, which refer to the value and the scope.
   tl::expected<std::vector<ValuePart>, std::string> read() {
@@ -107,7 +109,7 @@ class ValueReader {
     const Definition* const definition = scope_.find(name);
     if (!definition)
       return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
-                                 hint_of_undefined(name, scope_)));
+                                 may_hint_ ? hint_of_undefined(name, scope_) : ""));
     if (!definition->is_sound) return refusal({});
     add_sources(direct_, std::span(definition->sources).first(1));
     add_sources(indirect_, std::span(definition->sources).subspan(1));
@@ -119,6 +121,7 @@ class ValueReader {
 
   std::string_view rest_;
   const Scope& scope_;
+  bool may_hint_;
   std::vector<std::uint32_t> direct_, indirect_;
 };
 
@@ -140,9 +143,8 @@ void Definition::set(std::string value) {
   is_plain = false;
   numbers.reset();
   if (text.size() > longest_value) return;  // nothing that is made of it may be so long
-  is_plain = are_plain_numbers(text);
-  numbers = numbers_of(text);
-  if (numbers && numbers->has_value() && (*numbers)->size() > most_numbers) numbers.reset();
+  numbers = numbers_of(text, most_numbers);
+  is_plain = numbers && are_plain_numbers(text);
 }
 
 const Definition* Scope::find(std::string_view name) const {
@@ -164,11 +166,11 @@ void Scope::take(Scope included) {
 }
 
 tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
-                                                       Use use) {
+                                                       Use use, bool may_hint) {
   if (value.size() > longest_value && value.find('$') != std::string_view::npos)
     return tl::unexpected(ValueRefusal{
         fmt::format("is longer than {} KiB, too long for definitions", longest_value >> 10U)});
-  ValueReader reader(value, scope);
+  ValueReader reader(value, scope, may_hint);
   const auto parts = reader.read();
   if (!parts) return tl::unexpected(ValueRefusal{parts.error()});
   const auto refusal_of = [&](std::string complaint) {
@@ -179,6 +181,7 @@ tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, c
   const bool may_be_computed =
       is_defined && (use == Use::Number || (use == Use::Definition && has_operator(*parts)));
   std::string text;
+  bool is_too_long = false;
   const auto computed = may_be_computed ? compute(*parts) : std::nullopt;
   if (computed && computed->has_value()) {
     text = **computed;
@@ -186,11 +189,12 @@ tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, c
     return refusal_of(computed->error().complaint);
   } else {
     for (const ValuePart& part : *parts) {
+      is_too_long = is_defined && text.size() + part.text.size() > longest_value;
+      if (is_too_long) break;
       text += part.text;
-      if (text.size() > longest_value) break;
     }
   }
-  if (is_defined && text.size() > longest_value)
+  if (is_too_long || (is_defined && text.size() > longest_value))
     return refusal_of(
         fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
   return ExpandedValue{std::move(text), reader.sources()};

@@ -74,8 +74,9 @@ struct ValueRefusal {
 };
 
 /// A value, decoded, with `$NAME` and `${NAME}` replaced and `$$` as `$`; computed if it is
-/// arithmetic (`compute`).
+/// arithmetic (`compute`). `may_hint`: whether the refusal of an undefined name has the nearest
+/// one.
 tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
-                                                       Use use);
+                                                       Use use, bool may_hint = true);
 
 }  // namespace pliant::xml

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/core/open_file.hpp"
 #include "pliant/scene/artist_words.hpp"
+#include "pliant/scene/element_text.hpp"
 #include "pliant/scene/expand.hpp"
 #include "pliant/scene/nearest.hpp"
 
@@ -25,7 +25,8 @@ std::vector<std::string_view> supported_names(std::span<const Slot> table) {
 /// `; it belongs in <surface>` for an element that the format allows elsewhere.
 std::string where_it_belongs(std::string_view name) {
   std::string places;
-  for (const ElementFormat& format : scene_format()) {
+  static const std::vector<ElementFormat> formats = scene_format();
+  for (const ElementFormat& format : formats) {
     if (format.name != name) continue;
     for (const std::string_view parent : format.parents)
       places += fmt::format("{}<{}>", places.empty() ? "" : " or ", parent);
@@ -33,7 +34,7 @@ std::string where_it_belongs(std::string_view name) {
   return places.empty() ? "" : "; it belongs in " + places;
 }
 
-std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XMLElement& child,
+std::string unknown_child(const Element& parent, const Element& child,
                           std::span<const Child> children) {
   std::vector<std::string_view> names;
   for (const Child& known : children) names.push_back(known.name);
@@ -41,33 +42,33 @@ std::string unknown_child(const tinyxml2::XMLElement& parent, const tinyxml2::XM
   constexpr std::string_view expanded[] = {Description<IncludeText>::element,
                                            Description<DefineText>::element};
   const std::vector<std::string_view> parents = including_elements();
-  if (nearest_word(child.Name(), expanded) &&
-      std::find(parents.begin(), parents.end(), parent.Name()) != parents.end())
+  if (nearest_word(child.name(), expanded) &&
+      std::find(parents.begin(), parents.end(), parent.name()) != parents.end())
     names.insert(names.end(), std::begin(expanded), std::end(expanded));
-  std::string place = where_it_belongs(child.Name());
-  if (const std::string_view meant = meant_by_element(child.Name());
+  std::string place = where_it_belongs(child.name());
+  if (const std::string_view meant = meant_by_element(child.name());
       place.empty() && !meant.empty())
     place = fmt::format("; use {}", meant);
-  return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.Name()),
+  return fmt::format("{} has no element {}{}", tag(parent), in_quotes(child.name()),
                      place.empty()
-                         ? hint(child.Name(), names)
+                         ? hint(child.name(), names)
                          : place + "; allowed: " + (names.empty() ? "none" : listed(names)));
 }
 
 /// An <include> is still there if it could not be replaced, which is reported.
-bool is_include(const tinyxml2::XMLElement& element) {
-  return element.Name() == Description<IncludeText>::element;
+bool is_include(const Element& element) {
+  return element.name() == Description<IncludeText>::element;
 }
 
-void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given, Slot& row,
+void read_value(const Element& element, const GivenAttribute& given, Slot& row,
                 Findings& findings) {
   if (row.line != 0)
     return findings.add_problem(
-        given.GetLineNum(),
-        value_problem(element, given.Name(), given.Value(),
-                      fmt::format("{} is already animated ({}); remove one of them", given.Name(),
-                                  findings.title_of(row.line, given.GetLineNum()))));
-  row.line = given.GetLineNum();
+        given.line,
+        value_problem(element, given.name, given.value,
+                      fmt::format("{} is already animated ({}); remove one of them", given.name,
+                                  findings.title_of(row.line, given.line))));
+  row.line = given.line;
   if (is_unknown(given)) {
     row.is_sound = false;
     return findings.add_consequence();
@@ -75,110 +76,114 @@ void read_value(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribut
   if (row.attribute.need == Need::Later) {
     row.is_sound = false;
     return findings.add_problem(
-        row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.Name()), tag(element),
+        row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.name), tag(element),
                               not_supported(row.attribute.instead)));
   }
-  if (const Reading<void> read = row.read(given.Value()); !read) {
+  if (const Reading<void> read = row.read(given.value); !read) {
     row.is_sound = false;
-    findings.add_problem(row.line,
-                         value_problem(element, given.Name(), given.Value(), read.error()));
+    findings.add_problem(row.line, value_problem(element, given.name, given.value, read.error()));
   }
 }
 
 /// Whether an attribute of the root only tells editors and validators where the schema is.
-bool names_schema(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& given) {
-  if (element.Parent() != element.GetDocument()) return false;
-  const std::string_view name = given.Name();
-  return name == "xsi:noNamespaceSchemaLocation" ||
-         (name == "xmlns:xsi" &&
-          given.Value() == std::string_view("http://www.w3.org/2001/XMLSchema-instance"));
+bool names_schema(const Element& element, const GivenAttribute& given) {
+  if (!element.is_root()) return false;
+  return given.name == "xsi:noNamespaceSchemaLocation" ||
+         (given.name == "xmlns:xsi" && given.value == "http://www.w3.org/2001/XMLSchema-instance");
 }
 
 }  // namespace
 
-void read_attributes(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
+void read_attributes(const Element& element, Table& table, Findings& findings) {
   const std::vector<std::string_view> names = supported_names(table);
   std::vector<std::string_view> meant;  // attributes that a misspelt one probably stands for
-  for (const auto* given = element.FirstAttribute(); given && !findings.is_full();
-       given = given->Next()) {
-    if (names_schema(element, *given)) continue;
-    if (Slot* row = find(table, given->Name())) {
-      read_value(element, *given, *row, findings);
+  for (const GivenAttribute& given : element.attributes()) {
+    constexpr std::size_t parts_of_attribute = 64;  // besides those of its bytes
+    if (findings.is_over(parts_of_attribute + given.value.size())) break;
+    if (names_schema(element, given)) continue;
+    if (Slot* row = find(table, given.name)) {
+      read_value(element, given, *row, findings);
       continue;
     }
     findings.add_problem(
-        given->GetLineNum(),
-        fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given->Name()),
-                    attribute_hint(element.Name(), given->Name(), names, meant)));
+        given.line, fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given.name),
+                                attribute_hint(element.name(), given.name, names, meant)));
   }
   for (Slot& row : table) {
     if (std::find(meant.begin(), meant.end(), row.attribute.name) != meant.end())
       row.is_sound = false;
     if (row.attribute.need != Need::Required || row.line != 0 || !row.is_sound) continue;
     row.is_sound = false;
-    findings.add_problem(element.GetLineNum(), fmt::format("{} needs the attribute \"{}\"",
-                                                           tag(element), row.attribute.name));
+    findings.add_problem(element.line(), fmt::format("{} needs the attribute \"{}\"", tag(element),
+                                                     row.attribute.name));
   }
 }
 
-bool read_children(const tinyxml2::XMLElement& element, std::span<const Child> children,
-                   Findings& findings) {
+bool read_children(const Element& element, std::span<const Child> children, Findings& findings) {
   bool all_known = true;
-  for (const auto* node = element.FirstChild(); node && !findings.is_full();
-       node = node->NextSibling()) {
-    if (node->ToText())
-      findings.add_problem(node->GetLineNum(),
+  constexpr std::size_t parts_of_child = 1024;
+  ContentReader content(element, findings);
+  for (auto part = content.next(); part; part = content.next()) {
+    if (findings.is_over(parts_of_child)) break;
+    if (!part->element) {
+      findings.add_problem(content.line_of(part->text),
                            fmt::format("{} contains the text {}; no text is allowed here",
-                                       tag(element), in_quotes(trimmed(node->Value()))));
-    const auto* child = node->ToElement();
-    if (!child) continue;
+                                       tag(element), in_quotes(trimmed(part->value()))));
+      continue;
+    }
+    const Element& child = *part->element;
     const auto known = std::find_if(children.begin(), children.end(), [&](const Child& candidate) {
-      return candidate.name == child->Name();
+      return candidate.name == child.name();
     });
     if (known != children.end()) {
-      known->read(*child);
+      known->read(child);
       continue;
     }
     all_known = false;
-    if (is_include(*child))
+    if (is_include(child))
       findings.add_consequence();
     else
-      findings.add_problem(child->GetLineNum(), unknown_child(element, *child, children));
+      findings.add_problem(child.line(), unknown_child(element, child, children));
   }
   return all_known;
 }
 
-bool read_numbers(const tinyxml2::XMLElement& element, std::vector<double>& numbers,
-                  Findings& findings) {
+bool read_numbers(const Element& element, std::vector<double>& numbers, Findings& findings) {
+  constexpr std::size_t longest_number = 1024;  // bytes
+  constexpr std::size_t parts_of_number = 32;
   bool is_sound = true;
   const auto complain = [&](int line, std::string message) {
     is_sound = false;
     findings.add_problem(line, std::move(message));
   };
-  for (const auto* node = element.FirstChild(); node && !findings.is_full();
-       node = node->NextSibling()) {
-    const auto* child = node->ToElement();
-    if (child && is_include(*child))
+  ContentReader content(element, findings);
+  // Whether it is a number; `written`: in the text.
+  const auto read = [&](std::string_view word, std::string_view written) {
+    const Reading<double> number = written.size() < longest_number
+                                       ? parse_number(word)
+                                       : tl::unexpected(std::string("is too long for a number"));
+    if (number)
+      numbers.push_back(*number);
+    else
+      complain(content.line_of(written),
+               fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
+                           in_quotes(word), number.error()));
+    return number.has_value();
+  };
+  for (auto part = content.next(); part; part = content.next()) {
+    if (part->element && is_include(*part->element))
       is_sound = false;
-    else if (child)
-      complain(child->GetLineNum(), unknown_child(element, *child, {}));
-    if (!node->ToText()) continue;
-    // The line of a text is that of its first word.
-    std::string_view text = node->Value();
-    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-    for (int line = node->GetLineNum(); !text.empty() && !findings.is_full();) {
-      const std::string_view word = text.substr(0, text.find_first_of(blanks));
-      const Reading<double> number = parse_number(word);
-      if (number)
-        numbers.push_back(*number);
-      else
-        complain(line, fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
-                                   in_quotes(word), number.error()));
-      if (!number) return false;
-      text.remove_prefix(word.size());
-      const std::size_t gap = std::min(text.find_first_not_of(blanks), text.size());
-      line += static_cast<int>(std::count(text.begin(), text.begin() + gap, '\n'));
-      text.remove_prefix(gap);
+    else if (part->element)
+      complain(part->element->line(), unknown_child(element, *part->element, {}));
+    for (std::string_view text = part->text; !text.empty();) {
+      const std::string_view ahead = text.substr(0, longest_number);
+      const std::string_view word = ahead.substr(0, ahead.find_first_of(blanks));
+      const bool has_reference = !part->is_cdata && word.find('&') != std::string_view::npos;
+      const std::string value = has_reference ? decoded(word) : "";
+      for (const std::string_view inner : has_reference ? words_of(value) : std::vector{word})
+        if (!read(inner, word)) return false;
+      text.remove_prefix(first_not_blank(text, word.size(), findings));
+      if (findings.is_over(parts_of_number)) return false;
     }
   }
   return is_sound;
@@ -190,19 +195,19 @@ Slot* find(std::span<Slot> table, std::string_view name) {
   return found != table.end() ? &*found : nullptr;
 }
 
-std::string tag(const tinyxml2::XMLElement& element) {
-  const std::string name = in_quotes(element.Name());
+std::string tag(const Element& element) {
+  const std::string name = in_quotes(element.name());
   return '<' + name.substr(1, name.size() - 2) + '>';
 }
 
-bool is_unknown(const tinyxml2::XMLAttribute& given) { return given.Value()[0] == unknown_value; }
+bool is_unknown(const GivenAttribute& given) { return given.value.starts_with(unknown_value); }
 
-std::string value_problem(const tinyxml2::XMLElement& element, std::string_view attribute,
-                          std::string_view text, std::string_view complaint) {
+std::string value_problem(const Element& element, std::string_view attribute, std::string_view text,
+                          std::string_view complaint) {
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
 }
 
-void locate_file(const tinyxml2::XMLElement& element, Slot& row, const std::string& surface,
+void locate_file(const Element& element, Slot& row, const std::string& surface,
                  const std::string& named_by, std::string& path, SceneFile& file) {
   if (row.line == 0 || !row.is_sound) return;
   const std::string written = std::exchange(path, (file.folder_at(row.line) / path).string());
@@ -222,10 +227,10 @@ void record(const std::string& name, std::span<const Slot> table, SceneFile& fil
   }
 }
 
-void record_element(const tinyxml2::XMLElement& element, const std::string& name,
-                    std::span<const Slot> table, SceneFile& file) {
+void record_element(const Element& element, const std::string& name, std::span<const Slot> table,
+                    SceneFile& file) {
   if (name.empty()) return;
-  file.lines[name] = element.GetLineNum();
+  file.lines[name] = element.line();
   record(name, table, file);
 }
 

@@ -54,6 +54,27 @@ void append_reference(std::string_view name, std::string& text) {
   }
 }
 
+void append(const ElementText& element, const Layout& layout, const std::string& margin,
+            StopPoll& poll, std::string& text) {
+  std::vector<std::string> attributes;
+  for (const auto& [name, value] : element.attributes)
+    attributes.push_back(
+        fmt::format("{}={}{}{}", name, layout.quote, encoded(value, layout.quote), layout.quote));
+  const bool is_empty = element.children.empty() && element.text.empty();
+  text += opening_tag(element.name, attributes, is_empty ? "/>" : ">", margin, layout);
+  if (is_empty) return;
+  text += element.text;
+  const std::string inner = margin + layout.indent;
+  for (const ElementText& child : element.children) {
+    constexpr std::size_t parts_of_element = 512;  // of work, see StopPoll
+    if (poll.after(parts_of_element)) return;
+    text += layout.line_end + inner;
+    append(child, layout, inner, poll, text);
+  }
+  if (!element.children.empty()) text += layout.line_end + margin;
+  text += fmt::format("</{}>", element.name);
+}
+
 }  // namespace
 
 std::string decoded(std::string_view written) {
@@ -123,20 +144,12 @@ std::string opening_tag(std::string_view name, std::span<const std::string> attr
   return text += closing;
 }
 
-std::string text_of(const ElementText& element, const Layout& layout, const std::string& margin) {
-  std::vector<std::string> attributes;
-  for (const auto& [name, value] : element.attributes)
-    attributes.push_back(
-        fmt::format("{}={}{}{}", name, layout.quote, encoded(value, layout.quote), layout.quote));
-  const bool is_empty = element.children.empty() && element.text.empty();
-  std::string text = opening_tag(element.name, attributes, is_empty ? "/>" : ">", margin, layout);
-  if (is_empty) return text;
-  text += element.text;
-  const std::string inner = margin + layout.indent;
-  for (const ElementText& child : element.children)
-    text += layout.line_end + inner + text_of(child, layout, inner);
-  if (!element.children.empty()) text += layout.line_end + margin;
-  return text += fmt::format("</{}>", element.name);
+std::string text_of(const ElementText& element, const Layout& layout, const std::string& margin,
+                    const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
+  std::string text;
+  append(element, layout, margin, poll, text);
+  return text;
 }
 
 }  // namespace pliant::xml

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/core/stop_request.hpp"
+
 namespace pliant::xml {
 
 /// An element that is written: its attributes with their values as they are read, then its text or
@@ -39,7 +41,8 @@ std::string opening_tag(std::string_view name, std::span<const std::string> attr
                         std::string_view closing, std::string_view margin, const Layout& layout);
 
 /// The element from < to >, without the blanks before it and the end of its line.
+/// Not all of it if the caller wants it to stop.
 std::string text_of(const ElementText& element, const Layout& layout = {},
-                    const std::string& margin = {});
+                    const std::string& margin = {}, const StopRequest& should_stop = {});
 
 }  // namespace pliant::xml

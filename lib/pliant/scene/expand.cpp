@@ -90,7 +90,6 @@ class Expander {
   void report_unused(OpenText& text, const std::string& file, const Definitions& given,
                      const Scope& inner);
 
-  std::size_t after(const OpenText& text, std::size_t index) const;
   std::string_view content_of(const OpenText& text, const ElementPlace& element) const;
 
   void emit(std::string_view part) {
@@ -121,6 +120,7 @@ class Expander {
   /// Counts bytes that are read or defined. Returns whether they are within the limit.
   bool spend(std::size_t bytes, OpenText& text, std::size_t where) {
     spent_ += bytes;
+    if (findings_.is_over(bytes)) is_stopped_ = true;
     if (spent_ <= most_expanded && out_.size() <= most_expanded) return true;
     stop(text, where,
          fmt::format("the scene, with all that it includes and defines, is larger than {} MiB",
@@ -143,16 +143,6 @@ class Expander {
   int definition_count_ = 0;
   bool is_stopped_ = false;
 };
-
-/// The index of the first element that is not in this one.
-std::size_t Expander::after(const OpenText& text, std::size_t index) const {
-  const auto& elements = text.markup.elements;
-  const auto next = std::upper_bound(
-      elements.begin() + static_cast<std::ptrdiff_t>(index) + 1, elements.end(),
-      elements[index].end,
-      [](std::uint32_t end, const ElementPlace& element) { return end <= element.name.begin; });
-  return static_cast<std::size_t>(next - elements.begin());
-}
 
 std::string_view Expander::content_of(const OpenText& text, const ElementPlace& element) const {
   if (element.closes_itself()) return {};
@@ -195,7 +185,8 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
   };
   for (auto k = static_cast<std::size_t>(first - elements.begin());
        k < elements.size() && elements[k].name.begin < end && !is_stopped_;) {
-    if (findings_.is_full()) {
+    constexpr std::size_t parts_of_element = 256;  // besides those of its bytes
+    if (findings_.is_over(parts_of_element)) {
       is_stopped_ = true;
       break;
     }
@@ -209,14 +200,14 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
       emit(std::string(static_cast<std::size_t>(std::count(whole.begin(), whole.end(), '\n')),
                        '\n'));
       written = element.end;
-      k = after(text, k);
+      k = text.markup.after(k);
     } else if (name == include_name) {
       write_to(element.whole().begin);
       if (!check_place(text, element) || !include(text, k, scope))
         emit(fmt::format("<{}/>", include_name));
       begin_run(text.index, text.lines.line_of(element.end));
       written = element.end;
-      k = after(text, k);
+      k = text.markup.after(k);
     } else {
       for (const AttributePlace& attribute : text.markup.attributes_of(k)) {
         if (!has_definition(attribute.value.of(text.text))) continue;
@@ -236,8 +227,10 @@ void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
   const std::string_view raw = attribute.value.of(text.text);
   const std::string value = decoded(raw);
   const std::string_view owner = text.name_of(element), name = attribute.name.of(text.text);
+  findings_.is_over(value.size());
   const auto expanded =
-      expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number);
+      expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number,
+                   findings_.may_compare_names());
   if (!expanded) {
     const bool is_scene = element.parent == ElementPlace::no_parent && owner == scene_name;
     if (!expanded.error().complaint.empty())
@@ -333,7 +326,8 @@ void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
   } else if (is_complete) {
     // Its own name is not defined yet: there it has the value from outside, if there is one.
     scope.defined_now = name;
-    const auto value = expand_value(*table[1].second, scope, Use::Definition);
+    const auto value =
+        expand_value(*table[1].second, scope, Use::Definition, findings_.may_compare_names());
     scope.defined_now = {};
     if (value) {
       definition.sources.insert(definition.sources.end(), value->sources.begin(),
@@ -362,7 +356,8 @@ bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
           fmt::format("<{}> contains {}; only <{}> is allowed in it", include_name, in_quotes(bare),
                       define_name));
   };
-  for (std::size_t k = index + 1; k < after(text, index); k = after(text, k)) {
+  const std::size_t after = text.markup.after(index);
+  for (std::size_t k = index + 1; k < after; k = text.markup.after(k)) {
     const ElementPlace& child = text.markup.elements[k];
     check_text(child.whole().begin);
     content = child.end;
@@ -384,7 +379,7 @@ bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
     add_value(text, where, include_name, "file", written, complaint);
     return false;
   };
-  const auto expanded = expand_value(written, scope, Use::Text);
+  const auto expanded = expand_value(written, scope, Use::Text, findings_.may_compare_names());
   if (!expanded)
     return expanded.error().complaint.empty() ? false : refuse(told(expanded.error(), text));
   const std::string& file = expanded->text;
@@ -425,8 +420,9 @@ void Expander::report_unused(OpenText& text, const std::string& file, const Defi
     if (names.size() < most_compared) names.push_back(own);
   for (const auto& [name, definition] : given) {
     if (definition.is_used) continue;
-    if (findings_.is_full()) return;
-    const auto near = nearest_word(name, names);
+    if (findings_.is_over()) return;
+    const auto near = findings_.may_compare_names() ? nearest_word(name, names)
+                                                    : std::optional<std::string_view>();
     findings_.add_problem(
         map_.place_in(text.index, definition.line),
         fmt::format("<{}> name={}: {} neither defines nor uses it{}", define_name, in_quotes(name),
@@ -440,7 +436,7 @@ const IncludedFile* Expander::read(const fs::path& path, const std::string& iden
   std::unique_ptr<IncludedFile>& file = read_[identity];
   if (!file) {
     file = std::make_unique<IncludedFile>();
-    Findings own(path.string());
+    Findings own(path.string(), findings_.should_stop());
     Result<std::string> bytes = files_.read(path, most_expanded - std::min(spent_, most_expanded));
     if (bytes) {
       file->text = *std::move(bytes);
@@ -450,6 +446,7 @@ const IncludedFile* Expander::read(const fs::path& path, const std::string& iden
       own.add_problem(0, bytes.error().message);
     }
     file->problems = own.problems();
+    if (own.is_stopped()) findings_.is_over(StopPoll::parts_between);
   }
   if (file->markup) return file.get();
   if (std::exchange(file->is_told, true)) {  // alike, they would be told once
@@ -511,7 +508,7 @@ bool Expander::expand_file(OpenText& text, const ElementPlace& element, const fs
 
 }  // namespace
 
-TextFiles files_on_disk(const fs::path& root) {
+TextFiles files_on_disk(const fs::path& root, const StopRequest& should_stop) {
   const auto last = std::make_shared<std::optional<OpenFile>>();
   const auto open = [root, last](const fs::path& path) -> Result<void> {
     if (*last && (*last)->name() == path.string()) return {};
@@ -526,10 +523,10 @@ TextFiles files_on_disk(const fs::path& root) {
     if (auto opened = open(path); !opened) return fail(opened.error());
     return (*last)->identity();
   };
-  const auto read = [last, open](const fs::path& path,
-                                 std::size_t most_bytes) -> Result<std::string> {
+  const auto read = [last, open, should_stop](const fs::path& path,
+                                              std::size_t most_bytes) -> Result<std::string> {
     if (auto opened = open(path); !opened) return fail(opened.error());
-    return read_file(**last, most_bytes);
+    return read_file(**last, most_bytes, should_stop);
   };
   return {.identify = identify, .read = read};
 }

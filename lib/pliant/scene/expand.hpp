@@ -41,7 +41,7 @@ struct TextFiles {
 
 /// Regular files on the disk, in the folder `root` or below; empty: anywhere. What is read is the
 /// file that was identified, if that was the last one.
-TextFiles files_on_disk(const std::filesystem::path& root);
+TextFiles files_on_disk(const std::filesystem::path& root, const StopRequest& should_stop = {});
 
 /// A text of a file before it is expanded.
 struct SourceText {
@@ -52,7 +52,7 @@ struct SourceText {
 };
 
 /// Whether a text has an <include>, a <define> or a `$`; otherwise it is its own expansion.
-bool needs_expansion(const SourceText& source);
+bool needs_expansion(const SourceText& source, Findings& findings);
 
 /// A text in which the content of files has taken the place of each <include>, the value of
 /// definitions that of each `$NAME`, and in which no <define> is left.

@@ -50,10 +50,10 @@ std::vector<std::string_view> including_elements() {
   return names;
 }
 
-bool needs_expansion(const SourceText& source) {
+bool needs_expansion(const SourceText& source, Findings& findings) {
   // A $ may also be written as &#36;.
   for (const std::string_view sign : {"$", "&#"})
-    if (source.text.find(sign) != std::string_view::npos) return true;
+    if (find_from(source.text, sign, 0, findings) != std::string_view::npos) return true;
   return std::any_of(source.markup.elements.begin(), source.markup.elements.end(),
                      [&](const ElementPlace& element) {
                        const std::string_view name = element.name.of(source.text);

@@ -13,6 +13,8 @@ namespace {
 /// A file of 256 MiB may contain a problem every few bytes, and each message needs about a hundred
 /// bytes.
 constexpr std::size_t most_listed = 10'000;
+/// But one may name files and objects as long as paths and names may be.
+constexpr std::size_t most_bytes = std::size_t{16} << 20U;
 
 }  // namespace
 
@@ -28,16 +30,27 @@ void Findings::add_problem(ScenePlace place, std::string message) {
       place.chain.empty() || included_.emplace(place.file, place.line, message).second;
   if (!is_new) return;
   message = place.told(std::move(message));
+  bytes_ += message.size() + place.file.size();
   problems_.push_back(Error{.code = ErrorCode::InvalidInput,
                             .message = std::move(message),
                             .file = std::move(place.file),
                             .line = place.line});
 }
 
-bool Findings::is_full() const { return problems_.size() >= most_listed; }
+bool Findings::is_full() const { return problems_.size() >= most_listed || bytes_ >= most_bytes; }
+
+bool Findings::is_over(std::size_t parts) {
+  if (!is_stopped_ && poll_.after(parts)) {
+    is_stopped_ = true;
+    ++problem_count_;
+  }
+  return is_over();
+}
 
 void Findings::add_note(int line, std::string message) {
-  if (notes_.size() < most_listed) notes_.emplace_back(line, std::move(message));
+  if (notes_.size() >= most_listed || bytes_ >= most_bytes) return;
+  bytes_ += message.size();
+  notes_.emplace_back(line, std::move(message));
 }
 
 std::vector<Error> Findings::problems() const {
@@ -52,6 +65,7 @@ std::vector<Error> Findings::problems() const {
 }
 
 Error Findings::to_error() const {
+  if (is_stopped_) return interrupted().value();
   PLIANT_EXPECTS(!problems_.empty());
   return as_one(problems(), files_.texts().front().file);
 }

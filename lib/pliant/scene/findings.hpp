@@ -8,18 +8,23 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/defined_values.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant::xml {
 
 /// The problems and notes found so far while reading a scene. All problems are kept, not only the
-/// first.
+/// first. All parts of reading have the same one, and ask it whether to end.
 class Findings {
  public:
-  explicit Findings(std::string file) : files_(std::move(file)) {}
-  explicit Findings(const SceneOrigin& origin)
-      : files_(origin.files ? *origin.files : LineMap(origin.file)) {}
+  explicit Findings(std::string file, StopRequest should_stop = {})
+      : files_(std::move(file)), should_stop_(std::move(should_stop)) {}
+  explicit Findings(const SceneOrigin& origin, StopRequest should_stop = {})
+      : files_(origin.files ? *origin.files : LineMap(origin.file)),
+        should_stop_(std::move(should_stop)) {}
+  Findings(const Findings&) = delete;
+  Findings& operator=(const Findings&) = delete;
 
   /// From now on lines are those of the expanded text. A problem of a value that was made of
   /// definitions also tells where they are.
@@ -45,25 +50,43 @@ class Findings {
   /// problem.
   std::size_t problem_count() const { return problem_count_; }
 
-  /// Whether the list of problems is full: further ones would not be listed, so reading may stop.
-  bool is_full() const;
+  /// Whether reading is to end: the list of problems is full, so that further ones would not be
+  /// listed, or the caller wants it. After `parts` of work, see StopPoll.
+  bool is_over(std::size_t parts);
+  /// As `is_over`, as far as it is known.
+  bool is_over() const { return is_stopped_ || is_full(); }
+  bool is_stopped() const { return is_stopped_; }  ///< the caller wants it; counts as a problem
+  const StopRequest& should_stop() const { return should_stop_; }
+
+  /// Whether a problem may be told with the nearest of the names of a scene, which are many. Of
+  /// very many problems only the first are.
+  bool may_compare_names() const { return problem_count_ < most_compared; }
 
   /// All problems, in the order of lines, without duplicates.
   std::vector<Error> problems() const;
 
-  /// The same as one error. Requires: there is a problem.
+  /// The same as one error; Interrupted if the caller wanted reading to end. Requires: there is a
+  /// problem.
   Error to_error() const;
 
   /// The notes in the order of lines.
   std::vector<SceneNote> notes() const;
 
  private:
+  static constexpr std::size_t most_compared = 50;
+
+  bool is_full() const;
+
   LineMap files_;
   DefinedValues values_;
+  StopRequest should_stop_;
+  StopPoll poll_{should_stop_};
+  bool is_stopped_ = false;
   std::vector<Error> problems_;
   std::set<std::tuple<std::string, int, std::string>> included_;  // problems of included files
   std::vector<std::pair<int, std::string>> notes_;                // lines of the expanded text
   std::size_t problem_count_ = 0;
+  std::size_t bytes_ = 0;  // of messages
 };
 
 }  // namespace pliant::xml

@@ -1,7 +1,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/path.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -10,7 +9,7 @@ namespace pliant::xml {
 namespace {
 
 /// In a group the group selects the region, so its forces must not have a deformation radius.
-void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& findings) {
+void check_radius(const Element& element, Table& table, Findings& findings) {
   Slot& row = *find(table, "deformationRadius");
   if (row.line == 0) return;
   row.is_sound = false;
@@ -22,10 +21,10 @@ void check_radius(const tinyxml2::XMLElement& element, Table& table, Findings& f
 
 /// Checks that a force has only one falloff: its attribute or a single <falloff>. `first_line` is
 /// the line of an earlier <falloff>; 0: this is the first.
-void check_single_falloff(const tinyxml2::XMLElement& falloff, const Slot& attribute,
-                          int& first_line, Findings& findings) {
-  const int line = falloff.GetLineNum();
-  const std::string parent = tag(*falloff.Parent()->ToElement());
+void check_single_falloff(const Element& falloff, const Slot& attribute, int& first_line,
+                          Findings& findings) {
+  const int line = falloff.line();
+  const std::string parent = tag(falloff.parent());
   if (first_line != 0)
     findings.add_problem(line, fmt::format("{} has a second <falloff>; the first is at {}", parent,
                                            findings.title_of(first_line, line)));
@@ -65,12 +64,10 @@ Force standard_force(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return standard<Kind>(); }, force.kind);
 }
 
-Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
-                 SceneFile& file) {
+Force read_force(const Element& element, Force force, const Group* group, SceneFile& file) {
   Table table = table_of(force);
   read_attributes(element, table, file.findings);
   int falloff_line = 0;
-  using Element = tinyxml2::XMLElement;
   const Child children[] = {
       {"animate",
        [&](const Element& child) { read_animate(child, table, force.name, file.findings); }},
@@ -91,11 +88,10 @@ Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* 
   return force;
 }
 
-Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces, SceneFile& file) {
+Group read_group(const Element& element, std::vector<Force>& forces, SceneFile& file) {
   Group group;
   Table table = table_of(group);
   read_attributes(element, table, file.findings);
-  using Element = tinyxml2::XMLElement;
   std::vector<Child> children = {
       {"animate",
        [&](const Element& child) { read_animate(child, table, group.name, file.findings); }},

@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-std::vector<SceneInput> inputs_of(const Scene& scene) {
+std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_stop) {
   std::vector<SceneInput> inputs;
   std::set<std::filesystem::path> seen;
   const auto add = [&](std::filesystem::path file, std::string_view role, const std::string& root) {
@@ -28,6 +28,7 @@ std::vector<SceneInput> inputs_of(const Scene& scene) {
     }
   }
   for (const Surface& surface : scene.surfaces) {
+    if (is_stopped(should_stop)) break;
     if (surface.is_animated()) add(surface.cache.path, "a cache of the scene", root);
     for (const MaterialMap& map : surface.maps) {
       if (!map.file.empty()) add(map.file, "a map of the scene", root);
@@ -36,31 +37,32 @@ std::vector<SceneInput> inputs_of(const Scene& scene) {
     if (!mesh || !add(mesh->path, "a mesh of the scene", root)) continue;
     const auto opened = OpenFile::open(mesh->path, root);
     if (!opened) continue;
-    for (auto& file : mesh_references(*opened, mesh->root))
+    for (auto& file : mesh_references(*opened, mesh->root, should_stop))
       add(std::move(file), "a file that a mesh of the scene refers to", mesh->root);
   }
   return inputs;
 }
 
 std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
-                                                 const std::filesystem::path& root) {
+                                                 const std::filesystem::path& root,
+                                                 const StopRequest& should_stop) {
   std::vector<std::filesystem::path> files = {scene};
   std::error_code ignored;
   // A pipe would be empty for the one who reads it next.
   if (!std::filesystem::is_regular_file(scene, ignored)) return files;
-  const auto text = read_file(scene, xml::most_expanded);
+  const auto text = read_file(scene, xml::most_expanded, should_stop);
   if (!text) return files;
-  xml::Findings findings(scene.string());
+  xml::Findings findings(scene.string(), should_stop);
   const auto markup = xml::scan_markup(*text, findings);
   if (!markup) return files;
   const xml::SourceText source{*text, *markup, scene.string(), scene.parent_path()};
-  xml::TextFiles disk = xml::files_on_disk(root);
+  xml::TextFiles disk = xml::files_on_disk(root, should_stop);
   std::set<std::filesystem::path> seen;
   disk.identify = [&, identify = disk.identify](const std::filesystem::path& file) {
     if (file != scene && seen.insert(file).second) files.push_back(file);
     return identify(file);
   };
-  if (xml::needs_expansion(source)) xml::expand(source, disk, findings);
+  if (xml::needs_expansion(source, findings)) xml::expand(source, disk, findings);
   return files;
 }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -20,12 +21,13 @@ struct SceneInput {
 /// All files that reading a scene and its meshes opens: the scene's own, if it came from one, those
 /// that it includes, its meshes with their caches and maps, and what meshes refer to, each once.
 /// For a mesh that cannot be read, only its own file. Cost: each mesh of a format that may refer to
-/// files is read to find their names.
-std::vector<SceneInput> inputs_of(const Scene& scene);
+/// files is read to find their names. Fewer if the caller wants it to stop.
+std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_stop = {});
 
 /// A scene's file and those that it includes, each once, existing or not, also if there is a
 /// problem with them. `root` as in `load_scene`.
 std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
-                                                 const std::filesystem::path& root);
+                                                 const std::filesystem::path& root,
+                                                 const StopRequest& should_stop = {});
 
 }  // namespace pliant

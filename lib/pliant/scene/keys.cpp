@@ -3,7 +3,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/read_elements.hpp"
 
@@ -24,8 +23,8 @@ bool is_sound(Table& table, std::string_view name) {
 template <int D>
 class CurveReader {
  public:
-  CurveReader(const tinyxml2::XMLElement& animate, KeyAxis axis, ValueKind kind,
-              std::string channel, Findings& findings)
+  CurveReader(const Element& animate, KeyAxis axis, ValueKind kind, std::string channel,
+              Findings& findings)
       : animate_(animate),
         axis_(axis),
         kind_(kind),
@@ -36,18 +35,17 @@ class CurveReader {
 
  private:
   void read_defaults();
-  void read_key(const tinyxml2::XMLElement& element);
-  void read_loop(const tinyxml2::XMLElement& element);
+  void read_key(const Element& element);
+  void read_loop(const Element& element);
 
-  Interpolation interpolation_of(const tinyxml2::XMLElement& element);
-  Tangent<D> side_of(const tinyxml2::XMLElement& element, bool is_in);
-  void check_frame(const tinyxml2::XMLElement& element);
-  void check_stepping(const tinyxml2::XMLElement& element, Table& table,
-                      const Interpolation& interpolation);
+  Interpolation interpolation_of(const Element& element);
+  Tangent<D> side_of(const Element& element, bool is_in);
+  void check_frame(const Element& element);
+  void check_stepping(const Element& element, Table& table, const Interpolation& interpolation);
   void check_last_control(bool has_segment);
   void check_loop();
 
-  const tinyxml2::XMLElement& animate_;
+  const Element& animate_;
   KeyAxis axis_;
   ValueKind kind_;
   std::string channel_;
@@ -56,6 +54,7 @@ class CurveReader {
   AnimateText<D> defaults_;
   CurveKeys<D> curve_;
   std::vector<int> key_lines_;
+  bool has_too_many_ = false;
   int loop_line_ = 0;
   int uncontrolled_line_ = 0;       // of the last key if it inherits cubicBezier and has no control
   std::optional<double> previous_;  // frame of the key before, if it was readable
@@ -72,14 +71,14 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   read_defaults();
   key_table_ = table_of(key_, axis_, kind_);
   std::vector<Child> children = {
-      {"key", [&](const tinyxml2::XMLElement& element) { read_key(element); }},
+      {"key", [&](const Element& element) { read_key(element); }},
   };
   if (axis_ == KeyAxis::Frame)
-    children.push_back({"loop", [&](const tinyxml2::XMLElement& element) { read_loop(element); }});
+    children.push_back({"loop", [&](const Element& element) { read_loop(element); }});
   const bool all_known = read_children(animate_, children, findings_);
   if (curve_.keys.empty() && all_known)
     findings_.add_problem(
-        animate_.GetLineNum(),
+        animate_.line(),
         fmt::format("{} has no keys: at least one <key> is required", tag(animate_)));
   check_last_control(curve_.loop.has_value());
   if (findings_.problem_count() == problems_before) check_loop();
@@ -87,7 +86,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
 
   tl::expected<Curve<D>, CurveError> curve = Curve<D>::make(std::move(curve_));
   const auto line_of = [&](std::size_t key) {
-    return key < key_lines_.size() ? key_lines_[key] : animate_.GetLineNum();
+    return key < key_lines_.size() ? key_lines_[key] : animate_.line();
   };
   if (!curve) {
     findings_.add_problem(line_of(curve.error().key),
@@ -113,7 +112,13 @@ void CurveReader<D>::read_defaults() {
 }
 
 template <int D>
-void CurveReader<D>::read_key(const tinyxml2::XMLElement& element) {
+void CurveReader<D>::read_key(const Element& element) {
+  constexpr std::size_t most_keys = 1'000'000;
+  if (curve_.keys.size() >= most_keys) {
+    if (std::exchange(has_too_many_, true)) return;
+    return findings_.add_problem(element.line(),
+                                 fmt::format("{} has more than {} keys", tag(animate_), most_keys));
+  }
   check_last_control(true);
   key_ = {};
   for (Slot& row : key_table_) {
@@ -130,11 +135,11 @@ void CurveReader<D>::read_key(const tinyxml2::XMLElement& element) {
   key.in = side_of(element, true);
   key.out = side_of(element, false);
   curve_.keys.push_back(std::move(key));
-  key_lines_.push_back(element.GetLineNum());
+  key_lines_.push_back(element.line());
 }
 
 template <int D>
-void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
+void CurveReader<D>::check_frame(const Element& element) {
   const std::string_view name = place_name(axis_);
   if (!is_sound(key_table_, name)) {
     previous_.reset();
@@ -142,22 +147,22 @@ void CurveReader<D>::check_frame(const tinyxml2::XMLElement& element) {
   }
   if (previous_ && key_.frame == *previous_)
     findings_.add_problem(
-        element.GetLineNum(),
+        element.line(),
         fmt::format("{} {} {} repeats the key of {}", tag(element), name, key_.frame,
-                    findings_.title_of(previous_line_, element.GetLineNum())));
+                    findings_.title_of(previous_line_, element.line())));
   else if (previous_ && key_.frame < *previous_)
     findings_.add_problem(
-        element.GetLineNum(),
+        element.line(),
         fmt::format("{} {} {} is not after {} {} of {}: keys must be in increasing order",
                     tag(element), name, key_.frame, name, *previous_,
-                    findings_.title_of(previous_line_, element.GetLineNum())));
+                    findings_.title_of(previous_line_, element.line())));
   previous_ = key_.frame;
-  previous_line_ = element.GetLineNum();
+  previous_line_ = element.line();
 }
 
 /// A boolean channel steps: attributes that shape the motion between two values are a problem.
 template <int D>
-void CurveReader<D>::check_stepping(const tinyxml2::XMLElement& element, Table& table,
+void CurveReader<D>::check_stepping(const Element& element, Table& table,
                                     const Interpolation& interpolation) {
   if (kind_ != ValueKind::Boolean) return;
   constexpr std::string_view shaping[] = {
@@ -179,7 +184,7 @@ void CurveReader<D>::check_stepping(const tinyxml2::XMLElement& element, Table& 
 
 /// The segment that starts at the key: its own interpolation or the default, with its parameters.
 template <int D>
-Interpolation CurveReader<D>::interpolation_of(const tinyxml2::XMLElement& element) {
+Interpolation CurveReader<D>::interpolation_of(const Element& element) {
   Interpolation next = key_.interpolation.value_or(defaults_.interpolation);
   next.amplitude = key_.amplitude;
   next.period = key_.period;
@@ -204,11 +209,11 @@ Interpolation CurveReader<D>::interpolation_of(const tinyxml2::XMLElement& eleme
   if (is_cubic && !key_.control && is_sound(key_table_, "control")) {
     if (key_.interpolation)
       findings_.add_problem(
-          element.GetLineNum(),
+          element.line(),
           fmt::format("{} interpolation=\"cubicBezier\" needs control=\"x1 y1 x2 y2\"",
                       tag(element)));
     else
-      uncontrolled_line_ = element.GetLineNum();
+      uncontrolled_line_ = element.line();
   }
   return next;
 }
@@ -226,7 +231,7 @@ void CurveReader<D>::check_last_control(bool has_segment) {
 
 /// One side of the key: its own tangent, otherwise that for both sides, otherwise the default.
 template <int D>
-Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_in) {
+Tangent<D> CurveReader<D>::side_of(const Element& element, bool is_in) {
   const std::string_view name = is_in ? "in" : "out";
   const std::string_view length_name = is_in ? "inLength" : "outLength";
   const std::string_view handle_name = is_in ? "inHandle" : "outHandle";
@@ -252,19 +257,18 @@ Tangent<D> CurveReader<D>::side_of(const tinyxml2::XMLElement& element, bool is_
 }
 
 template <int D>
-void CurveReader<D>::read_loop(const tinyxml2::XMLElement& element) {
+void CurveReader<D>::read_loop(const Element& element) {
   Loop<D> loop;
   Table table = table_of(loop, kind_);
   read_attributes(element, table, findings_);
   read_children(element, {}, findings_);
   if (curve_.loop)
     return findings_.add_problem(
-        element.GetLineNum(),
-        fmt::format("{} has a second <loop>; the first is at {}", tag(animate_),
-                    findings_.title_of(loop_line_, element.GetLineNum())));
+        element.line(), fmt::format("{} has a second <loop>; the first is at {}", tag(animate_),
+                                    findings_.title_of(loop_line_, element.line())));
   check_stepping(element, table, {});
   curve_.loop = loop;
-  loop_line_ = element.GetLineNum();
+  loop_line_ = element.line();
 }
 
 /// Checks the curve's rules for a loop again, to report problems at the loop's line instead of a
@@ -293,14 +297,14 @@ void CurveReader<D>::check_loop() {
 }  // namespace
 
 template <int D>
-std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, KeyAxis axis,
-                                   ValueKind kind, const std::string& channel, Findings& findings) {
+std::optional<Curve<D>> read_curve(const Element& animate, KeyAxis axis, ValueKind kind,
+                                   const std::string& channel, Findings& findings) {
   return CurveReader<D>(animate, axis, kind, channel, findings).read();
 }
 
-template std::optional<Curve<1>> read_curve<1>(const tinyxml2::XMLElement&, KeyAxis, ValueKind,
+template std::optional<Curve<1>> read_curve<1>(const Element&, KeyAxis, ValueKind,
                                                const std::string&, Findings&);
-template std::optional<Curve<3>> read_curve<3>(const tinyxml2::XMLElement&, KeyAxis, ValueKind,
+template std::optional<Curve<3>> read_curve<3>(const Element&, KeyAxis, ValueKind,
                                                const std::string&, Findings&);
 
 }  // namespace pliant::xml

@@ -8,39 +8,21 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/scene/read.hpp"
 #include "pliant/scene/text.hpp"
 
 namespace pliant::xml {
 namespace {
 
-// Far above any real scene, but below sizes that would need hours: tinyxml2 recurses once per
-// level.
+// Far above any real scene. Readers recurse once per level, and compare each attribute of an
+// element with all others.
 constexpr std::size_t deepest = 50;
 constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_attributes = 100;  // per element
+constexpr std::size_t longest_attribute = std::size_t{4} << 20U;
 
-unsigned byte_at(std::string_view text, std::size_t at) {
-  return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
-}
-
-/// The number of bytes of the character at `at`, 0 if it is not valid UTF-8. Source: The Unicode
-/// Standard 15, table 3-7: the second byte's limits rule out overlong forms, surrogates and code
-/// points past U+10FFFF.
-std::size_t character_length(std::string_view text, std::size_t at) {
-  const unsigned lead = byte_at(text, at);
-  if (lead < 0x80) return 1;
-  const std::size_t length = lead >= 0xC2 && lead <= 0xDF   ? 2
-                             : lead >= 0xE0 && lead <= 0xEF ? 3
-                             : lead >= 0xF0 && lead <= 0xF4 ? 4
-                                                            : 0;
-  const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
-  const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
-  for (std::size_t k = 1; k < length; ++k) {
-    const unsigned byte = byte_at(text, at + k);
-    if (byte < (k == 1 ? least : 0x80) || byte > (k == 1 ? most : 0xBF)) return 0;
-  }
-  return length;
-}
+constexpr std::size_t stretch = std::size_t{1} << 16U;  // bytes that are looked at without asking
 
 /// Where a text breaks the rules of UTF-8 or XML, and how.
 struct EncodingFault {
@@ -49,12 +31,19 @@ struct EncodingFault {
 };
 
 /// The first byte that is not valid UTF-8, or the first control character that XML does not allow.
-/// NUL matters most: C strings, and so tinyxml2, end there.
-std::optional<EncodingFault> find_encoding_fault(std::string_view text) {
+std::optional<EncodingFault> find_encoding_fault(std::string_view text, Findings& findings) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return EncodingFault{0, "the file is UTF-16; save it as UTF-8"};
-  for (std::size_t at = 0; at < text.size();) {
-    const unsigned byte = byte_at(text, at);
+  for (std::size_t at = 0, asked = 0; at < text.size();) {
+    if (at - asked >= stretch) {
+      if (findings.is_over(at - asked)) return std::nullopt;
+      asked = at;
+    }
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (byte >= 0x20 && byte < 0x80) {
+      ++at;
+      continue;
+    }
     if (byte == 0)
       return EncodingFault{at, "the file contains a NUL byte; a scene must be text in UTF-8"};
     if (byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r')
@@ -62,7 +51,7 @@ std::optional<EncodingFault> find_encoding_fault(std::string_view text) {
           at,
           fmt::format("the file contains the control character 0x{:02X}, which XML does not allow",
                       byte)};
-    const std::size_t length = character_length(text, at);
+    const std::size_t length = length_of_character(text.substr(at));
     if (length == 0)
       return EncodingFault{
           at, fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8", byte)};
@@ -172,6 +161,11 @@ class MarkupScanner {
                                    : fmt::format("malformed XML: {}", message));
     is_stopped_ = is_stopped_ || is_other;
   }
+  /// Whether to end, after the work of some bytes; stops then.
+  bool asks_to_end(std::size_t bytes) {
+    is_stopped_ = is_stopped_ || findings_.is_over(bytes);
+    return is_stopped_;
+  }
   /// Adds a problem after which the rest cannot be parsed, and stops.
   void stop(std::size_t where, std::string_view message) {
     if (is_stopped_) return;
@@ -197,14 +191,12 @@ std::string_view MarkupScanner::take(std::size_t count) {
   return taken;
 }
 
-void MarkupScanner::skip_blanks() {
-  at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
-}
+void MarkupScanner::skip_blanks() { at_ = first_not_blank(text_, at_, findings_); }
 
 std::string_view MarkupScanner::take_name() {
   std::size_t end = at_;
   if (end < text_.size() && begins_name(text_[end]))
-    while (end < text_.size() && continues_name(text_[end])) ++end;
+    while (end < text_.size() && continues_name(text_[end]) && end - at_ <= longest_name) ++end;
   if (end - at_ > longest_name)
     stop(at_, fmt::format("the name {} has more than {} bytes",
                           in_quotes(text_.substr(at_, end - at_)), longest_name));
@@ -212,7 +204,7 @@ std::string_view MarkupScanner::take_name() {
 }
 
 std::string_view MarkupScanner::take_until(std::string_view end, std::string_view what) {
-  const std::size_t found = text_.find(end, at_);
+  const std::size_t found = find_from(text_, end, at_, findings_);
   if (found == std::string_view::npos) {
     stop(text_.size(),
          fmt::format("the file ends inside {} that begins at line {}", what, lines_.line_of(at_)));
@@ -224,11 +216,14 @@ std::string_view MarkupScanner::take_until(std::string_view end, std::string_vie
 }
 
 Markup MarkupScanner::scan() {
-  if (const auto fault = find_encoding_fault(text_.substr(at_))) {
+  if (const auto fault = find_encoding_fault(text_.substr(at_), findings_)) {
     findings_.add_problem(lines_.line_of(at_ + fault->at), fault->message);
     is_stopped_ = true;
   }
-  while (!at_end() && !is_stopped_) {
+  constexpr std::size_t parts_of_mark = 64;  // besides those of its bytes
+  for (std::size_t before = at_; !at_end() && !is_stopped_;) {
+    if (asks_to_end(at_ - before + parts_of_mark)) break;
+    before = at_;
     if (next() != '<')
       scan_text();
     else if (stands("<!--"))
@@ -259,12 +254,12 @@ void MarkupScanner::finish() {
 }
 
 void MarkupScanner::scan_text() {
+  if (open_.empty()) skip_blanks();
   const std::string_view text = take(std::min(text_.find('<', at_), text_.size()) - at_);
   check_references(text);
-  const std::string_view inner = trimmed(text);
-  if (open_.empty() && !inner.empty())
-    stop(offset_of(inner),
-         has_root() ? fmt::format("the text {} is outside the {}", in_quotes(inner), root())
+  if (open_.empty() && !text.empty())
+    stop(offset_of(text),
+         has_root() ? fmt::format("the text {} is outside the {}", in_quotes(trimmed(text)), root())
                     : fmt::format("there is text before the {}{}", root(), one_root()));
 }
 
@@ -414,6 +409,9 @@ bool MarkupScanner::scan_attribute() {
     return refuse(text_.size(),
                   fmt::format("the file ends inside the value of {} in <{}> of line {}",
                               in_quotes(name), owner, lines_.line_of(start)));
+  if (value.size() > longest_attribute)
+    return refuse(start, fmt::format("the value of {} in <{}> has more than {} MiB",
+                                     in_quotes(name), owner, longest_attribute >> 20U));
   check_references(value);
   take(value.size() + 1);
   const std::span<const AttributePlace> others = markup_.attributes_of(markup_.elements.size() - 1);
@@ -429,6 +427,7 @@ bool MarkupScanner::scan_attribute() {
 void MarkupScanner::check_references(std::string_view text) {
   constexpr std::size_t longest = 12;  // enough for &#x10FFFF; with a few leading zeros
   for (std::size_t at = text.find('&'); at != std::string_view::npos; at = text.find('&', at + 1)) {
+    if (asks_to_end(longest)) return;
     const std::size_t where = offset_of(text) + at;
     const std::size_t end = text.substr(at, longest).find(';');
     if (end == std::string_view::npos)
@@ -448,18 +447,14 @@ std::span<const AttributePlace> Markup::attributes_of(std::size_t element) const
   return std::span(attributes).subspan(first, last - first);
 }
 
-int LineCounter::line_of(std::size_t offset) {
-  const auto [from, to] = std::minmax(offset, counted_);
-  const auto count = static_cast<int>(std::count(text_.begin() + from, text_.begin() + to, '\n'));
-  line_ += offset < counted_ ? -count : count;
-  counted_ = offset;
-  return line_;
-}
-
-int LineCounter::column_of(std::size_t offset) const {
-  const std::size_t line = text_.substr(0, offset).rfind('\n') + 1;  // 0 if there is none
-  const bool has_mark = line == 0 && text_.starts_with(byte_order_mark);
-  return static_cast<int>(offset - line - (has_mark ? byte_order_mark.size() : 0)) + 1;
+std::size_t Markup::after(std::size_t element) const {
+  const std::size_t next = element + 1;
+  const std::uint32_t end = elements[element].end;
+  if (next == elements.size() || end <= elements[next].name.begin) return next;
+  const auto found = std::upper_bound(
+      elements.begin() + static_cast<std::ptrdiff_t>(next), elements.end(), end,
+      [](std::uint32_t at, const ElementPlace& other) { return at <= other.name.begin; });
+  return static_cast<std::size_t>(found - elements.begin());
 }
 
 std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std::size_t most,
@@ -469,6 +464,18 @@ std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std
   Markup markup = MarkupScanner(text, findings, most, roots).scan();
   if (findings.problem_count() != problems_before) return std::nullopt;
   return markup;
+}
+
+Result<Markup> markup_of(std::string_view text, const std::string& name,
+                         const StopRequest& should_stop) {
+  if (text.size() > largest_scene_file)
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the scene would be larger than {} MiB", largest_scene_file >> 20U),
+                name);
+  Findings findings(name, should_stop);
+  auto markup = scan_markup(text, findings);
+  if (!markup) return fail(findings.to_error());
+  return *std::move(markup);
 }
 
 }  // namespace pliant::xml

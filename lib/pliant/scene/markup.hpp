@@ -52,21 +52,16 @@ struct Markup {
   std::vector<AttributePlace> attributes;
 
   std::span<const AttributePlace> attributes_of(std::size_t element) const;
+  /// The index of the first element behind the end of one.
+  std::size_t after(std::size_t element) const;
 };
 
-/// The most elements and attributes of a scene file. tinyxml2 needs about a hundred bytes for each.
+/// The most elements and attributes of a scene file.
 inline constexpr std::size_t most_markup = 20'000'000;
 
 /// Scans a text: well-formed XML with one root element, and of a size that can be read, so with at
-/// most `most` elements and attributes. It may begin with a byte order mark. Requires: fewer than
-/// 4 GiB.
-///
-/// tinyxml2 reads the structure, but accepts much that XML does not allow: it treats unknown
-/// entities as text, stops at a NUL byte or a surplus closing tag and ignores the rest, and accepts
-/// invalid UTF-8 and references to invalid characters. It also compares each attribute of an
-/// element with all others, so an element with very many is slow. Here each of these is a problem,
-/// reported with its line. Null if there was one; otherwise the places are those of the elements
-/// and attributes in tinyxml2's tree.
+/// most `most` elements and attributes. It may begin with a byte order mark. Each problem has its
+/// line. Null if there was one, or if reading is to end. Requires: fewer than 4 GiB.
 ///
 /// `roots`: the elements that the root may be, of a file that a scene includes; empty: it is a
 /// scene. The messages quote nothing of a file with another root.
@@ -74,8 +69,23 @@ std::optional<Markup> scan_markup(std::string_view text, Findings& findings,
                                   std::size_t most = most_markup,
                                   std::span<const std::string_view> roots = {});
 
-/// Lines and columns of offsets in a text, counted from 1. It counts lines from the offset before,
-/// so that all offsets in their order need one pass.
+/// The places of a text that is to be a scene file, whose `name` is that in messages. Errors:
+/// InvalidInput: it is larger than a scene file may be, or `scan_markup` finds problems.
+/// Interrupted.
+Result<Markup> markup_of(std::string_view text, const std::string& name,
+                         const StopRequest& should_stop = {});
+
+// Searches of a text from a place on, which ask whether reading is to end.
+
+/// Where `what` begins; npos: nowhere, or reading is to end.
+std::size_t find_from(std::string_view text, std::string_view what, std::size_t at,
+                      Findings& findings);
+
+/// Where the first character is that is no blank, otherwise the end of the text. A place before it
+/// if reading is to end.
+std::size_t first_not_blank(std::string_view text, std::size_t at, Findings& findings);
+
+/// Lines and columns of offsets in a text, counted from 1, in any order: the text is read once.
 class LineCounter {
  public:
   explicit LineCounter(std::string_view text) : text_(text) {}
@@ -84,9 +94,14 @@ class LineCounter {
   int column_of(std::size_t offset) const;  ///< in bytes, after the byte order mark
 
  private:
+  static constexpr std::size_t block_size = 1024;  // bytes
+
+  int count(std::size_t from, std::size_t to) const;
+
   std::string_view text_;
-  std::size_t counted_ = 0;  // offset up to which line_ is counted
-  int line_ = 1;
+  std::vector<int> lines_ = {1};  // of the first byte of each block, up to the last that was needed
+  std::size_t counted_ = 0;       // the last offset
+  int line_ = 1;                  // its line
 };
 
 }  // namespace pliant::xml

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 namespace pliant::xml {
 
@@ -22,26 +21,24 @@ void NetReader::read_content(const Element& element) {
   if (lines_.contains("points")) return;
   unsound_.emplace_back("points");
   if (all_known)
-    file_.findings.add_problem(element.GetLineNum(),
+    file_.findings.add_problem(element.line(),
                                fmt::format("{} needs the element <points>", tag(element)));
 }
 
 /// Whether the part is sound, and not there already.
 bool NetReader::read_part(const Element& element, const std::string& part,
                           std::vector<double>& numbers) {
-  const auto [first, is_new] = lines_.emplace(part, element.GetLineNum());
+  const auto [first, is_new] = lines_.emplace(part, element.line());
   std::vector<double> read;
   bool is_sound = read_numbers(element, read, file_.findings);
   if (is_sound && read.empty()) {
     is_sound = false;
-    file_.findings.add_problem(element.GetLineNum(),
-                               fmt::format("{} has no numbers", tag(element)));
+    file_.findings.add_problem(element.line(), fmt::format("{} has no numbers", tag(element)));
   }
   if (!is_new)
     file_.findings.add_problem(
-        element.GetLineNum(),
-        fmt::format("<nurbs> has a second {}; the first is at {}", tag(element),
-                    file_.findings.title_of(first->second, element.GetLineNum())));
+        element.line(), fmt::format("<nurbs> has a second {}; the first is at {}", tag(element),
+                                    file_.findings.title_of(first->second, element.line())));
   if (!is_sound || !is_new) {
     unsound_.push_back(part);
     return false;
@@ -58,7 +55,7 @@ void NetReader::read_points(const Element& element) {
   if (numbers.size() % 3 != 0) {
     unsound_.emplace_back("points");
     return file_.findings.add_problem(
-        element.GetLineNum(),
+        element.line(),
         fmt::format("{} has {} numbers; each point has three", tag(element), numbers.size()));
   }
   const auto count = static_cast<Eigen::Index>(numbers.size() / 3);

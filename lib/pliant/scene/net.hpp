@@ -25,12 +25,10 @@ class NetReader {
   NetReader(NurbsNet& net, const std::string& surface, SceneFile& file)
       : net_(net), surface_(surface), file_(file) {}
 
-  void read_content(const tinyxml2::XMLElement& element);
+  void read_content(const Element& element);
   void record_content();  ///< the lines of its parts
 
  private:
-  using Element = tinyxml2::XMLElement;
-
   bool read_part(const Element& element, const std::string& part, std::vector<double>& numbers);
   void read_points(const Element& element);
   void read_knots(const Element& element);

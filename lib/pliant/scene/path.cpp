@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -22,29 +21,29 @@ struct Waypoints {
   std::vector<int> lines;
 };
 
-void read_waypoint(const tinyxml2::XMLElement& element, Waypoints& waypoints, Findings& findings) {
+void read_waypoint(const Element& element, Waypoints& waypoints, Findings& findings) {
   Waypoint waypoint;
   Table table = table_of(waypoint);
   read_attributes(element, table, findings);
   read_children(element, {}, findings);
   waypoints.places.push_back(waypoint.at);
-  waypoints.lines.push_back(element.GetLineNum());
+  waypoints.lines.push_back(element.line());
 }
 
 /// The row of the position that `attribute` names, marked as animated; null if there is none, which
 /// is a problem.
-Slot* find_position(const tinyxml2::XMLElement& element, std::span<Slot> rows, Findings& findings) {
-  const tinyxml2::XMLAttribute* given = element.FindAttribute("attribute");
+Slot* find_position(const Element& element, std::span<Slot> rows, Findings& findings) {
+  const std::optional<GivenAttribute> given = element.attribute("attribute");
   if (!given || is_unknown(*given)) return nullptr;  // reported with the other attributes
-  const std::string name(trimmed(given->Value()));
+  const std::string name(trimmed(given->value));
   Slot* row = find(rows, name);
   if (!row || !is_position(*row)) {
     std::vector<std::string_view> positions;
     for (const Slot& candidate : rows)
       if (is_position(candidate)) positions.push_back(candidate.attribute.name);
-    const std::string parent = tag(*element.Parent()->ToElement());
+    const std::string parent = tag(element.parent());
     findings.add_problem(
-        given->GetLineNum(),
+        given->line,
         value_problem(
             element, "attribute", name,
             row ? fmt::format("is not a position; the positions of {} are: {}", parent,
@@ -53,20 +52,19 @@ Slot* find_position(const tinyxml2::XMLElement& element, std::span<Slot> rows, F
     return nullptr;
   }
   if (row->line != 0)
-    findings.add_problem(
-        element.GetLineNum(),
-        value_problem(element, "attribute", name,
-                      fmt::format("is already {} ({}); remove one of them",
-                                  row->is_animated ? "animated" : "given",
-                                  findings.title_of(row->line, element.GetLineNum()))));
+    findings.add_problem(element.line(),
+                         value_problem(element, "attribute", name,
+                                       fmt::format("is already {} ({}); remove one of them",
+                                                   row->is_animated ? "animated" : "given",
+                                                   findings.title_of(row->line, element.line()))));
   else
-    row->line = element.GetLineNum();
+    row->line = element.line();
   row->is_animated = true;
   return row;
 }
 
-std::optional<Path> make_path(const tinyxml2::XMLElement& element, Waypoints waypoints,
-                              bool is_closed, Findings& findings) {
+std::optional<Path> make_path(const Element& element, Waypoints waypoints, bool is_closed,
+                              Findings& findings) {
   auto path = Path::make(std::move(waypoints.places), is_closed);
   if (path) return std::move(*path);
   const PathError& error = path.error();
@@ -74,14 +72,14 @@ std::optional<Path> make_path(const tinyxml2::XMLElement& element, Waypoints way
     findings.add_problem(waypoints.lines[error.waypoint],
                          fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
   else
-    findings.add_problem(element.GetLineNum(), fmt::format("{} has {} waypoints; {}", tag(element),
-                                                           error.waypoint, error.message));
+    findings.add_problem(element.line(), fmt::format("{} has {} waypoints; {}", tag(element),
+                                                     error.waypoint, error.message));
   return std::nullopt;
 }
 
 }  // namespace
 
-void read_path(const tinyxml2::XMLElement& element, std::span<Slot> rows, const std::string& owner,
+void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
                SceneFile& file) {
   const std::size_t problems = file.findings.problem_count();
   PathText text;
@@ -91,7 +89,6 @@ void read_path(const tinyxml2::XMLElement& element, std::span<Slot> rows, const 
   const std::string path_name =
       fmt::format("{}.{}", owner, position ? position->attribute.name : std::string_view("path"));
   Waypoints waypoints;
-  using Element = tinyxml2::XMLElement;
   const Child children[] = {
       {"waypoint", [&](const Element& child) { read_waypoint(child, waypoints, file.findings); }},
       {"animate",

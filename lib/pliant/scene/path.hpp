@@ -24,7 +24,7 @@ struct Waypoint {
 /// element that contains it. `owner` is the name of the force or group. Problems: no such position,
 /// one that is already given, animated or on a path, all problems of its waypoints and its
 /// progress.
-void read_path(const tinyxml2::XMLElement& element, std::span<Slot> rows, const std::string& owner,
+void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
                SceneFile& file);
 
 }  // namespace xml

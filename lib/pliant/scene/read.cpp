@@ -9,18 +9,17 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/channel_check.hpp"
-#include "pliant/scene/channels.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/expand.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/nearest.hpp"
 #include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/rules.hpp"
+#include "pliant/scene/tree.hpp"
 
 namespace pliant {
 
@@ -28,22 +27,33 @@ using namespace xml;
 
 namespace {
 
+// Of the work for each, see StopPoll.
+constexpr std::size_t parts_of_object = 1024, parts_of_channel = 256, parts_of_line = 64;
+
 /// Appends all children that have a valid name, whatever their other problems, and those of groups.
-void add_named_children(const tinyxml2::XMLElement& parent, std::vector<Named>& named) {
-  for (const auto* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
-    if (const auto* name = child->FindAttribute("name"); name && is_name(name->Value()))
-      named.push_back({child->Name(), name->Value(), name->GetLineNum()});
-    const bool is_in_scene = parent.Parent() == parent.GetDocument();
-    if (is_in_scene && child->Name() == std::string_view("group"))
-      add_named_children(*child, named);
+void add_named_children(const Element& parent, std::vector<Named>& named, Findings& findings) {
+  for (auto child = parent.first_child(); child; child = child->next()) {
+    if (findings.is_over(parts_of_object)) return;
+    if (const auto name = child->attribute("name"); name && is_name(name->value))
+      named.push_back({child->name(), name->value, name->line});
+    if (parent.is_root() && child->name() == "group") add_named_children(*child, named, findings);
   }
 }
 
 /// `NAME.attribute` of the channels that are animated.
-std::set<std::string> animated_channels(const Scene& scene) {
+std::set<std::string> animated_channels(const Scene& scene, Findings& findings) {
   std::set<std::string> paths;
-  for (const NamedChannel& named : channels_of(scene))
-    if (named.is_animated()) paths.insert(named.path);
+  const auto add = [&](const auto& things) {
+    for (const auto& thing : things) {
+      if (findings.is_over(parts_of_object)) return;
+      for_each_channel(thing, [&](const std::string& name, const Attribute&, const auto& channel) {
+        if (channel.is_animated()) paths.insert(fmt::format("{}.{}", thing.name, name));
+      });
+    }
+  };
+  add(scene.surfaces);
+  add(scene.forces);
+  add(scene.groups);
   return paths;
 }
 
@@ -62,7 +72,7 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
 
   const bool is_all = file.findings.problem_count() != 0;
   if (is_sound("", "start") && is_sound("", "end")) {
-    const std::set<std::string> animated = animated_channels(scene);
+    const std::set<std::string> animated = animated_channels(scene, file.findings);
     const auto is_constant = [&](const std::string& name, std::string_view attribute) {
       const auto is_animated = [&](std::string_view of) {
         return animated.contains(fmt::format("{}.{}", name, of));
@@ -70,29 +80,31 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
       if (attribute == "c") return !is_animated("b") && !is_animated("c") && !is_animated("d");
       return !is_animated(attribute);
     };
+    const auto is_over = [&] { return file.findings.is_over(parts_of_channel); };
     const auto is_checked = [&](const std::string& name, std::string_view attribute) {
       return is_sound(name, attribute) && (attribute != "dt" || is_sound("", "fps")) &&
              (is_all || is_constant(name, attribute));
     };
-    for (Error& error : check_channels(scene, is_checked))
+    for (Error& error : check_channels(scene, is_checked, is_over))
       file.findings.add_problem(error.line, std::move(error.message));
   }
   if (file.findings.problem_count() == 0) return;
-  for (const NamedMesh& mesh : file.meshes)
+  for (const NamedMesh& mesh : file.meshes) {
+    if (file.findings.is_over(parts_of_object)) return;
     if (const auto readable = OpenFile::open(mesh.path, file.root); !readable)
       file.findings.add_problem(
           mesh.line,
           unreadable_mesh(readable.error(), mesh.surface, scene.origin, mesh.attribute).message);
+  }
 }
 
-Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
+Scene read_root(const Element& root, SceneFile& file) {
   Scene scene;
   Table table = table_of(scene);
   read_attributes(root, table, file.findings);
-  file.lines[""] = root.GetLineNum();
+  file.lines[""] = root.line();
   record("", table, file);
 
-  using Element = tinyxml2::XMLElement;
   std::vector<Child> children = {
       {"surface",
        [&](const Element& child) { scene.surfaces.push_back(read_surface(child, file)); }},
@@ -107,45 +119,48 @@ Scene read_root(const tinyxml2::XMLElement& root, SceneFile& file) {
   read_children(root, children, file.findings);
 
   std::vector<Named> named;
-  add_named_children(root, named);
-  for (const auto& [part, line] : file.lines) scene.origin.lines.push_back({part, line});
+  add_named_children(root, named, file.findings);
+  scene.origin.lines.reserve(file.lines.size());
+  for (; !file.lines.empty() && !file.findings.is_over(parts_of_line);) {
+    auto first = file.lines.extract(file.lines.begin());
+    scene.origin.lines.push_back({std::move(first.key()), first.mapped()});
+  }
   if (file.is_expanded) check(scene, named, file);
   note_idle_targets(scene, file.findings);
   return scene;
 }
 
 /// Scans the text, and expands it into `expanded` if it needs that; `text` is then the expanded
-/// one. Returns whether it can be read, perhaps only to find further problems.
-bool prepare(std::string_view& text, std::string& expanded, const std::string& name,
-             SceneFile& file) {
-  const std::optional<Markup> markup = scan_markup(text, file.findings);
-  if (!markup) return false;
+/// one. Null: it cannot be read, not even to find further problems.
+std::optional<Markup> prepare(std::string_view& text, std::string& expanded,
+                              const std::string& name, SceneFile& file) {
+  std::optional<Markup> markup = scan_markup(text, file.findings);
+  if (!markup) return std::nullopt;
   const SourceText source{text, *markup, name, file.folder};
-  if (!needs_expansion(source)) return true;
+  if (!needs_expansion(source, file.findings)) return markup;
   std::optional<Expansion> expansion = expand(source, file.texts, file.findings);
-  if (!expansion) return false;
+  if (!expansion) return std::nullopt;
   expanded = std::move(expansion->text);
   text = expanded;
   file.findings.use(expansion->files, std::move(expansion->values));
   file.files = std::move(expansion->files);
   file.is_expanded = expansion->is_sound;
   // Each file is well-formed, but all together may be nested too deep, or too large.
-  if (!scan_markup(text, file.findings)) return false;
+  markup = scan_markup(text, file.findings);
   for (const std::size_t at : expansion->unknown) expanded[at] = unknown_value;
-  return true;
+  return markup;
 }
 
-/// Reads a document whose root is probably a <scene>.
-std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneFile& file) {
-  const tinyxml2::XMLElement& root = *document.RootElement();
+/// Reads a root that is probably a <scene>.
+std::optional<Scene> read_document(const Element& root, SceneFile& file) {
   constexpr std::string_view expected[] = {"scene"};
-  if (root.Name() != expected[0]) {
-    const bool is_fragment = root.Name() == std::string_view("fragment");
+  if (root.name() != expected[0]) {
+    const bool is_fragment = root.name() == "fragment";
     file.findings.add_problem(
-        root.GetLineNum(),
+        root.line(),
         fmt::format("the root element is {}{}", tag(root),
                     is_fragment ? ", which a <scene> may include, but which is none itself"
-                                : hint(root.Name(), expected)));
+                                : hint(root.name(), expected)));
     return std::nullopt;
   }
   return read_root(root, file);
@@ -153,35 +168,33 @@ std::optional<Scene> read_document(const tinyxml2::XMLDocument& document, SceneF
 
 }  // namespace
 
-Result<Scene> load_scene(const std::string& file, const std::string& root) {
-  const Result<std::string> text = read_file(file, largest_scene_file);
+Result<Scene> load_scene(const std::string& file, const std::string& root,
+                         const StopRequest& should_stop) {
+  const Result<std::string> text = read_file(file, largest_scene_file, should_stop);
   if (!text) return fail(text.error());
-  return parse_scene(*text, file, std::filesystem::path(file).parent_path(), root);
+  return parse_scene(*text, file, std::filesystem::path(file).parent_path(), root, should_stop);
 }
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
-                          const std::string& root) {
-  return parse_scene_of(text, name, folder, root, files_on_disk(root));
+                          const std::string& root, const StopRequest& should_stop) {
+  return parse_scene_of(text, name, folder, root, files_on_disk(root, should_stop), should_stop);
 }
 
 Result<Scene> xml::parse_scene_of(std::string_view text, const std::string& name,
                                   const std::string& folder, const std::string& root,
-                                  TextFiles texts) {
-  SceneFile file{
-      .folder = folder, .root = root, .texts = std::move(texts), .findings = Findings(name)};
+                                  TextFiles texts, const StopRequest& should_stop) {
+  SceneFile file{.folder = folder,
+                 .root = root,
+                 .texts = std::move(texts),
+                 .findings = Findings(name, should_stop)};
   if (text.size() > largest_scene_file)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);
   std::string expanded;
-  if (!prepare(text, expanded, name, file)) return fail(file.findings.to_error());
-
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    file.findings.add_problem(document.ErrorLineNum(),
-                              fmt::format("malformed XML: {}", document.ErrorName()));
-    return fail(file.findings.to_error());
-  }
-  std::optional<Scene> scene = read_document(document, file);
+  const std::optional<Markup> markup = prepare(text, expanded, name, file);
+  if (!markup) return fail(file.findings.to_error());
+  Tree tree(text, *markup);
+  std::optional<Scene> scene = read_document(tree.root(), file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
   scene->origin.file = name;
   scene->origin.root = root;

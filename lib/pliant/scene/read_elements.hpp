@@ -14,7 +14,7 @@
 namespace pliant::xml {
 
 /// Reads a <surface> with all its content.
-Surface read_surface(const tinyxml2::XMLElement& element, SceneFile& file);
+Surface read_surface(const Element& element, SceneFile& file);
 
 /// One force of each kind that has an element, with its defaults, in the order of the format.
 std::vector<Force> force_kinds();
@@ -24,27 +24,26 @@ Force standard_force(const Force& force);
 
 /// Reads a force into `force`, which has the defaults of its kind. `group` is the group that
 /// contains it, or null; a force in a group has no deformation radius of its own.
-Force read_force(const tinyxml2::XMLElement& element, Force force, const Group* group,
-                 SceneFile& file);
+Force read_force(const Element& element, Force force, const Group* group, SceneFile& file);
 
 /// Reads a <group>, and appends the forces in it to `forces`.
-Group read_group(const tinyxml2::XMLElement& element, std::vector<Force>& forces, SceneFile& file);
+Group read_group(const Element& element, std::vector<Force>& forces, SceneFile& file);
 
 /// Reads an <animate> into the channel that its `attribute` names among `rows`, the rows of the
 /// element that contains it. `owner` is the name of the surface or force, for notes. Problems: no
 /// such channel, a channel that is already given or animated, all problems of its keys.
-void read_animate(const tinyxml2::XMLElement& animate, std::span<Slot* const> rows,
-                  const std::string& owner, Findings& findings);
+void read_animate(const Element& animate, std::span<Slot* const> rows, const std::string& owner,
+                  Findings& findings);
 
 /// The same for a single table.
-void read_animate(const tinyxml2::XMLElement& animate, Table& table, const std::string& owner,
+void read_animate(const Element& animate, Table& table, const std::string& owner,
                   Findings& findings);
 
 /// Reads the keys of an <animate> or a <falloff>, for an <animate> also the loop and the modes
 /// before and after the keys, and makes the curve. `channel` is the path, such as `poke.magnitude`,
 /// for messages. Null if there was a problem.
 template <int D>
-std::optional<Curve<D>> read_curve(const tinyxml2::XMLElement& animate, KeyAxis axis,
-                                   ValueKind kind, const std::string& channel, Findings& findings);
+std::optional<Curve<D>> read_curve(const Element& animate, KeyAxis axis, ValueKind kind,
+                                   const std::string& channel, Findings& findings);
 
 }  // namespace pliant::xml

@@ -38,6 +38,9 @@ bool is_force_element(std::string_view element) {
                      [&](const Force& kind) { return kind_of(kind) == element; });
 }
 
+// Of the work for each, see StopPoll.
+constexpr std::size_t parts_of_object = 2048, parts_of_target = 128;
+
 class WholeChecker {
  public:
   WholeChecker(const Scene& scene, std::span<const Named> named, const ChannelFilter& is_sound,
@@ -46,11 +49,18 @@ class WholeChecker {
 
   void check() {
     for (const Group& group : scene_.groups) groups_.insert(group.name);
+    for (const Surface& surface : scene_.surfaces) surfaces_.emplace(surface.name, &surface);
     check_ranges("", scene_);
     check_frames();
     check_names();
-    for (const Surface& surface : scene_.surfaces) check(surface);
-    for (const Force& force : scene_.forces) check(force);
+    for (const Surface& surface : scene_.surfaces) {
+      if (findings_.is_over(parts_of_object)) return;
+      check(surface);
+    }
+    for (const Force& force : scene_.forces) {
+      if (findings_.is_over(parts_of_object)) return;
+      check(force);
+    }
     check_targets();
   }
 
@@ -300,20 +310,21 @@ class WholeChecker {
       complain(surface.name, "drivenBy", fmt::format("{}.drivenBy: {}", surface.name, reason));
     };
     if (surface.driven_by == surface.name) return refuse("a surface cannot drive itself");
-    std::vector<std::string_view> drivers;
-    for (const Surface& other : scene_.surfaces) {
-      if (other.name.empty()) return;  // it may be the one that is meant
-      if (other.name != surface.driven_by) {
-        if (!other.is_driven() && other.name != surface.name) drivers.push_back(other.name);
-        continue;
-      }
+    if (const auto found = surfaces_.find(surface.driven_by); found != surfaces_.end()) {
+      const Surface& other = *found->second;
       if (other.is_driven())
         refuse(fmt::format("{} is driven itself, by {}", in_quotes(other.name),
                            in_quotes(other.driven_by)));
       return;
     }
+    if (surfaces_.contains("")) return;  // it may be the one that is meant
+    std::vector<std::string_view> drivers;
+    for (const Surface& other : scene_.surfaces) {
+      if (!findings_.may_compare_names()) break;
+      if (!other.is_driven() && other.name != surface.name) drivers.push_back(other.name);
+    }
     refuse(fmt::format("no surface is named {}{}", in_quotes(surface.driven_by),
-                       hint(surface.driven_by, drivers)));
+                       hint_among(surface.driven_by, drivers)));
   }
 
   void check_reading(const Surface& surface) {
@@ -362,6 +373,7 @@ class WholeChecker {
   void check_names() {
     std::map<std::string_view, int> first_lines;
     for (const auto& [element, name, line] : named_) {
+      if (findings_.is_over(parts_of_object)) return;
       if (!is_name(name)) {
         findings_.add_problem(line, fmt::format("the name {} must be a letter or _ followed by "
                                                 "letters, digits, _ and -",
@@ -380,27 +392,26 @@ class WholeChecker {
   }
 
   void check_targets() {
-    std::set<std::string_view> names;
+    if (surfaces_.contains("")) return;      // a target may mean a surface with an unreadable name
     std::vector<std::string_view> surfaces;  // each once, in the order of the scene
     for (const Surface& surface : scene_.surfaces)
-      if (names.insert(surface.name).second) surfaces.push_back(surface.name);
+      if (surfaces_.at(surface.name) == &surface) surfaces.push_back(surface.name);
     std::map<std::string_view, std::string_view> driven;
     for (const Surface& surface : scene_.surfaces)
       if (surface.is_driven()) driven.emplace(surface.name, surface.driven_by);
-    if (names.contains("")) return;  // a target may mean a surface with an unreadable name
     std::map<std::string_view, std::string_view> elements;
     for (const Named& one : named_) elements.emplace(one.name, one.element);
 
     const auto check = [&](const auto& acting) {
       for (const std::string& target : acting.targets) {
-        if (findings_.is_full()) return;
+        if (findings_.is_over(parts_of_target)) return;
         if (driven.contains(target)) {
           complain(
               acting.name, "targets",
               fmt::format("{}.targets: {} is driven by {}, and feels the forces that act on it",
                           acting.name, in_quotes(target), in_quotes(driven[target])));
         }
-        if (names.contains(target)) continue;
+        if (surfaces_.contains(target)) continue;
         const auto found = elements.find(target);
         const bool is_named = found != elements.end();
         const bool is_force = is_named && is_force_element(found->second);
@@ -410,11 +421,16 @@ class WholeChecker {
                              is_force ? fmt::format("{} is a <{}>, not a surface",
                                                     in_quotes(target), found->second)
                                       : fmt::format("no surface is named {}", in_quotes(target)),
-                             hint(target, surfaces)));
+                             hint_among(target, surfaces)));
       }
     };
     for (const Force& force : scene_.forces) check(force);
     for (const Group& group : scene_.groups) check(group);
+  }
+
+  /// The nearest of the names of a scene, and the first of them.
+  std::string hint_among(std::string_view name, std::span<const std::string_view> names) const {
+    return findings_.may_compare_names() ? hint(name, names) : "";
   }
 
   bool is_sound(const std::string& name, std::string_view attribute) const {
@@ -430,6 +446,7 @@ class WholeChecker {
   const ChannelFilter& is_sound_;
   Findings& findings_;
   std::set<std::string_view> groups_;
+  std::map<std::string_view, const Surface*> surfaces_;  // the first of each name
 };
 
 }  // namespace
@@ -440,14 +457,15 @@ void check_whole(const Scene& scene, std::span<const Named> named, const Channel
 }
 
 void note_idle_targets(const Scene& scene, Findings& findings) {
-  std::map<std::string_view, const std::vector<std::string>*> targets_of;
-  for (const Group& group : scene.groups) targets_of.emplace(group.name, &group.targets);
+  std::map<std::string_view, std::set<std::string_view>> targets_of;  // of groups
+  for (const Group& group : scene.groups)
+    targets_of.try_emplace(group.name, group.targets.begin(), group.targets.end());
   for (const Force& force : scene.forces) {
     const auto group = targets_of.find(force.group);
-    if (group == targets_of.end() || group->second->empty()) continue;
-    const std::vector<std::string>& known = *group->second;
+    if (findings.is_over(parts_of_target)) return;
+    if (group == targets_of.end() || group->second.empty()) continue;
     for (const std::string& target : force.targets)
-      if (std::find(known.begin(), known.end(), target) == known.end())
+      if (!findings.is_over(parts_of_target) && !group->second.contains(target))
         findings.add_note(
             scene.origin.line_of(force.name, "targets"),
             fmt::format(

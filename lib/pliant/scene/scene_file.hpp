@@ -46,6 +46,7 @@ struct SceneFile {
 
 /// As `parse_scene`, where included files are found by `texts`.
 Result<Scene> parse_scene_of(std::string_view text, const std::string& name,
-                             const std::string& folder, const std::string& root, TextFiles texts);
+                             const std::string& folder, const std::string& root, TextFiles texts,
+                             const StopRequest& should_stop = {});
 
 }  // namespace pliant::xml

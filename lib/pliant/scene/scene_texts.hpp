@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
@@ -29,10 +30,12 @@ struct LoadedScene {
 };
 
 /// As `load_scene`.
-Result<LoadedScene> load_scene_with_texts(const std::string& file, const std::string& root = {});
+Result<LoadedScene> load_scene_with_texts(const std::string& file, const std::string& root = {},
+                                          const StopRequest& should_stop = {});
 
 /// The scene of these texts; relative names of meshes are those of the folder of `texts.file`.
 /// Errors: as `load_scene`, also for an included file that is not among the texts.
-Result<Scene> parse_scene(const SceneTexts& texts, const std::string& root = {});
+Result<Scene> parse_scene(const SceneTexts& texts, const std::string& root = {},
+                          const StopRequest& should_stop = {});
 
 }  // namespace pliant

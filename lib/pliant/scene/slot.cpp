@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <span>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -185,6 +185,8 @@ struct ReadValue {
     return {};
   }
   Reading<void> operator()(std::string* place) const {
+    if (attribute.syntax == Syntax::Name && text.size() > longest_object_name)
+      return complaint(fmt::format("is longer than {} characters", longest_object_name));
     if (attribute.syntax == Syntax::Name && !is_name(text))
       return complaint("must be a letter or _ followed by letters, digits, _ and -");
     if (attribute.syntax == Syntax::Path && trimmed(text).empty())
@@ -198,7 +200,7 @@ struct ReadValue {
     const std::vector<std::string_view> words = words_of(text);
     if (words.empty())
       return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
-    std::set<std::string_view> seen;
+    std::unordered_set<std::string_view> seen;
     for (const std::string_view word : words) {
       if (!is_name(word))
         return complaint(in_quotes(word) + " is not a name (names are separated by spaces)");

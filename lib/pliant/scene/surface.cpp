@@ -2,7 +2,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "pliant/scene/net.hpp"
 #include "pliant/scene/read_elements.hpp"
@@ -18,7 +17,7 @@ struct Part {
 
 class SurfaceReader {
  public:
-  SurfaceReader(const tinyxml2::XMLElement& element, SceneFile& file)
+  SurfaceReader(const Element& element, SceneFile& file)
       : element_(element),
         file_(file),
         own_(table_of(surface_)),
@@ -30,20 +29,20 @@ class SurfaceReader {
   Surface read();
 
  private:
-  void read_grid(const tinyxml2::XMLElement& element);
-  void read_mesh(const tinyxml2::XMLElement& element, bool is_cage);
-  void read_net(const tinyxml2::XMLElement& element);
-  void locate_cache(const tinyxml2::XMLElement& element, Table& table, CacheFile& cache);
-  void read_part(const tinyxml2::XMLElement& element, Part& part);
-  void read_material(const tinyxml2::XMLElement& element);
-  void read_map(const tinyxml2::XMLElement& element);
-  bool takes_part(const tinyxml2::XMLElement& element, Part& part);
-  void read_own_animate(const tinyxml2::XMLElement& element);
-  bool takes_shape(const tinyxml2::XMLElement& element);
+  void read_grid(const Element& element);
+  void read_mesh(const Element& element, bool is_cage);
+  void read_net(const Element& element);
+  void locate_cache(const Element& element, Table& table, CacheFile& cache);
+  void read_part(const Element& element, Part& part);
+  void read_material(const Element& element);
+  void read_map(const Element& element);
+  bool takes_part(const Element& element, Part& part);
+  void read_own_animate(const Element& element);
+  bool takes_shape(const Element& element);
   void refuse_parts_of_driven();
   std::string title() const;  ///< `<surface> "sheet"`
 
-  const tinyxml2::XMLElement& element_;
+  const Element& element_;
   SceneFile& file_;
   Surface surface_;  // the tables refer to it
   Table own_;
@@ -56,7 +55,6 @@ class SurfaceReader {
 
 Surface SurfaceReader::read() {
   read_attributes(element_, own_, file_.findings);
-  using Element = tinyxml2::XMLElement;
   const Child children[] = {
       {"grid", [&](const Element& child) { read_grid(child); }},
       {"mesh", [&](const Element& child) { read_mesh(child, false); }},
@@ -71,7 +69,7 @@ Surface SurfaceReader::read() {
   const bool all_known = read_children(element_, children, file_.findings);
   if (shape_line_ == 0 && all_known)
     file_.findings.add_problem(
-        element_.GetLineNum(),
+        element_.line(),
         fmt::format("{} has no shape: one <grid>, <mesh>, <nurbs> or <subdivision> is required",
                     title()));
   refuse_parts_of_driven();
@@ -91,19 +89,18 @@ std::string SurfaceReader::title() const {
 
 /// Whether this is the surface's first shape. A second one is a problem, but is still read to
 /// report its own problems.
-bool SurfaceReader::takes_shape(const tinyxml2::XMLElement& element) {
+bool SurfaceReader::takes_shape(const Element& element) {
   if (shape_line_ == 0) {
-    shape_line_ = element.GetLineNum();
+    shape_line_ = element.line();
     return true;
   }
-  file_.findings.add_problem(
-      element.GetLineNum(),
-      fmt::format("{} has two shapes; the first is at {}", title(),
-                  file_.findings.title_of(shape_line_, element.GetLineNum())));
+  file_.findings.add_problem(element.line(),
+                             fmt::format("{} has two shapes; the first is at {}", title(),
+                                         file_.findings.title_of(shape_line_, element.line())));
   return false;
 }
 
-void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_grid(const Element& element) {
   const bool is_first = takes_shape(element);
   GridSheet grid;
   CacheFile cache;
@@ -117,7 +114,7 @@ void SurfaceReader::read_grid(const tinyxml2::XMLElement& element) {
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
-void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage) {
+void SurfaceReader::read_mesh(const Element& element, bool is_cage) {
   const bool is_first = takes_shape(element);
   MeshFile mesh;
   MeshReading reading;
@@ -128,7 +125,7 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage)
   read_attributes(element, table, file_.findings);
   locate_cache(element, table, cache);
   locate_file(element, *find(table, "file"), surface_.name, "file", mesh.path, file_);
-  mesh.root = (file_.root.empty() ? file_.folder_at(element.GetLineNum()) : file_.root).string();
+  mesh.root = (file_.root.empty() ? file_.folder_at(element.line()) : file_.root).string();
   if (mesh.root.empty()) mesh.root = ".";  // empty would mean the mesh's own folder
   read_children(element, {}, file_.findings);
   if (!is_first) return;
@@ -139,12 +136,11 @@ void SurfaceReader::read_mesh(const tinyxml2::XMLElement& element, bool is_cage)
   if (!surface_.name.empty()) record(surface_.name, table, file_);
 }
 
-void SurfaceReader::locate_cache(const tinyxml2::XMLElement& element, Table& table,
-                                 CacheFile& cache) {
+void SurfaceReader::locate_cache(const Element& element, Table& table, CacheFile& cache) {
   locate_file(element, *find(table, "cache"), surface_.name, "cache", cache.path, file_);
 }
 
-void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_net(const Element& element) {
   const bool is_first = takes_shape(element);
   NurbsNet net;
   Table table = table_of(net);
@@ -159,32 +155,31 @@ void SurfaceReader::read_net(const tinyxml2::XMLElement& element) {
 }
 
 /// Whether this is the first such part of the surface; reads its attributes then.
-bool SurfaceReader::takes_part(const tinyxml2::XMLElement& element, Part& part) {
+bool SurfaceReader::takes_part(const Element& element, Part& part) {
   if (part.line != 0) {
     file_.findings.add_problem(
-        element.GetLineNum(),
-        fmt::format("{} has a second {}; the first is at {}", title(), tag(element),
-                    file_.findings.title_of(part.line, element.GetLineNum())));
+        element.line(), fmt::format("{} has a second {}; the first is at {}", title(), tag(element),
+                                    file_.findings.title_of(part.line, element.line())));
     return false;
   }
-  part.line = element.GetLineNum();
+  part.line = element.line();
   read_attributes(element, part.table, file_.findings);
   return true;
 }
 
-void SurfaceReader::read_material(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_material(const Element& element) {
   if (!takes_part(element, material_)) return;
   const Child children[] = {
       {"animate",
-       [&](const tinyxml2::XMLElement& child) {
+       [&](const Element& child) {
          read_animate(child, material_.table, surface_.name, file_.findings);
        }},
-      {"map", [&](const tinyxml2::XMLElement& child) { read_map(child); }},
+      {"map", [&](const Element& child) { read_map(child); }},
   };
   read_children(element, children, file_.findings);
 }
 
-void SurfaceReader::read_map(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_map(const Element& element) {
   MaterialMap map;
   Table table = table_of(map);
   read_attributes(element, table, file_.findings);
@@ -196,18 +191,17 @@ void SurfaceReader::read_map(const tinyxml2::XMLElement& element) {
   const auto first = std::ranges::find(surface_.maps, map.channel, &MaterialMap::channel);
   if (first != surface_.maps.end())
     return file_.findings.add_problem(
-        element.GetLineNum(),
-        fmt::format("{} has a second map of {}; a channel has one", title(),
-                    map_channel_words[static_cast<std::size_t>(map.channel)]));
+        element.line(), fmt::format("{} has a second map of {}; a channel has one", title(),
+                                    map_channel_words[static_cast<std::size_t>(map.channel)]));
   locate_file(element, *find(table, "file"), surface_.name, name, map.file, file_);
   surface_.maps.push_back(map);
   if (!surface_.name.empty())
     record_element(element, fmt::format("{}.{}", surface_.name, name), table, file_);
 }
 
-void SurfaceReader::read_part(const tinyxml2::XMLElement& element, Part& part) {
+void SurfaceReader::read_part(const Element& element, Part& part) {
   if (!takes_part(element, part)) return;
-  const Child children[] = {{"animate", [&](const tinyxml2::XMLElement& child) {
+  const Child children[] = {{"animate", [&](const Element& child) {
                                read_animate(child, part.table, surface_.name, file_.findings);
                              }}};
   read_children(element, children, file_.findings);
@@ -229,7 +223,7 @@ void SurfaceReader::refuse_parts_of_driven() {
 
 /// An <animate> directly in the surface may name a channel of any of its parts, as all names
 /// differ.
-void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
+void SurfaceReader::read_own_animate(const Element& element) {
   std::vector<Slot*> rows;
   for (Table* table :
        {&own_, &transform_.table, &material_.table, &tangents_.table, &solver_.table})
@@ -239,7 +233,7 @@ void SurfaceReader::read_own_animate(const tinyxml2::XMLElement& element) {
 
 }  // namespace
 
-Surface read_surface(const tinyxml2::XMLElement& element, SceneFile& file) {
+Surface read_surface(const Element& element, SceneFile& file) {
   return SurfaceReader(element, file).read();
 }
 

@@ -16,6 +16,7 @@
 #include "pliant/scene/curve_text.hpp"
 #include "pliant/scene/element_text.hpp"
 #include "pliant/scene/key_text.hpp"
+#include "pliant/scene/markup.hpp"
 #include "pliant/scene/path.hpp"
 #include "pliant/scene/read_elements.hpp"
 #include "pliant/scene/slot.hpp"
@@ -26,13 +27,17 @@ using namespace xml;
 
 namespace {
 
+// Of the work for each, see StopPoll.
+constexpr std::size_t parts_of_element = 4096, parts_of_point = 128;
+
 class SceneWriter {
  public:
-  explicit SceneWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  SceneWriter(std::filesystem::path folder, const StopRequest& should_stop)
+      : folder_(std::move(folder)), should_stop_(should_stop), poll_(should_stop) {}
 
   void write(const Scene& scene);
 
-  std::string text() const { return text_of(top_.children.front()) + '\n'; }
+  std::string text() const { return text_of(top_.children.front(), {}, {}, should_stop_) + '\n'; }
 
  private:
   void write(const Surface& surface);
@@ -76,12 +81,14 @@ class SceneWriter {
   }
   template <int D>
   void write_curve(std::string_view attribute, const Curve<D>& curve, ValueKind kind) {
-    current_->children.push_back(curve_element(attribute, curve.keys(), kind));
+    current_->children.push_back(curve_element(attribute, curve.keys(), kind, should_stop_));
   }
 
   ElementText top_ = {};          // contains the root
   ElementText* current_ = &top_;  // that is being written
   std::filesystem::path folder_;
+  const StopRequest& should_stop_;
+  StopPoll poll_;
 };
 
 void SceneWriter::write_path(std::string_view attribute, const PathMotion& motion) {
@@ -91,6 +98,7 @@ void SceneWriter::write_path(std::string_view attribute, const PathMotion& motio
     give("attribute", attribute);
     write_attributes(table_of(text), table_of(standard));
     for (const Value<3>& place : motion.path.waypoints()) {
+      if (poll_.after(parts_of_element)) return;
       Waypoint waypoint{place};
       const Table table = table_of(waypoint);
       element("waypoint", [&] { write_attributes(table, table); });
@@ -226,7 +234,7 @@ void SceneWriter::write(const NurbsNet& net) {
   element("nurbs", [&] {
     write_attributes(table_of(own), table_of(standard));
     std::string points;
-    for (Eigen::Index k = 0; k < net.points.rows(); ++k)
+    for (Eigen::Index k = 0; k < net.points.rows() && !poll_.after(parts_of_point); ++k)
       points += fmt::format("{}{} {} {}", k == 0 ? "" : "\n", net.points(k, 0), net.points(k, 1),
                             net.points(k, 2));
     element("points", [&] { current_->text = points; });
@@ -246,6 +254,7 @@ void SceneWriter::write(const NurbsNet& net) {
 }
 
 void SceneWriter::write(const Surface& surface) {
+  if (poll_.after(parts_of_element)) return;
   Surface own;
   own.name = surface.name;
   own.enabled = surface.enabled;
@@ -263,6 +272,7 @@ void SceneWriter::write(const Surface& surface) {
 }
 
 void SceneWriter::write(const Force& force) {
+  if (poll_.after(parts_of_element)) return;
   Force own = force;
   Force standard = standard_force(force);
   if (!force.group.empty()) own.deformation_radius = standard.deformation_radius;
@@ -275,6 +285,7 @@ void SceneWriter::write(const Force& force) {
 }
 
 void SceneWriter::write(const Group& group, const std::vector<const Force*>& forces) {
+  if (poll_.after(parts_of_element)) return;
   Group own = group;
   Group standard;
   element("group", [&] {
@@ -365,15 +376,24 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
 
 }  // namespace
 
-Result<std::string> to_xml(const Scene& scene, const std::string& folder) {
-  std::vector<Error> errors = check_scene(scene);
-  if (errors.empty()) errors = check_channels(scene);
+Result<std::string> to_xml(const Scene& scene, const std::string& folder,
+                           const StopRequest& should_stop) {
+  std::vector<Error> errors = check_scene(scene, should_stop);
+  StopPoll poll(should_stop);
+  constexpr std::size_t parts_of_channel = 256;
+  if (errors.empty())
+    errors = check_channels(scene, {}, [&] { return poll.after(parts_of_channel); });
+  if (is_stopped(should_stop)) return interrupted();
   if (!errors.empty()) return fail(std::move(errors.front()));
   if (auto problem = what_no_file_contains(scene))
     return fail(ErrorCode::InvalidInput, *std::move(problem));
-  SceneWriter writer(folder);
+  SceneWriter writer(folder, should_stop);
   writer.write(scene);
-  return writer.text();
+  std::string text = writer.text();
+  if (is_stopped(should_stop)) return interrupted();
+  if (const auto markup = markup_of(text, scene.origin.file, should_stop); !markup)
+    return fail(markup.error());
+  return text;
 }
 
 }  // namespace pliant

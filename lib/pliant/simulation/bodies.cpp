@@ -82,8 +82,8 @@ Bodies::Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOpti
       profiles_(options.profile ? scene.surfaces.size() : 0),
       round_done_(options.round_done) {}
 
-Result<void> check_to_simulate(const Scene& scene) {
-  std::vector<Error> errors = check_scene(scene);
+Result<void> check_to_simulate(const Scene& scene, const StopRequest& should_stop) {
+  std::vector<Error> errors = check_scene(scene, should_stop);
   if (scene.surfaces.empty()) {
     errors.push_back({.code = ErrorCode::InvalidInput,
                       .message = "the scene has no surface to simulate",

@@ -20,7 +20,7 @@
 namespace pliant {
 
 /// Checks that `check_scene` finds nothing, and that there is a surface. Internal to simulation.
-Result<void> check_to_simulate(const Scene& scene);
+Result<void> check_to_simulate(const Scene& scene, const StopRequest& should_stop = {});
 
 /// The error of a run that was stopped while it was made.
 tl::unexpected<Error> interrupted_at_start();

@@ -55,7 +55,8 @@ auto beside(const Simulation& simulation, const SimulationOptions& options, cons
 
 Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& options) {
   PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
-  if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
+  if (auto sound = check_to_simulate(scene, options.should_stop); !sound)
+    return fail(sound.error());
   auto player = std::make_unique<Player>(std::move(scene), options);
   if (auto made = player->make_bodies(); !made) return fail(made.error());
   return Simulation(std::move(player));
@@ -63,7 +64,7 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
 
 Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
                                                  const SimulationOptions& options) {
-  std::vector<Error> errors = check_scene(scene);
+  std::vector<Error> errors = check_scene(scene, options.should_stop);
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
 
   errors = check_channels(scene, {}, options.should_stop);

@@ -140,7 +140,7 @@ Result<Asked> read_request(const SweepRequest& request, const StopRequest& shoul
     const auto path = absolute_path(scene);
     if (!path) return fail(path.error());
     if (auto is = check_is_utf8("the folder of SCENE", *path); !is) return fail(is.error());
-    auto loaded = load_scene_with_texts(*path, file.request.root);
+    auto loaded = load_scene_with_texts(*path, file.request.root, should_stop);
     if (!loaded) return fail(named(loaded.error(), *path, scene));
     asked.scenes.push_back(std::move(loaded->scene));
     file.texts.push_back(std::move(loaded->texts));
@@ -362,7 +362,7 @@ Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopReque
   std::vector<Scene> scenes;
   for (const SceneTexts& texts : file->texts) {
     if (is_stopped(should_stop)) return interrupted();
-    auto scene = parse_scene(texts, file->request.root);
+    auto scene = parse_scene(texts, file->request.root, should_stop);
     if (!scene) return fail(scene.error());
     scenes.push_back(*std::move(scene));
   }

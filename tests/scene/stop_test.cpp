@@ -1,0 +1,178 @@
+// Reading and writing a scene ask often enough whether to stop, and do nothing more once they are
+// to.
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/document/document.hpp"
+#include "pliant/document/format_scene.hpp"
+#include "pliant/scene/check.hpp"
+#include "pliant/scene/read.hpp"
+#include "pliant/scene/write.hpp"
+#include "support/catch.hpp"
+
+namespace pliant::testing {
+namespace {
+
+/// The content of a scene, of about so many bytes.
+struct Content {
+  const char* name;
+  std::string (*content)(std::size_t bytes);
+};
+
+std::string repeated(std::size_t bytes, std::string_view part) {
+  std::string text;
+  while (text.size() < bytes) text += part;
+  return text;
+}
+
+/// `part`, with the number of each in the place of `{0}`.
+std::string numbered(std::size_t bytes, std::string_view part) {
+  std::string text;
+  for (std::size_t k = 0; text.size() < bytes; ++k)
+    text += fmt::format(fmt::runtime(part), k, k % 7);
+  return text;
+}
+
+const Content contents[] = {
+    {"blanks", [](std::size_t bytes) { return std::string(bytes, ' '); }},
+    {"a comment", [](std::size_t bytes) { return "<!--" + std::string(bytes, '-') + "-->"; }},
+    {"comments", [](std::size_t bytes) { return repeated(bytes, "<!-- a -->"); }},
+    {"references",
+     [](std::size_t bytes) {
+       return "<point name=\"f\" targets=\"" + repeated(bytes, "&#115;") + "\"/>";
+     }},
+    {"forces", [](std::size_t bytes) { return numbered(bytes, "<point name=\"f{0}\"/>\n"); }},
+    {"unknown attributes",
+     [](std::size_t bytes) { return numbered(bytes, "<point name=\"f{0}\" size=\"{1}\"/>\n"); }},
+    {"undefined names",
+     [](std::size_t bytes) {
+       return numbered(bytes, "<point name=\"f{0}\" magnitude=\"$strength{0}\"/>\n");
+     }},
+    {"definitions",
+     [](std::size_t bytes) {
+       return numbered(bytes, "<define name=\"a{0}\" value=\"{1} + 1\"/>\n");
+     }},
+    {"arithmetic",
+     [](std::size_t bytes) {
+       return "<define name=\"a\" value=\"1\"/>" +
+              numbered(bytes, "<point name=\"f{0}\" magnitude=\"$a*{1} + $a*(2 - $a)\"/>\n");
+     }},
+    {"keys",
+     [](std::size_t bytes) {
+       return "<point name=\"f\"><animate attribute=\"magnitude\">" +
+              numbered(bytes, "<key frame=\"{0}\" value=\"{1}\"/>\n") + "</animate></point>";
+     }},
+    {"waypoints",
+     [](std::size_t bytes) {
+       return "<point name=\"f\"><path attribute=\"center\">" +
+              numbered(bytes, "<waypoint at=\"{0} {1} 0\"/>\n") + "</path></point>";
+     }},
+    {"points",
+     [](std::size_t bytes) {
+       return "<surface name=\"net\"><nurbs columns=\"4\" rows=\"4\"><points>" +
+              numbered(bytes, "{0} {1} 0\n") + "</points></nurbs></surface>";
+     }},
+};
+
+std::string text_of_content(const Content& kind, std::size_t bytes) {
+  return "<scene version=\"1\" start=\"1\" end=\"2\">"
+         "<surface name=\"s\"><grid columns=\"4\" rows=\"4\"/></surface>" +
+         kind.content(bytes) + "</scene>";
+}
+
+/// A request that counts how often it is asked, and wants to stop from one call on.
+class Request {
+ public:
+  explicit Request(int stop_at = 0) : stop_at_(stop_at) {}
+
+  StopRequest request() {
+    return [this] { return ++calls_ >= stop_at_ && stop_at_ > 0; };
+  }
+  int calls() const { return calls_; }
+
+ private:
+  int stop_at_;
+  int calls_ = 0;
+};
+
+/// Does the work with several requests: it is Interrupted, and then asks little more.
+void check_stops(const std::function<Result<void>(const StopRequest&)>& work) {
+  Request all;
+  (void)work(all.request());
+  for (const int share : {1, 3, 10}) {
+    const int stop_at = 1 + (all.calls() - 1) / share;
+    CAPTURE(all.calls(), stop_at);
+    Request request(stop_at);
+    const Result<void> done = work(request.request());
+    REQUIRE_FALSE(done);
+    CHECK(done.error().code == ErrorCode::Interrupted);
+    CHECK(request.calls() <= stop_at + 8);
+  }
+}
+
+Result<void> without_value(const auto& result) {
+  if (!result) return fail(result.error());
+  return {};
+}
+
+TEST_CASE("reading a scene asks whether to stop, the more often the larger it is",
+          "[scene][stop]") {
+  constexpr std::size_t bytes = std::size_t{2} << 20U;
+  for (const Content& kind : contents) {
+    CAPTURE(kind.name);
+    const auto read = [&](std::size_t size) {
+      return [text = text_of_content(kind, size)](const StopRequest& should_stop) {
+        return without_value(parse_scene(text, "a.xml", "", "", should_stop));
+      };
+    };
+    Request small, large;
+    (void)read(bytes / 4)(small.request());
+    (void)read(bytes)(large.request());
+    CHECK(large.calls() >= static_cast<int>(bytes / StopPoll::parts_between));
+    CHECK(large.calls() > small.calls());
+    check_stops(read(bytes));
+  }
+}
+
+TEST_CASE("laying a scene out and editing it can be stopped", "[document][stop]") {
+  constexpr std::size_t bytes = std::size_t{1} << 20U;
+  for (const Content& kind : contents) {
+    CAPTURE(kind.name);
+    const std::string text = text_of_content(kind, bytes);
+    check_stops([&](const StopRequest& should_stop) {
+      return without_value(format_scene(text, "a.xml", should_stop));
+    });
+    if (!parse_scene(text, "a.xml", "")) continue;
+    StopRequest present;
+    auto document = SceneDocument::from_text(text, "a.xml", "",
+                                             {.should_stop = [&] { return present && present(); }});
+    REQUIRE(document);
+    check_stops([&](const StopRequest& should_stop) {
+      present = should_stop;
+      auto changed = document->apply({edit::Set{"scene.fps", "25"}});
+      present = {};
+      if (changed) REQUIRE(document->undo());
+      CHECK(document->text() == text);
+      return without_value(changed);
+    });
+  }
+}
+
+TEST_CASE("writing a scene can be stopped", "[scene][stop]") {
+  for (const Content& kind : contents) {
+    CAPTURE(kind.name);
+    const auto scene = parse_scene(text_of_content(kind, std::size_t{1} << 20U), "a.xml", "");
+    if (!scene) continue;
+    check_stops([&](const StopRequest& should_stop) {
+      return without_value(to_xml(*scene, "", should_stop));
+    });
+  }
+}
+
+}  // namespace
+}  // namespace pliant::testing
