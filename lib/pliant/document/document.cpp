@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/document/draft.hpp"
 #include "pliant/document/editor.hpp"
+#include "pliant/document/object_drafts.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/read.hpp"
@@ -76,11 +78,16 @@ Result<Change> SceneDocument::apply(const std::vector<Operation>& operations,
   auto draft = edit::Draft::make(text_, file_, options_.should_stop);
   if (!draft) return fail(draft.error());
   edit::Editor editor(*draft, scene_, [this](const std::string& text) { return parse(text); });
-  for (const Operation& operation : operations)
+  edit::ObjectDrafts objects(*draft, scene_);
+  for (const Operation& operation : operations) {
+    if (objects.apply(operation)) continue;
+    if (auto done = objects.flush(); !done) return fail(done.error());
     if (auto done = editor.apply(operation); !done) return fail(done.error());
-  Step step{.name = name,
-            .batches = draft->take_batches(),
-            .parts = {editor.parts().begin(), editor.parts().end()}};
+  }
+  if (auto done = objects.flush(); !done) return fail(done.error());
+  std::set<std::string> parts = objects.parts();
+  parts.insert(editor.parts().begin(), editor.parts().end());
+  Step step{.name = name, .batches = draft->take_batches(), .parts = {parts.begin(), parts.end()}};
   if (name.empty() && !operations.empty()) step.name = described(operations.front());
   if (name.empty() && operations.size() > 1)
     step.name += fmt::format(" and {} more", operations.size() - 1);

@@ -212,6 +212,7 @@ std::string Draft::line_end_near(std::size_t at) const {
 }
 
 std::string Draft::indent() const {
+  if (indent_) return *indent_;
   for (Element child = 1; child < markup_.elements.size(); ++child) {
     const auto outer = margin_of(place(child).parent);
     const auto inner = margin_of(child);

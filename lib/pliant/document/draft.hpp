@@ -100,8 +100,10 @@ class Draft {
   std::optional<std::string> margin_of(Element element) const;
   /// The line end that is next to a place.
   std::string line_end_near(std::size_t at) const;
-  /// The blanks by which an element is indented in another.
+  /// The blanks by which an element is indented in another, as the first one in the text is.
   std::string indent() const;
+  /// They are these, whatever is in the text.
+  void use_indent(std::string blanks) { indent_ = std::move(blanks); }
 
   /// The text of an element with its lines indented by `to` in place of `from`. Line ends in
   /// values, comments and texts stay.
@@ -141,6 +143,7 @@ class Draft {
   xml::Markup markup_;
   EditBatch noted_;
   std::vector<EditBatch> batches_;
+  std::optional<std::string> indent_ = {};  // null: that of the text
   bool keeps_lines_ = false;
 };
 
