@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "interrupt.hpp"
 #include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
@@ -19,6 +20,10 @@ namespace pliant::cli {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\n";
+
+// Attributes and elements of a line with a problem on it, and of all lines with all problems.
+constexpr int most_compared = 10'000;
+constexpr int most_compared_in_all = 100'000;
 
 // The bytes of a text from `begin` up to `end`.
 struct Stretch {
@@ -55,7 +60,7 @@ struct ProblemPlaces::Text {
       units_before_blocks.push_back(before +
                                     utf16_units(std::string_view(text).substr(at - size, size)));
     }
-    xml::Findings ignored("");
+    xml::Findings ignored("", &was_interrupted);
     if (auto scanned = xml::scan_markup(text, ignored)) markup = *std::move(scanned);
   }
 
@@ -89,16 +94,17 @@ struct ProblemPlaces::Text {
   std::size_t owner_of(std::uint32_t attribute) const;
   std::string_view object_around(std::size_t element) const;
   Stretch without_blanks(const Stretch& in) const;
+  bool may_compare(int compared) const {
+    return compared <= most_compared && ++compared_ <= most_compared_in_all;
+  }
 
   std::string text;
   static constexpr std::size_t block_size = 4096;  // bytes
   std::vector<std::size_t> units_before_blocks;    // UTF-16 units before each
   std::vector<std::size_t> line_starts;
   xml::Markup markup;
+  mutable int compared_ = 0;  // of all lines
 };
-
-// Of the attributes and of the elements of a line, with each problem on it.
-constexpr int most_compared = 10'000;
 
 // The attribute that the message names, in the ways in which the reader names one: best with its
 // value, its element and its object.
@@ -118,15 +124,17 @@ std::optional<Stretch> ProblemPlaces::Text::attribute(const Stretch& in,
   std::size_t best_way = 24;
   int compared = 0;
   for (auto each = first;
-       each != markup.attributes.end() && each->name.begin < in.end && ++compared <= most_compared;
+       each != markup.attributes.end() && each->name.begin < in.end && may_compare(++compared);
        ++each) {
     const std::string_view name = each->name.of(text);
     const Stretch value = stretch_of(each->value), whole = stretch_of(each->whole());
     const bool is_animated = name == "attribute";  // its value is a name
-    const std::string_view channel = is_animated ? each->value.of(text) : name;
+    const std::string_view written = each->value.of(text);
+    const std::string_view channel = is_animated ? written : name;
+    const std::string_view quoted = written.substr(0, message.size());  // it is no longer than that
     if (!has(message, name) && !has(message, channel)) continue;
     const std::array<std::pair<std::string, Stretch>, 6> ways = {
-        {{fmt::format(" {}=\"{}\"", name, each->value.of(text)), value},
+        {{fmt::format(" {}=\"{}\"", name, quoted), value},
          {fmt::format(" {}=\"", name), value},
          {fmt::format("\"{}\"", name), stretch_of(each->name)},
          {fmt::format(".{}:", channel), value},
@@ -161,8 +169,10 @@ std::size_t ProblemPlaces::Text::owner_of(std::uint32_t attribute) const {
 std::string_view ProblemPlaces::Text::object_around(std::size_t element) const {
   for (auto at = static_cast<std::uint32_t>(element); at != xml::ElementPlace::no_parent;
        at = markup.elements[at].parent) {
-    for (const xml::AttributePlace& each : markup.attributes_of(at))
+    for (const xml::AttributePlace& each : markup.attributes_of(at)) {
+      if (!may_compare(0)) return {};
       if (each.name.of(text) == "name") return each.value.of(text);
+    }
   }
   return {};
 }
@@ -174,7 +184,9 @@ std::optional<Stretch> ProblemPlaces::Text::content(const Stretch& in,
   if (at == std::string_view::npos) return {};
   const std::string_view rest = message.substr(at + 1);
   const std::string_view quoted = rest.substr(0, std::min(rest.find('"'), rest.find("\u2026")));
-  const std::size_t found = std::string_view(text).substr(0, in.end).find(quoted, in.begin);
+  constexpr std::size_t most_searched = 10'000;  // bytes of the line
+  const std::size_t end = std::min(in.end, in.begin + most_searched);
+  const std::size_t found = std::string_view(text).substr(0, end).find(quoted, in.begin);
   if (quoted.empty() || found == std::string_view::npos) return {};
   return Stretch{found, found + quoted.size()};
 }
@@ -189,7 +201,7 @@ std::optional<Stretch> ProblemPlaces::Text::element(const Stretch& in,
   std::optional<Stretch> any;
   int compared = 0;
   for (auto each = first;
-       each != markup.elements.end() && each->name.begin < in.end && ++compared <= most_compared;
+       each != markup.elements.end() && each->name.begin < in.end && may_compare(++compared);
        ++each) {
     const std::string name(each->name.of(text));
     if (!any) any = stretch_of(each->name);
@@ -223,10 +235,10 @@ std::optional<ProblemPlace> ProblemPlaces::find(const std::string& file, int lin
   if (is_new) {
     const bool is_scene = std::ranges::find(scenes_, file) != scenes_.end();
     const auto read = [&]() -> Result<std::string> {
-      if (is_scene || root_.empty()) return read_file(file, largest_scene_file);
+      if (is_scene || root_.empty()) return read_file(file, largest_scene_file, &was_interrupted);
       const auto opened = OpenFile::open(file, root_);
       if (!opened) return fail(opened.error());
-      return read_file(*opened, largest_scene_file);
+      return read_file(*opened, largest_scene_file, &was_interrupted);
     };
     if (auto text = read()) {
       const std::size_t first = text->find_first_not_of(" \t\r\n\xEF\xBB\xBF");
