@@ -136,15 +136,18 @@ class Path {
   std::vector<Point> passed_;  // points since `start_`; the last one is the present end
 };
 
+constexpr std::size_t parts_of_key = 1024;  // of the work for each, see StopPoll
+
 template <int D>
 class ChannelPlot {
  public:
   ChannelPlot(const Channel<D>& channel, const std::string& path, bool is_switch, double first,
-              double last, double top)
+              double last, double top, StopPoll& poll)
       : channel_(channel),
         path_(path),
         is_switch_(is_switch),
-        panel_{first, last, 0, 1, top + header} {
+        panel_{first, last, 0, 1, top + header},
+        poll_(poll) {
     if (channel.is_animated()) handles_ = channel.curve().handles();
     choose_range();
   }
@@ -292,8 +295,10 @@ class ChannelPlot {
     // At joints, starts with the value after `from` and ends with the value before `to`.
     path.move_to(panel_.at(from, sampler.value(from)[c]));
     for (int k = 1; k <= count; ++k) {
+      if (poll_.after(parts_of_key)) return;
       const double frame = k == count ? to : from + (to - from) * k / count;
       for (; key != keys.end() && key->frame < frame; ++key) {
+        if (poll_.after(parts_of_key)) return;
         path.line_to(panel_.at(key->frame, sampler.left_value(key->frame)[c]));
         path.line_to(panel_.at(key->frame, sampler.value(key->frame)[c]));
       }
@@ -311,6 +316,7 @@ class ChannelPlot {
 
   void draw_handles(int c) {
     for (const KeyHandle<D>& handle : handles_) {
+      if (poll_.after(parts_of_key)) return;
       if (!is_seen(handle.key_frame)) continue;
       const Point key = panel_.at(handle.key_frame, handle.key_value[c]);
       const Point tip = panel_.at(handle.frame, handle.value[c]);
@@ -324,6 +330,7 @@ class ChannelPlot {
   void draw_keys(int c) {
     if (!channel_.is_animated()) return;
     for (const Key<D>& key : channel_.curve().keys().keys) {
+      if (poll_.after(parts_of_key)) return;
       if (!is_seen(key.frame)) continue;
       const Point at = panel_.at(key.frame, key.value[c]);
       text_ +=
@@ -336,6 +343,7 @@ class ChannelPlot {
   const std::string& path_;
   bool is_switch_;
   Panel panel_;
+  StopPoll& poll_;
   std::vector<KeyHandle<D>> handles_;
   std::string text_;
 };
@@ -343,7 +351,8 @@ class ChannelPlot {
 }  // namespace
 
 std::string curve_plot(std::span<const NamedChannel> channels, double first, double last,
-                       const std::string& title) {
+                       const std::string& title, const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
   const double panel = header + panel_height + panel_gap;
   const double height = top_margin + panel * static_cast<double>(channels.size()) + bottom_margin;
   std::string text = fmt::format(
@@ -361,9 +370,10 @@ std::string curve_plot(std::span<const NamedChannel> channels, double first, dou
     text += std::visit(
         [&]<class C>(const C* held) {
           if constexpr (std::is_same_v<C, Switch>) {
-            return ChannelPlot<1>(held->channel(), channel.path, true, first, last, top).draw();
+            return ChannelPlot<1>(held->channel(), channel.path, true, first, last, top, poll)
+                .draw();
           } else {
-            return ChannelPlot(*held, channel.path, false, first, last, top).draw();
+            return ChannelPlot(*held, channel.path, false, first, last, top, poll).draw();
           }
         },
         channel.channel);

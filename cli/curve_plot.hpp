@@ -3,14 +3,15 @@
 #include <span>
 #include <string>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/scene/channels.hpp"
 
 namespace pliant::cli {
 
 /// A plot of channels over frames first to last as an SVG picture: one panel per channel, with its
 /// curve, keys, handles and a grid of frames. Colours follow the reader's light or dark scheme.
-/// Requires: first < last.
+/// Not all of it if the caller wants it to stop. Requires: first < last.
 std::string curve_plot(std::span<const NamedChannel> channels, double first, double last,
-                       const std::string& title);
+                       const std::string& title, const StopRequest& should_stop = {});
 
 }  // namespace pliant::cli

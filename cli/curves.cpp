@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,7 +45,7 @@ struct Frames {
 
 // Reads one number per line; empty lines are skipped.
 Result<Frames> read_frames(const std::string& file) {
-  const auto text = read_file(file);
+  const auto text = read_file(file, largest_scene_file, &was_interrupted);
   if (!text) return fail(text.error());
   Frames frames;
   std::string_view rest = *text;
@@ -102,15 +103,16 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
                  [](const NamedChannel& channel) { return channel.is_animated(); });
     return chosen;
   }
+  std::map<std::string_view, const NamedChannel*> named;
+  for (const NamedChannel& channel : all) named.emplace(channel.path, &channel);
   for (const std::string& path : paths) {
-    const auto found = std::find_if(
-        all.begin(), all.end(), [&](const NamedChannel& channel) { return channel.path == path; });
-    if (found == all.end()) {
+    const auto found = named.find(path);
+    if (found == named.end()) {
       return fail(ErrorCode::InvalidInput,
                   fmt::format("--channel {}: the scene has no such channel{}", path,
                               channel_hint(scene, path)));
     }
-    chosen.push_back(*found);
+    chosen.push_back(*found->second);
   }
   return chosen;
 }
@@ -224,7 +226,9 @@ Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channe
                 fmt::format("a plot needs at least two frames; there is only {}", first));
   }
   const std::string title = std::filesystem::path(options.scene).filename().string();
-  return output.write(curve_plot(channels, first, last, title));
+  const std::string plot = curve_plot(channels, first, last, title, &was_interrupted);
+  if (was_interrupted()) return interrupted();
+  return output.write(plot);
 }
 
 // Checks that the output is not one of the inputs.
