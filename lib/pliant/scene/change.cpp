@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -282,15 +283,18 @@ Result<SceneChange> parse_change(std::string_view typed) {
 Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root) {
   Scene changed = scene;
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    const SceneChange& change = changes[k];
+  std::map<std::string, std::vector<const SceneChange*>> before;  // by the value that they change
+  for (const SceneChange& change : changes) {
     const auto complain = [&](const std::string& message) {
       return refuse(fmt::format("{}: {}", change.typed(), message));
     };
-    for (const SceneChange& other : changes.first(k)) {
-      if (change.overlaps(other) || other.overlaps(change))
-        return complain(fmt::format("{} changes the same value", other.typed()));
+    const std::optional<ValuePath> parts = split_path(change.path);
+    auto& others = before[parts ? parts->name + '.' + parts->attribute : change.path];
+    for (const SceneChange* other : others) {
+      if (change.overlaps(*other) || other->overlaps(change))
+        return complain(fmt::format("{} changes the same value", other->typed()));
     }
+    others.push_back(&change);
     if (const auto made = make_change(changed, change, root); !made)
       return complain(made.error().message);
   }
