@@ -31,7 +31,7 @@ void check_pieces(const Mesh& mesh, Border border, int rigid_count, double toler
   for (const SurfacePiece& piece : plan.surface->pieces) {
     TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
     const Bending bending = bending_of(inputs, body.surface().unit, border);
-    const Eigen::MatrixXd upper = plate.matrix(bending, 0);
+    const Eigen::MatrixXd upper = plate.matrix(bending, 0).value();
     const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
     // Without the slopes, which have no mass.
     const auto nodes = static_cast<Eigen::Index>(piece.masses.size());

@@ -89,7 +89,11 @@ Result<void> SpectralMotion::take(const PlateSystem& system) {
   }
   if (count != numbers_.count()) numbers_ = NumberBlock(count);
   for (KeptLoad& kept : kept_) kept.is_kept = false;
-  std::fill_n(numbers_.begin(), count, 0.0);
+  constexpr std::size_t at_a_time = std::size_t{1} << 20U;
+  for (std::size_t first = 0; first < count; first += at_a_time) {
+    if (context_.is_stopped()) return interrupted();
+    std::fill_n(numbers_.begin() + first, std::min(at_a_time, count - first), 0.0);
+  }
   carve(numbers_.begin());
 
   plate_.prepared_.reset();
@@ -100,6 +104,7 @@ Result<void> SpectralMotion::take(const PlateSystem& system) {
   for (int k = 0; k < 4; ++k) {
     const SpectralPlate::Parity& parity = plate_.parities_[k];
     if (parity.rows == 0 || parity.columns == 0) continue;
+    if (context_.is_stopped()) return interrupted();
     if (!plate_.fill_diagonal(system, k))
       return fail(not_positive_definite(unknown_count(grid), 0));
     const long size = long{parity.rows} * parity.pitch;
@@ -142,7 +147,10 @@ Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
 
   const SubStep step{length};
   int failed[4 * pole_count];
+  std::atomic<bool> is_stopped = false;
   plate_.for_each(4 * pole_count, [&](std::size_t task) {
+    if (!is_stopped && context_.is_stopped()) is_stopped = true;
+    if (is_stopped) return;
     const auto k = static_cast<int>(task / pole_count), pole = static_cast<int>(task % pole_count);
     const SpectralPlate::Parity& parity = plate_.parities_[k];
     failed[task] = -1;
@@ -152,6 +160,7 @@ Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
     failed[task] = plate_.kernels_.prepare_shift(plate_.view_of(k), diagonal_[k], number_of(shift),
                                                  beta_, delta_, tables.of[k][pole]);
   });
+  if (is_stopped) return interrupted();
   for (const int pivot : failed) {
     if (pivot >= 0) {
       return fail(not_positive_definite(unknown_count(system_->outline.grid()), pivot));
@@ -211,6 +220,8 @@ void SpectralMotion::measure(std::size_t part, int at) {
 // The steps after the first one. False: stopped.
 bool SpectralMotion::finish(int count, const SubStep& length, const Tables& tables) {
   std::atomic<bool> is_stopped = false;
+  // A step of a large part takes a while.
+  const bool is_large = long{plate_.columns_} * plate_.rows_ > 100'000;
   plate_.for_each(parts_.count, [&](std::size_t part) {
     const auto [k, component] = parts_.part[part];
     PartWork& work = work_[k][component];
@@ -219,7 +230,7 @@ bool SpectralMotion::finish(int count, const SubStep& length, const Tables& tabl
       std::swap(work.v[0], work.v[1]);
       if (number == count) break;
       if (is_stopped) return;
-      const bool asks = static_cast<std::size_t>(number) % parts_.count == part;
+      const bool asks = is_large || static_cast<std::size_t>(number) % parts_.count == part;
       if (asks && context_.is_stopped()) {
         is_stopped = true;
         return;
