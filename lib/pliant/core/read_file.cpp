@@ -64,9 +64,12 @@ namespace {
 
 template <class File>
 Result<std::string> read_all(const File& file, const std::filesystem::path& name,
-                             std::size_t max_bytes, const StopRequest& should_stop) {
+                             std::uintmax_t size, std::size_t max_bytes,
+                             const StopRequest& should_stop) {
   std::string bytes;
   bool is_stopped = false;
+  if (size > max_bytes) return too_large(name, max_bytes);  // any file may grow meanwhile
+  bytes.reserve(static_cast<std::size_t>(size));
   const auto read = read_pieces(file, [&](std::string_view piece) {
     bytes += piece;
     is_stopped = pliant::is_stopped(should_stop);
@@ -82,13 +85,14 @@ Result<std::string> read_all(const File& file, const std::filesystem::path& name
 
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t max_bytes,
                               const StopRequest& should_stop) {
-  return read_all(file, file, max_bytes, should_stop);
+  std::error_code no_size;  // a pipe has none
+  const std::uintmax_t size = std::filesystem::file_size(file, no_size);
+  return read_all(file, file, no_size ? 0 : size, max_bytes, should_stop);
 }
 
 Result<std::string> read_file(const OpenFile& file, std::size_t max_bytes,
                               const StopRequest& should_stop) {
-  if (file.size() > max_bytes) return too_large(file.name(), max_bytes);
-  return read_all(file, file.name(), max_bytes, should_stop);
+  return read_all(file, file.name(), file.size(), max_bytes, should_stop);
 }
 
 }  // namespace pliant
