@@ -40,8 +40,7 @@ bool is_read(std::string_view extension) { return extension == "KHR_mesh_quantiz
 
 class DocumentReader : private JsonReader {
  public:
-  DocumentReader(Json& root, const StopRequest& should_stop)
-      : JsonReader(root), poll_(should_stop) {}
+  DocumentReader(Json& root, const StopRequest& should_stop) : JsonReader(root, should_stop) {}
 
   Result<Document> read(Subject subject) {
     if (auto checked = check_asset(); !checked) return fail(checked.error());
@@ -60,21 +59,15 @@ class DocumentReader : private JsonReader {
     } else {
       list("animations", document_.animations, [&](Json& json) { return read_animation(json); });
     }
-    if (poll_.after(0)) return interrupted();
-    if (fault_) return invalid(*std::move(fault_));
+    if (fault_) return fault();
     return std::move(document_);
   }
 
  private:
-  static constexpr std::size_t parts_of_element = 500;
-
   // The objects in a list of the root.
   template <class Item, class Read>
   void list(const char* key, std::vector<Item>& items, const Read& read) {
-    each(root_, key, [&](Json& json) {
-      if (poll_.after(parts_of_element)) return refuse("", "is not read any more");
-      items.push_back(read(json));
-    });
+    each(root_, key, [&](Json& json) { items.push_back(read(json)); });
   }
 
   Result<void> check_asset() {
@@ -197,10 +190,8 @@ class DocumentReader : private JsonReader {
 
   MeshEntry read_mesh(Json& json) {
     MeshEntry mesh{name_or_place(json)};
-    each(json, "primitives", [&](Json& primitive) {
-      if (poll_.after(parts_of_element)) return refuse("", "is not read any more");
-      mesh.primitives.push_back(read_primitive(primitive));
-    });
+    each(json, "primitives",
+         [&](Json& primitive) { mesh.primitives.push_back(read_primitive(primitive)); });
     return mesh;
   }
 
@@ -236,8 +227,7 @@ class DocumentReader : private JsonReader {
     const Json* const list = member(parent, key);
     if (!list) return nodes;
     if (!list->is_array()) refuse(key, "is not a list");
-    for (std::size_t k = 0; k < list->size() && !fault_; ++k) {
-      if (poll_.after()) refuse(key, "is not read any more");
+    for (std::size_t k = 0; k < list->size() && goes_on(); ++k) {
       const auto number = to_whole((*list)[k]);
       if (!number) refuse(key, "has an element that is not a whole number of at least 0");
       if (number) nodes.push_back(checked_index(*number, key, "nodes").value_or(0));
@@ -347,7 +337,6 @@ class DocumentReader : private JsonReader {
     return channel;
   }
 
-  StopPoll poll_;
   Document document_;
 };
 
@@ -355,7 +344,7 @@ class DocumentReader : private JsonReader {
 
 Result<Document> read_document(std::string_view json, Subject subject,
                                const StopRequest& should_stop) {
-  auto root = parse_json(json, "glTF");
+  auto root = parse_json(json, "glTF", should_stop);
   if (!root) return fail(root.error());
   return DocumentReader(*root, should_stop).read(subject);
 }
