@@ -109,6 +109,7 @@ int verify(const ReplayCommandOptions& options) {
 }
 
 int diff(const ReplayCommandOptions& options) {
+  catch_interrupts();
   const auto verdict = with_progress(options, [&](const ReplayOptions& replay) {
     return compare_replays(options.log, options.other_log, replay);
   });

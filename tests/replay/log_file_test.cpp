@@ -1,5 +1,6 @@
 #include "pliant/replay/log_file.hpp"
 
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -191,6 +192,67 @@ TEST_CASE("what is no log, or a later one, is told apart", "[replay]") {
   CHECK(missing->code == ErrorCode::Unreadable);
 }
 
+TEST_CASE("a log with a hole of any size is refused unread", "[replay]") {
+  const ScratchFolder folder;
+  const auto file = folder.file("a.replay");
+  write_small_log(file);
+  const auto size = std::filesystem::file_size(file);
+  for (const auto& [keep, part] : {std::pair{size, "NUL bytes"}, std::pair{size / 2, "NUL bytes"},
+                                   std::pair{std::uintmax_t{0}, "not a replay log"},
+                                   std::pair{std::uintmax_t{30}, "NUL bytes"}}) {
+    write_small_log(file);
+    std::filesystem::resize_file(file, keep);
+    std::filesystem::resize_file(file, std::uintmax_t{1} << 40U);
+    CAPTURE(keep);
+    const auto trouble = trouble_in(file);
+    REQUIRE(trouble);
+    CHECK(trouble->code == ErrorCode::InvalidInput);
+    CHECK_THAT(trouble->message, Contains(part));
+  }
+}
+
+TEST_CASE("reading a log ends when asked", "[replay]") {
+  const ScratchFolder folder;
+  const auto file = folder.file("a.replay");
+  write_small_log(file);
+  std::size_t calls = 0;
+  const auto read_all = [&](std::size_t last) -> Result<void> {
+    calls = 0;
+    const StopRequest should_stop = [&] { return ++calls >= last; };
+    auto log = ReplayLogReader::open(file, should_stop);
+    if (!log) return fail(log.error());
+    for (;;) {
+      const auto frame = log->next(should_stop);
+      if (!frame) return fail(frame.error());
+      if (!*frame) return {};
+    }
+  };
+  REQUIRE(read_all(SIZE_MAX));
+  const std::size_t all = calls;
+  CHECK(all >= 5);  // lines
+  for (std::size_t last = 1; last <= all; ++last) {
+    const auto read = read_all(last);
+    REQUIRE_FALSE(read);
+    CHECK(read.error().code == ErrorCode::Interrupted);
+    CHECK(calls == last);
+  }
+}
+
+TEST_CASE("what is larger than a line of a log is not written", "[replay]") {
+  const ScratchFolder folder;
+  ReplayHeader header = small_header();
+  header.surfaces = {{"sheet", 4000, 4000}};
+  auto log = ReplayLogWriter::create(folder.file("a.replay"), header).value();
+  ReplayFrame frame = small_frame(-1, false);
+  frame.surfaces.pop_back();
+  BodyState& state = frame.states.emplace_back();
+  state.positions = state.velocities = Field::Zero(4000 * 4000, 3);
+  const auto written = log.write(frame);
+  REQUIRE_FALSE(written);
+  CHECK(written.error().code == ErrorCode::InvalidInput);
+  CHECK_THAT(written.error().message, Contains("record fewer states"));
+}
+
 TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
   const ScratchFolder folder;
   const auto lines = lines_of(write_small_log(folder.file("a.replay")));
@@ -229,9 +291,7 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
   three.surfaces.push_back(three.surfaces.back());
   three.states.push_back(three.states.back());
   const std::vector<std::string> nonsense = {
-      replay::to_json(three),
-      R"({"frame":-1})",
-      R"({"frame":-1,"surfaces":[]})",
+      replay::to_json(three), R"({"frame":-1})", R"({"frame":-1,"surfaces":[]})",
       R"({"frame":1e999,"surfaces":[]})",
       R"({"frame":0,"surfaces":[)" + digest + "}," + digest + "}]}",
       R"({"frame":18446744073709551615,"surfaces":[)" + digest + "}," + digest + "}]}",
@@ -239,11 +299,17 @@ TEST_CASE("sealed nonsense is an error with its line", "[replay]") {
       R"({"frame":-1,"surfaces":[)" + digest + R"(,"state":{}},)" + digest + "}]}",
       R"({"frame":-1,"surfaces":[)" + digest +
           R"(,"state":{"positions":[1,2,3],"velocities":[]}},)" + digest + "}]}",
-      R"({"frames":0})",
-      R"({"frames":-3})",
-      R"({"frame":)" + std::string(100000, '[') + "}",
-      "{}",
-      "nul}"};
+      R"({"frames":0})", R"({"frames":-3})", R"({"frame":)" + std::string(100000, '[') + "}",
+      // brackets that are closed, in millions
+      R"({"frame":-1,"x":)" + std::string(3'000'000, '[') + std::string(3'000'000, ']') + "}",
+      R"({"frame":-1,"frame":-1,"surfaces":[)" + digest + "}," + digest + "}]}",
+      R"({"frame":-1,"x":1e999,"surfaces":[)" + digest + "}," + digest + "}]}",
+      R"({"frame":-1,"x":"\xff","surfaces":[)" + digest + "}," + digest + "}]}",
+      R"({"frame":-1,"x":"\ud800","surfaces":[)" + digest + "}," + digest + "}]}",
+      std::string("{\"frame\":-1,\"\0\":1}", 19),
+      R"({"frame":-1,"surfaces":[)" + digest + R"(,"state":{"positions":[)" + std::string(11, '0') +
+          "],\"velocities\":[]}}," + digest + "}]}",
+      "{}", "nul}"};
   for (const std::string& second : nonsense) {
     CAPTURE(second.substr(0, 200));
     const auto trouble = trouble_in(folder, lines[0] + resealed(second, seal_of(lines[0])));

@@ -4,16 +4,23 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/shortened.hpp"
 
 namespace pliant {
 namespace {
+
+// Text of a log for a message.
+std::string told(std::string_view text) {
+  constexpr std::size_t longest = 200;
+  return shortened(printable(text), longest);
+}
 
 // The first line in which two texts differ, counted from 1.
 long first_other_line(std::string_view a, std::string_view b) {
@@ -21,21 +28,35 @@ long first_other_line(std::string_view a, std::string_view b) {
   return 1 + std::count(a.begin(), in_a, '\n');
 }
 
-std::string list_of(const std::vector<ReplaySurface>& surfaces) {
+// The first of many, each as `text_of` tells it.
+template <class Each, class TextOf>
+std::string list_of(const std::vector<Each>& all, const TextOf& text_of) {
+  constexpr std::size_t most = 12;
   std::string text;
-  for (const ReplaySurface& surface : surfaces) {
+  for (std::size_t k = 0; k < std::min(all.size(), most); ++k)
+    text += (text.empty() ? "" : ", ") + text_of(all[k]);
+  return all.size() > most ? fmt::format("{}, … ({} in all)", text, all.size()) : text;
+}
+
+std::string list_of(const std::vector<ReplaySurface>& surfaces) {
+  return list_of(surfaces, [](const ReplaySurface& surface) {
     const std::string size = surface.columns == 0
                                  ? fmt::format("{} nodes", surface.nodes)
                                  : fmt::format("{} x {}", surface.columns, surface.rows);
-    text += fmt::format("{}\"{}\" ({})", text.empty() ? "" : ", ", printable(surface.name), size);
-  }
-  return text;
+    return fmt::format("\"{}\" ({})", told(surface.name), size);
+  });
 }
 
-const ReplayFile* find(const std::vector<ReplayFile>& files, const std::string& name) {
-  const auto found = std::find_if(files.begin(), files.end(),
-                                  [&](const ReplayFile& file) { return file.name == name; });
-  return found == files.end() ? nullptr : &*found;
+std::string list_of(const std::vector<std::string>& changes) {
+  if (changes.empty()) return "none";
+  return list_of(changes, [](const std::string& change) { return told(change); });
+}
+
+// Of files of one name the first.
+std::map<std::string_view, Hash> hashes_of(const std::vector<ReplayFile>& files) {
+  std::map<std::string_view, Hash> hashes;
+  for (const ReplayFile& file : files) hashes.try_emplace(file.name, file.hash);
+  return hashes;
 }
 
 // By bits: 0 and -0 differ.
@@ -76,8 +97,8 @@ SurfaceAtFrame surface_of(const ReplayFrame& frame, std::size_t k) {
 }  // namespace
 
 std::string ReplayDifference::message() const {
-  std::string text = fmt::format("frame {}: surface \"{}\": {} {}", frame, printable(surface),
-                                 field, field == "region" ? "differs" : "differ");
+  std::string text = fmt::format("frame {}: surface \"{}\": {} {}", frame, told(surface), field,
+                                 field == "region" ? "differs" : "differ");
   if (peaks && !node) {
     text += fmt::format("; their peak displacement of {:.6g} differs by {:.3g}", (*peaks)[0],
                         std::abs((*peaks)[1] - (*peaks)[0]));
@@ -100,29 +121,27 @@ std::vector<std::string> ReplayVerdict::lines() const {
 std::vector<std::string> causes_in(const ReplayHeader& a, const ReplayHeader& b) {
   std::vector<std::string> causes;
   if (a.version != b.version) {
-    causes.push_back(fmt::format("the versions of pliant differ: {} and {}", printable(a.version),
-                                 printable(b.version)));
+    causes.push_back(
+        fmt::format("the versions of pliant differ: {} and {}", told(a.version), told(b.version)));
   }
   if (a.solver != b.solver || a.factors != b.factors) {
-    causes.push_back(fmt::format("the solvers differ: {} ({}) and {} ({})", printable(a.solver),
-                                 printable(a.factors), b.solver, b.factors));
+    causes.push_back(fmt::format("the solvers differ: {} ({}) and {} ({})", told(a.solver),
+                                 told(a.factors), told(b.solver), told(b.factors)));
   }
   if (a.scene_text != b.scene_text) {
     causes.push_back(fmt::format("the scene {} was edited; the first change is in line {}",
-                                 a.scene_file.empty() ? "of the program" : printable(a.scene_file),
+                                 a.scene_file.empty() ? "of the program" : told(a.scene_file),
                                  first_other_line(a.scene_text, b.scene_text)));
   }
   if (a.changes != b.changes) {
-    const auto list = [](const std::vector<std::string>& changes) {
-      return changes.empty() ? "none" : printable(fmt::format("{}", fmt::join(changes, ", ")));
-    };
-    causes.push_back(
-        fmt::format("the changes by --set differ: {}, and {}", list(a.changes), list(b.changes)));
+    causes.push_back(fmt::format("the changes by --set differ: {}, and {}", list_of(a.changes),
+                                 list_of(b.changes)));
   }
+  const auto others = hashes_of(b.files);
   for (const ReplayFile& file : a.files) {
-    const ReplayFile* const other = find(b.files, file.name);
-    if (other && other->hash != file.hash) {
-      causes.push_back(fmt::format("the file {} was changed", printable(file.name)));
+    const auto other = others.find(file.name);
+    if (other != others.end() && other->second != file.hash) {
+      causes.push_back(fmt::format("the file {} was changed", told(file.name)));
     }
   }
   return causes;

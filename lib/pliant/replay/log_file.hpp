@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "pliant/core/line_reader.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/replay/log.hpp"
 
@@ -13,12 +15,12 @@ namespace pliant {
 /// Writes a .replay file; it appears whole or not at all. docs/replay.md.
 class ReplayLogWriter {
  public:
-  /// Errors: Unwritable.
+  /// Errors: Unwritable; InvalidInput: as `write`.
   static Result<ReplayLogWriter> create(const std::filesystem::path& file,
                                         const ReplayHeader& header);
 
   /// Writes the next frame. Requires: its surfaces, and its states if it has any, are those of the
-  /// header. Errors: Unwritable.
+  /// header. Errors: Unwritable; InvalidInput: it is larger than a line that is read.
   Result<void> write(const ReplayFrame& frame);
 
   /// Errors: Unwritable. Requires: all frames of the header are written.
@@ -37,25 +39,27 @@ class ReplayLogWriter {
 class ReplayLogReader {
  public:
   /// Reads the header. Errors: Unreadable; InvalidInput for a file that is not a log, a log of
-  /// another format version, and a header that was changed.
-  static Result<ReplayLogReader> open(const std::filesystem::path& file);
+  /// another format version, and a header that was changed. Interrupted.
+  static Result<ReplayLogReader> open(const std::filesystem::path& file,
+                                      const StopRequest& should_stop = {});
 
   const ReplayHeader& header() const { return header_; }
 
   /// The next frame; nullopt after the last one. Errors, with the line: InvalidInput if the line
-  /// was changed after recording, or if the log is truncated.
-  Result<std::optional<ReplayFrame>> next();
+  /// was changed after recording, or if the log is truncated. Interrupted.
+  Result<std::optional<ReplayFrame>> next(const StopRequest& should_stop = {});
 
  private:
-  ReplayLogReader(std::string name, std::ifstream stream);
-  Result<std::string> next_line();
-  Result<void> read_header();
-  Result<void> read_end(long frame_count);
+  ReplayLogReader(std::string name, LineReader lines);
+  Result<std::string_view> next_line(const StopRequest& should_stop);
+  Result<void> check_seal(std::string_view line, const StopRequest& should_stop);
+  Result<void> read_header(const StopRequest& should_stop);
+  Result<void> read_end(std::string_view line, const StopRequest& should_stop);
   tl::unexpected<Error> at_fault(std::string message) const;
+  tl::unexpected<Error> as_told(const Error& error, std::string_view what) const;
 
   std::string name_;
-  std::ifstream stream_;
-  int line_ = 0;
+  LineReader lines_;
   std::string seal_;
   ReplayHeader header_;
   long frame_count_ = 0;  // frames read so far

@@ -2,18 +2,23 @@
 
 #include <charconv>
 #include <cstdint>
+#include <limits>
+#include <system_error>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "pliant/core/hash.hpp"
+#include "pliant/core/hash_stream.hpp"
+#include "pliant/mesh/json_reader.hpp"
 
 namespace pliant::replay {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view seal_member = ",\"seal\":\"";
+constexpr std::string_view seal_member = ",\"seal\":\"", seal_end = "\"}";
 constexpr std::string_view end_member = "{\"frames\":";  // recognised without parsing the line
 
 // A path may be text that is not UTF-8; a scene never is.
@@ -31,72 +36,107 @@ Json to_json(const Field& field) {
   return numbers;
 }
 
-// The readers below return whether `json` has the expected form, and never throw.
+// Reads what a line has.
+class LineContent : private JsonReader {
+ public:
+  LineContent(JsonReader::Json& root, const StopRequest& should_stop)
+      : JsonReader(root, should_stop) {}
 
-const Json* member(const Json& json, const char* name) {
-  if (!json.is_object()) return nullptr;
-  const auto found = json.find(name);
-  return found == json.end() ? nullptr : &*found;
-}
-
-bool read(const Json* json, std::string& text) {
-  if (!json || !json->is_string()) return false;
-  text = json->get<std::string>();
-  return true;
-}
-
-template <class Integer>
-bool read(const Json* json, Integer& number) {
-  if (!json || !json->is_number_integer()) return false;
-  // What is larger than an std::int64_t would wrap round.
-  const bool fits = json->is_number_unsigned() ? std::in_range<Integer>(json->get<std::uint64_t>())
-                                               : std::in_range<Integer>(json->get<std::int64_t>());
-  if (fits) number = json->get<Integer>();
-  return fits;
-}
-
-bool read(const Json* json, double& number) {
-  if (!json || !json->is_number()) return false;
-  number = json->get<double>();
-  return true;
-}
-
-bool read(const Json* json, Hash& hash) {
-  std::string text;
-  if (!read(json, text)) return false;
-  const auto found = to_hash(text);
-  if (found) hash = *found;
-  return found.has_value();
-}
-
-bool read(const Json* json, const ReplaySurface& surface, Field& field) {
-  const std::size_t rows = surface.columns == 0
-                               ? std::size_t(surface.nodes)
-                               : std::size_t(surface.columns) * std::size_t(surface.rows);
-  if (!json || !json->is_array() || json->size() != 3 * rows) return false;
-  field.resize(static_cast<Eigen::Index>(rows), 3);
-  std::size_t k = 0;
-  for (const Json& number : *json) {
-    const auto row = static_cast<Eigen::Index>(k / 3);
-    if (!read(&number, field(row, static_cast<Eigen::Index>(k % 3)))) return false;
-    ++k;
+  Result<ReplayHeader> header() {
+    ReplayHeader header;
+    header.version = required_text(root_, "version");
+    header.scene_file = required_text(root_, "scene");
+    header.scene_text = required_text(root_, "text");
+    header.changes = texts(root_, "changes");
+    each_required(root_, "files", [&](auto& json) {
+      header.files.push_back({required_text(json, "name"), required_hash(json, "hash")});
+    });
+    header.solver = required_text(root_, "solver");
+    header.factors = required_text(root_, "factors");
+    header.start = required_int(root_, "start", std::numeric_limits<int>::min());
+    header.end = required_int(root_, "end", header.start);
+    each_required(root_, "surfaces", [&](auto& json) { header.surfaces.push_back(surface(json)); });
+    if (fault_) return fault();
+    return header;
   }
-  return true;
-}
 
-// Reads each element of an array by `read_one(element, value)`.
-template <class Value, class ReadOne>
-bool read_all(const Json* json, std::vector<Value>& values, const ReadOne& read_one) {
-  if (!json || !json->is_array()) return false;
-  for (const Json& element : *json) {
-    Value value;
-    if (!read_one(element, value)) return false;
-    values.push_back(std::move(value));
+  Result<ReplayFrame> frame(const std::vector<ReplaySurface>& surfaces) {
+    ReplayFrame frame;
+    frame.number = required_int(root_, "frame", std::numeric_limits<int>::min());
+    each_required(root_, "surfaces", [&](auto& json) {
+      const std::size_t k = frame.surfaces.size();
+      if (k == surfaces.size()) return refuse("", "is one more than the surfaces of the log");
+      frame.surfaces.push_back({required_hash(json, "positions"), required_hash(json, "velocities"),
+                                required_hash(json, "region"), required_number(json, "peak")});
+      JsonReader::Json* const written = part(json, "state");
+      if (written ? frame.states.size() != k : !frame.states.empty())
+        return refuse("state", "is there in some surfaces only");
+      if (!written) return;
+      BodyState& state = frame.states.emplace_back();
+      within("state", [&] {
+        state.positions = field(*written, "positions", surfaces[k]);
+        state.velocities = field(*written, "velocities", surfaces[k]);
+      });
+    });
+    if (frame.surfaces.size() != surfaces.size())
+      refuse("surfaces", "has not as many elements as the log has surfaces");
+    if (fault_) return fault();
+    return frame;
   }
-  return true;
+
+  Result<long> frame_count() {
+    constexpr auto most = std::numeric_limits<long>::max();
+    const std::int64_t count = required_integer(root_, "frames", 0, most);
+    if (fault_) return fault();
+    return static_cast<long>(count);
+  }
+
+ private:
+  int required_int(JsonReader::Json& parent, const char* key, int least) {
+    return static_cast<int>(required_integer(parent, key, least, std::numeric_limits<int>::max()));
+  }
+
+  ReplaySurface surface(JsonReader::Json& json) {
+    ReplaySurface surface{.name = required_text(json, "name")};
+    if (member(json, "grid")) {
+      surface.nodes = required_int(json, "nodes", 0);
+    } else {
+      surface.columns = required_int(json, "columns", 1);
+      surface.rows = required_int(json, "rows", 1);
+    }
+    return surface;
+  }
+
+  Field field(JsonReader::Json& parent, const char* key, const ReplaySurface& surface) {
+    const JsonReader::Json* const numbers = member(parent, key);
+    const std::size_t rows = surface.columns == 0
+                                 ? std::size_t(surface.nodes)
+                                 : std::size_t(surface.columns) * std::size_t(surface.rows);
+    if (!numbers || !numbers->is_array() || numbers->size() != 3 * rows) {
+      refuse(key, fmt::format("is not a list of {} numbers", 3 * rows));
+      return {};
+    }
+    Field field(static_cast<Eigen::Index>(rows), 3);
+    for (std::size_t k = 0; k < numbers->size() && goes_on(); ++k) {
+      const JsonReader::Json& number = (*numbers)[k];
+      if (!number.is_number()) refuse(key, "has an element that is not a number");
+      field(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) =
+          number.is_number() ? number.get<double>() : 0;
+    }
+    return field;
+  }
+};
+
+Result<JsonReader::Json> parsed(std::string_view line, const StopRequest& should_stop) {
+  return parse_json(line, "a replay log", should_stop, most_values);
 }
 
-Json parsed(std::string_view line) { return Json::parse(line, nullptr, false); }
+Hash hash_of_line(const std::string& seal, std::string_view json) {
+  HashStream stream;
+  stream.add(seal);
+  stream.add(json);
+  return stream.hash();
+}
 
 }  // namespace
 
@@ -153,15 +193,19 @@ std::string to_json_end(long frame_count) { return to_line(Json{{"frames", frame
 
 std::string sealed(std::string json, std::string& seal) {
   json.pop_back();  // the closing brace
-  seal = to_text(hash_of(seal + json));
-  return json + std::string(seal_member) + seal + "\"}";
+  seal = to_text(hash_of_line(seal, json));
+  return json.append(seal_member).append(seal).append(seal_end);
 }
 
-bool is_sound(std::string_view line, std::string& seal) {
-  const std::size_t place = line.rfind(seal_member);
-  if (place == std::string_view::npos) return false;
-  const std::string expected = to_text(hash_of(seal + std::string(line.substr(0, place))));
-  if (line.substr(place + seal_member.size()) != expected + "\"}") return false;
+Result<bool> is_sound(std::string_view line, std::string& seal, const StopRequest& should_stop) {
+  constexpr std::size_t digits = 2 * sizeof(Hash);
+  constexpr std::size_t size = seal_member.size() + digits + seal_end.size();
+  if (line.size() < size) return false;
+  const std::string_view json = line.substr(0, line.size() - size);
+  if (is_stopped(should_stop)) return interrupted();
+  const std::string expected = to_text(hash_of_line(seal, json));
+  if (line.substr(json.size()) != fmt::format("{}{}{}", seal_member, expected, seal_end))
+    return false;
   seal = expected;
   return true;
 }
@@ -174,68 +218,25 @@ std::optional<int> format_of(std::string_view line) {
   return format;
 }
 
-std::optional<ReplayHeader> read_header(std::string_view line) {
-  const Json json = parsed(line);
-  ReplayHeader header;
-  const auto read_file = [](const Json& element, ReplayFile& file) {
-    return read(member(element, "name"), file.name) && read(member(element, "hash"), file.hash);
-  };
-  const auto read_surface = [](const Json& element, ReplaySurface& surface) {
-    if (!read(member(element, "name"), surface.name)) return false;
-    if (member(element, "grid")) {
-      return read(member(element, "nodes"), surface.nodes) && surface.nodes >= 0;
-    }
-    return read(member(element, "columns"), surface.columns) &&
-           read(member(element, "rows"), surface.rows) && surface.columns > 0 && surface.rows > 0;
-  };
-  const auto read_change = [](const Json& element, std::string& change) {
-    return read(&element, change);
-  };
-  const Json* const changes = member(json, "changes");
-  if (changes && !read_all(changes, header.changes, read_change)) return {};
-  const bool is_header = read(member(json, "version"), header.version) &&
-                         read(member(json, "scene"), header.scene_file) &&
-                         read(member(json, "text"), header.scene_text) &&
-                         read_all(member(json, "files"), header.files, read_file) &&
-                         read(member(json, "solver"), header.solver) &&
-                         read(member(json, "factors"), header.factors) &&
-                         read(member(json, "start"), header.start) &&
-                         read(member(json, "end"), header.end) && header.start <= header.end &&
-                         read_all(member(json, "surfaces"), header.surfaces, read_surface);
-  if (!is_header) return {};
-  return header;
+bool is_end(std::string_view line) { return line.starts_with(end_member); }
+
+Result<ReplayHeader> read_header(std::string_view line, const StopRequest& should_stop) {
+  auto json = parsed(line, should_stop);
+  if (!json) return fail(json.error());
+  return LineContent(*json, should_stop).header();
 }
 
-std::optional<ReplayFrame> read_frame(std::string_view line, const ReplayHeader& header) {
-  const Json json = parsed(line);
-  ReplayFrame frame;
-  const auto read_surface = [&](const Json& element, SurfaceDigest& digest) {
-    const bool is_digest = read(member(element, "positions"), digest.positions) &&
-                           read(member(element, "velocities"), digest.velocities) &&
-                           read(member(element, "region"), digest.region) &&
-                           read(member(element, "peak"), digest.peak);
-    const Json* const written = member(element, "state");
-    if (!is_digest || !written) return is_digest;
-    if (frame.states.size() >= header.surfaces.size()) return false;
-    const ReplaySurface& surface = header.surfaces[frame.states.size()];
-    BodyState& state = frame.states.emplace_back();
-    return read(member(*written, "positions"), surface, state.positions) &&
-           read(member(*written, "velocities"), surface, state.velocities);
-  };
-  const bool is_frame = read(member(json, "frame"), frame.number) &&
-                        read_all(member(json, "surfaces"), frame.surfaces, read_surface) &&
-                        frame.surfaces.size() == header.surfaces.size() &&
-                        (frame.states.empty() || frame.states.size() == header.surfaces.size());
-  if (!is_frame) return {};
-  return frame;
+Result<ReplayFrame> read_frame(std::string_view line, const ReplayHeader& header,
+                               const StopRequest& should_stop) {
+  auto json = parsed(line, should_stop);
+  if (!json) return fail(json.error());
+  return LineContent(*json, should_stop).frame(header.surfaces);
 }
 
-std::optional<long> read_end(std::string_view line) {
-  if (!line.starts_with(end_member)) return {};
-  const Json json = parsed(line);
-  long count = 0;
-  if (!read(member(json, "frames"), count)) return {};
-  return count;
+Result<long> read_end(std::string_view line) {
+  auto json = parsed(line, {});
+  if (!json) return fail(json.error());
+  return LineContent(*json, {}).frame_count();
 }
 
 }  // namespace pliant::replay

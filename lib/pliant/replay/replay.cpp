@@ -8,6 +8,7 @@
 
 #include "pliant/core/open_file.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/replay/digest.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/run_header.hpp"
@@ -15,6 +16,8 @@
 
 namespace pliant {
 namespace {
+
+constexpr std::size_t longest_name = 200;  // of a log, in messages [bytes]
 
 Result<void> write_frames(Simulation& simulation, const ReplayHeader& header, ReplayLogWriter& log,
                           const ReplayOptions& options) {
@@ -37,7 +40,9 @@ struct FoundScene {
 };
 
 Result<FoundScene> find_scene(const std::filesystem::path& log_file, const ReplayHeader& header,
-                              const std::optional<std::string>& given, const std::string& root) {
+                              const std::optional<std::string>& given,
+                              const ReplayOptions& options) {
+  const std::string& root = options.root;
   const std::filesystem::path folder = log_file.parent_path();
   if (!given && header.scene_file.empty()) {
     if (!header.scene_text.empty()) {
@@ -51,7 +56,7 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
   const std::filesystem::path file =
       given ? std::filesystem::path(*given) : folder / header.scene_file;
   if (given) {
-    auto written = read_scene_text(file, root);
+    auto written = read_scene_text(file, root, options.simulation.should_stop);
     if (!written) return fail(written.error());
     return FoundScene{*std::move(written)};
   }
@@ -63,10 +68,10 @@ Result<FoundScene> find_scene(const std::filesystem::path& log_file, const Repla
     return FoundScene{
         {.file = file, .text = header.scene_text, .root = root},
         fmt::format("the scene {} does not exist; its text in the log is simulated instead",
-                    printable(header.scene_file))};
+                    shortened(printable(header.scene_file), longest_name))};
   }
   if (!opened) return fail(opened.error());
-  auto text = read_file(*opened, largest_scene_file);
+  auto text = read_file(*opened, largest_scene_file, options.simulation.should_stop);
   if (!text) return fail(text.error());
   return FoundScene{{.file = file, .text = *std::move(text), .root = root}};
 }
@@ -77,16 +82,16 @@ struct RecordedRun {
   SolverChoice solver;
 };
 
-Result<RecordedRun> open_run(const std::string& log_file) {
-  auto log = ReplayLogReader::open(log_file);
+Result<RecordedRun> open_run(const std::string& log_file, const StopRequest& should_stop) {
+  auto log = ReplayLogReader::open(log_file, should_stop);
   if (!log) return fail(log.error());
   const std::string& name = log->header().solver;
   const auto solver = solver_choice(name);
   if (!solver || !is_available(*solver)) {
-    return fail(
-        ErrorCode::InvalidInput,
-        fmt::format("recorded with the solver {}, which this build does not have", printable(name)),
-        log_file, 1);
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("recorded with the solver {}, which this build does not have",
+                            shortened(printable(name), longest_name)),
+                log_file, 1);
   }
   return RecordedRun{*std::move(log), *solver};
 }
@@ -108,7 +113,7 @@ template <class Next>
 Result<void> compare_frames(ReplayLogReader& log, long last, const ReplayOptions& options,
                             ReplayVerdict& verdict, const Next& next) {
   while (true) {
-    const auto a = log.next();
+    const auto a = log.next(options.simulation.should_stop);
     if (!a) return fail(a.error());
     if (!*a) return {};
     const bool is_decided = !verdict.holds() && !options.keeps_going;
@@ -124,9 +129,9 @@ Result<void> compare_frames(ReplayLogReader& log, long last, const ReplayOptions
   }
 }
 
-Result<void> read_on(ReplayLogReader& log) {
+Result<void> read_on(ReplayLogReader& log, const StopRequest& should_stop) {
   while (true) {
-    const auto frame = log.next();
+    const auto frame = log.next(should_stop);
     if (!frame) return fail(frame.error());
     if (!*frame) return {};
   }
@@ -168,39 +173,41 @@ Result<void> compare(ReplayLogReader& log, const ReplayHeader& now, Simulation& 
 
 Result<ReplayHeader> record_replay(const std::string& scene_file, const std::string& log_file,
                                    const ReplayOptions& options) {
-  auto written = read_scene_text(scene_file, options.root);
+  auto written = read_scene_text(scene_file, options.root, options.simulation.should_stop);
   if (!written) return fail(written.error());
   written->changes = options.changes;
   auto simulation = simulation_of(*written, options.simulation);
   if (!simulation) return fail(simulation.error());
-  return record(*simulation,
-                header_of(simulation->scene(), *written, log_file, options.simulation.solver),
-                log_file, options);
+  auto header = header_of(simulation->scene(), *written, log_file, options.simulation.solver,
+                          options.simulation.should_stop);
+  if (!header) return header;
+  return record(*simulation, *std::move(header), log_file, options);
 }
 
 Result<ReplayHeader> record_replay(Simulation& simulation, const std::string& log_file,
                                    const ReplayOptions& options) {
   const Scene& scene = simulation.scene();
   const std::filesystem::path folder = std::filesystem::path(log_file).parent_path();
-  return record(simulation,
-                header_of(scene, written_by_program(scene, folder), log_file, simulation.solver()),
-                log_file, options);
+  auto header = header_of(scene, written_by_program(scene, folder), log_file, simulation.solver(),
+                          options.simulation.should_stop);
+  if (!header) return header;
+  return record(simulation, *std::move(header), log_file, options);
 }
 
 Result<ReplayVerdict> verify_replay(const std::string& log_file,
                                     const std::optional<std::string>& scene_file,
                                     const ReplayOptions& options) {
-  auto recorded = open_run(log_file);
+  auto recorded = open_run(log_file, options.simulation.should_stop);
   if (!recorded) return fail(recorded.error());
   auto& [log, solver] = *recorded;
   const ReplayHeader& then = log.header();
-  auto found = find_scene(log_file, then, scene_file, options.root);
+  auto found = find_scene(log_file, then, scene_file, options);
   if (!found) return fail(found.error());
   found->written.changes = then.changes;
   ReplayVerdict verdict;
   if (found->remark) verdict.causes.push_back(*found->remark);
 
-  auto now = header_of_text(found->written, log_file, solver);
+  auto now = header_of_text(found->written, log_file, solver, options.simulation.should_stop);
   if (!now) return fail(now.error());
   for (std::string& cause : causes_in(then, *now)) verdict.causes.push_back(std::move(cause));
   SimulationOptions run = options.simulation;
@@ -216,7 +223,7 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file,
 
 Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& simulation,
                                     const ReplayOptions& options) {
-  auto recorded = open_run(log_file);
+  auto recorded = open_run(log_file, options.simulation.should_stop);
   if (!recorded) return fail(recorded.error());
   auto& [log, solver] = *recorded;
   const ReplayHeader& then = log.header();
@@ -230,7 +237,10 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& sim
   // Files are named relative to the scene, if it is in a file.
   const std::filesystem::path folder =
       (std::filesystem::path(log_file).parent_path() / then.scene_file).parent_path();
-  ReplayHeader now = header_of(scene, written_by_program(scene, folder), log_file, solver);
+  auto made = header_of(scene, written_by_program(scene, folder), log_file, solver,
+                        options.simulation.should_stop);
+  if (!made) return fail(made.error());
+  ReplayHeader& now = *made;
   complete(now, simulation, then.end);
   ReplayVerdict verdict;
   // The text of a scene file may say the same in other words.
@@ -246,23 +256,24 @@ Result<ReplayVerdict> verify_replay(const std::string& log_file, Simulation& sim
 Result<ReplayVerdict> compare_replays(const std::string& log_file,
                                       const std::string& other_log_file,
                                       const ReplayOptions& options) {
-  auto log = ReplayLogReader::open(log_file);
+  const StopRequest& should_stop = options.simulation.should_stop;
+  auto log = ReplayLogReader::open(log_file, should_stop);
   if (!log) return fail(log.error());
-  auto other = ReplayLogReader::open(other_log_file);
+  auto other = ReplayLogReader::open(other_log_file, should_stop);
   if (!other) return fail(other.error());
   ReplayVerdict verdict;
   verdict.causes = causes_in(log->header(), other->header());
   verdict.mismatches = mismatches_in(log->header(), other->header());
   const long last = last_comparable_frame(log->header(), other->header());
   const auto read = [&](const ReplayFrame&) -> Result<ReplayFrame> {
-    auto frame = other->next();
+    auto frame = other->next(should_stop);
     if (!frame) return fail(frame.error());
     return **std::move(frame);  // never null: `last` is a frame of both
   };
   if (auto compared = compare_frames(*log, last, options, verdict, read); !compared) {
     return fail(compared.error());
   }
-  if (auto sound = read_on(*other); !sound) return fail(sound.error());
+  if (auto sound = read_on(*other, should_stop); !sound) return fail(sound.error());
   return verdict;
 }
 

@@ -58,8 +58,9 @@ Result<Scene> scene_of(const WrittenScene& written, const StopRequest& should_st
 
 }  // namespace
 
-Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root) {
-  auto text = read_file(file, largest_scene_file);
+Result<WrittenScene> read_scene_text(const fs::path& file, const fs::path& root,
+                                     const StopRequest& should_stop) {
+  auto text = read_file(file, largest_scene_file, should_stop);
   if (!text) return fail(text.error());
   return WrittenScene{.file = file, .text = *std::move(text), .root = root};
 }
@@ -69,23 +70,27 @@ WrittenScene written_by_program(const Scene& scene, const fs::path& folder) {
   return {.file = {}, .text = text ? *std::move(text) : std::string(), .folder = folder};
 }
 
-ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs::path& log_file,
-                       SolverChoice solver) {
+Result<ReplayHeader> header_of(const Scene& scene, const WrittenScene& written,
+                               const fs::path& log_file, SolverChoice solver,
+                               const StopRequest& should_stop) {
   ReplayHeader header;
   header.version = PLIANT_VERSION;
   if (!written.file.empty()) header.scene_file = name_from(log_file.parent_path(), written.file);
   header.scene_text = written.text;
   header.changes = written.changes;
-  for (const SceneInput& input : inputs_of(scene)) {
+  for (const SceneInput& input : inputs_of(scene, should_stop)) {
     if (input.file == scene.origin.file) continue;  // the scene is stored as text
     const auto opened = OpenFile::open(input.file, input.root);
     if (!opened) continue;
     // In pieces: a cache may be larger than the memory.
     HashStream stream;
+    bool is_stopped = pliant::is_stopped(should_stop);
     const auto read = read_pieces(*opened, [&](std::string_view piece) {
       stream.add(piece);
-      return true;
+      is_stopped = is_stopped || pliant::is_stopped(should_stop);
+      return !is_stopped;
     });
+    if (is_stopped) return interrupted();
     if (read) header.files.push_back({name_of(input, written), stream.hash()});
   }
   header.solver = name_of(solver);
@@ -94,10 +99,10 @@ ReplayHeader header_of(const Scene& scene, const WrittenScene& written, const fs
 }
 
 Result<ReplayHeader> header_of_text(const WrittenScene& written, const fs::path& log_file,
-                                    SolverChoice solver) {
+                                    SolverChoice solver, const StopRequest& should_stop) {
   const auto scene = scene_of(written);
   if (!scene) return fail(scene.error());
-  return header_of(*scene, written, log_file, solver);
+  return header_of(*scene, written, log_file, solver, should_stop);
 }
 
 void complete(ReplayHeader& header, const Simulation& simulation, std::optional<int> last_frame) {

@@ -22,20 +22,23 @@ struct WrittenScene {
 
 /// Errors: as `read_file`.
 Result<WrittenScene> read_scene_text(const std::filesystem::path& file,
-                                     const std::filesystem::path& root);
+                                     const std::filesystem::path& root,
+                                     const StopRequest& should_stop);
 
 /// The scene of a program, as text if a file can contain it; its meshes are named relative to
 /// `folder`.
 WrittenScene written_by_program(const Scene& scene, const std::filesystem::path& folder);
 
 /// The part of a log's header that is known before the simulation: all but frames and surfaces.
-/// Files that cannot be read are omitted.
-ReplayHeader header_of(const Scene& scene, const WrittenScene& written,
-                       const std::filesystem::path& log_file, SolverChoice solver);
+/// Files that cannot be read are omitted. Errors: Interrupted.
+Result<ReplayHeader> header_of(const Scene& scene, const WrittenScene& written,
+                               const std::filesystem::path& log_file, SolverChoice solver,
+                               const StopRequest& should_stop);
 
-/// The same for a text. Errors: as `parse_scene`.
+/// The same for a text. Errors: as `parse_scene`; Interrupted.
 Result<ReplayHeader> header_of_text(const WrittenScene& written,
-                                    const std::filesystem::path& log_file, SolverChoice solver);
+                                    const std::filesystem::path& log_file, SolverChoice solver,
+                                    const StopRequest& should_stop);
 
 /// Adds frames and surfaces.
 void complete(ReplayHeader& header, const Simulation& simulation, std::optional<int> last_frame);
